@@ -1,0 +1,25 @@
+# What is borrowed. All are Debian 12 packages (scripts/packages.txt). Those without a CMake package come by pkg-config or as headers.
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(CLI11 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus REQUIRED)
+
+# asdic_pkg_config(<target> <module>...): an imported interface target out of pkg-config modules.
+function(asdic_pkg_config target)
+  string(REPLACE "::" "_" name ${target})
+  pkg_check_modules(${name} REQUIRED IMPORTED_TARGET GLOBAL ${ARGN})
+  add_library(${target} ALIAS PkgConfig::${name})
+endfunction()
+
+asdic_pkg_config(fftw3::fftw3 fftw3 fftw3f)
+asdic_pkg_config(hdf5::hdf5 hdf5)
+asdic_pkg_config(netcdf::netcdf netcdf)
+asdic_pkg_config(sndfile::sndfile sndfile)
+
+find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+add_library(random123::random123 INTERFACE IMPORTED GLOBAL)
+set_target_properties(random123::random123 PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${RANDOM123_INCLUDE_DIR}")

@@ -1,0 +1,47 @@
+# How a folder becomes a target.
+
+find_package(Threads REQUIRED)
+
+# Warnings live here, and every target of ours links it.
+add_library(asdic_warnings INTERFACE)
+add_library(asdic::warnings ALIAS asdic_warnings)
+target_compile_options(asdic_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wnull-dereference -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough $<$<BOOL:${ASDIC_WERROR}>:-Werror>)
+
+# Instruction set, sanitizers, coverage. No -ffast-math: the same bits for any number of threads.
+add_library(asdic_build_options INTERFACE)
+target_compile_options(asdic_build_options INTERFACE
+  $<IF:$<BOOL:${ASDIC_NATIVE}>,-march=native,-march=x86-64-v2>
+  $<$<CONFIG:Release>:-O3>)
+if(ASDIC_SANITIZE)
+  target_compile_options(asdic_build_options INTERFACE -fsanitize=${ASDIC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(asdic_build_options INTERFACE -fsanitize=${ASDIC_SANITIZE})
+endif()
+if(ASDIC_COVERAGE)
+  target_compile_options(asdic_build_options INTERFACE --coverage)
+  target_link_options(asdic_build_options INTERFACE --coverage)
+endif()
+
+# asdic_library(<folder> PUBLIC ... PRIVATE ...): every .cpp below <folder> makes asdic::<folder>.
+function(asdic_library folder)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+  add_library(asdic_${folder} STATIC ${sources})
+  add_library(asdic::${folder} ALIAS asdic_${folder})
+  set_target_properties(asdic_${folder} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
+  target_compile_features(asdic_${folder} PUBLIC cxx_std_20)
+  target_include_directories(asdic_${folder} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/asdic>)
+  target_link_libraries(asdic_${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} Threads::Threads
+                        $<BUILD_INTERFACE:asdic_warnings> $<BUILD_INTERFACE:asdic_build_options>)
+  set_property(GLOBAL APPEND PROPERTY ASDIC_LIBRARIES ${folder})
+endfunction()
+
+# asdic_program(<name> <folder> <libraries>...)
+function(asdic_program name folder)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+  add_executable(asdic_${folder} ${sources})
+  set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME ${name} EXPORT_NAME ${name}
+                        RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  target_link_libraries(asdic_${folder} PRIVATE ${ARGN} Threads::Threads asdic_warnings asdic_build_options)
+endfunction()

@@ -1,0 +1,27 @@
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace asdic {
+
+/// East, north, depth [m]. The triple is left-handed (z points down): no cross products.
+using Vec3 = Eigen::Vector3d;
+using Vec2 = Eigen::Vector2d;
+
+inline constexpr double pi = std::numbers::pi;
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double micropascal = 1e-6;  ///< the reference pressure of underwater levels [Pa]
+
+constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
+constexpr double degrees(double radians) { return radians * (180.0 / pi); }
+
+/// 10^(x/10): a ratio of powers out of decibels. −∞ dB is 0.
+inline double power_from_db(double db) { return std::pow(10.0, db / 10.0); }
+/// 10^(x/20): a ratio of amplitudes out of decibels. −∞ dB is 0.
+inline double amplitude_from_db(double db) { return std::pow(10.0, db / 20.0); }
+inline double db_from_power(double ratio) { return 10.0 * std::log10(ratio); }
+inline double db_from_amplitude(double ratio) { return 20.0 * std::log10(ratio); }
+
+}  // namespace asdic

@@ -1,0 +1,30 @@
+#pragma once
+#include <string_view>
+#include <variant>
+
+namespace asdic {
+
+struct NoAbsorption {
+  static constexpr std::string_view name = "none";
+};
+
+/// Thorp's formula as in Jensen et al. (2011), eq. (1.47): 3.3e-3 + 0.11F/(1+F) + 44F/(4100+F) + 3e-4F dB/km, F = f²/kHz².
+struct Thorp {
+  static constexpr std::string_view name = "thorp";
+};
+
+/// Francois & Garrison, JASA 72, 896 and 1879 (1982): boric acid, magnesium sulphate and pure water.
+struct FrancoisGarrison {
+  static constexpr std::string_view name = "francois-garrison";
+  double temperature = 10.0;  ///< [°C]
+  double salinity = 35.0;     ///< [psu]
+  double ph = 8.0;
+  double depth = 0.0;  ///< the one depth at which the law is evaluated [m]
+};
+
+using Absorption = std::variant<NoAbsorption, Thorp, FrancoisGarrison>;
+
+/// Absorption at one frequency [dB/km]. \param frequency [Hz]
+[[nodiscard]] double absorption_db_per_km(const Absorption& absorption, double frequency) noexcept;
+
+}  // namespace asdic

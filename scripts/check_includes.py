@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""The folders include one another in one direction only, and each borrowed library stays where it belongs.
+
+core <- raytrace <- reverb <- sonar <- io <- study <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; FFTW in one file of
+sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
+"""
+import pathlib
+import re
+import sys
+
+ORDER = ["core", "raytrace", "reverb", "sonar", "io", "study", "app"]
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
+HOMES = {  # header prefix -> (folders whose .cpp files may include it)
+    "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io"],
+    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "study", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "study", "app"],
+    "Random123": ["core"], "nlohmann": ["io", "study", "app"], "CLI": ["app"], "spdlog": ["app"], "fmt/": ["app"],
+}
+
+
+def faults():
+    fftw_files = set()
+    for folder in ORDER:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix not in (".h", ".cpp"):
+                continue
+            name = path.relative_to(ROOT)
+            for quote, header in INCLUDE.findall(path.read_text()):
+                top = header.split("/")[0]
+                if quote == '"':
+                    if top not in ORDER:
+                        yield f'{name}: "{header}" must be written from the top, as "folder/file.h"'
+                    elif ORDER.index(top) > ORDER.index(folder):
+                        yield f"{name}: includes {header}, but {folder} comes before {top}"
+                    continue
+                for prefix, homes in HOMES.items():
+                    if header.startswith(prefix) and (folder not in homes or (path.suffix == ".h" and folder != "app")):
+                        yield f"{name}: <{header}> belongs in .cpp files of {', '.join(homes)}"
+                if header.startswith("fftw3"):
+                    fftw_files.add(str(name))
+    if len(fftw_files) > 1:
+        yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
+
+
+if __name__ == "__main__":
+    found = list(faults())
+    print("\n".join(found) or "include order: clean")
+    sys.exit(bool(found))

@@ -1,0 +1,51 @@
+#pragma once
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace asdic {
+
+enum class PulseKind { cw, lfm, hfm, file };
+enum class PulseWindow { none, hann, tukey };
+
+/// What a pulse is made of, as a scenario says it.
+struct PulseSettings {
+  PulseKind kind = PulseKind::cw;
+  double frequency = 4000.0;        ///< CW: the tone [Hz]
+  double start_frequency = 3950.0;  ///< LFM, HFM: at the leading edge [Hz] (above the end frequency for a down-sweep)
+  double end_frequency = 4050.0;    ///< LFM, HFM: at the trailing edge [Hz]
+  double duration = 1.0;            ///< [s]
+  PulseWindow window = PulseWindow::hann;
+  double tukey_fraction = 0.1;  ///< share of the duration in the two tapers together, 0..1
+  std::vector<double> samples;  ///< file: real pressure samples, scaled so that the peak envelope is 1
+  double sample_rate = 0.0;     ///< file: [Hz]
+  std::string file;             ///< file: where the samples came from, for the record
+};
+
+/// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the leading edge, zero outside [0, duration].
+/// Time dependence e^{+iωt}; the pressure at 1 m is Re{√2·10^(SL/20) µPa · s₊(t)}.
+class Pulse {
+ public:
+  /// \throws InputError naming the setting at fault ("duration", "frequency", …)
+  explicit Pulse(PulseSettings settings);
+
+  [[nodiscard]] std::complex<double> analytic(double t) const noexcept;
+
+  [[nodiscard]] double duration() const noexcept { return settings_.duration; }
+  [[nodiscard]] double centre_frequency() const noexcept { return centre_frequency_; }
+  /// Full width around the centre outside which the spectrum stays 40 dB below its peak [Hz].
+  [[nodiscard]] double bandwidth_40db() const noexcept { return bandwidth_40db_; }
+  /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window.
+  [[nodiscard]] double energy() const noexcept { return energy_; }
+  [[nodiscard]] const PulseSettings& settings() const noexcept { return settings_; }
+
+ private:
+  PulseSettings settings_;
+  double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, energy_ = 0.0;
+  std::vector<std::complex<double>> file_samples_;  // analytic
+};
+
+/// Re s₊ sampled at the phones' rate: what a matched filter needs. \return [ceil(duration·sample_rate) + 1]
+[[nodiscard]] std::vector<float> replica(const Pulse& pulse, double sample_rate);
+
+}  // namespace asdic

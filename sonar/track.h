@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include "core/units.h"
+
+namespace asdic {
+
+struct Kinematics {
+  Vec3 position = Vec3::Zero();  ///< [m]
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+};
+
+struct Waypoint {
+  double time = 0.0;  ///< since the start of the scenario [s]
+  Vec3 position = Vec3::Zero();
+};
+
+/// Where something is at a time: from a start with a constant velocity, or straight from waypoint to waypoint
+/// (at rest before the first and after the last).
+struct Track {
+  Kinematics start;                  ///< used when there are no waypoints
+  std::vector<Waypoint> waypoints;  ///< strictly increasing in time
+
+  [[nodiscard]] Kinematics at(double time) const;
+};
+
+}  // namespace asdic
