@@ -8,10 +8,13 @@
 
 namespace asdic {
 
-RandomStream::RandomStream(std::uint64_t seed, Draw purpose, std::uint32_t realisation, std::uint64_t entity)
-    // The 64-bit seed is folded with the purpose into the 64-bit key by one bijective multiply-xor, so seeds differing in any
-    // bit and purposes differing at all give different keys.
-    : key_{}, counter_{realisation, static_cast<std::uint32_t>(entity), static_cast<std::uint32_t>(entity >> 32)} {
+RandomStream::RandomStream(std::uint64_t seed, Draw purpose, std::uint32_t realisation,
+                           std::uint64_t entity)
+    // The 64-bit seed is folded with the purpose into the 64-bit key by one bijective multiply-xor,
+    // so seeds differing in any bit and purposes differing at all give different keys.
+    : key_{},
+      counter_{realisation, static_cast<std::uint32_t>(entity),
+               static_cast<std::uint32_t>(entity >> 32)} {
   std::uint64_t mixed = seed + 0x9E3779B97F4A7C15ULL * static_cast<std::uint64_t>(purpose);
   mixed = (mixed ^ (mixed >> 30)) * 0xBF58476D1CE4E5B9ULL;
   mixed = (mixed ^ (mixed >> 27)) * 0x94D049BB133111EBULL;

@@ -13,18 +13,21 @@ enum class Draw : std::uint32_t {
   volume_weight = 4,
 };
 
-/// A stream of random numbers that belongs to the thing simulated, not to the thread that happens to compute it.
+/// A stream of random numbers that belongs to the thing simulated, not to the thread that happens
+/// to compute it.
 ///
-/// Counter-based (Philox4x32-10, Salmon et al., SC'11): the key is (seed, purpose), the counter (realisation, entity, draw), so
-/// any draw of any stream can be had in any order and the same bits come out for any number of threads.
+/// Counter-based (Philox4x32-10, Salmon et al., SC'11): the key is (seed, purpose), the counter
+/// (realisation, entity, draw), so any draw of any stream can be had in any order and the same bits
+/// come out for any number of threads.
 class RandomStream {
  public:
   /// \param realisation  ping or Monte Carlo index   \param entity  phone, ground cell, target …
   RandomStream(std::uint64_t seed, Draw purpose, std::uint32_t realisation, std::uint64_t entity);
 
-  double uniform();                       ///< in (0, 1), 32 bits
-  double normal();                        ///< mean 0, variance 1 (Box–Muller)
-  std::complex<double> complex_normal();  ///< mean 0, E|w|² = 1, real and imaginary part independent
+  double uniform();  ///< in (0, 1), 32 bits
+  double normal();   ///< mean 0, variance 1 (Box–Muller)
+  std::complex<double>
+  complex_normal();  ///< mean 0, E|w|² = 1, real and imaginary part independent
 
   /// Four 32-bit words of block `block` of this stream, without moving it.
   [[nodiscard]] std::array<std::uint32_t, 4> block(std::uint32_t block) const noexcept;
@@ -33,7 +36,8 @@ class RandomStream {
   std::uint32_t next();
 
   std::array<std::uint32_t, 2> key_;
-  std::array<std::uint32_t, 3> counter_;  // realisation, entity low, entity high; the fourth word is the block
+  std::array<std::uint32_t, 3>
+      counter_;  // realisation, entity low, entity high; the fourth word is the block
   std::uint32_t next_block_ = 0;
   std::array<std::uint32_t, 4> words_{};
   int used_ = 4;

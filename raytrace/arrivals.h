@@ -14,27 +14,31 @@ struct Bounce {
   double range = 0.0;    ///< horizontal distance from the source [m]
 };
 
-/// One eigenray: a path that sound takes from a source to a receiver. Unit source at 1 m; neither source level nor directivity.
+/// One eigenray: a path that sound takes from a source to a receiver. Unit source at 1 m; neither
+/// source level nor directivity.
 ///
-/// Elevations are positive up and tell the direction of *travel*: seen from the receiver the sound comes from −arrival_elevation.
-/// Time dependence e^{+iωt}: a caustic multiplies by e^{+iπ/2}, a pressure-release surface by −1. The stored pressure of the path is
-/// Re{amplitude · s₊(t − delay)}, s₊ the analytic pulse.
+/// Elevations are positive up and tell the direction of *travel*: seen from the receiver the sound
+/// comes from −arrival_elevation. Time dependence e^{+iωt}: a caustic multiplies by e^{+iπ/2}, a
+/// pressure-release surface by −1. The stored pressure of the path is Re{amplitude · s₊(t −
+/// delay)}, s₊ the analytic pulse.
 struct Arrival {
-  double launch_elevation = 0.0;          ///< [rad]
-  double arrival_elevation = 0.0;         ///< [rad]
-  double delay = 0.0;                     ///< τ [s]
-  std::complex<double> amplitude = 0.0;   ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]
-  double spreading = 0.0;                 ///< |amplitude| of the ray tube alone, √(c cos θ₀ /(c₀ r |q|)) [1/m × 1 m]
+  double launch_elevation = 0.0;   ///< [rad]
+  double arrival_elevation = 0.0;  ///< [rad]
+  double delay = 0.0;              ///< τ [s]
+  std::complex<double> amplitude =
+      0.0;  ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]
+  double spreading =
+      0.0;  ///< |amplitude| of the ray tube alone, √(c cos θ₀ /(c₀ r |q|)) [1/m × 1 m]
   std::complex<double> reflection = 1.0;  ///< product of the boundaries' coefficients
   double absorption_db = 0.0;             ///< along the path [dB]
-  double q = 0.0;                         ///< ∂n/∂(launch elevation), signed by the caustics passed [m/rad]
-  double path_length = 0.0;               ///< [m]
-  double horizontal_slowness = 0.0;       ///< Snell's invariant cos θ/c [s/m]
+  double q = 0.0;            ///< ∂n/∂(launch elevation), signed by the caustics passed [m/rad]
+  double path_length = 0.0;  ///< [m]
+  double horizontal_slowness = 0.0;  ///< Snell's invariant cos θ/c [s/m]
   int surface_bounces = 0;
   int bottom_bounces = 0;
-  int upper_turns = 0;  ///< turning points below the surface
-  int lower_turns = 0;  ///< turning points above the bottom
-  int caustics = 0;     ///< zeros of q passed
+  int upper_turns = 0;          ///< turning points below the surface
+  int lower_turns = 0;          ///< turning points above the bottom
+  int caustics = 0;             ///< zeros of q passed
   std::vector<Bounce> bounces;  ///< in the order in which they happen
 };
 

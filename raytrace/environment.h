@@ -5,7 +5,8 @@
 
 namespace asdic {
 
-/// A boundary of the water: where it is and what is behind it. Flat for now; a slope will be a shape beside `depth`.
+/// A boundary of the water: where it is and what is behind it. Flat for now; a slope will be a
+/// shape beside `depth`.
 struct Boundary {
   double depth = 0.0;  ///< [m], positive down
   BoundaryMaterial material = Vacuum{};

@@ -13,8 +13,8 @@ namespace asdic {
 struct Leg {
   enum class Kind { source_to_target, target_to_array, source_to_array };
   Kind kind = Kind::source_to_target;
-  int target = -1;   ///< index in the scenario, −1 for source_to_array (there and back, no target)
-  int channel = -1;  ///< the phone, −1 for the array's reference point
+  int target = -1;  ///< index in the scenario, −1 for source_to_array (there and back, no target)
+  int channel = -1;      ///< the phone, −1 for the array's reference point
   double bearing = 0.0;  ///< direction of travel, clockwise from north [rad]
   double range = 0.0;    ///< horizontal [m]
   Arrivals arrivals;
@@ -23,23 +23,25 @@ struct Leg {
 /// One echo: one path out, one path back.
 struct EchoPath {
   int target = 0;
-  int outgoing = 0;   ///< index in the arrivals of the source_to_target leg
-  int returning = 0;  ///< index in the arrivals of the target_to_array leg
+  int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
+  int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
   Return heard;           ///< at the array's reference point (or the phone)
 };
 
 /// What scatters back from one ground cell, by one path pair.
 struct PatchRow {
-  double range = 0.0;         ///< of the cell's centre from the source [m]
-  double area = 0.0;          ///< of the whole ring of this cell [m²]
-  double delay = 0.0;         ///< two-way [s]
-  double grazing_in = 0.0;    ///< [rad]
-  double grazing_out = 0.0;   ///< [rad]
-  double launch_elevation = 0.0;   ///< of the outgoing path [rad]
-  double arrival_elevation = 0.0;  ///< of the returning path at the array, direction of travel [rad]
+  double range = 0.0;             ///< of the cell's centre from the source [m]
+  double area = 0.0;              ///< of the whole ring of this cell [m²]
+  double delay = 0.0;             ///< two-way [s]
+  double grazing_in = 0.0;        ///< [rad]
+  double grazing_out = 0.0;       ///< [rad]
+  double launch_elevation = 0.0;  ///< of the outgoing path [rad]
+  double arrival_elevation =
+      0.0;  ///< of the returning path at the array, direction of travel [rad]
   double scattering_strength_db = 0.0;  ///< of that pair of angles [dB]
-  double level_db = 0.0;  ///< expected level of the whole ring by this pair, pulse not windowed [dB re 1 µPa]
+  double level_db =
+      0.0;  ///< expected level of the whole ring by this pair, pulse not windowed [dB re 1 µPa]
 };
 
 /// Mean-square pressure over the phones against time, with the parts told apart. [n] each [Pa²]
@@ -51,23 +53,24 @@ struct LevelSeries {
 struct TargetSummary {
   std::string name;
   bool present = false;
-  int paths = 0;                 ///< path pairs
-  double echo_time = 0.0;        ///< of the strongest pair [s]
-  double echo_level_db = 0.0;    ///< of the strongest pair [dB re 1 µPa]
-  double reverberation_db = 0.0; ///< expected level at that time [dB re 1 µPa]
-  double noise_db = 0.0;         ///< in the pulse's band [dB re 1 µPa]
-  double signal_excess_db = 0.0; ///< echo over reverberation plus noise [dB]
+  int paths = 0;                  ///< path pairs
+  double echo_time = 0.0;         ///< of the strongest pair [s]
+  double echo_level_db = 0.0;     ///< of the strongest pair [dB re 1 µPa]
+  double reverberation_db = 0.0;  ///< expected level at that time [dB re 1 µPa]
+  double noise_db = 0.0;          ///< in the pulse's band [dB re 1 µPa]
+  double signal_excess_db = 0.0;  ///< echo over reverberation plus noise [dB]
 };
 
 struct Timings {
-  double rays = 0.0, eigenrays = 0.0, patches = 0.0, synthesis = 0.0, noise = 0.0, write = 0.0;  ///< wall time [s]
+  double rays = 0.0, eigenrays = 0.0, patches = 0.0, synthesis = 0.0, noise = 0.0,
+         write = 0.0;  ///< wall time [s]
 };
 
 /// Everything about one ping: what the phones heard, and the truth behind it.
 struct PingRecord {
-  int ping = 1;            ///< counted from 1
-  double start_time = 0.0; ///< of the ping in the scenario [s]
-  double elevation = 0.0;  ///< of the transmitter [rad]
+  int ping = 1;             ///< counted from 1
+  double start_time = 0.0;  ///< of the ping in the scenario [s]
+  double elevation = 0.0;   ///< of the transmitter [rad]
   Kinematics platform;
   std::vector<Kinematics> targets;
   std::vector<Vec3> phones;  ///< [channels] positions at the ping's start [m]

@@ -11,19 +11,22 @@ enum class PulseWindow { none, hann, tukey };
 /// What a pulse is made of, as a scenario says it.
 struct PulseSettings {
   PulseKind kind = PulseKind::cw;
-  double frequency = 4000.0;        ///< CW: the tone [Hz]
-  double start_frequency = 3950.0;  ///< LFM, HFM: at the leading edge [Hz] (above the end frequency for a down-sweep)
-  double end_frequency = 4050.0;    ///< LFM, HFM: at the trailing edge [Hz]
-  double duration = 1.0;            ///< [s]
+  double frequency = 4000.0;  ///< CW: the tone [Hz]
+  double start_frequency =
+      3950.0;  ///< LFM, HFM: at the leading edge [Hz] (above the end frequency for a down-sweep)
+  double end_frequency = 4050.0;  ///< LFM, HFM: at the trailing edge [Hz]
+  double duration = 1.0;          ///< [s]
   PulseWindow window = PulseWindow::hann;
   double tukey_fraction = 0.1;  ///< share of the duration in the two tapers together, 0..1
-  std::vector<double> samples;  ///< file: real pressure samples, scaled so that the peak envelope is 1
-  double sample_rate = 0.0;     ///< file: [Hz]
-  std::string file;             ///< file: where the samples came from, for the record
+  std::vector<double>
+      samples;               ///< file: real pressure samples, scaled so that the peak envelope is 1
+  double sample_rate = 0.0;  ///< file: [Hz]
+  std::string file;          ///< file: where the samples came from, for the record
 };
 
-/// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the leading edge, zero outside [0, duration].
-/// Time dependence e^{+iωt}; the pressure at 1 m is Re{√2·10^(SL/20) µPa · s₊(t)}.
+/// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the
+/// leading edge, zero outside [0, duration]. Time dependence e^{+iωt}; the pressure at 1 m is
+/// Re{√2·10^(SL/20) µPa · s₊(t)}.
 class Pulse {
  public:
   /// \throws InputError naming the setting at fault ("duration", "frequency", …)
@@ -45,7 +48,8 @@ class Pulse {
   std::vector<std::complex<double>> file_samples_;  // analytic
 };
 
-/// Re s₊ sampled at the phones' rate: what a matched filter needs. \return [ceil(duration·sample_rate) + 1]
+/// Re s₊ sampled at the phones' rate: what a matched filter needs. \return
+/// [ceil(duration·sample_rate) + 1]
 [[nodiscard]] std::vector<float> replica(const Pulse& pulse, double sample_rate);
 
 }  // namespace asdic

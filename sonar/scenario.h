@@ -17,17 +17,18 @@ namespace asdic {
 struct Target {
   std::string name = "target";
   Track track;
-  double strength_db = 10.0;  ///< TS [dB]
-  int first_ping = 1;         ///< the target is there from this ping …
+  double strength_db = 10.0;                        ///< TS [dB]
+  int first_ping = 1;                               ///< the target is there from this ping …
   int last_ping = std::numeric_limits<int>::max();  ///< … to this one
 };
 
 /// Surface reverberation as scattering patches on one ground grid.
 struct ReverberationSettings {
   bool enabled = true;
-  AnySurfaceScattering surface = NrlSurface{};  ///< wind and surface sound speed are filled in from the environment
-  int azimuths = 36;                            ///< sectors of a ring, each with its own bearing and weight
-  std::optional<double> ground_spacing;         ///< of the grid [m]; by default from the pulse's bandwidth
+  AnySurfaceScattering surface =
+      NrlSurface{};   ///< wind and surface sound speed are filled in from the environment
+  int azimuths = 36;  ///< sectors of a ring, each with its own bearing and weight
+  std::optional<double> ground_spacing;  ///< of the grid [m]; by default from the pulse's bandwidth
 };
 
 struct NoiseSettings {
@@ -44,11 +45,12 @@ struct PropagationSettings {
 
 struct PingSchedule {
   int count = 1;
-  double interval = 60.0;                 ///< from ping to ping [s]
-  std::vector<double> elevations;         ///< transmitter elevation of each ping [rad], repeated as needed; empty: the transmitter's own
-  double recording_duration = 60.0;       ///< after the start of each ping [s]
-  double recording_start = 0.0;           ///< [s]
-  double sample_rate = 16000.0;           ///< [Hz]
+  double interval = 60.0;            ///< from ping to ping [s]
+  std::vector<double> elevations;    ///< transmitter elevation of each ping [rad], repeated as
+                                     ///< needed; empty: the transmitter's own
+  double recording_duration = 60.0;  ///< after the start of each ping [s]
+  double recording_start = 0.0;      ///< [s]
+  double sample_rate = 16000.0;      ///< [Hz]
 };
 
 /// All that a simulation needs, as plain data. Times in s, lengths in m, angles in rad.

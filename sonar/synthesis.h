@@ -24,13 +24,17 @@ struct Baseband {
   std::size_t channels = 0, samples = 0;
   std::vector<std::complex<float>> values;  ///< [channels × samples]
 
-  [[nodiscard]] std::span<const std::complex<float>> channel(std::size_t n) const { return {values.data() + n * samples, samples}; }
+  [[nodiscard]] std::span<const std::complex<float>> channel(std::size_t n) const {
+    return {values.data() + n * samples, samples};
+  }
 };
 
-/// Turns sparse returns into phones' time series: band-limited impulse responses, convolved with the pulse by FFT in complex
-/// baseband, Doppler by a low-rank (Chebyshev) expansion over the span of factors; passband by FFT interpolation at the end.
-/// Built once per pulse, recording and band of Doppler factors; immutable, shared by threads, deterministic for any number of them.
-/// Error below −80 dB of the strongest return against direct_synthesis(). Source: docs/theory/synthesis.md
+/// Turns sparse returns into phones' time series: band-limited impulse responses, convolved with
+/// the pulse by FFT in complex baseband, Doppler by a low-rank (Chebyshev) expansion over the span
+/// of factors; passband by FFT interpolation at the end. Built once per pulse, recording and band
+/// of Doppler factors; immutable, shared by threads, deterministic for any number of them. Error
+/// below −80 dB of the strongest return against direct_synthesis(). Source:
+/// docs/theory/synthesis.md
 class Synthesizer {
  public:
   /// \param max_doppler  largest |η − 1| any return will have
@@ -40,10 +44,13 @@ class Synthesizer {
   Synthesizer(Synthesizer&&) noexcept;
 
   /// \param phones  [n] positions relative to the array's reference point [m]
-  /// \return baseband [n × samples] in units of the peak source pressure at 1 m. Returns outside the record are cut, not wrapped.
-  [[nodiscard]] Baseband baseband(std::span<const Return> returns, std::span<const Vec3> phones) const;
+  /// \return baseband [n × samples] in units of the peak source pressure at 1 m. Returns outside
+  /// the record are cut, not wrapped.
+  [[nodiscard]] Baseband baseband(std::span<const Return> returns,
+                                  std::span<const Vec3> phones) const;
 
-  /// Adds scale·Re{b e^{i2πf_c t}} to the phones' samples. \param pressure [channels × recording.samples], row per phone
+  /// Adds scale·Re{b e^{i2πf_c t}} to the phones' samples. \param pressure [channels ×
+  /// recording.samples], row per phone
   void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
 
  private:
@@ -51,8 +58,10 @@ class Synthesizer {
   std::vector<Plan> plan_;  // a vector of one keeps FFTW's types out of the header
 };
 
-/// The reference: every return's exact stretched pulse evaluated at every sample. \return [phones × recording.samples]
+/// The reference: every return's exact stretched pulse evaluated at every sample. \return [phones ×
+/// recording.samples]
 [[nodiscard]] std::vector<double> direct_synthesis(const Pulse& pulse, const Recording& recording,
-                                                   std::span<const Return> returns, std::span<const Vec3> phones);
+                                                   std::span<const Return> returns,
+                                                   std::span<const Vec3> phones);
 
 }  // namespace asdic

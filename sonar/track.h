@@ -15,10 +15,10 @@ struct Waypoint {
   Vec3 position = Vec3::Zero();
 };
 
-/// Where something is at a time: from a start with a constant velocity, or straight from waypoint to waypoint
-/// (at rest before the first and after the last).
+/// Where something is at a time: from a start with a constant velocity, or straight from waypoint
+/// to waypoint (at rest before the first and after the last).
 struct Track {
-  Kinematics start;                  ///< used when there are no waypoints
+  Kinematics start;                 ///< used when there are no waypoints
   std::vector<Waypoint> waypoints;  ///< strictly increasing in time
 
   [[nodiscard]] Kinematics at(double time) const;

@@ -8,12 +8,14 @@ struct NoAbsorption {
   static constexpr std::string_view name = "none";
 };
 
-/// Thorp's formula as in Jensen et al. (2011), eq. (1.47): 3.3e-3 + 0.11F/(1+F) + 44F/(4100+F) + 3e-4F dB/km, F = f²/kHz².
+/// Thorp's formula as in Jensen et al. (2011), eq. (1.47): 3.3e-3 + 0.11F/(1+F) + 44F/(4100+F) +
+/// 3e-4F dB/km, F = f²/kHz².
 struct Thorp {
   static constexpr std::string_view name = "thorp";
 };
 
-/// Francois & Garrison, JASA 72, 896 and 1879 (1982): boric acid, magnesium sulphate and pure water.
+/// Francois & Garrison, JASA 72, 896 and 1879 (1982): boric acid, magnesium sulphate and pure
+/// water.
 struct FrancoisGarrison {
   static constexpr std::string_view name = "francois-garrison";
   double temperature = 10.0;  ///< [°C]

@@ -33,10 +33,11 @@ struct WaterAtBoundary {
 
 /// Plane-wave pressure reflection coefficient, time dependence e^{+iωt}.
 ///
-/// Fluid: R = (m·sin θ − s)/(m·sin θ + s), m = ρ₂/ρ₁, n = (c₁/c₂)(1 − iα/54.58), s = √(n² − cos²θ), Im s < 0 (decaying away from
-/// the boundary). Jensen et al. (2011), eq. (1.51)–(1.56); PHYSICS: Rayleigh.
-/// \param grazing  angle between ray and boundary [rad], 0..π/2
-[[nodiscard]] std::complex<double> reflection_coefficient(const BoundaryMaterial& material, double grazing,
+/// Fluid: R = (m·sin θ − s)/(m·sin θ + s), m = ρ₂/ρ₁, n = (c₁/c₂)(1 − iα/54.58), s = √(n² − cos²θ),
+/// Im s < 0 (decaying away from the boundary). Jensen et al. (2011), eq. (1.51)–(1.56); PHYSICS:
+/// Rayleigh. \param grazing  angle between ray and boundary [rad], 0..π/2
+[[nodiscard]] std::complex<double> reflection_coefficient(const BoundaryMaterial& material,
+                                                          double grazing,
                                                           const WaterAtBoundary& water) noexcept;
 
 }  // namespace asdic

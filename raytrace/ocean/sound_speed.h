@@ -34,8 +34,8 @@ struct MunkParameters {
 
 /// Sound speed along one water column: an analytic law, or samples and a rule between them.
 ///
-/// Depth z [m] is positive down. Outside its samples a table goes on by the law of its first or last interval.
-/// Source: Jensen et al., Computational Ocean Acoustics (2011), ch. 3.
+/// Depth z [m] is positive down. Outside its samples a table goes on by the law of its first or
+/// last interval. Source: Jensen et al., Computational Ocean Acoustics (2011), ch. 3.
 class SoundSpeedProfile {
  public:
   /// \param depth  [n] strictly increasing [m], n ≥ 1 (one sample: the same speed everywhere)
@@ -52,7 +52,9 @@ class SoundSpeedProfile {
   [[nodiscard]] std::span<const double> depths() const noexcept { return depth_; }
   [[nodiscard]] std::span<const double> speeds() const noexcept { return speed_; }
   [[nodiscard]] Interpolation interpolation() const noexcept { return interpolation_; }
-  [[nodiscard]] const std::optional<MunkParameters>& munk_parameters() const noexcept { return munk_; }
+  [[nodiscard]] const std::optional<MunkParameters>& munk_parameters() const noexcept {
+    return munk_;
+  }
 
  private:
   SoundSpeedProfile() = default;

@@ -9,7 +9,8 @@ namespace asdic {
 namespace {
 
 TEST(RandomStream, SameKeySameDraws) {
-  RandomStream a(7, Draw::surface_weight, 3, 1234567890123ULL), b(7, Draw::surface_weight, 3, 1234567890123ULL);
+  RandomStream a(7, Draw::surface_weight, 3, 1234567890123ULL),
+      b(7, Draw::surface_weight, 3, 1234567890123ULL);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(a.normal(), b.normal());
 }
 
@@ -18,7 +19,8 @@ TEST(RandomStream, EveryPartOfTheKeyMatters) {
   for (std::uint64_t seed : {0ULL, 1ULL, 1ULL << 63})
     for (Draw purpose : {Draw::ambient_noise, Draw::surface_weight})
       for (std::uint32_t realisation : {0U, 1U})
-        for (std::uint64_t entity : {0ULL, 1ULL, 1ULL << 32}) first.insert(RandomStream(seed, purpose, realisation, entity).uniform());
+        for (std::uint64_t entity : {0ULL, 1ULL, 1ULL << 32})
+          first.insert(RandomStream(seed, purpose, realisation, entity).uniform());
   EXPECT_EQ(first.size(), 3U * 2 * 2 * 3);
 }
 

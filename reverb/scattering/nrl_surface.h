@@ -1,0 +1,82 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/units.h"
+#include "reverb/scattering/geometry.h"
+
+namespace asdic {
+
+/// Sea-surface scattering of the Naval Research Laboratory: rough interface plus subsurface
+/// bubbles, bistatic, incoherent part only.
+///
+///   σ = σ_int + σ_bub
+///   σ_int = 4k⁴ sin²θᵢ sin²θₛ · A_s·U/(h₀Q)^γ₂,  at most 1     (first-order perturbation theory,
+///   |β/2|²·W(Q)) Q²    = k²[cos²θᵢ + cos²θₛ + 2 cos θᵢ cos θₛ cos φ′]         (φ′ = π − change of
+///   direction) σ_bub = 0.0019·d^1.15·k^−0.6·F(kd sin θᵢ, kd sin θₛ)         (0.0019 carries
+///   m^−1.75: SI only)
+///
+/// Gauss, Fialkowski & Wurmser, NRL/FR/7100--02-10,042 (2002) as quoted by Danesh (2013),
+/// eqs 4.3–4.12, with his 4.4 corrected (|β/2|², not |β²/2|). A_s, γ₂ and h₀ were never published
+/// as numbers; the defaults reproduce the simulated columns of his Tables 5.3 and 5.4. Bubble term:
+/// to 5 kHz, with a transition to 10 kHz; forward and near-specular values are not to be trusted.
+struct NrlSurface {
+  static constexpr std::string_view name = "nrl";
+  double A_s = 5.5e-4;          ///< spectral strength per wind speed, w₂ = A_s·U [s/m·m⁴]
+  double gamma2 = 3.9;          ///< exponent of the roughness spectrum
+  double h0 = 1.0;              ///< its reference length [m]
+  double wind_speed = 10.0;     ///< U at 10 m [m/s]
+  double sound_speed = 1500.0;  ///< at the surface [m/s]
+
+  void describe(auto&& field) {
+    field("A_s", A_s, Range{0.0, 1.0});
+    field("gamma2", gamma2, Range{2.0, 6.0});
+    field("h0", h0, Range{1e-3, 1e3});
+  }
+
+  [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
+    return interface_cross_section(g, frequency) + bubble_cross_section(g, frequency);
+  }
+
+  [[nodiscard]] double interface_cross_section(const ScatterGeometry& g,
+                                               double frequency) const noexcept {
+    const double k = 2.0 * pi * frequency / sound_speed;
+    const double sin_in = std::sin(g.grazing_in), sin_out = std::sin(g.grazing_out);
+    const double cos_in = std::cos(g.grazing_in), cos_out = std::cos(g.grazing_out);
+    if (wind_speed <= 0.0 || sin_in <= 0.0 || sin_out <= 0.0) return 0.0;
+    // |Q|: horizontal wavenumber change; towards 0 at the vertical, where the cap of 1 takes over.
+    const double q2 = k * k *
+                      std::max(0.0, cos_in * cos_in + cos_out * cos_out -
+                                        2.0 * cos_in * cos_out * std::cos(g.azimuth));
+    const double spectrum =
+        A_s * wind_speed / std::pow(h0 * h0 * q2, gamma2 / 2.0);  // W(Q) = w₂/(h₀Q)^γ₂
+    return std::min(1.0, 4.0 * std::pow(k, 4) * sin_in * sin_in * sin_out * sin_out * spectrum);
+  }
+
+  [[nodiscard]] double bubble_cross_section(const ScatterGeometry& g,
+                                            double frequency) const noexcept {
+    const double k = 2.0 * pi * frequency / sound_speed;
+    const double d = bubble_depth(wind_speed);
+    if (d <= 0.0) return 0.0;
+    // F = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]} over one denominator: the sum
+    // of fractions cancels at small p, q.
+    const double p2 = std::pow(k * d * std::sin(g.grazing_in), 2),
+                 q2 = std::pow(k * d * std::sin(g.grazing_out), 2);
+    const double pq2 = p2 * q2;
+    const double sum = p2 + q2;
+    const double numerator = 0.5 * pq2 * (6.0 + 3.0 * sum + std::pow(p2 - q2, 2));
+    const double denominator = (1.0 + p2) * (1.0 + q2) * ((1.0 + sum) * (1.0 + sum) - 4.0 * pq2);
+    return 0.0019 * std::pow(d, 1.15) * std::pow(k, -0.6) * numerator / denominator;
+  }
+
+  /// e-folding depth of the bubble layer against wind speed [m]; Danesh (2013), Table 4.2.
+  [[nodiscard]] static double bubble_depth(double wind) noexcept {
+    if (wind < 3.0) return 0.0;
+    if (wind <= 7.5) return -0.19509 + 0.06503 * wind;
+    return 0.557 - 0.117 * wind + 0.0109 * wind * wind;
+  }
+};
+static_assert(ScatteringModel<NrlSurface>);
+
+}  // namespace asdic
