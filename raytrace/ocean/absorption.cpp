@@ -1,0 +1,52 @@
+#include "raytrace/ocean/absorption.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+double law(const NoAbsorption& /*none*/, double /*frequency*/) noexcept { return 0.0; }
+
+double law(const Thorp& /*thorp*/, double frequency) noexcept {
+  const double khz = 1e-3 * frequency;
+  const double f2 = khz * khz;
+  return 3.3e-3 + 0.11 * f2 / (1.0 + f2) + 44.0 * f2 / (4100.0 + f2) + 3e-4 * f2;
+}
+
+/// One relaxation: its strength A·P at a relaxation frequency f_r adds A·P·f_r·f²/(f_r² + f²).
+double relaxation(double strength, double relaxation_khz, double khz) noexcept {
+  return strength * relaxation_khz * khz * khz / (relaxation_khz * relaxation_khz + khz * khz);
+}
+
+/// JASA 72, 1879 (1982), p. 1886, "Total absorption"; f in kHz, D in m, dB/km.
+double law(const FrancoisGarrison& water, double frequency) noexcept {
+  const double t = water.temperature, s = water.salinity, d = water.depth;
+  const double kelvin = 273.0 + t;
+  const double c = 1412.0 + 3.21 * t + 1.19 * s + 0.0167 * d;  // their own sound speed [m/s]
+  const double khz = 1e-3 * frequency;
+
+  // Boric acid: A₁, f₁; P₁ = 1.
+  const double a1 = 8.86 / c * std::pow(10.0, 0.78 * water.ph - 5.0);
+  const double f1 = 2.8 * std::sqrt(s / 35.0) * std::pow(10.0, 4.0 - 1245.0 / kelvin);
+
+  // Magnesium sulphate: A₂, P₂, f₂.
+  const double a2 = 21.44 * s / c * (1.0 + 0.025 * t);
+  const double p2 = 1.0 - 1.37e-4 * d + 6.2e-9 * d * d;
+  const double f2 = 8.17 * std::pow(10.0, 8.0 - 1990.0 / kelvin) / (1.0 + 0.0018 * (s - 35.0));
+
+  // Pure water: A₃, P₃; the cubic in T changes at 20 °C.
+  const double a3 = t <= 20.0 ? 4.937e-4 + t * (-2.59e-5 + t * (9.11e-7 - t * 1.50e-8))
+                              : 3.964e-4 + t * (-1.146e-5 + t * (1.45e-7 - t * 6.5e-10));
+  const double p3 = 1.0 - 3.83e-5 * d + 4.9e-10 * d * d;
+
+  return relaxation(a1, f1, khz) + relaxation(a2 * p2, f2, khz) + a3 * p3 * khz * khz;
+}
+
+}  // namespace
+
+double absorption_db_per_km(const Absorption& absorption, double frequency) noexcept {
+  return std::visit([&](const auto& model) { return law(model, std::abs(frequency)); }, absorption);
+}
+
+}  // namespace asdic
