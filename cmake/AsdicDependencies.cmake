@@ -17,6 +17,8 @@ endfunction()
 
 asdic_pkg_config(fftw3::fftw3 fftw3 fftw3f)
 asdic_pkg_config(hdf5::hdf5 hdf5)
+find_library(HDF5_HL_LIBRARY NAMES hdf5_hl hdf5_serial_hl HINTS ${hdf5_hdf5_LIBRARY_DIRS} REQUIRED)  # dimension scales
+target_link_libraries(PkgConfig::hdf5_hdf5 INTERFACE ${HDF5_HL_LIBRARY})
 asdic_pkg_config(netcdf::netcdf netcdf)
 asdic_pkg_config(sndfile::sndfile sndfile)
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "sonar/sampled_signal.h"
+
 namespace asdic {
 
 enum class PulseKind { cw, lfm, hfm, file };
@@ -18,10 +20,10 @@ struct PulseSettings {
   double duration = 1.0;          ///< [s]
   PulseWindow window = PulseWindow::hann;
   double tukey_fraction = 0.1;  ///< share of the duration in the two tapers together, 0..1
-  std::vector<double>
-      samples;               ///< file: real pressure samples, scaled so that the peak envelope is 1
+  std::vector<double> samples =
+      {};                    ///< file: real pressure samples, scaled so that the peak envelope is 1
   double sample_rate = 0.0;  ///< file: [Hz]
-  std::string file;          ///< file: where the samples came from, for the record
+  std::string file = {};     ///< file: where the samples came from, for the record
 };
 
 /// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the
@@ -36,7 +38,9 @@ class Pulse {
 
   [[nodiscard]] double duration() const noexcept { return settings_.duration; }
   [[nodiscard]] double centre_frequency() const noexcept { return centre_frequency_; }
-  /// Full width around the centre outside which the spectrum stays 40 dB below its peak [Hz].
+  /// Full width around the centre outside which the spectrum stays 40 dB below its peak [Hz]:
+  /// 64/T for an unwindowed tone with its slow side lobes, 6.4/T under a Hann window. At most twice
+  /// the centre frequency.
   [[nodiscard]] double bandwidth_40db() const noexcept { return bandwidth_40db_; }
   /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window.
   [[nodiscard]] double energy() const noexcept { return energy_; }
@@ -45,7 +49,7 @@ class Pulse {
  private:
   PulseSettings settings_;
   double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, energy_ = 0.0;
-  std::vector<std::complex<double>> file_samples_;  // analytic
+  SampledSignal file_signal_;  // analytic, twice oversampled, unit peak
 };
 
 /// Re s₊ sampled at the phones' rate: what a matched filter needs. \return

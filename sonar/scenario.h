@@ -69,8 +69,10 @@ struct Scenario {
   PropagationSettings propagation;
   PingSchedule pings;
 
-  std::string text;  ///< the scenario file, verbatim
-  std::string path;  ///< where it was read
+  std::string text;                    ///< the scenario file, verbatim
+  std::string path;                    ///< where it was read
+  std::vector<std::string> overrides;  ///< "key.path=value" that changed the text's values
+  std::vector<std::string> notes;      ///< what the reader did that the user should know
 };
 
 }  // namespace asdic

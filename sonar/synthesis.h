@@ -17,11 +17,16 @@ struct Recording {
 };
 
 /// Complex baseband of every phone: p₊(t)·e^{−i2πf_c t}, |·| is the peak envelope.
+///
+/// A row is one period of the synthesis: its first `recorded` samples cover the record, the rest is
+/// the overlap that keeps pulses from wrapping into it, and that interpolation to the phones' rate
+/// needs.
 struct Baseband {
-  double carrier = 0.0;      ///< f_c [Hz]
+  double carrier = 0.0;      ///< f_c [Hz], within one FFT bin of the pulse's centre frequency
   double sample_rate = 0.0;  ///< [Hz]
   double start = 0.0;        ///< [s]
   std::size_t channels = 0, samples = 0;
+  std::size_t recorded = 0;                 ///< samples of a row that lie within the record
   std::vector<std::complex<float>> values;  ///< [channels × samples]
 
   [[nodiscard]] std::span<const std::complex<float>> channel(std::size_t n) const {

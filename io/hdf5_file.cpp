@@ -1,0 +1,314 @@
+#include "io/hdf5_file.h"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/error.h"
+#include "io/hdf5/handles.h"
+
+namespace asdic {
+namespace hdf5 {
+
+void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string last_message() {
+  std::string text;
+  const auto collect = [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
+    auto& message = *static_cast<std::string*>(into);
+    if (error->desc == nullptr || *error->desc == '\0') return 0;
+    if (message.find(error->desc) != std::string::npos) return 0;
+    message += (message.empty() ? "" : "; ") + std::string(error->desc);
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &text);
+  if (text.find("No space left") != std::string::npos) return "the disk is full (" + text + ")";
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+void fail(const std::filesystem::path& file, const std::string& object, const std::string& action) {
+  std::string text = file.string() + ": ";
+  if (!object.empty()) text += object + ": ";
+  throw RunError(text + action + " failed: " + last_message());
+}
+
+}  // namespace hdf5
+
+namespace {
+
+using hdf5::Handle;
+
+template <class T>
+hid_t native_type();
+template <>
+hid_t native_type<std::int8_t>() {
+  return H5T_NATIVE_INT8;
+}
+template <>
+hid_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+hid_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+hid_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+
+std::vector<hsize_t> dims(const Shape& shape) { return {shape.begin(), shape.end()}; }
+
+std::size_t product(const Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// Link creation that makes the groups on the way.
+Handle make_parents() {
+  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(list, 1);
+  H5Pset_char_encoding(list, H5T_CSET_UTF8);
+  return list;
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Hdf5File::Hdf5File(Hdf5File&&) noexcept = default;
+Hdf5File& Hdf5File::operator=(Hdf5File&&) noexcept = default;
+
+Hdf5File::~Hdf5File() {
+  if (impl_ != nullptr && impl_->file >= 0) H5Fclose(impl_->file);
+}
+
+Hdf5File Hdf5File::create(const std::filesystem::path& path) {
+  hdf5::quiet();
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  impl->file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  impl->check(impl->file, "", "creating the file");
+  return Hdf5File(std::move(impl));
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  hdf5::quiet();
+  std::error_code error;
+  const auto wrong = [&](const std::string& got) {
+    return InputError({.where = path.string(), .got = got, .expected = "an HDF5 file"});
+  };
+  if (!std::filesystem::exists(path, error)) throw wrong("no such file");
+  if (!std::filesystem::is_regular_file(path, error)) throw wrong("something that is no file");
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  if (H5Fis_hdf5(path.c_str()) == 0) throw wrong("a file that is not HDF5");
+  impl->file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (impl->file < 0) throw wrong("a file that cannot be opened (" + hdf5::last_message() + ")");
+  return Hdf5File(std::move(impl));
+}
+
+const std::filesystem::path& Hdf5File::path() const noexcept { return impl_->path; }
+
+void Hdf5File::flush() {
+  impl_->check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), "", "writing the file");
+}
+
+void Hdf5File::close() {
+  if (impl_->file < 0) return;
+  flush();
+  const hid_t file = std::exchange(impl_->file, -1);
+  impl_->check(H5Fclose(file), "", "closing the file");
+}
+
+Handle Hdf5File::Impl::open_dataset(const std::string& dataset) const {
+  return {check(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), dataset, "opening the dataset"),
+          H5Dclose};
+}
+
+Shape Hdf5File::Impl::shape_of(std::int64_t dataset_id, const std::string& dataset) const {
+  const Handle space(check(H5Dget_space(dataset_id), dataset, "reading the shape"), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  std::vector<hsize_t> size(static_cast<std::size_t>(std::max(rank, 0)));
+  H5Sget_simple_extent_dims(space, size.data(), nullptr);
+  return {size.begin(), size.end()};
+}
+
+template <class T>
+void Hdf5File::write(const std::string& dataset, std::span<const T> values, const Shape& shape) {
+  if (values.size() != product(shape))
+    throw std::logic_error(dataset + ": values do not fill the shape");
+  const auto size = dims(shape);
+  const Handle space(shape.empty()
+                         ? H5Screate(H5S_SCALAR)
+                         : H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
+                     H5Sclose);
+  const Handle parents = make_parents();
+  const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), native_type<T>(), space,
+                                          parents, H5P_DEFAULT, H5P_DEFAULT),
+                               dataset, "creating the dataset"),
+                  H5Dclose);
+  if (values.empty()) return;
+  impl_->check(H5Dwrite(id, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+               dataset, "writing");
+}
+
+void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle parents = make_parents();
+  const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), type, space, parents,
+                                          H5P_DEFAULT, H5P_DEFAULT),
+                               dataset, "creating the dataset"),
+                  H5Dclose);
+  const std::string copy(text);
+  const char* pointer = copy.c_str();
+  impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer), dataset, "writing");
+}
+
+template <class T>
+void Hdf5File::create_growing(const std::string& dataset, const Shape& row, std::size_t chunk_rows,
+                              int deflate) {
+  Shape chunk{chunk_rows};
+  chunk.insert(chunk.end(), row.begin(), row.end());
+  create_growing<T>(dataset, row, chunk, deflate);
+}
+
+template <class T>
+void Hdf5File::create_growing(const std::string& dataset, const Shape& row, const Shape& chunk,
+                              int deflate) {
+  std::vector<hsize_t> size{0}, most{H5S_UNLIMITED};
+  for (const std::size_t n : row) {
+    size.push_back(n);
+    most.push_back(n);
+  }
+  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()),
+                     H5Sclose);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(properties, static_cast<int>(chunk.size()), dims(chunk).data());
+  if (deflate > 0) H5Pset_deflate(properties, static_cast<unsigned>(deflate));
+  const Handle parents = make_parents();
+  const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), native_type<T>(), space,
+                                          parents, properties, H5P_DEFAULT),
+                               dataset, "creating the dataset"),
+                  H5Dclose);
+}
+
+template <class T>
+void Hdf5File::append(const std::string& dataset, std::span<const T> values) {
+  if (values.empty()) return;
+  const Handle id = impl_->open_dataset(dataset);
+  Shape shape = impl_->shape_of(id, dataset);
+  Shape block(shape);
+  block[0] = 1;
+  const std::size_t row = product(block);
+  if (row == 0 || values.size() % row != 0)
+    throw std::logic_error(dataset + ": not a whole number of rows");
+  block[0] = values.size() / row;
+  std::vector<hsize_t> start(shape.size(), 0);
+  start[0] = shape[0];
+  shape[0] += block[0];
+  impl_->check(H5Dset_extent(id, dims(shape).data()), dataset, "growing");
+  const Handle space(H5Dget_space(id), H5Sclose);
+  const auto count = dims(block);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                      H5Sclose);
+  impl_->check(H5Dwrite(id, native_type<T>(), memory, space, H5P_DEFAULT, values.data()), dataset,
+               "writing");
+}
+
+template <class T>
+void Hdf5File::append_padded(const std::string& dataset, std::span<const T> values,
+                             std::size_t length) {
+  Shape shape;
+  {
+    const Handle id = impl_->open_dataset(dataset);
+    shape = impl_->shape_of(id, dataset);
+  }
+  const std::size_t full = shape.back();
+  if (length == full) return append(dataset, values);
+  if (length > full || length == 0 || values.size() % length != 0)
+    throw std::logic_error(dataset + ": lines longer than the dataset's");
+  std::vector<T> padded(values.size() / length * full, T{});
+  for (std::size_t line = 0; line < values.size() / length; ++line)
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(line * length), length,
+                padded.begin() + static_cast<std::ptrdiff_t>(line * full));
+  append<T>(dataset, padded);
+}
+
+void Hdf5File::make_scale(const std::string& dataset, const std::string& dimension) {
+  const Handle id = impl_->open_dataset(dataset);
+  impl_->check(H5DSset_scale(id, dimension.c_str()), dataset, "making a scale");
+}
+
+void Hdf5File::attach_scales(const std::string& dataset, const std::vector<std::string>& scales) {
+  const Handle id = impl_->open_dataset(dataset);
+  for (std::size_t axis = 0; axis < scales.size(); ++axis) {
+    const Handle scale = impl_->open_dataset(scales[axis]);
+    impl_->check(H5DSattach_scale(id, scale, static_cast<unsigned>(axis)), dataset,
+                 "attaching the scale " + scales[axis]);
+  }
+}
+
+void Hdf5File::make_group(const std::string& group) {
+  if (has(group)) return;
+  const Handle parents = make_parents();
+  const Handle id(
+      impl_->check(H5Gcreate2(impl_->file, group.c_str(), parents, H5P_DEFAULT, H5P_DEFAULT), group,
+                   "creating the group"),
+      H5Gclose);
+}
+
+template <class T>
+std::vector<T> Hdf5File::read(const std::string& dataset) const {
+  const Handle id = impl_->open_dataset(dataset);
+  std::vector<T> values(product(impl_->shape_of(id, dataset)));
+  if (values.empty()) return values;
+  impl_->check(H5Dread(id, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), dataset,
+               "reading");
+  return values;
+}
+
+template <class T>
+std::vector<T> Hdf5File::read(const std::string& dataset, const Shape& start,
+                              const Shape& count) const {
+  const Handle id = impl_->open_dataset(dataset);
+  const Handle space(H5Dget_space(id), H5Sclose);
+  if (start.size() != impl_->shape_of(id, dataset).size() || start.size() != count.size())
+    throw std::logic_error(dataset + ": a block of another rank");
+  const auto from = dims(start), size = dims(count);
+  impl_->check(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr),
+      dataset, "selecting a block");
+  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
+                      H5Sclose);
+  std::vector<T> values(product(count));
+  impl_->check(H5Dread(id, native_type<T>(), memory, space, H5P_DEFAULT, values.data()), dataset,
+               "reading");
+  return values;
+}
+
+#define ASDIC_HDF5_ELEMENT(T)                                                                     \
+  template void Hdf5File::write<T>(const std::string&, std::span<const T>, const Shape&);         \
+  template void Hdf5File::create_growing<T>(const std::string&, const Shape&, std::size_t, int);  \
+  template void Hdf5File::create_growing<T>(const std::string&, const Shape&, const Shape&, int); \
+  template void Hdf5File::append<T>(const std::string&, std::span<const T>);                      \
+  template void Hdf5File::append_padded<T>(const std::string&, std::span<const T>, std::size_t);  \
+  template std::vector<T> Hdf5File::read<T>(const std::string&) const;                            \
+  template std::vector<T> Hdf5File::read<T>(const std::string&, const Shape&, const Shape&) const;
+ASDIC_HDF5_ELEMENT(std::int8_t)
+ASDIC_HDF5_ELEMENT(std::int32_t)
+ASDIC_HDF5_ELEMENT(std::int64_t)
+ASDIC_HDF5_ELEMENT(float)
+ASDIC_HDF5_ELEMENT(double)
+#undef ASDIC_HDF5_ELEMENT
+
+}  // namespace asdic

@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+
+#include "io/hdf5_file.h"
+#include "io/ping_file.h"
+#include "sonar/scenario.h"
+
+// The parts of a ping file that are written once (docs/formats/ping.md).
+namespace asdic::ping_file {
+
+void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance);
+void write_replica(Hdf5File& file, const Scenario& scenario);
+void write_environment(Hdf5File& file, const Scenario& scenario);
+void write_rays(Hdf5File& file, const RayPaths& rays);
+
+}  // namespace asdic::ping_file

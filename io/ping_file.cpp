@@ -1,0 +1,378 @@
+#include "io/ping_file.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "io/ping/growing_table.h"
+#include "io/ping/sections.h"
+
+namespace asdic {
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_patches = 2000;  // rows a ping
+using Type = ElementType;
+
+std::vector<GrowingTable::Column> arrival_columns() {
+  return {{"ping", "number of the ping", "", Type::int32},
+          {"leg", "0 source to target, 1 target to array, 2 source to array", "", Type::int32},
+          {"target", "number of the target, -1: none", "", Type::int32},
+          {"channel", "number of the phone, -1: the reference point", "", Type::int32},
+          {"path", "number within its leg", "", Type::int32},
+          {"bearing_deg", "direction of travel, clockwise from north", "degree"},
+          {"range", "horizontal distance of the leg", "m"},
+          {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
+          {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},
+          {"delay", "travel time", "s"},
+          {"amplitude_real", "pressure re 1 m, real part", ""},
+          {"amplitude_imag", "pressure re 1 m, imaginary part", ""},
+          {"spreading_db", "spreading loss", "dB"},
+          {"absorption_db", "absorption loss", "dB"},
+          {"path_length", "length along the ray", "m"},
+          {"surface_bounces", "reflections at the surface", "", Type::int32},
+          {"bottom_bounces", "reflections at the bottom", "", Type::int32},
+          {"upper_turns", "turning points below the surface", "", Type::int32},
+          {"lower_turns", "turning points above the bottom", "", Type::int32},
+          {"caustics", "caustics passed", "", Type::int32},
+          {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
+          {"bounce_count", "rows of /bounces", "", Type::int32}};
+}
+
+std::vector<GrowingTable::Column> bounce_columns() {
+  return {{"boundary", "0 surface, 1 bottom", "", Type::int8},
+          {"grazing_deg", "angle between ray and boundary", "degree"},
+          {"range", "horizontal distance from the start of the leg", "m"}};
+}
+
+std::vector<GrowingTable::Column> echo_columns() {
+  return {{"ping", "number of the ping", "", Type::int32},
+          {"target", "number of the target", "", Type::int32},
+          {"channel", "number of the phone, -1: the reference point", "", Type::int32},
+          {"outgoing", "path of the leg source to target", "", Type::int32},
+          {"returning", "path of the leg target to array", "", Type::int32},
+          {"delay", "from the start of the ping to the echo's leading edge", "s"},
+          {"doppler_factor", "received over transmitted frequency", ""},
+          {"level_db", "peak envelope over sqrt 2, pulse not windowed, re 1 uPa", "dB"},
+          {"arrival_elevation_deg", "elevation of travel at the array, positive up", "degree"},
+          {"arrival_bearing_deg", "bearing of travel at the array", "degree"}};
+}
+
+std::vector<GrowingTable::Column> patch_columns() {
+  return {{"ping", "number of the ping", "", Type::int32},
+          {"range", "of the cell's centre from the source", "m"},
+          {"area", "of the whole ring of this cell", "m2"},
+          {"delay", "there and back", "s"},
+          {"grazing_in_deg", "angle at which sound comes to the surface", "degree"},
+          {"grazing_out_deg", "angle at which sound leaves the surface", "degree"},
+          {"launch_elevation_deg", "of the outgoing path, positive up", "degree"},
+          {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
+          {"scattering_strength_db", "of this pair of angles", "dB"},
+          {"level_db", "expected, of the whole ring, pulse not windowed, re 1 uPa", "dB"}};
+}
+
+std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+std::string sha256(std::string_view text) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw RunError("SHA-256 failed");
+  std::string result;
+  constexpr std::string_view digits = "0123456789abcdef";
+  for (unsigned i = 0; i < size; ++i) {
+    result += digits[digest[i] >> 4];
+    result += digits[digest[i] & 15];
+  }
+  return result;
+}
+
+struct PingFileWriter::Impl {
+  std::filesystem::path path, part;
+  Hdf5File file;
+  Scenario scenario;
+  std::size_t pings = 0;
+  bool finished = false;
+  GrowingTable arrivals, bounces, echoes, patches;
+  std::size_t every = 1;
+  std::size_t samples = 0, level_bins = 0;  // of the first record
+
+  Impl(const std::filesystem::path& final_path, const Scenario& s)
+      : path(final_path),
+        part(final_path.string() + ".part"),
+        file(Hdf5File::create(part)),
+        scenario(s),
+        arrivals(file, "arrivals", "arrival", arrival_columns()),
+        bounces(file, "bounces", "bounce", bounce_columns()),
+        echoes(file, "echoes", "echo", echo_columns()),
+        patches(file, "patches", "patch", patch_columns()) {}
+
+  template <class T>
+  void growing(const std::string& dataset, const std::string& long_name, const std::string& units,
+               const std::vector<std::string>& scales = {}, const Shape& row = {}) {
+    file.create_growing<T>(dataset, row, std::size_t{64});
+    describe(file, dataset, long_name, units);
+    std::vector<std::string> all{"ping"};
+    all.insert(all.end(), scales.begin(), scales.end());
+    file.attach_scales(dataset, all);
+  }
+
+  void create_ping_datasets();
+  void create_sampled_datasets(const PingRecord& record);
+  void append_geometry(const PingRecord& record);
+  void append_tables(const PingRecord& record);
+  void append_summary(const PingRecord& record);
+};
+
+void PingFileWriter::Impl::create_ping_datasets() {
+  file.create_growing<std::int32_t>("ping", {}, std::size_t{64});
+  describe(file, "ping", "number of the ping, from 1");
+  file.make_scale("ping", "ping");
+  growing<std::int64_t>("valid_samples", "samples of this ping that were simulated", "");
+  growing<double>("ping_time", "start of the ping since the start of the scenario", "s");
+  growing<double>("elevation_deg", "elevation of the transmitter's beam, positive up", "degree");
+  growing<double>("platform_position", "platform at the start of the ping", "m", {"xyz"}, {3});
+  growing<double>("platform_velocity", "velocity of the platform", "m/s", {"xyz"}, {3});
+  const std::size_t channels = scenario.array.phones.size(), targets = scenario.targets.size();
+  growing<double>("phone_position", "phones at the start of the ping", "m", {"channel", "xyz"},
+                  {channels, 3});
+  for (const char* name : {"rays", "eigenrays", "patches", "synthesis", "noise", "write"})
+    growing<double>(std::string("run/time_") + name, std::string("wall time of ") + name, "s");
+  if (targets == 0) return;
+  const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
+  growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
+  growing<double>("target_velocity", "velocity of the target", "m/s", vector, {targets, 3});
+  growing<double>("target_strength_db", "target strength", "dB", scale, {targets});
+  growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
+  growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
+  growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
+  growing<double>("summary/echo_time", "delay of the strongest pair", "s", scale, {targets});
+  growing<double>("summary/echo_level_db", "of the strongest pair, re 1 uPa", "dB", scale,
+                  {targets});
+  growing<double>("summary/reverberation_db", "expected at that time, re 1 uPa", "dB", scale,
+                  {targets});
+  growing<double>("summary/noise_db", "in the pulse's band, re 1 uPa", "dB", scale, {targets});
+  growing<double>("summary/signal_excess_db", "echo over reverberation plus noise", "dB", scale,
+                  {targets});
+}
+
+void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
+  const Recording& recording = record.recording;
+  samples = recording.samples;
+  std::vector<double> time(samples);
+  for (std::size_t i = 0; i < samples; ++i)
+    time[i] = recording.start + static_cast<double>(i) / recording.sample_rate;
+  file.write<double>("time", time, {samples});
+  describe(file, "time", "after the start of the ping", "s");
+  file.make_scale("time", "sample");
+  const std::size_t channels = scenario.array.phones.size();
+  file.create_growing<float>("pressure", {channels, samples}, Shape{1, 1, samples});
+  describe(file, "pressure", "acoustic pressure", "Pa");
+  file.attach_scales("pressure", {"ping", "channel", "time"});
+  file.set_attribute("pressure", "sample_rate_hz", recording.sample_rate);
+  file.set_attribute("pressure", "reference",
+                     "p = Re{Σ A s₊(η(t − τ))}, time dependence exp(+iωt)");
+
+  level_bins = record.levels.echo.size();
+  if (level_bins == 0) return;
+  std::vector<double> middle(level_bins);
+  for (std::size_t i = 0; i < level_bins; ++i)
+    middle[i] = recording.start + (static_cast<double>(i) + 0.5) * record.levels.time_step;
+  file.write<double>("levels/level_time", middle, {level_bins});
+  describe(file, "levels/level_time", "middle of the interval, after the start of the ping", "s");
+  file.make_scale("levels/level_time", "level_time");
+  for (const std::string name : {"echo", "reverberation", "noise"}) {
+    const std::string dataset = "levels/" + name;
+    file.create_growing<float>(dataset, {level_bins}, std::size_t{1});
+    describe(file, dataset, "mean-square pressure over the phones, " + name, "Pa2");
+    file.attach_scales(dataset, {"ping", "levels/level_time"});
+  }
+}
+
+void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
+  file.append<double>("ping_time", std::array{record.start_time});
+  file.append<double>("elevation_deg", std::array{degrees(record.elevation)});
+  file.append<double>("platform_position", flat(record.platform.position));
+  file.append<double>("platform_velocity", flat(record.platform.velocity));
+  std::vector<double> phones;
+  for (const Vec3& phone : record.phones)
+    for (const double x : phone) phones.push_back(x);
+  file.append<double>("phone_position", phones);
+  if (scenario.targets.empty()) return;
+  std::vector<double> position, velocity, strength;
+  std::vector<std::int8_t> present;
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    for (const double x : record.targets[i].position) position.push_back(x);
+    for (const double v : record.targets[i].velocity) velocity.push_back(v);
+    strength.push_back(target.strength_db);
+    present.push_back(record.ping >= target.first_ping && record.ping <= target.last_ping ? 1 : 0);
+  }
+  file.append<double>("target_position", position);
+  file.append<double>("target_velocity", velocity);
+  file.append<double>("target_strength_db", strength);
+  file.append<std::int8_t>("target_present", present);
+}
+
+void PingFileWriter::Impl::append_tables(const PingRecord& record) {
+  for (const Leg& leg : record.legs) {
+    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
+      const Arrival& a = leg.arrivals[i];
+      const double first = a.bounces.empty() ? -1.0 : static_cast<double>(bounces.rows());
+      for (const Bounce& bounce : a.bounces)
+        bounces.row({bounce.boundary == BoundaryKind::surface ? 0.0 : 1.0, degrees(bounce.grazing),
+                     bounce.range});
+      arrivals.row({double(record.ping),
+                    double(static_cast<int>(leg.kind)),
+                    double(leg.target),
+                    double(leg.channel),
+                    static_cast<double>(i),
+                    degrees(leg.bearing),
+                    leg.range,
+                    degrees(a.launch_elevation),
+                    degrees(a.arrival_elevation),
+                    a.delay,
+                    a.amplitude.real(),
+                    a.amplitude.imag(),
+                    -db_from_amplitude(a.spreading),
+                    a.absorption_db,
+                    a.path_length,
+                    double(a.surface_bounces),
+                    double(a.bottom_bounces),
+                    double(a.upper_turns),
+                    double(a.lower_turns),
+                    double(a.caustics),
+                    first,
+                    static_cast<double>(a.bounces.size())});
+    }
+  }
+  for (const EchoPath& echo : record.echoes) {
+    const Vec3& s = echo.heard.slowness;  // along the direction of travel, z down
+    const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
+    double bearing = degrees(std::atan2(s.x(), s.y()));
+    if (bearing < 0.0) bearing += 360.0;
+    echoes.row({double(record.ping), double(echo.target), double(echo.heard.channel),
+                double(echo.outgoing), double(echo.returning), echo.heard.delay, echo.heard.doppler,
+                echo.level_db, degrees(elevation), bearing});
+  }
+  const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
+  every = std::max(every, step);
+  for (std::size_t i = 0; i < record.patches.size(); i += std::max<std::size_t>(1, step)) {
+    const PatchRow& p = record.patches[i];
+    patches.row({double(record.ping), p.range, p.area, p.delay, degrees(p.grazing_in),
+                 degrees(p.grazing_out), degrees(p.launch_elevation), degrees(p.arrival_elevation),
+                 p.scattering_strength_db, p.level_db});
+  }
+  arrivals.write();
+  bounces.write();
+  echoes.write();
+  patches.write();
+  file.set_attribute("patches", "every", static_cast<std::int64_t>(every));
+}
+
+void PingFileWriter::Impl::append_summary(const PingRecord& record) {
+  if (scenario.targets.empty()) return;
+  std::vector<std::int8_t> present;
+  std::vector<std::int32_t> paths;
+  std::vector<double> time, level, reverberation, noise, excess;
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const TargetSummary row = i < record.summary.size() ? record.summary[i] : TargetSummary{};
+    const bool heard = row.present && row.paths > 0;
+    present.push_back(row.present ? 1 : 0);
+    paths.push_back(row.paths);
+    time.push_back(heard ? row.echo_time : missing);
+    level.push_back(heard ? row.echo_level_db : missing);
+    reverberation.push_back(heard ? row.reverberation_db : missing);
+    noise.push_back(heard ? row.noise_db : missing);
+    excess.push_back(heard ? row.signal_excess_db : missing);
+  }
+  file.append<std::int8_t>("summary/present", present);
+  file.append<std::int32_t>("summary/paths", paths);
+  file.append<double>("summary/echo_time", time);
+  file.append<double>("summary/echo_level_db", level);
+  file.append<double>("summary/reverberation_db", reverberation);
+  file.append<double>("summary/noise_db", noise);
+  file.append<double>("summary/signal_excess_db", excess);
+}
+
+PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
+                               const Provenance& provenance)
+    : impl_(std::make_unique<Impl>(path, scenario)) {
+  ping_file::write_root(impl_->file, scenario, provenance);
+  ping_file::write_replica(impl_->file, scenario);
+  ping_file::write_environment(impl_->file, scenario);
+  impl_->create_ping_datasets();
+}
+
+PingFileWriter::PingFileWriter(PingFileWriter&&) noexcept = default;
+
+PingFileWriter::~PingFileWriter() {
+  if (impl_ == nullptr || impl_->finished || impl_->pings > 0) return;
+  const std::filesystem::path part = impl_->part;
+  impl_.reset();  // closes
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+}
+
+void PingFileWriter::write_rays(const RayPaths& rays) { ping_file::write_rays(impl_->file, rays); }
+
+void PingFileWriter::append(const PingRecord& record) {
+  const auto begin = std::chrono::steady_clock::now();
+  Impl& to = *impl_;
+  const std::size_t channels = to.scenario.array.phones.size();
+  if (record.phones.size() != channels || record.targets.size() != to.scenario.targets.size() ||
+      record.pressure.size() != channels * record.recording.samples)
+    throw std::logic_error("a ping record of another shape than its scenario");
+  if (to.pings == 0) to.create_sampled_datasets(record);
+
+  to.file.append_padded<float>("pressure", record.pressure, record.recording.samples);
+  if (to.level_bins > 0) {
+    const std::size_t bins = record.levels.echo.size();
+    to.file.append_padded<float>("levels/echo", record.levels.echo, bins);
+    to.file.append_padded<float>("levels/reverberation", record.levels.reverberation, bins);
+    to.file.append_padded<float>("levels/noise", record.levels.noise, bins);
+  }
+  to.append_geometry(record);
+  to.append_tables(record);
+  to.append_summary(record);
+  to.file.append<std::int64_t>("valid_samples",
+                               std::array{static_cast<std::int64_t>(record.recording.samples)});
+  to.file.append<std::int32_t>("ping", std::array{std::int32_t{record.ping}});
+  const Timings& t = record.timings;
+  to.file.append<double>("run/time_rays", std::array{t.rays});
+  to.file.append<double>("run/time_eigenrays", std::array{t.eigenrays});
+  to.file.append<double>("run/time_patches", std::array{t.patches});
+  to.file.append<double>("run/time_synthesis", std::array{t.synthesis});
+  to.file.append<double>("run/time_noise", std::array{t.noise});
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  to.file.append<double>("run/time_write", std::array{wall.count()});
+  to.file.flush();
+  ++to.pings;
+}
+
+void PingFileWriter::finish(bool complete) {
+  Impl& to = *impl_;
+  if (to.finished) throw std::logic_error("a ping file is finished once");
+  if (complete) to.file.set_attribute("", "complete", std::int64_t{1});
+  to.file.close();
+  to.finished = true;
+  std::error_code error;
+  if (!complete && to.pings == 0) {
+    std::filesystem::remove(to.part, error);
+    return;
+  }
+  std::filesystem::rename(to.part, to.path, error);
+  if (error)
+    throw RunError(to.path.string() + ": cannot get its name from " + to.part.string() + ": " +
+                   error.message());
+}
+
+}  // namespace asdic

@@ -1,0 +1,87 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/hdf5_file.h"
+#include "sonar/ping_record.h"
+#include "sonar/scenario.h"
+
+namespace asdic {
+
+/// Who made a file, when, with what.
+struct Provenance {
+  std::string program_version, build;  ///< at the root: the results may depend on them
+  std::string host, started, cpu, library_versions;  ///< under /run, apart from the results
+  int threads = 1;
+};
+
+/// Rays of the first ping, for drawing.
+struct RayPaths {
+  enum class Kind { fan = 0, eigenray = 1 };
+  struct Path {
+    Kind kind = Kind::fan;
+    double launch_elevation = 0.0;     ///< positive up [rad]
+    std::vector<double> range, depth;  ///< [points] [m]
+  };
+  std::vector<Path> paths;
+  std::vector<double> hit_range;  ///< where the fan meets the surface [m]
+};
+
+/// Writes docs/formats/ping.md while a run goes on: NAME.part, readable after every append() even
+/// if the program dies, renamed to NAME by finish(). All methods throw RunError when the world says
+/// no. One thread at a time (HDF5).
+class PingFileWriter {
+ public:
+  PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
+                 const Provenance& provenance);
+  PingFileWriter(PingFileWriter&&) noexcept;
+  /// Without finish(): NAME.part stays if it holds a ping (hours of work are not thrown away by an
+  /// exception), else it goes.
+  ~PingFileWriter();
+
+  void write_rays(const RayPaths& rays);  ///< at most once
+  /// \param record  as many phones as the scenario; no longer than the first record
+  void append(const PingRecord& record);
+  /// Closes the file and gives it its name. Not complete and without a ping: removes it.
+  void finish(bool complete);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads a ping file. All throw InputError for a file that is not one, RunError when reading fails.
+class PingFile {
+ public:
+  explicit PingFile(const std::filesystem::path& path);
+
+  [[nodiscard]] std::size_t pings() const noexcept { return shape_[0]; }
+  [[nodiscard]] std::size_t channels() const noexcept { return shape_[1]; }
+  [[nodiscard]] std::size_t samples() const noexcept { return shape_[2]; }
+  [[nodiscard]] double sample_rate() const;  ///< [Hz]
+  [[nodiscard]] bool complete() const;
+  [[nodiscard]] std::string scenario_text() const;
+
+  /// \param ping, channel  counted from 0   \return [valid samples of the ping] [Pa]
+  /// \throws InputError ("ping", "channel") if there is no such
+  [[nodiscard]] std::vector<float> pressure(std::size_t ping, std::size_t channel) const;
+  [[nodiscard]] std::size_t valid_samples(std::size_t ping) const;
+  /// One per target.
+  [[nodiscard]] std::vector<TargetSummary> summary(std::size_t ping) const;
+
+  /// Everything else: attributes, datasets with shapes, columns of tables.
+  [[nodiscard]] const Hdf5File& file() const noexcept { return file_; }
+
+ private:
+  void check(std::size_t ping) const;
+
+  Hdf5File file_;
+  Shape shape_{0, 0, 0};
+};
+
+/// SHA-256 in hexadecimal.
+[[nodiscard]] std::string sha256(std::string_view text);
+
+}  // namespace asdic

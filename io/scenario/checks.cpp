@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+
+#include "io/scenario/sections.h"
+
+namespace asdic::scenario {
+namespace {
+
+/// One moment of a track that could be its worst: tracks are straight between these.
+struct Moment {
+  double time;
+  std::string key;  // of the scenario that places it there
+};
+
+std::vector<Moment> moments(const Track& track, TomlTable& table, double from, double to) {
+  const std::string start = !track.waypoints.empty() ? "waypoints"
+                            : table.has("position")  ? "position"
+                                                     : "depth";
+  const std::string end = track.waypoints.empty() && table.has("velocity") ? "velocity" : start;
+  std::vector<Moment> result{{from, start}, {to, end}};
+  for (std::size_t i = 0; i < track.waypoints.size(); ++i)
+    if (track.waypoints[i].time > from && track.waypoints[i].time < to)
+      result.push_back({track.waypoints[i].time, "waypoints[" + std::to_string(i) + "]"});
+  std::sort(result.begin(), result.end(),
+            [](const Moment& a, const Moment& b) { return a.time < b.time; });
+  return result;
+}
+
+double fastest(const Track& track) {
+  if (track.waypoints.empty()) return track.start.velocity.norm();
+  double speed = 0.0;
+  for (std::size_t i = 1; i < track.waypoints.size(); ++i) {
+    const Waypoint &a = track.waypoints[i - 1], &b = track.waypoints[i];
+    speed = std::max(speed, (b.position - a.position).norm() / (b.time - a.time));
+  }
+  return speed;
+}
+
+class WaterColumn {
+ public:
+  explicit WaterColumn(const Environment& ocean)
+      : top_(ocean.surface.depth), bottom_(ocean.bottom.depth) {}
+
+  [[nodiscard]] bool holds(double depth) const { return depth > top_ && depth < bottom_; }
+  [[nodiscard]] std::string expected() const {
+    return "a depth between the surface (" + to_text(top_) + " m) and the bottom (" +
+           to_text(bottom_) + " m)";
+  }
+
+ private:
+  double top_, bottom_;
+};
+
+std::string at_time(double time) { return " at " + to_text(time) + " s"; }
+
+/// End of the last record [s].
+double end_of(const PingSchedule& pings, int last_ping) {
+  return (last_ping - 1) * pings.interval + pings.recording_start + pings.recording_duration;
+}
+
+void check_platform(TomlTable& root, const Scenario& scenario) {
+  const WaterColumn water(scenario.environment);
+  TomlTable platform = root.table("platform"), array = root.table("array");
+  for (const Moment& moment :
+       moments(scenario.platform, platform, 0.0, end_of(scenario.pings, scenario.pings.count))) {
+    const double depth = scenario.platform.at(moment.time).position.z();
+    if (!water.holds(depth))
+      throw platform.fault(moment.key, water.expected(),
+                           "depth " + to_text(depth) + " m" + at_time(moment.time));
+    for (std::size_t i = 0; i < scenario.array.phones.size(); ++i) {
+      const double phone = depth + scenario.array.offset.z() + scenario.array.phones[i].z();
+      if (!water.holds(phone))
+        throw array.fault(array.has("positions") ? "positions" : "phones", water.expected(),
+                          "phone " + std::to_string(i) + " at depth " + to_text(phone) + " m" +
+                              at_time(moment.time));
+    }
+  }
+}
+
+void check_targets(TomlTable& root, const Scenario& scenario) {
+  const WaterColumn water(scenario.environment);
+  auto tables = root.tables("target");
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    if (target.first_ping > scenario.pings.count) continue;
+    const int last = std::min(target.last_ping, scenario.pings.count);
+    const double from = (target.first_ping - 1) * scenario.pings.interval;
+    for (const Moment& moment :
+         moments(target.track, tables[i], from, end_of(scenario.pings, last))) {
+      const double depth = target.track.at(moment.time).position.z();
+      if (!water.holds(depth))
+        throw tables[i].fault(moment.key, water.expected(),
+                              "depth " + to_text(depth) + " m" + at_time(moment.time));
+    }
+    for (int ping = target.first_ping; ping <= last; ++ping) {
+      const double time = (ping - 1) * scenario.pings.interval;
+      const double distance =
+          (target.track.at(time).position - scenario.platform.at(time).position).norm();
+      if (distance < 1.0)  // levels refer to 1 m
+        throw tables[i].fault(moments(target.track, tables[i], from, from)[0].key,
+                              "a target at least 1 m from the platform",
+                              to_text(distance) + " m" + at_time(time));
+    }
+  }
+}
+
+/// fs > 2·(highest frequency·η_max + margin); the margin is the half width of a Hann window's main
+/// lobe, 2/duration. The synthesizer judges the pulse's true band more strictly.
+void check_sampling(TomlTable& root, const Scenario& scenario) {
+  const PulseSettings& pulse = scenario.pulse;
+  double highest = pulse.frequency;
+  if (pulse.kind == PulseKind::lfm || pulse.kind == PulseKind::hfm)
+    highest = std::max(pulse.start_frequency, pulse.end_frequency);
+  double target_speed = 0.0;
+  for (const Target& target : scenario.targets)
+    target_speed = std::max(target_speed, fastest(target.track));
+  double slowest_sound = infinity;
+  for (int i = 0; i <= 100; ++i)
+    slowest_sound =
+        std::min(slowest_sound,
+                 scenario.environment.water.at(scenario.environment.bottom.depth * i / 100).c);
+  // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
+  const double doppler = 1.0 + 2.0 * (target_speed + fastest(scenario.platform)) / slowest_sound;
+  const double needed = 2.0 * (highest * doppler + 2.0 / pulse.duration);
+  TomlTable pings = root.table("pings");
+  if (!(scenario.pings.sample_rate > needed))
+    throw pings.fault("sample_rate",
+                      "a sample rate above " + to_text(std::ceil(needed)) +
+                          " Hz: twice the highest frequency of the pulse with its Doppler shift",
+                      to_text(scenario.pings.sample_rate) + " Hz");
+}
+
+void check_size(TomlTable& root, const Scenario& scenario) {
+  constexpr double limit = 2147483648.0;  // 2 GiB
+  const double samples = scenario.pings.recording_duration * scenario.pings.sample_rate;
+  TomlTable pings = root.table("pings");
+  if (samples < 2.0)
+    throw pings.fault("recording_duration", "at least two samples",
+                      to_text(scenario.pings.recording_duration) + " s at " +
+                          to_text(scenario.pings.sample_rate) + " Hz");
+  const auto phones = scenario.array.phones.size();
+  const double bytes = samples * static_cast<double>(phones) * sizeof(float);
+  if (bytes > limit)
+    throw pings.fault("recording_duration", "at most 2 GiB of pressure a ping",
+                      to_text(scenario.pings.recording_duration) + " s at " +
+                          to_text(scenario.pings.sample_rate) + " Hz on " + std::to_string(phones) +
+                          " phones, " + to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) +
+                          " GiB a ping");
+}
+
+}  // namespace
+
+void check_scenario(TomlTable& root, const Scenario& scenario) {
+  check_platform(root, scenario);
+  check_targets(root, scenario);
+  check_sampling(root, scenario);
+  check_size(root, scenario);
+}
+
+}  // namespace asdic::scenario

@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+
+#include "io/text/toml_table.h"
+#include "sonar/scenario.h"
+
+/// The parts of a scenario file, one function per table (docs/formats/scenario.md). Each checks
+/// types and ranges of its own keys; check_scenario() holds the parts against one another. All
+/// throw InputError.
+namespace asdic::scenario {
+
+void read_environment(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
+/// \param bottom_depth  of the water [m]: temperature-salinity profiles are continued down to it
+/// \param notes  grows by what the user should know
+[[nodiscard]] SoundSpeedProfile read_sound_speed(TomlTable table,
+                                                 const std::filesystem::path& folder,
+                                                 double bottom_depth,
+                                                 std::vector<std::string>& notes);
+void read_platform(TomlTable table, Scenario& scenario);
+void read_transmitter(TomlTable table, Scenario& scenario);
+void read_pulse(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
+void read_array(TomlTable table, Scenario& scenario);
+void read_targets(std::vector<TomlTable> tables, Scenario& scenario);
+void read_noise(TomlTable table, Scenario& scenario);
+void read_reverberation(TomlTable table, Scenario& scenario);
+void read_propagation(TomlTable table, Scenario& scenario);
+void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scenario);
+
+/// Platform, phones and targets are in the water throughout, sampling is fast enough for the band,
+/// a ping fits in memory. \param root  the document, for the places of faults
+void check_scenario(TomlTable& root, const Scenario& scenario);
+
+inline const Quantity depth_quantity{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
+inline const Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
+inline const Quantity velocity_component{
+    .noun = "velocity", .unit = "m/s", .low = -100.0, .high = 100.0};
+inline const Quantity frequency_quantity{
+    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
+inline const Quantity duration_quantity{
+    .noun = "duration", .unit = "s", .low = 0.0, .high = 1e5, .above = true};
+inline const Quantity speed_of_sound{
+    .noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e4, .above = true};
+
+}  // namespace asdic::scenario

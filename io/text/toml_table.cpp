@@ -1,0 +1,245 @@
+#include "io/text/toml_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/text/quote.h"
+
+namespace asdic {
+namespace {
+
+/// What an absent table reads as.
+const TomlValue& empty_table() {
+  static const TomlValue empty{.data = TomlValue::Table{}, .origin = ""};
+  return empty;
+}
+
+std::string article(std::string_view noun) {
+  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + in_quotes(names[i]);
+  return text;
+}
+
+std::string element(const std::string& key, std::size_t index) {
+  return key + "[" + std::to_string(index) + "]";
+}
+
+}  // namespace
+
+bool Quantity::holds(double value) const {
+  return std::isfinite(value) && (above ? value > low : value >= low) && value <= high;
+}
+
+std::string Quantity::expected() const {
+  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+  std::string text = has_low || has_high ? article(noun) : "a finite " + std::string(noun);
+  if (has_low && has_high) {
+    text += above ? " above " : " from ";
+    text += to_text(low) + (above ? " and at most " : " to ") + to_text(high);
+  } else if (has_low) {
+    text += (above ? " above " : " of at least ") + to_text(low);
+  } else if (has_high) {
+    text += " of at most " + to_text(high);
+  }
+  if (!unit.empty()) {
+    text += has_low || has_high ? " " : " in ";
+    text += unit;
+  }
+  return text;
+}
+
+TomlTable::TomlTable(const TomlValue& table, std::string path)
+    : table_(&table), path_(std::move(path)) {
+  if (table.table() == nullptr)
+    throw InputError(
+        {.where = table.origin + ": " + path_, .got = table.describe(), .expected = "a table"});
+}
+
+std::string TomlTable::path_of(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+
+InputError TomlTable::fault_at(const TomlValue& value, const std::string& key,
+                               const std::string& expected, std::optional<std::string> got) const {
+  const std::string path = path_of(key);
+  const std::string& origin = value.origin.empty() ? fallback_origin_ : value.origin;
+  // "--set pulse.duration" already names the key.
+  const std::string where = origin == "--set " + path ? origin : origin + ": " + path;
+  return InputError({.where = where, .got = got.value_or(value.describe()), .expected = expected});
+}
+
+InputError TomlTable::fault(const std::string& key, const std::string& expected,
+                            std::optional<std::string> got) const {
+  const auto bracket = key.find('[');
+  const TomlValue* value = table_->find(key.substr(0, bracket));
+  if (value != nullptr && bracket != std::string::npos)
+    if (const auto* array = std::get_if<TomlValue::Array>(&value->data)) {
+      const auto index = std::stoul(key.substr(bracket + 1));
+      if (index < array->size()) value = &(*array)[index];
+    }
+  if (value != nullptr) return fault_at(*value, key, expected, std::move(got));
+  return fault_at(*table_, key, expected, got.value_or("nothing"));
+}
+
+std::string TomlTable::where(const std::string& key) const { return fault(key, "").fault().where; }
+
+const TomlValue* TomlTable::find(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  return table_->find(key);
+}
+
+bool TomlTable::has(const std::string& key) { return find(key) != nullptr; }
+
+const TomlValue& TomlTable::require(const std::string& key, const std::string& expected) {
+  const TomlValue* value = find(key);
+  if (value == nullptr) throw fault(key, expected);
+  return *value;
+}
+
+double TomlTable::checked(const TomlValue& value, const std::string& key,
+                          const Quantity& quantity) const {
+  double number = 0.0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value.data))
+    number = static_cast<double>(*integer);
+  else if (const auto* real = std::get_if<double>(&value.data))
+    number = *real;
+  else
+    throw fault_at(value, key, quantity.expected());
+  if (quantity.holds(number)) return number;
+  const bool show_unit = std::isfinite(number) && !quantity.unit.empty();
+  throw fault_at(value, key, quantity.expected(),
+                 value.describe() + (show_unit ? " " + std::string(quantity.unit) : ""));
+}
+
+double TomlTable::number(const std::string& key, const Quantity& quantity) {
+  return checked(require(key, quantity.expected()), key, quantity);
+}
+
+double TomlTable::number(const std::string& key, const Quantity& quantity, double fallback) {
+  return has(key) ? number(key, quantity) : fallback;
+}
+
+std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::int64_t high) {
+  const std::string expected =
+      high == std::numeric_limits<std::int64_t>::max()
+          ? "a whole number of at least " + std::to_string(low)
+          : "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  const TomlValue& value = require(key, expected);
+  const auto* integer = std::get_if<std::int64_t>(&value.data);
+  if (integer == nullptr || *integer < low || *integer > high) throw fault_at(value, key, expected);
+  return *integer;
+}
+
+std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::int64_t high,
+                                std::int64_t fallback) {
+  return has(key) ? integer(key, low, high) : fallback;
+}
+
+bool TomlTable::flag(const std::string& key, bool fallback) {
+  const TomlValue* value = find(key);
+  if (value == nullptr) return fallback;
+  if (const auto* flag = std::get_if<bool>(&value->data)) return *flag;
+  throw fault_at(*value, key, "true or false");
+}
+
+std::string TomlTable::text(const std::string& key) {
+  const TomlValue& value = require(key, "a string");
+  if (const auto* text = std::get_if<std::string>(&value.data)) return *text;
+  throw fault_at(value, key, "a string");
+}
+
+std::string TomlTable::text(const std::string& key, const std::string& fallback) {
+  return has(key) ? text(key) : fallback;
+}
+
+std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& names,
+                              std::optional<std::string> fallback) {
+  const TomlValue* value = find(key);
+  if (value == nullptr && fallback.has_value()) return *fallback;
+  const auto* text = value == nullptr ? nullptr : std::get_if<std::string>(&value->data);
+  if (text != nullptr && std::find(names.begin(), names.end(), *text) != names.end()) return *text;
+  const std::string nearest = text == nullptr ? "" : nearest_name(*text, names);
+  throw fault(key, join(names) + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, const Quantity& quantity) {
+  const std::string expected = "an array of numbers, each " + quantity.expected();
+  const TomlValue& value = require(key, expected);
+  const auto* array = std::get_if<TomlValue::Array>(&value.data);
+  if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < array->size(); ++i)
+    result.push_back(checked((*array)[i], element(key, i), quantity));
+  return result;
+}
+
+Vec3 TomlTable::checked_vector(const TomlValue& value, const std::string& key,
+                               const Quantity& quantity) const {
+  const auto* array = std::get_if<TomlValue::Array>(&value.data);
+  if (array == nullptr || array->size() != 3)
+    throw fault_at(value, key, "[east, north, depth] in " + std::string(quantity.unit));
+  Vec3 result;
+  for (std::size_t i = 0; i < 3; ++i)
+    result[static_cast<Eigen::Index>(i)] = checked((*array)[i], element(key, i), quantity);
+  return result;
+}
+
+Vec3 TomlTable::vector(const std::string& key, const Quantity& quantity) {
+  return checked_vector(require(key, "[east, north, depth] in " + std::string(quantity.unit)), key,
+                        quantity);
+}
+
+Vec3 TomlTable::vector(const std::string& key, const Quantity& quantity, const Vec3& fallback) {
+  return has(key) ? vector(key, quantity) : fallback;
+}
+
+std::vector<Vec3> TomlTable::vectors(const std::string& key, const Quantity& quantity) {
+  const std::string expected = "an array of [east, north, depth] in " + std::string(quantity.unit);
+  const TomlValue& value = require(key, expected);
+  const auto* array = std::get_if<TomlValue::Array>(&value.data);
+  if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < array->size(); ++i)
+    result.push_back(checked_vector((*array)[i], element(key, i), quantity));
+  return result;
+}
+
+TomlTable TomlTable::table(const std::string& key) {
+  if (const TomlValue* value = find(key)) return TomlTable(*value, path_of(key));
+  // Missing keys of an absent table are reported at the line of the table around it.
+  TomlTable absent(empty_table(), path_of(key));
+  absent.fallback_origin_ = table_->origin.empty() ? fallback_origin_ : table_->origin;
+  return absent;
+}
+
+std::vector<TomlTable> TomlTable::tables(const std::string& key) {
+  const TomlValue* value = find(key);
+  if (value == nullptr) return {};
+  const auto* array = std::get_if<TomlValue::Array>(&value->data);
+  if (array == nullptr) throw fault_at(*value, key, "an array of tables, [[" + path_of(key) + "]]");
+  std::vector<TomlTable> result;
+  for (std::size_t i = 0; i < array->size(); ++i)
+    result.emplace_back((*array)[i], path_of(element(key, i)));
+  return result;
+}
+
+void TomlTable::finish() const {
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(table_->data)) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    const std::string nearest = nearest_name(entry.key, known_);
+    std::vector<std::string> names = known_;
+    std::sort(names.begin(), names.end());
+    throw fault_at(entry.value, entry.key,
+                   nearest.empty() ? "one of " + join(names)
+                                   : "a known key (did you mean \"" + nearest + "\"?)",
+                   "an unknown key");
+  }
+}
+
+}  // namespace asdic

@@ -1,0 +1,84 @@
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "io/text/toml_value.h"
+
+namespace asdic {
+
+/// What a number of a scenario must be: "a speed above 0 m/s".
+struct Quantity {
+  std::string_view noun = "number";
+  std::string_view unit = "";
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above = false;  ///< `low` itself is not allowed
+
+  [[nodiscard]] bool holds(double value) const;
+  [[nodiscard]] std::string expected() const;
+};
+
+/// A strict, typed reader of one table of a scenario. Every fault is an InputError that says
+/// "FILE:LINE: key.path: found X, expected Y". It remembers every key that was asked for; finish()
+/// reports those in the file that nobody asked for.
+class TomlTable {
+ public:
+  /// \param table  must outlive this reader   \param path  of the table, "" for the document
+  explicit TomlTable(const TomlValue& table, std::string path = "");
+
+  [[nodiscard]] bool has(const std::string& key);
+
+  double number(const std::string& key, const Quantity& quantity);
+  double number(const std::string& key, const Quantity& quantity, double fallback);
+  std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high);
+  std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high,
+                       std::int64_t fallback);
+  bool flag(const std::string& key, bool fallback);
+  std::string text(const std::string& key);
+  std::string text(const std::string& key, const std::string& fallback);
+  /// One of a list of names. Without a fallback the key is required.
+  std::string choice(const std::string& key, const std::vector<std::string>& names,
+                     std::optional<std::string> fallback = std::nullopt);
+  /// \return as many numbers as stand there, at least one
+  std::vector<double> numbers(const std::string& key, const Quantity& quantity);
+  Vec3 vector(const std::string& key, const Quantity& quantity);
+  Vec3 vector(const std::string& key, const Quantity& quantity, const Vec3& fallback);
+  std::vector<Vec3> vectors(const std::string& key, const Quantity& quantity);
+
+  /// A table inside this one; an absent one reads as empty (its required keys are then missing).
+  TomlTable table(const std::string& key);
+  /// An array of tables; absent: none.
+  std::vector<TomlTable> tables(const std::string& key);
+
+  /// \throws InputError naming the first key that nobody asked for, with the nearest known name
+  void finish() const;
+
+  /// A fault at a key (or "key[3]"), for checks that involve more than one value. `got` defaults to
+  /// what stands there.
+  [[nodiscard]] InputError fault(const std::string& key, const std::string& expected,
+                                 std::optional<std::string> got = std::nullopt) const;
+  /// "deep_ocean.toml:12: pulse.duration"
+  [[nodiscard]] std::string where(const std::string& key) const;
+
+ private:
+  const TomlValue* find(const std::string& key);
+  const TomlValue& require(const std::string& key, const std::string& expected);
+  double checked(const TomlValue& value, const std::string& key, const Quantity& quantity) const;
+  Vec3 checked_vector(const TomlValue& value, const std::string& key, const Quantity&) const;
+  [[nodiscard]] InputError fault_at(const TomlValue& value, const std::string& key,
+                                    const std::string& expected,
+                                    std::optional<std::string> got = std::nullopt) const;
+  [[nodiscard]] std::string path_of(const std::string& key) const;
+
+  const TomlValue* table_;
+  std::string path_;
+  std::string fallback_origin_;  // of an absent table: where it could have stood
+  std::vector<std::string> known_;
+};
+
+}  // namespace asdic

@@ -1,0 +1,197 @@
+#include "io/text/toml_value.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace asdic {
+namespace {
+
+TomlValue convert(const toml::node& node, const std::string& origin, const std::string& file) {
+  // Implicit tables have no line of their own: they keep that of what encloses them.
+  const auto line = node.source().begin.line;
+  TomlValue value;
+  value.origin = line == 0 || file.empty() ? origin : file + ":" + std::to_string(line);
+  if (const auto* table = node.as_table()) {
+    TomlValue::Table entries;
+    for (const auto& [key, child] : *table)
+      entries.push_back({std::string(key.str()), convert(child, value.origin, file)});
+    value.data = std::move(entries);
+  } else if (const auto* array = node.as_array()) {
+    TomlValue::Array items;
+    for (const auto& child : *array) items.push_back(convert(child, value.origin, file));
+    value.data = std::move(items);
+  } else if (const auto* flag = node.as_boolean()) {
+    value.data = flag->get();
+  } else if (const auto* integer = node.as_integer()) {
+    value.data = integer->get();
+  } else if (const auto* real = node.as_floating_point()) {
+    value.data = real->get();
+  } else if (const auto* text = node.as_string()) {
+    value.data = text->get();
+  } else {
+    throw InputError({.where = value.origin,
+                      .got = "a date or time",
+                      .expected = "a number, a string, true or false, an array or a table"});
+  }
+  return value;
+}
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= path.size();) {
+    const auto dot = std::min(path.find('.', start), path.size());
+    parts.emplace_back(path.substr(start, dot - start));
+    start = dot + 1;
+  }
+  return parts;
+}
+
+/// The value of an override: TOML if it parses as one value, else the words themselves.
+TomlValue override_value(std::string_view text, const std::string& origin) {
+  try {
+    const toml::table table = toml::parse("value = " + std::string(text));
+    if (table.size() == 1) return convert(*table.get("value"), origin, "");
+  } catch (const toml::parse_error& error) {
+    const auto first = text.find_first_not_of(" \t");
+    if (first != std::string_view::npos &&
+        std::string_view("[{\"'").find(text[first]) != std::string_view::npos)
+      throw InputError({.where = origin,
+                        .got = "a fault (" + std::string(error.description()) + ")",
+                        .expected = "a TOML value"});
+  }
+  return {.data = std::string(text), .origin = origin};
+}
+
+}  // namespace
+
+const TomlValue* TomlValue::find(std::string_view key) const {
+  const Table* entries = table();
+  if (entries == nullptr) return nullptr;
+  const auto it = std::find_if(entries->begin(), entries->end(),
+                               [&](const TomlEntry& entry) { return entry.key == key; });
+  return it == entries->end() ? nullptr : &it->value;
+}
+
+TomlValue* TomlValue::find(std::string_view key) {
+  return const_cast<TomlValue*>(std::as_const(*this).find(key));
+}
+
+std::string TomlValue::describe() const {
+  if (const auto* flag = std::get_if<bool>(&data)) return *flag ? "true" : "false";
+  if (const auto* integer = std::get_if<std::int64_t>(&data)) return std::to_string(*integer);
+  if (const auto* real = std::get_if<double>(&data)) return to_text(*real);
+  if (const auto* text = std::get_if<std::string>(&data)) return '"' + *text + '"';
+  if (const auto* array = std::get_if<Array>(&data))
+    return "an array of " + std::to_string(array->size());
+  return table() != nullptr ? "a table" : "nothing";
+}
+
+TomlValue parse_toml(std::string_view text, const std::string& file) {
+  try {
+    TomlValue root = convert(toml::parse(text, file), file + ":1", file);
+    root.origin = file + ":1";
+    return root;
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(
+        {.where = file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column),
+         .got = "a fault (" + std::string(error.description()) + ")",
+         .expected = "TOML 1.0"});
+  }
+}
+
+void merge_defaults(TomlValue& base, const TomlValue& fragment) {
+  auto* mine = std::get_if<TomlValue::Table>(&base.data);
+  const auto* theirs = std::get_if<TomlValue::Table>(&fragment.data);
+  if (mine == nullptr || theirs == nullptr) return;
+  for (const TomlEntry& entry : *theirs) {
+    TomlValue* have = base.find(entry.key);
+    if (have == nullptr)
+      mine->push_back(entry);
+    else if (have->find("kind") == nullptr)
+      merge_defaults(*have, entry.value);
+  }
+}
+
+void apply_override(TomlValue& root, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const std::string key = assignment.substr(0, equals);
+  const std::string origin = "--set " + key;
+  if (equals == std::string::npos || key.empty())
+    throw InputError({.where = "--set", .got = '"' + assignment + '"', .expected = "key=value"});
+
+  TomlValue* at = &root;
+  std::string walked;
+  for (const std::string& part : split(key)) {
+    if (auto* array = std::get_if<TomlValue::Array>(&at->data)) {
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+      if (error != std::errc{} || end != part.data() + part.size() || index >= array->size())
+        throw InputError({.where = origin,
+                          .got = "index \"" + part + "\" of " + walked,
+                          .expected = array->empty() ? "no index, the array is empty"
+                                                     : "an index from 0 to " +
+                                                           std::to_string(array->size() - 1)});
+      at = &(*array)[index];
+    } else if (auto* table = std::get_if<TomlValue::Table>(&at->data)) {
+      if (part.empty())
+        throw InputError({.where = origin, .got = "an empty name", .expected = "a key path"});
+      TomlValue* next = at->find(part);
+      if (next == nullptr) {  // the reader finds out whether such a key exists
+        table->push_back({part, {.data = TomlValue::Table{}, .origin = origin}});
+        next = &table->back().value;
+      }
+      at = next;
+    } else {
+      throw InputError({.where = origin,
+                        .got = '"' + part + "\" below " + walked + ", which is " + at->describe(),
+                        .expected = "a path through tables and arrays"});
+    }
+    walked += (walked.empty() ? "" : ".") + part;
+  }
+  *at = override_value(std::string_view(assignment).substr(equals + 1), origin);
+}
+
+std::string to_text(double number) {
+  if (std::isnan(number)) return "nan";
+  std::array<char, 32> buffer{};
+  const double size = std::abs(number);
+  const bool plain = size == 0.0 || (size >= 1e-4 && size < 1e9);
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
+                                 plain ? std::chars_format::fixed : std::chars_format::general)
+                       .ptr;
+  return {buffer.data(), end};
+}
+
+std::string nearest_name(std::string_view typed, std::span<const std::string> names) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
+  for (const std::string& name : names) {
+    // Levenshtein's distance, one row at a time.
+    std::vector<std::size_t> row(name.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= typed.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= name.size(); ++j) {
+        const std::size_t replace = diagonal + (typed[i - 1] == name[j - 1] ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = name;
+    }
+  }
+  return best;
+}
+
+}  // namespace asdic

@@ -1,0 +1,128 @@
+#include "io/wav.h"
+
+#include <sndfile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "io/text/csv_table.h"
+
+namespace asdic {
+namespace {
+
+struct CloseSound {
+  void operator()(SNDFILE* file) const { sf_close(file); }
+};
+using SoundFile = std::unique_ptr<SNDFILE, CloseSound>;
+
+SampledPulse read_csv_pulse(const std::filesystem::path& path) {
+  const CsvTable csv = read_csv(path);
+  const auto& time = csv.column("time");
+  SampledPulse pulse{.samples = csv.column("pressure")};
+  const std::size_t n = time.size();
+  if (n < 2) throw InputError({.where = csv.file, .got = "one sample", .expected = "at least two"});
+  const double step = (time.back() - time.front()) / static_cast<double>(n - 1);
+  for (std::size_t i = 1; i < n; ++i)  // times are often printed with few digits
+    if (!(step > 0.0) || std::abs(time[i] - time[i - 1] - step) > 0.01 * step)
+      throw InputError({.where = csv.file + ":" + std::to_string(csv.lines[i]) + ": time",
+                        .got = "a step of " + std::to_string(time[i] - time[i - 1]) + " s",
+                        .expected = "even steps of " + std::to_string(step) + " s"});
+  pulse.sample_rate = 1.0 / step;
+  return pulse;
+}
+
+SampledPulse read_sound_pulse(const std::filesystem::path& path) {
+  SF_INFO info{};
+  const SoundFile file(sf_open(path.c_str(), SFM_READ, &info));
+  if (file == nullptr)
+    throw InputError(
+        {.where = path.string(),
+         .got = "a file that libsndfile cannot read (" + std::string(sf_strerror(nullptr)) + ")",
+         .expected = "a mono WAV file, or CSV with the header time,pressure"});
+  if (info.channels != 1)
+    throw InputError({.where = path.string(),
+                      .got = std::to_string(info.channels) + " channels",
+                      .expected = "one channel"});
+  SampledPulse pulse{.samples = std::vector<double>(static_cast<std::size_t>(info.frames)),
+                     .sample_rate = static_cast<double>(info.samplerate)};
+  const auto read = sf_readf_double(file.get(), pulse.samples.data(), info.frames);
+  if (read != info.frames || read < 2)
+    throw InputError({.where = path.string(),
+                      .got = std::to_string(read) + " samples of " + std::to_string(info.frames),
+                      .expected = "a whole file of at least two samples"});
+  return pulse;
+}
+
+}  // namespace
+
+SampledPulse read_pulse_file(const std::filesystem::path& path) {
+  SampledPulse pulse = path.extension() == ".csv" ? read_csv_pulse(path) : read_sound_pulse(path);
+  double peak = 0.0;
+  for (const double sample : pulse.samples) {
+    if (!std::isfinite(sample))
+      throw InputError({.where = path.string(),
+                        .got = "a sample that is not finite",
+                        .expected = "finite samples"});
+    peak = std::max(peak, std::abs(sample));
+  }
+  if (peak == 0.0)
+    throw InputError({.where = path.string(), .got = "silence", .expected = "a pulse"});
+  for (double& sample : pulse.samples) sample /= peak;
+  return pulse;
+}
+
+WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
+                   std::size_t channels, double sample_rate) {
+  if (channels == 0 || channels > 1024 || pressure.size() % channels != 0)
+    throw InputError({.where = path.string(),
+                      .got = std::to_string(pressure.size()) + " samples on " +
+                             std::to_string(channels) + " channels",
+                      .expected = "1 to 1024 channels of equal length"});
+  const std::size_t samples = pressure.size() / channels;
+  if (static_cast<double>(pressure.size()) * sizeof(float) > 4.0e9)
+    throw InputError({.where = path.string(),
+                      .got = std::to_string(pressure.size()) + " samples in all",
+                      .expected = "less than 4 GB, the most that a WAV file holds"});
+  float peak = 0.0F;
+  for (const float p : pressure) peak = std::max(peak, std::abs(p));
+  const double scale = peak > 0.0F ? static_cast<double>(peak) : 1.0;
+
+  SF_INFO info{};
+  info.samplerate = static_cast<int>(std::lround(sample_rate));
+  info.channels = static_cast<int>(channels);
+  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  const SoundFile file(sf_open(path.c_str(), SFM_WRITE, &info));
+  if (file == nullptr)
+    throw RunError(path.string() + ": cannot be written: " + sf_strerror(nullptr));
+  constexpr std::size_t block = 65536;  // frames at a time: phones are interleaved here
+  std::vector<float> frames;
+  for (std::size_t start = 0; start < samples; start += block) {
+    const std::size_t n = std::min(block, samples - start);
+    frames.resize(n * channels);
+    for (std::size_t channel = 0; channel < channels; ++channel)
+      for (std::size_t i = 0; i < n; ++i)
+        frames[i * channels + channel] = static_cast<float>(
+            static_cast<double>(pressure[channel * samples + start + i]) / scale);
+    if (sf_writef_float(file.get(), frames.data(), static_cast<sf_count_t>(n)) !=
+        static_cast<sf_count_t>(n))
+      throw RunError(path.string() + ": cannot be written: " + sf_strerror(file.get()));
+  }
+
+  const std::string json_path = path.string() + ".json";
+  std::ofstream json(json_path);
+  json << nlohmann::json{{"pascal_per_unit", scale},
+                         {"sample_rate_hz", sample_rate},
+                         {"channels", channels},
+                         {"samples", samples}}
+              .dump(2)
+       << '\n';
+  if (!json.flush()) throw RunError(json_path + ": cannot be written");
+  return {.pascal_per_unit = scale, .sample_rate = sample_rate};
+}
+
+}  // namespace asdic

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace asdic {
+
+/// A pulse as sampled in a file.
+struct SampledPulse {
+  std::vector<double> samples;  ///< real pressure, largest |sample| 1
+  double sample_rate = 0.0;     ///< [Hz]
+};
+
+/// Reads a pulse from a mono WAV file (or any other format of libsndfile), or from a CSV file with
+/// the header time,pressure and evenly spaced times. Scaled to a largest |sample| of 1.
+/// \throws InputError if it cannot be read, has several channels, is silent or unevenly sampled
+[[nodiscard]] SampledPulse read_pulse_file(const std::filesystem::path& path);
+
+/// What a WAV file cannot say about itself; stands in NAME.wav.json beside it.
+struct WavScale {
+  double pascal_per_unit = 1.0;
+  double sample_rate = 0.0;  ///< exact; the WAV header rounds it to whole Hz [Hz]
+};
+
+/// Writes phones as 32-bit float WAV, full scale the largest |sample|, and NAME.wav.json with
+/// pascal_per_unit, sample_rate_hz, channels and samples.
+/// \param pressure  [channels × samples] row per phone [Pa]
+/// \return the scale that was used
+/// \throws RunError if the file cannot be written; InputError for a shape that does not fit
+WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
+                   std::size_t channels, double sample_rate);
+
+}  // namespace asdic

@@ -1,0 +1,128 @@
+#include "sonar/doppler_expansion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/units.h"
+
+namespace asdic {
+namespace {
+
+constexpr double expansion_error = 3e-5;  // of the pulse's peak, −90 dB
+
+/// Σ_{n≥N}|J_n(z)| for N = 0…, until it is negligible: Miller's downward recurrence.
+std::vector<double> bessel_tails(double z) {
+  const auto top = static_cast<std::size_t>(z + 8.0 * std::cbrt(z) + 24.0);
+  std::vector<double> j(top + 2, 0.0);
+  j[top] = 1e-30;
+  for (std::size_t n = top; n > 0; --n) {
+    j[n - 1] = 2.0 * static_cast<double>(n) / z * j[n] - j[n + 1];
+    if (std::abs(j[n - 1]) > 1e100)
+      for (std::size_t i = n - 1; i <= top; ++i) j[i] *= 1e-100;
+  }
+  double norm = j[0];  // J₀ + 2ΣJ₂ₖ = 1
+  for (std::size_t n = 2; n <= top; n += 2) norm += 2.0 * j[n];
+  double tail = 0.0;
+  for (std::size_t n = top + 1; n-- > 0;) {
+    tail += std::abs(j[n] / norm);
+    j[n] = tail;
+  }
+  return j;
+}
+
+DopplerBand chebyshev_band(double lowest, double highest, std::size_t count) {
+  DopplerBand band{.lowest = lowest, .highest = highest, .nodes = {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = std::cos(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+    band.nodes.push_back(0.5 * (lowest + highest) - 0.5 * (highest - lowest) * x);
+  }
+  if (count == 1 && lowest == highest) band.nodes[0] = lowest;
+  return band;
+}
+
+}  // namespace
+
+void DopplerBand::weights(double doppler, std::span<float> weights) const noexcept {
+  const std::size_t n = nodes.size();
+  double sum = 0.0;
+  const auto barycentric = [&](std::size_t i) {
+    const double w = std::sin(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+    return i % 2 == 0 ? w : -w;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double distance = doppler - nodes[i];
+    if (std::abs(distance) < 1e-15 || n == 1) {
+      std::fill(weights.begin(), weights.end(), 0.0F);
+      weights[i] = 1.0F;
+      return;
+    }
+    sum += barycentric(i) / distance;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    weights[i] = static_cast<float>(barycentric(i) / (doppler - nodes[i]) / sum);
+}
+
+DopplerExpansion::DopplerExpansion(const BandLimitedPulse& pulse)
+    : highest_frequency_(pulse.centre_frequency() + pulse.half_band()) {
+  constexpr int points = 128, fine = 8;
+  for (int i = 0; i < points; ++i) {
+    double amplitude = 0.0;  // the most in this stretch, on either side
+    for (int k = 0; k <= fine; ++k) {
+      const double u = pulse.half_duration() * (i + k / double(fine)) / points;
+      amplitude = std::max({amplitude, std::abs(pulse.at(u)), std::abs(pulse.at(-u))});
+    }
+    envelope_.push_back({pulse.half_duration() * (i + 1.0) / points, amplitude});
+  }
+}
+
+std::size_t DopplerExpansion::nodes_needed(double span) const {
+  std::size_t count = 1;
+  for (const auto& [time, amplitude] : envelope_) {
+    const double z = pi * highest_frequency_ * span * time;  // 2πf·(span/2)·u
+    if (z < 1e-9 || amplitude < 0.25 * expansion_error) continue;
+    const auto tails = bessel_tails(z);
+    while (count < tails.size() && 4.0 * amplitude * tails[count] > expansion_error) ++count;
+  }
+  return count;
+}
+
+std::vector<DopplerBand> DopplerExpansion::bands(std::vector<double> dopplers) const {
+  std::sort(dopplers.begin(), dopplers.end());
+  dopplers.erase(std::unique(dopplers.begin(), dopplers.end()), dopplers.end());
+  std::vector<DopplerBand> found;
+  if (dopplers.empty()) return found;
+
+  struct Stretch {
+    std::size_t first, last, cost;  // of `dopplers`, both inclusive
+  };
+  const auto stretch = [&](std::size_t first, std::size_t last) {
+    return Stretch{first, last, nodes_needed(dopplers[last] - dopplers[first])};
+  };
+  std::vector<Stretch> open = {stretch(0, dopplers.size() - 1)};
+  while (!open.empty()) {
+    const Stretch s = open.back();
+    open.pop_back();
+    const std::size_t distinct = s.last - s.first + 1;
+    if (distinct <= s.cost) {  // a pass for each is no dearer
+      for (std::size_t i = s.first; i <= s.last; ++i)
+        found.push_back(chebyshev_band(dopplers[i], dopplers[i], 1));
+      continue;
+    }
+    // Split at the widest gap if that is cheaper.
+    std::size_t cut = s.first;
+    for (std::size_t i = s.first; i < s.last; ++i)
+      if (dopplers[i + 1] - dopplers[i] > dopplers[cut + 1] - dopplers[cut]) cut = i;
+    if (s.cost > 1) {
+      const Stretch left = stretch(s.first, cut), right = stretch(cut + 1, s.last);
+      if (left.cost + right.cost < s.cost) {
+        open.insert(open.end(), {right, left});
+        continue;
+      }
+    }
+    found.push_back(chebyshev_band(dopplers[s.first], dopplers[s.last], s.cost));
+  }
+  return found;
+}
+
+}  // namespace asdic

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sonar/band_limited_pulse.h"
+
+namespace asdic {
+
+/// A stretch of Doppler factors served by a few stretched pulses: s₊(ηu) ≈ Σ_m ℓ_m(η) s₊(η_m u).
+struct DopplerBand {
+  double lowest = 1.0, highest = 1.0;
+  std::vector<double> nodes;  ///< η_m, Chebyshev points of [lowest, highest]
+
+  /// ℓ_m(η): Lagrange's polynomials in barycentric form. \param weights [nodes.size()]
+  void weights(double doppler, std::span<float> weights) const noexcept;
+};
+
+/// How many Chebyshev nodes a span of factors needs.
+///
+/// e^{izx} on [−1, 1] through N points errs by at most 4Σ_{n≥N}|J_n(z)|; a pulse at distance u from
+/// its middle has z = 2πf·½span·|u| and the weight of its envelope there. Source: Trefethen,
+/// Approximation Theory and Approximation Practice (2013), ch. 7–8; docs/theory/synthesis.md.
+class DopplerExpansion {
+ public:
+  explicit DopplerExpansion(const BandLimitedPulse& pulse);
+
+  /// \param span  highest − lowest factor   \return nodes for an error below −90 dB of the peak
+  [[nodiscard]] std::size_t nodes_needed(double span) const;
+
+  /// Covers the factors by the cheapest set of bands found: gaps are skipped, and a few distinct
+  /// factors get a node each. \param dopplers in any order \return bands in rising order
+  [[nodiscard]] std::vector<DopplerBand> bands(std::vector<double> dopplers) const;
+
+ private:
+  struct EnvelopePoint {
+    double time, amplitude;
+  };
+  std::vector<EnvelopePoint> envelope_;
+  double highest_frequency_ = 0.0;
+};
+
+}  // namespace asdic

@@ -1,0 +1,171 @@
+#include "sonar/impulse_grid.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace asdic {
+namespace {
+
+constexpr std::size_t block = 256;  // returns worked on at one time
+
+/// Where a block of returns falls and what it weighs at one phone.
+struct Block {
+  alignas(64) std::array<double, block> position;  // in grid samples
+  alignas(64) std::array<double, block> real, imag;
+};
+
+/// To the nearest integer, for |x| < 2⁵¹; vectorises where std::round does not.
+inline double nearest(double x) noexcept {
+  constexpr double shift = 0x1.8p52;
+  return (x + shift) - shift;
+}
+
+/// e^{−i2π·cycles} times (re, im), in place. Sine and cosine of half the angle, |x| ≤ π/2, by their
+/// Taylor series to x¹⁵ and x¹⁶ (below 1e-11), then doubled: no branches.
+inline void turn_back(double cycles, double& re, double& im) noexcept {
+  const double x = pi * (cycles - nearest(cycles));
+  const double y = x * x;
+  const double s =
+      x * (1.0 + y * (-1.0 / 6 +
+                      y * (1.0 / 120 +
+                           y * (-1.0 / 5040 +
+                                y * (1.0 / 362880 + y * (-1.0 / 39916800 +
+                                                         y * (1.0 / 6227020800.0 +
+                                                              y * (-1.0 / 1307674368000.0))))))));
+  const double c =
+      1.0 +
+      y * (-0.5 + y * (1.0 / 24 +
+                       y * (-1.0 / 720 +
+                            y * (1.0 / 40320 + y * (-1.0 / 3628800 +
+                                                    y * (1.0 / 479001600.0 +
+                                                         y * (-1.0 / 87178291200.0 +
+                                                              y * (1.0 / 20922789888000.0))))))));
+  const double cosine = c * c - s * s, sine = 2.0 * s * c;
+  const double turned = re * cosine + im * sine;
+  im = im * cosine - re * sine;
+  re = turned;
+}
+
+}  // namespace
+
+OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExpansion& expansion,
+                               double pulse_duration, std::size_t channels) {
+  std::vector<double> dopplers(returns.size());
+  std::transform(returns.begin(), returns.end(), dopplers.begin(),
+                 [](const Return& r) { return r.doppler; });
+  const std::vector<DopplerBand> found = expansion.bands(std::move(dopplers));
+
+  struct Place {
+    std::size_t band, listener;
+    double delay;
+    std::size_t index;
+    bool operator<(const Place& o) const noexcept {
+      return std::tie(band, listener, delay, index) <
+             std::tie(o.band, o.listener, o.delay, o.index);
+    }
+  };
+  std::vector<Place> order(returns.size());
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const Return& r = returns[i];
+    const auto after = std::upper_bound(
+        found.begin(), found.end(), r.doppler,
+        [](double doppler, const DopplerBand& band) { return doppler < band.lowest; });
+    order[i] = {.band = static_cast<std::size_t>(after - found.begin()) - 1,
+                .listener = static_cast<std::size_t>(r.channel - Return::all_channels),
+                .delay = r.delay,
+                .index = i};
+  }
+  tbb::parallel_sort(order.begin(), order.end());
+
+  const std::size_t n = returns.size();
+  for (auto* array : {&middle, &slowness_x, &slowness_y, &slowness_z, &real, &imag})
+    array->resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Return& r = returns[order[i].index];
+    middle[i] = r.delay + 0.5 * pulse_duration / r.doppler;
+    slowness_x[i] = r.slowness.x();
+    slowness_y[i] = r.slowness.y();
+    slowness_z[i] = r.slowness.z();
+    real[i] = r.amplitude.real();
+    imag[i] = r.amplitude.imag();
+  }
+
+  std::size_t next = 0, weight_count = 0;
+  for (std::size_t b = 0; b < found.size(); ++b) {
+    Band& band = bands.emplace_back();
+    band.first_node = nodes.size();
+    band.nodes = found[b].nodes.size();
+    band.first_weight = weight_count;
+    nodes.insert(nodes.end(), found[b].nodes.begin(), found[b].nodes.end());
+    band.ends.push_back(next);
+    for (std::size_t listener = 0; listener <= channels; ++listener) {
+      while (next < n && order[next].band == b && order[next].listener == listener) ++next;
+      band.ends.push_back(next);
+    }
+    if (band.nodes > 1) weight_count += (next - band.ends[0]) * band.nodes;
+  }
+  weights.resize(weight_count);
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    const Band& band = bands[b];
+    if (band.nodes == 1) continue;
+    tbb::parallel_for(band.ends.front(), band.ends.back(), [&](std::size_t i) {
+      const std::size_t row = band.first_weight + (i - band.ends.front()) * band.nodes;
+      found[b].weights(returns[order[i].index].doppler,
+                       std::span(weights).subspan(row, band.nodes));
+    });
+  }
+}
+
+void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band& band,
+                      std::size_t first_node, std::size_t count, std::size_t channel,
+                      const Vec3& phone, std::complex<float>* grids) const noexcept {
+  using Lanes = DelayKernel::Lanes;
+  const Lanes even = Lanes::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
+  const Lanes odd = 1.0F - even;
+  const double x = phone.x(), y = phone.y(), z = phone.z();
+  Block at;
+
+  const auto lay_segment = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t start = begin; start < end; start += block) {
+      const std::size_t n = std::min(block, end - start);
+      const double* __restrict middle = returns.middle.data() + start;
+      const double* __restrict sx = returns.slowness_x.data() + start;
+      const double* __restrict sy = returns.slowness_y.data() + start;
+      const double* __restrict sz = returns.slowness_z.data() + start;
+      const double* __restrict re = returns.real.data() + start;
+      const double* __restrict im = returns.imag.data() + start;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double delay = middle[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
+        double a = re[i], b = im[i];
+        turn_back(carrier * delay, a, b);  // e^{−i2π f_c τ}
+        at.position[i] = (delay - first) * rate;
+        at.real[i] = a;
+        at.imag[i] = b;
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        const double position = at.position[i];
+        if (!(position >= DelayKernel::taps && position <= last_position)) continue;  // not heard
+        const auto below = static_cast<std::size_t>(position);
+        const auto fraction = static_cast<float>(position - static_cast<double>(below));
+        const Lanes taps = kernel.weights(fraction) * (static_cast<float>(at.real[i]) * even +
+                                                       static_cast<float>(at.imag[i]) * odd);
+        float* grid = reinterpret_cast<float*>(grids + (below - DelayKernel::before));
+        if (band.nodes == 1) {
+          Eigen::Map<Lanes>(grid) += taps;
+          continue;
+        }
+        const float* weight = returns.weights.data() + band.first_weight +
+                              (start + i - band.ends[0]) * band.nodes + first_node;
+        for (std::size_t m = 0; m < count; ++m)
+          Eigen::Map<Lanes>(grid + 2 * m * stride) += weight[m] * taps;
+      }
+    }
+  };
+  lay_segment(band.ends[0], band.ends[1]);
+  lay_segment(band.ends[channel + 1], band.ends[channel + 2]);
+}
+
+}  // namespace asdic

@@ -1,0 +1,30 @@
+#pragma once
+#include <complex>
+#include <vector>
+
+namespace asdic {
+
+/// A complex signal between its samples: band-limited interpolation, windowed sinc.
+///
+/// The signal must lie within ± a quarter of its sample rate (twice oversampled); a Kaiser window
+/// over 24 samples then leaves an error below −110 dB. Zero outside the samples. Source: Kaiser &
+/// Schafer, IEEE Trans. ASSP 28, 105 (1980).
+class SampledSignal {
+ public:
+  SampledSignal() = default;
+  /// \param first  time of the first sample [s]   \param rate  [Hz]
+  SampledSignal(std::vector<std::complex<double>> samples, double first, double rate);
+
+  [[nodiscard]] std::complex<double> at(double t) const noexcept;
+
+  [[nodiscard]] const std::vector<std::complex<double>>& samples() const noexcept {
+    return samples_;
+  }
+  [[nodiscard]] double rate() const noexcept { return rate_; }
+
+ private:
+  std::vector<std::complex<double>> samples_;
+  double first_ = 0.0, rate_ = 1.0;
+};
+
+}  // namespace asdic

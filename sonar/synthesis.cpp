@@ -1,0 +1,165 @@
+#include "sonar/synthesis.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "sonar/impulse_grid.h"
+#include "sonar/synthesis_plan.h"
+
+namespace asdic {
+namespace {
+
+/// Nodes laid into grids at one time: the lines of cache they touch stay near, and the scratch
+/// small.
+constexpr std::size_t nodes_per_pass = 16;
+
+struct Scratch {
+  FftBuffer<std::complex<float>> grids, sum;
+};
+
+/// sum[k] += grid[k]·spectrum[k] over the band, grid in FFT order.
+void multiply_add(const std::complex<float>* grid, const std::complex<float>* spectrum,
+                  std::size_t length, std::size_t highest_bin, std::complex<float>* sum) {
+  const auto part = [&](std::size_t first, std::size_t count, const std::complex<float>* h) {
+    const float* __restrict a = reinterpret_cast<const float*>(grid + first);
+    const float* __restrict b = reinterpret_cast<const float*>(h);
+    float* __restrict c = reinterpret_cast<float*>(sum + first);
+    for (std::size_t i = 0; i < 2 * count; i += 2) {
+      c[i] += a[i] * b[i] - a[i + 1] * b[i + 1];
+      c[i + 1] += a[i] * b[i + 1] + a[i + 1] * b[i];
+    }
+  };
+  part(length - highest_bin, highest_bin, spectrum);
+  part(0, highest_bin + 1, spectrum + highest_bin);
+}
+
+}  // namespace
+
+Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler) {
+  plan_.emplace_back(pulse, recording, max_doppler);
+}
+Synthesizer::~Synthesizer() = default;
+Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
+
+Baseband Synthesizer::baseband(std::span<const Return> returns,
+                               std::span<const Vec3> phones) const {
+  const Plan& plan = plan_.front();
+  for (const Return& r : returns) {
+    assert(r.channel >= Return::all_channels && r.channel < std::ssize(phones));
+    if (!(std::abs(r.doppler - 1.0) <= plan.max_doppler + 1e-12))
+      throw InputError({.where = "returns.doppler",
+                        .got = std::to_string(r.doppler),
+                        .expected = "within the max_doppler that the synthesizer was built for"});
+  }
+
+  const OrderedReturns ordered(returns, plan.expansion, plan.pulse_duration, phones.size());
+  const ComplexFft<float> fft(plan.length);
+  const std::size_t stride = FftBuffer<std::complex<float>>::row_stride(plan.length);
+  tbb::enumerable_thread_specific<Scratch> workspaces;
+
+  const std::size_t bins = 2 * static_cast<std::size_t>(plan.highest_bin) + 1;
+  std::vector<std::complex<float>> spectra(ordered.nodes.size() * bins);
+  tbb::parallel_for(std::size_t{0}, ordered.nodes.size(), [&](std::size_t m) {
+    Scratch& scratch = workspaces.local();
+    scratch.grids.reserve(stride);
+    plan.stretched_spectrum(ordered.nodes[m], scratch.grids.data(),
+                            std::span(spectra).subspan(m * bins, bins));
+  });
+
+  Baseband result{.carrier = plan.carrier,
+                  .sample_rate = plan.rate,
+                  .start = plan.recording.start,
+                  .channels = phones.size(),
+                  .samples = plan.length,
+                  .recorded = 0,
+                  .values = {}};
+  result.recorded =
+      std::min(plan.length, static_cast<std::size_t>(static_cast<double>(plan.recording.samples) /
+                                                     plan.recording.sample_rate * plan.rate) +
+                                1);
+  result.values.resize(phones.size() * plan.length);
+
+  const ImpulseGrid grid{.kernel = plan.kernel,
+                         .rate = plan.rate,
+                         .first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
+                         .carrier = plan.carrier,
+                         .last_position = plan.last_position,
+                         .stride = stride};
+  tbb::parallel_for(std::size_t{0}, phones.size(), [&](std::size_t channel) {
+    Scratch& scratch = workspaces.local();
+    scratch.sum.reserve(stride);
+    std::fill_n(scratch.sum.data(), plan.length, 0.0F);
+    for (const OrderedReturns::Band& band : ordered.bands) {
+      if (!band.heard_by(channel)) continue;
+      for (std::size_t m = 0; m < band.nodes; m += nodes_per_pass) {
+        const std::size_t count = std::min(nodes_per_pass, band.nodes - m);
+        scratch.grids.reserve(count * stride);
+        std::fill_n(scratch.grids.data(), count * stride, 0.0F);
+        grid.lay(ordered, band, m, count, channel, phones[channel], scratch.grids.data());
+        for (std::size_t i = 0; i < count; ++i) {
+          std::complex<float>* row = scratch.grids.data() + i * stride;
+          fft.forward(row);
+          multiply_add(row, spectra.data() + (band.first_node + m + i) * bins, plan.length,
+                       static_cast<std::size_t>(plan.highest_bin), scratch.sum.data());
+        }
+      }
+    }
+    fft.inverse(scratch.sum.data());
+    std::copy_n(scratch.sum.data(), plan.length, result.values.data() + channel * plan.length);
+  });
+  return result;
+}
+
+void Synthesizer::add_passband(const Baseband& baseband, double scale,
+                               std::span<float> pressure) const {
+  const Plan& plan = plan_.front();
+  const std::size_t samples = plan.recording.samples;
+  assert(baseband.samples == plan.length && baseband.carrier == plan.carrier);
+  assert(pressure.size() == baseband.channels * samples);
+  struct PassbandScratch {
+    FftBuffer<std::complex<float>> baseband, bins;
+    FftBuffer<float> samples;
+  };
+  const ComplexFft<float> fft(plan.length);
+  const RealFft<float> real_fft(plan.passband_length);
+  tbb::enumerable_thread_specific<PassbandScratch> workspaces;
+  // e^{i2πf_c t} from the record's start, and the FFT's scale; Re z = (z + z*)/2 gives the half.
+  const double cycles = plan.carrier * plan.recording.start;
+  const std::complex<double> turn = std::polar(0.5 * scale / static_cast<double>(plan.length),
+                                               2.0 * pi * (cycles - std::round(cycles)));
+  const auto all = static_cast<std::ptrdiff_t>(plan.passband_length);
+
+  tbb::parallel_for(std::size_t{0}, baseband.channels, [&](std::size_t channel) {
+    PassbandScratch& scratch = workspaces.local();
+    scratch.baseband.reserve(plan.length);
+    scratch.bins.reserve(real_fft.bins());
+    scratch.samples.reserve(plan.passband_length);
+    std::copy_n(baseband.channel(channel).data(), plan.length, scratch.baseband.data());
+    fft.forward(scratch.baseband.data());
+    std::fill_n(scratch.bins.data(), real_fft.bins(), 0.0F);
+    const auto put = [&](std::ptrdiff_t k, std::complex<float> value) {
+      k = (k % all + all) % all;  // a bin beyond half the rate aliases, as sampling would
+      if (k < static_cast<std::ptrdiff_t>(real_fft.bins()))
+        scratch.bins[static_cast<std::size_t>(k)] += value;
+    };
+    for (std::ptrdiff_t k = -plan.highest_bin; k <= plan.highest_bin; ++k) {
+      const std::size_t from =
+          static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(plan.length) : k);
+      const std::complex<float> half = std::complex<float>(turn) * scratch.baseband[from];
+      put(plan.carrier_bin + k, half);
+      put(-plan.carrier_bin - k, std::conj(half));
+    }
+    real_fft.inverse(scratch.bins.data(), scratch.samples.data());
+    float* __restrict out = pressure.data() + channel * samples;
+    const float* __restrict in = scratch.samples.data();
+    for (std::size_t i = 0; i < samples; ++i) out[i] += in[i];
+  });
+}
+
+}  // namespace asdic

@@ -1,0 +1,90 @@
+#include "sonar/synthesis_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/units.h"
+
+namespace asdic {
+namespace {
+
+std::string hertz(double value) {
+  std::ostringstream text;
+  text << value << " Hz";
+  return text.str();
+}
+
+void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
+  if (!(max_doppler >= 0.0 && max_doppler < 0.5))
+    throw InputError({.where = "max_doppler",
+                      .got = std::to_string(max_doppler),
+                      .expected = "a share of the speed of sound between 0 and 0.5"});
+  const double highest =
+      (pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db()) * (1.0 + max_doppler);
+  if (!(recording.sample_rate > 2.0 * highest && std::isfinite(recording.sample_rate)))
+    throw InputError({.where = "sample_rate",
+                      .got = hertz(recording.sample_rate),
+                      .expected = "more than " + hertz(2.0 * highest) +
+                                  ", twice the highest frequency of the pulse (−40 dB, Doppler "
+                                  "included)"});
+  if (recording.samples == 0)
+    throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
+}
+
+}  // namespace
+
+Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler)
+    : recording((check(sent, record, doppler), record)),
+      max_doppler(doppler),
+      pulse_duration(sent.duration()),
+      pulse(sent, record.sample_rate),
+      expansion(pulse) {
+  const double longest = pulse.half_duration() / (1.0 - max_doppler);
+  const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;
+  // The stretched pulse's band about the carrier; the last term lets the carrier move to a bin.
+  const double half_band =
+      pulse.centre_frequency() * max_doppler + pulse.half_band() * (1.0 + max_doppler);
+  const double least_rate = 2.0 * half_band * DelayKernel::oversampling;
+  constexpr double margin = 4.0 * DelayKernel::taps;  // samples
+  const double least_period = record_duration + 2.0 * longest + margin / least_rate;
+
+  const auto least_pairs = std::ceil(0.5 * least_period * recording.sample_rate);
+  passband_length = 2 * fast_fft_length(static_cast<std::size_t>(least_pairs));
+  const double period = static_cast<double>(passband_length) / recording.sample_rate;
+  carrier_bin = static_cast<std::ptrdiff_t>(std::round(pulse.centre_frequency() * period));
+  carrier = static_cast<double>(carrier_bin) / period;
+  highest_bin = static_cast<std::ptrdiff_t>(std::ceil(half_band * period + 0.5));
+  length = fast_fft_length(static_cast<std::size_t>(
+      std::ceil((2.0 * static_cast<double>(highest_bin) + 1.0) * DelayKernel::oversampling)));
+  rate = static_cast<double>(length) / period;
+  lead = static_cast<std::size_t>(std::ceil(longest * rate)) + DelayKernel::taps;
+  last_position = static_cast<double>(lead) + (record_duration + longest) * rate + 1.0;
+}
+
+void Synthesizer::Plan::stretched_spectrum(double doppler, std::complex<float>* scratch,
+                                           std::span<std::complex<float>> spectrum) const {
+  std::fill(scratch, scratch + length, 0.0F);
+  // An impulse at grid sample i belongs to the time of output sample i − lead: the response stands
+  // `lead` samples early.
+  const auto n = static_cast<std::ptrdiff_t>(length);
+  const auto reach = static_cast<std::ptrdiff_t>(pulse.half_duration() / doppler * rate);
+  for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
+    const double t = static_cast<double>(j) / rate;
+    // g(t) = s₊(ηt + T/2)·e^{−i2π f_c t}
+    const double cycles = (pulse.centre_frequency() * doppler - carrier) * t;
+    const std::complex<double> g = pulse.at(doppler * t) * std::polar(1.0, 2.0 * pi * cycles);
+    const std::ptrdiff_t place = (j - static_cast<std::ptrdiff_t>(lead)) % n;
+    scratch[place < 0 ? place + n : place] = std::complex<float>(g);
+  }
+  ComplexFft<float>(length).forward(scratch);
+  for (std::ptrdiff_t k = -highest_bin; k <= highest_bin; ++k) {
+    const double frequency = static_cast<double>(k) / static_cast<double>(length);
+    const auto scale =
+        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(length)));
+    spectrum[static_cast<std::size_t>(k + highest_bin)] = scale * scratch[k < 0 ? k + n : k];
+  }
+}
+
+}  // namespace asdic

@@ -1,0 +1,45 @@
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sonar/band_limited_pulse.h"
+#include "sonar/delay_kernel.h"
+#include "sonar/doppler_expansion.h"
+#include "sonar/fft.h"
+#include "sonar/synthesis.h"
+
+namespace asdic {
+
+/// What a Synthesizer works out once: lengths, rates, the filtered pulse. Private to synthesis.
+///
+/// One period P holds the record and the pulses that hang over its ends, so nothing wraps into it.
+/// P·sample_rate and P·baseband rate are both whole and products of 2, 3, 5, 7, and the carrier is
+/// a whole number of 1/P: bin k of the baseband's FFT is bin k + carrier_bin of the passband's.
+struct Synthesizer::Plan {
+  Plan(const Pulse& pulse, const Recording& recording, double max_doppler);
+
+  Recording recording;
+  double max_doppler;
+  double pulse_duration;  ///< T, unstretched [s]
+  BandLimitedPulse pulse;
+  DopplerExpansion expansion;
+  DelayKernel kernel;
+
+  std::size_t length = 0;           ///< of the baseband FFT
+  std::size_t passband_length = 0;  ///< of the real FFT at the phones' rate
+  double rate = 0.0;                ///< of the baseband [Hz]
+  double carrier = 0.0;             ///< [Hz]
+  std::ptrdiff_t carrier_bin = 0;   ///< carrier·P
+  std::ptrdiff_t highest_bin = 0;   ///< the band is −highest_bin … highest_bin
+  std::size_t lead = 0;             ///< grid samples before the record where impulses may lie
+  double last_position = 0.0;       ///< of an impulse in the grid, in samples
+
+  /// Spectrum of the pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
+  /// \param scratch [length] \param spectrum [2·highest_bin + 1] from −highest_bin up
+  void stretched_spectrum(double doppler, std::complex<float>* scratch,
+                          std::span<std::complex<float>> spectrum) const;
+};
+
+}  // namespace asdic

@@ -1,0 +1,209 @@
+#include "sonar/synthesis.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "support/random_returns.h"
+
+namespace asdic {
+namespace {
+
+using support::RandomReturns;
+
+const std::vector<Vec3> three_phones = {Vec3(0, 0, 0), Vec3(3.7, -1.2, 0.4), Vec3(-20.0, 8.0, 5.0)};
+
+std::vector<float> fast_synthesis(const Pulse& pulse, const Recording& recording,
+                                  const Returns& returns, double max_doppler) {
+  const Synthesizer synthesizer(pulse, recording, max_doppler);
+  std::vector<float> pressure(three_phones.size() * recording.samples, 0.0F);
+  synthesizer.add_passband(synthesizer.baseband(returns, three_phones), 1.0, pressure);
+  return pressure;
+}
+
+/// Largest difference from the direct synthesis over the strongest return [dB].
+double error_db(const PulseSettings& settings, const Recording& recording, const Returns& returns,
+                double max_doppler) {
+  const Pulse pulse(settings);
+  const auto fast = fast_synthesis(pulse, recording, returns, max_doppler);
+  const auto exact = direct_synthesis(pulse, recording, returns, three_phones);
+  double strongest = 0.0, error = 0.0;
+  for (const Return& r : returns) strongest = std::max(strongest, std::abs(r.amplitude));
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    error = std::max(error, std::abs(double(fast[i]) - exact[i]));
+  return db_from_amplitude(error / strongest);
+}
+
+const Recording four_seconds = {.sample_rate = 16000.0, .start = 0.3, .samples = 64000};
+
+PulseSettings tone(double duration) { return {.kind = PulseKind::cw, .duration = duration}; }
+
+struct Case {
+  const char* name;
+  PulseSettings pulse;
+};
+
+std::vector<Case> soft_pulses() {
+  return {
+      {"hann_tone_1s", tone(1.0)},
+      {"hann_tone_100ms", tone(0.1)},
+      {"hann_tone_20ms", tone(0.02)},
+      {"tukey_tone_1s", {.duration = 1.0, .window = PulseWindow::tukey}},
+      {"hann_lfm_100Hz", {.kind = PulseKind::lfm, .duration = 1.0}},
+      {"tukey_lfm_1kHz_down",
+       {.kind = PulseKind::lfm,
+        .start_frequency = 4500.0,
+        .end_frequency = 3500.0,
+        .duration = 0.5,
+        .window = PulseWindow::tukey,
+        .tukey_fraction = 0.25}},
+      {"hann_hfm",
+       {.kind = PulseKind::hfm,
+        .start_frequency = 3000.0,
+        .end_frequency = 3600.0,
+        .duration = 0.7}},
+  };
+}
+
+class SoftPulse : public testing::TestWithParam<Case> {};
+
+// Delays run past both ends of the record, so pulses are cut there. Returns' errors add up: 100 of
+// them overlap at random phase, ten times one's error; −80 dB of the strongest leaves that room.
+TEST_P(SoftPulse, MatchesDirectSynthesisWithoutDoppler) {
+  const auto returns = RandomReturns{.first = -1.0, .last = 5.0}.make();
+  EXPECT_LT(error_db(GetParam().pulse, four_seconds, returns, 0.0), -80.0);
+}
+
+TEST_P(SoftPulse, MatchesDirectSynthesisOverASpanOfDoppler) {  // ±14 Hz at 4 kHz
+  const auto returns = RandomReturns{.first = -1.0, .last = 5.0, .spread = 0.0035}.make();
+  EXPECT_LT(error_db(GetParam().pulse, four_seconds, returns, 0.0036), -80.0);
+}
+
+TEST_P(SoftPulse, MatchesDirectSynthesisOfAFewMovers) {
+  auto returns = RandomReturns{.first = 0.0, .last = 4.0, .channels = 3}.make();
+  for (std::size_t i = 0; i < returns.size(); ++i)
+    returns[i].doppler = i % 3 == 0 ? 0.99 : (i % 3 == 1 ? 1.0004 : 1.0101);
+  EXPECT_LT(error_db(GetParam().pulse, four_seconds, returns, 0.011), -80.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SoftPulse, testing::ValuesIn(soft_pulses()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+// An edge that jumps cannot be had from any finite band: the phones' filter rounds it within
+// 40/width of its place (width 256 Hz for the 1 s tone). Away from edges all is as exact as ever.
+TEST(HardPulse, IsExactAwayFromItsEdges) {
+  PulseSettings settings = tone(1.0);
+  settings.window = PulseWindow::none;
+  const Pulse pulse(settings);
+  const Returns one = {{.delay = 1.2345678, .amplitude = {0.6, -0.8}, .doppler = 1.003}};
+  const auto fast = fast_synthesis(pulse, four_seconds, one, 0.0035);
+  const auto exact = direct_synthesis(pulse, four_seconds, one, three_phones);
+  double error = 0.0;
+  for (std::size_t i = 0; i < four_seconds.samples; ++i) {
+    const double t = four_seconds.start + double(i) / four_seconds.sample_rate - one[0].delay;
+    if (std::min(std::abs(t), std::abs(t - 1.0 / 1.003)) > 40.0 / 256.0)
+      error = std::max(error, std::abs(double(fast[i]) - exact[i]));
+  }
+  EXPECT_LT(db_from_amplitude(error), -80.0);
+}
+
+// A file pulse is band-limited already; one made of a windowed tone must sound like the tone.
+TEST(FilePulse, MatchesDirectSynthesis) {
+  const Pulse model(tone(0.25));
+  PulseSettings settings = {.kind = PulseKind::file, .window = PulseWindow::none};
+  settings.sample_rate = 20000.0;
+  for (int i = 0; i < 5000; ++i)
+    settings.samples.push_back(3.0 * model.analytic(i / 20000.0).real());
+  const auto returns = RandomReturns{.first = -1.0, .last = 5.0, .spread = 0.002}.make();
+  EXPECT_LT(error_db(settings, four_seconds, returns, 0.002), -80.0);
+}
+
+TEST(Synthesis, EveryThreadCountGivesTheSameBits) {
+  const Pulse pulse(tone(0.3));
+  const auto returns =
+      RandomReturns{.count = 2000, .first = -1.0, .last = 5.0, .spread = 0.003, .channels = 3}
+          .make();
+  std::vector<std::vector<float>> results;
+  for (std::size_t threads : {1U, 2U, 7U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    results.push_back(fast_synthesis(pulse, four_seconds, returns, 0.003));
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+// Float rounding alone: 1e-6 of a sum of hundreds of returns of order one.
+TEST(Synthesis, IsLinear) {
+  const Pulse pulse(tone(0.3));
+  const auto a = RandomReturns{.last = 4.0, .spread = 0.003, .seed = 2}.make();
+  const auto b = RandomReturns{.last = 4.0, .spread = 0.003, .seed = 3}.make();
+  Returns both = a;
+  for (Return r : b) {
+    r.amplitude *= -2.0;
+    both.push_back(r);
+  }
+  const auto pa = fast_synthesis(pulse, four_seconds, a, 0.003);
+  const auto pb = fast_synthesis(pulse, four_seconds, b, 0.003);
+  const auto pc = fast_synthesis(pulse, four_seconds, both, 0.003);
+  float error = 0.0F;
+  for (std::size_t i = 0; i < pc.size(); ++i)
+    error = std::max(error, std::abs(pc[i] - (pa[i] - 2.0F * pb[i])));
+  EXPECT_LT(error, 2e-4F);
+}
+
+// ∫p²dt = ½|A|²·energy/η, and the baseband's envelope carries |A|²·energy/η: duration ÷ η.
+TEST(Synthesis, KeepsThePulsesEnergy) {
+  const Pulse pulse(tone(0.5));
+  const double eta = 1.01;
+  const Returns one = {{.delay = 2.0, .amplitude = {0.0, 2.0}, .doppler = eta}};
+  const Synthesizer synthesizer(pulse, four_seconds, 0.02);
+  const Baseband b = synthesizer.baseband(one, three_phones);
+  double envelope = 0.0, pressure = 0.0;
+  for (std::size_t i = 0; i < b.recorded; ++i)
+    envelope += double(std::norm(b.channel(0)[i])) / b.sample_rate;
+  for (float p : fast_synthesis(pulse, four_seconds, one, 0.02))
+    pressure += double(p) * double(p) / four_seconds.sample_rate / 3.0;
+  EXPECT_NEAR(envelope, 4.0 * pulse.energy() / eta, 1e-4 * envelope);
+  EXPECT_NEAR(pressure, 2.0 * pulse.energy() / eta, 1e-4 * pressure);
+}
+
+// What lies wholly outside the record must leave silence, not come round by the FFT's period.
+TEST(Synthesis, NothingWraps) {
+  const Pulse pulse(tone(1.0));
+  Returns outside;
+  for (double delay : {-50.0, -1.1, 4.4, 5.0, 5.3, 6.0, 7.0, 1e9, -1e9})
+    outside.push_back({.delay = delay, .amplitude = 1.0, .doppler = 1.0 - 1e-4 * delay / 1e9});
+  for (Return& r : outside) r.slowness = Vec3::Zero();
+  for (float p : fast_synthesis(pulse, four_seconds, outside, 0.001)) ASSERT_LT(std::abs(p), 1e-4F);
+}
+
+TEST(Synthesis, AddsToWhatIsThereAndScales) {
+  const Pulse pulse(tone(0.3));
+  const auto returns = RandomReturns{.last = 4.0}.make();
+  const Synthesizer synthesizer(pulse, four_seconds, 0.0);
+  const Baseband b = synthesizer.baseband(returns, three_phones);
+  std::vector<float> once(3 * four_seconds.samples, 0.0F), twice(once.size(), 1.0F);
+  synthesizer.add_passband(b, 1.0, once);
+  synthesizer.add_passband(b, 2.0, twice);
+  for (std::size_t i = 0; i < once.size(); i += 97)
+    EXPECT_NEAR(twice[i], 1.0F + 2.0F * once[i], 1e-5F);
+}
+
+TEST(Synthesis, NoReturnsAreSilence) {
+  for (float p : fast_synthesis(Pulse(tone(0.3)), four_seconds, {}, 0.0)) ASSERT_EQ(p, 0.0F);
+}
+
+TEST(Synthesis, RefusesToAlias) {
+  try {
+    const Synthesizer s(Pulse(tone(1.0)), {.sample_rate = 8000.0, .samples = 8000}, 0.0);
+    FAIL() << "4 kHz at 8 kHz went through";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.fault().where, "sample_rate");
+  }
+}
+
+}  // namespace
+}  // namespace asdic

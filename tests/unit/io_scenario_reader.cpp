@@ -1,0 +1,407 @@
+#include "io/scenario_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "support/temporary_directory.h"
+
+namespace asdic {
+namespace {
+
+constexpr const char* small_scenario = R"([environment]
+wind_speed = 5
+[environment.sound_speed]
+kind = "table"
+depth = [0.0, 100.0, 5000.0]
+speed = [1510.0, 1500.0, 1540.0]
+[environment.bottom]
+depth = 5000.0
+kind = "rigid"
+[platform]
+position = [0.0, 0.0, 4500.0]
+[transmitter]
+source_level_db = 220.0
+elevation_deg = 8.0
+beamwidth_deg = 6.0
+[pulse]
+kind = "cw"
+frequency = 4000.0
+duration = 1.0
+window = "hann"
+[array]
+kind = "horizontal"
+phones = 16
+spacing = 0.1875
+[[target]]
+range = 25000.0
+bearing_deg = 90.0
+depth = 125.0
+strength_db = 15.0
+[pings]
+count = 2
+recording_duration = 60
+)";
+
+TEST(ScenarioReader, ReadsWhatStandsThere) {
+  const Scenario s = parse_scenario(small_scenario, "small.toml");
+  EXPECT_EQ(s.wind_speed, 5.0);
+  EXPECT_EQ(s.environment.water.depths().size(), 3U);
+  EXPECT_EQ(s.environment.bottom.depth, 5000.0);
+  EXPECT_TRUE(std::holds_alternative<Rigid>(s.environment.bottom.material));
+  EXPECT_TRUE(std::holds_alternative<Thorp>(s.environment.absorption));
+  EXPECT_EQ(s.platform.start.position.z(), 4500.0);
+  EXPECT_DOUBLE_EQ(s.transmitter.elevation, radians(8.0));
+  EXPECT_EQ(s.transmitter.taper, Taper::hann);
+  EXPECT_EQ(s.pulse.window, PulseWindow::hann);
+  EXPECT_EQ(s.array.phones.size(), 16U);
+  ASSERT_EQ(s.targets.size(), 1U);
+  EXPECT_NEAR((s.targets[0].track.start.position - Vec3(25000.0, 0.0, 125.0)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(s.pings.count, 2);
+  EXPECT_FALSE(s.noise.spectral_level_db.has_value());
+  EXPECT_EQ(s.text, small_scenario);
+  const auto& surface = std::get<NrlSurface>(s.reverberation.surface);
+  EXPECT_EQ(surface.wind_speed, 5.0);
+  EXPECT_EQ(surface.sound_speed, 1510.0);
+}
+
+TEST(ScenarioReader, OverridesReplaceAddAndIndex) {
+  const std::vector<std::string> overrides{"transmitter.elevation_deg=12",
+                                           "target.0.strength_db=20.5",
+                                           "pulse.window=none",
+                                           "noise.spectral_level_db=40",
+                                           "environment.sound_speed.speed.1=1490",
+                                           "target.0.name=a bare phrase",
+                                           R"(environment.bottom={kind="vacuum", depth=5200})"};
+  const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
+  EXPECT_DOUBLE_EQ(s.transmitter.elevation, radians(12.0));
+  EXPECT_EQ(s.targets[0].strength_db, 20.5);
+  EXPECT_EQ(s.targets[0].name, "a bare phrase");
+  EXPECT_EQ(s.pulse.window, PulseWindow::none);
+  EXPECT_EQ(s.noise.spectral_level_db, 40.0);
+  EXPECT_EQ(s.environment.water.speeds()[1], 1490.0);
+  EXPECT_EQ(s.environment.bottom.depth, 5200.0);
+  EXPECT_EQ(s.overrides, overrides);
+  EXPECT_EQ(s.text, small_scenario);  // verbatim: the overrides are recorded beside it
+}
+
+TEST(ScenarioReader, EveryScatteringLawCanBeChosen) {
+  for (const std::string kind : {"nrl", "chapman-harris", "ogden-erskine"}) {
+    const std::vector<std::string> overrides{"reverberation.surface.kind=" + kind};
+    const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
+    std::visit(
+        [&](const auto& law) {
+          EXPECT_EQ(law.name, kind);
+          EXPECT_EQ(law.wind_speed, 5.0);
+        },
+        s.reverberation.surface);
+  }
+  const std::vector<std::string> parameter{"reverberation.surface.gamma2=3.8"};
+  const Scenario s = parse_scenario(small_scenario, "small.toml", parameter);
+  EXPECT_EQ(std::get<NrlSurface>(s.reverberation.surface).gamma2, 3.8);
+}
+
+TEST(ScenarioReader, IncludedOceanGivesWhatTheScenarioDoesNot) {
+  const support::TemporaryDirectory folder;
+  std::filesystem::create_directory(folder / "oceans");
+  static_cast<void>(folder.write("oceans/profile.csv", "depth,speed\n0,1520\n4000,1530\n"));
+  static_cast<void>(folder.write("oceans/ocean.toml", R"([environment]
+wind_speed = 9.0
+[environment.sound_speed]
+kind = "table"
+file = "profile.csv"
+[environment.bottom]
+depth = 4000.0
+kind = "fluid"
+)"));
+  std::string text(small_scenario);
+  text = "include = \"oceans/ocean.toml\"\n" + text.substr(text.find("[platform]"));
+  const std::vector<std::string> overrides{"platform.position=[0,0,3000]"};
+  const Scenario s =
+      parse_scenario("environment.wind_speed = 7.0\n" + text, folder / "scenario.toml", overrides);
+  EXPECT_EQ(s.wind_speed, 7.0);
+  EXPECT_EQ(s.environment.water.at(0.0).c, 1520.0);  // found beside the fragment
+  EXPECT_EQ(s.environment.bottom.depth, 4000.0);
+  // A table with a kind of its own is not mixed with the fragment's.
+  const Scenario own =
+      parse_scenario("environment.sound_speed = {kind = \"isovelocity\", speed = 1490}\n" + text,
+                     folder / "scenario.toml", overrides);
+  EXPECT_EQ(own.environment.water.at(2000.0).c, 1490.0);
+}
+
+TEST(ScenarioReader, TransectGivesTheDepthAtItsStartAndANote) {
+  const std::vector<std::string> overrides{
+      R"(environment.bottom={kind="rigid", transect={range=[0,1000], depth=[4800,4900]}})"};
+  const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
+  EXPECT_EQ(s.environment.bottom.depth, 4800.0);
+  ASSERT_EQ(s.notes.size(), 1U);
+  EXPECT_NE(s.notes[0].find("flat at 4800 m"), std::string::npos) << s.notes[0];
+}
+
+// Below its last level the water keeps its temperature and salinity, so the speed grows with
+// pressure alone, by 0.016–0.018 (m/s)/m (Mackenzie's ∂c/∂z at these depths).
+TEST(ScenarioReader, TemperatureSalinityGoesOnToTheBottom) {
+  const std::vector<std::string> overrides{
+      R"(environment.sound_speed={kind="temperature-salinity", depth=[10,2000], temperature=[20.0,3.5], salinity=[36.0,34.9], equation="mackenzie", latitude_deg=30})"};
+  const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
+  const auto depths = s.environment.water.depths();
+  EXPECT_EQ(depths.front(), 0.0);
+  EXPECT_EQ(depths.back(), 5000.0);
+  for (std::size_t i = 3; i < depths.size(); ++i) {
+    EXPECT_LE(depths[i] - depths[i - 1], 250.0 + 1e-9);
+    const double gradient =
+        (s.environment.water.speeds()[i] - s.environment.water.speeds()[i - 1]) /
+        (depths[i] - depths[i - 1]);
+    EXPECT_GT(gradient, 0.016);
+    EXPECT_LT(gradient, 0.0185);
+  }
+}
+
+struct Fault {
+  const char* name;
+  const char* replace;  // this text of the small scenario …
+  const char* with;     // … by this
+  const char* message;  // the whole of it
+};
+
+class ScenarioFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(ScenarioFault, IsReportedWithPlaceFindingAndExpectation) {
+  const Fault& fault = GetParam();
+  std::string text(small_scenario);
+  const auto at = text.find(fault.replace);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, std::string(fault.replace).size(), fault.with);
+  try {
+    static_cast<void>(parse_scenario(text, "s.toml"));
+    FAIL() << "read without complaint";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), fault.message);
+  }
+}
+
+const Fault faults[] = {
+    {"UnknownKey", "window = ", "windw = ",
+     "s.toml:20: pulse.windw: found an unknown key, expected a known key (did you mean "
+     "\"window\"?)"},
+    {"UnknownTable", "[pings]", "[pngs]",
+     "s.toml:30: pngs: found an unknown key, expected a known key (did you mean \"pings\"?)"},
+    {"KeyOfAnotherKind", "window = \"hann\"", "start_frequency = 3950.0",
+     "s.toml:20: pulse.start_frequency: found an unknown key, expected one of \"duration\", "
+     "\"frequency\", \"kind\" or \"window\""},
+    {"WrongType", "source_level_db = 220.0", "source_level_db = \"loud\"",
+     "s.toml:13: transmitter.source_level_db: found \"loud\", expected a level from -300 to 400 "
+     "dB"},
+    {"FractionOfAPhone", "phones = 16", "phones = 16.5",
+     "s.toml:23: array.phones: found 16.5, expected a whole number from 1 to 4096"},
+    {"NoPhones", "phones = 16", "phones = 0",
+     "s.toml:23: array.phones: found 0, expected a whole number from 1 to 4096"},
+    {"Missing", "frequency = 4000.0\n", "",
+     "s.toml:16: pulse.frequency: found nothing, expected a frequency above 0 and at most 1000000 "
+     "Hz"},
+    {"MissingTable", "[platform]\nposition = [0.0, 0.0, 4500.0]\n", "",
+     "s.toml:1: platform.position: found nothing, expected [east, north, depth] in m"},
+    {"MissingKind", "kind = \"rigid\"\n", "",
+     "s.toml:7: environment.bottom.kind: found nothing, expected \"vacuum\", \"rigid\" or "
+     "\"fluid\""},
+    {"UnknownKind", "\"cw\"", "\"cv\"",
+     "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\" or \"file\" (did you "
+     "mean \"cw\"?)"},
+    {"OutOfRange", "beamwidth_deg = 6.0", "beamwidth_deg = 0",
+     "s.toml:15: transmitter.beamwidth_deg: found 0 degrees, expected a beamwidth above 0 and at "
+     "most 180 degrees"},
+    {"NegativeSpeed", "1500.0, 1540.0", "-1500.0, 1540.0",
+     "s.toml:6: environment.sound_speed.speed[1]: found -1500 m/s, expected a speed above 0 and "
+     "at most 10000 m/s"},
+    {"NotANumber", "wind_speed = 5", "wind_speed = nan",
+     "s.toml:2: environment.wind_speed: found nan, expected a wind speed from 0 to 60 m/s"},
+    {"Infinite", "[0.0, 0.0, 4500.0]", "[0.0, inf, 4500.0]",
+     "s.toml:11: platform.position[1]: found inf, expected a coordinate from -10000000 to "
+     "10000000 m"},
+    {"UnsortedDepths", "[0.0, 100.0, 5000.0]", "[0.0, 6000.0, 5000.0]",
+     "s.toml:5: environment.sound_speed.depth[2]: found 5000 m, expected a depth below the one "
+     "before it, 6000 m"},
+    {"UnequalColumns", "[1510.0, 1500.0, 1540.0]", "[1510.0, 1500.0]",
+     "s.toml:6: environment.sound_speed.speed: found an array of 2, expected as many values as "
+     "depths, 3"},
+    {"EmptyArray", "[1510.0, 1500.0, 1540.0]", "[]",
+     "s.toml:6: environment.sound_speed.speed: found an array of 0, expected an array of numbers, "
+     "each a speed above 0 and at most 10000 m/s"},
+    {"ShortSteepProfile", "[0.0, 100.0, 5000.0]", "[0.0, 10.0, 20.0]",
+     "s.toml:5: environment.sound_speed.depth: found levels from 0 to 20 m, by which the speed at "
+     "5000 m would be 3080 m/s, expected levels that reach from the surface to the bottom at "
+     "5000 m"},
+    {"MissingFile", "depth = [0.0, 100.0, 5000.0]\nspeed = [1510.0, 1500.0, 1540.0]",
+     "file = \"nowhere.csv\"",
+     "s.toml:5: environment.sound_speed.file: found no such file \"nowhere.csv\", expected a "
+     "readable CSV file"},
+    {"NegativeDepthOfWater", "depth = 5000.0\nkind", "depth = -5000.0\nkind",
+     "s.toml:8: environment.bottom.depth: found -5000 m, expected a depth above 0 and at most "
+     "12000 m"},
+    {"PlatformBelowTheBottom", "[0.0, 0.0, 4500.0]", "[0.0, 0.0, 5500.0]",
+     "s.toml:11: platform.position: found depth 5500 m at 0 s, expected a depth between the "
+     "surface (0 m) and the bottom (5000 m)"},
+    {"PlatformDivesIntoTheBottom", "[0.0, 0.0, 4500.0]",
+     "[0.0, 0.0, 4500.0]\nvelocity = [0.0, 0.0, 5.0]",
+     "s.toml:12: platform.velocity: found depth 5100 m at 120 s, expected a depth between the "
+     "surface (0 m) and the bottom (5000 m)"},
+    {"WaypointAboveTheSurface", "position = [0.0, 0.0, 4500.0]",
+     "waypoints = [{ time = 0, position = [0, 0, 100] }, { time = 30, position = [0, 0, -1] }]",
+     "s.toml:11: platform.waypoints[1]: found depth -1 m at 30 s, expected a depth between the "
+     "surface (0 m) and the bottom (5000 m)"},
+    {"WaypointsOutOfOrder", "position = [0.0, 0.0, 4500.0]",
+     "waypoints = [{ time = 9, position = [0, 0, 100] }, { time = 3, position = [0, 0, 90] }]",
+     "s.toml:11: platform.waypoints[1].time: found 3, expected a time after the waypoint before "
+     "it, 9 s"},
+    {"PhonesInTheBottom", "kind = \"horizontal\"\nphones = 16\nspacing = 0.1875",
+     "kind = \"vertical\"\nphones = 3\nspacing = 600",
+     "s.toml:23: array.phones: found phone 0 at depth 5100 m at 0 s, expected a depth between the "
+     "surface (0 m) and the bottom (5000 m)"},
+    {"PhoneAboveTheSurface", "kind = \"horizontal\"\nphones = 16\nspacing = 0.1875",
+     "kind = \"positions\"\npositions = [[0, 0, 0], [0, 0, -4501]]",
+     "s.toml:23: array.positions: found phone 1 at depth -1 m at 0 s, expected a depth between "
+     "the surface (0 m) and the bottom (5000 m)"},
+    {"PositionOfTwoNumbers", "[0.0, 0.0, 4500.0]", "[0.0, 4500.0]",
+     "s.toml:11: platform.position: found an array of 2, expected [east, north, depth] in m"},
+    {"TargetAboveTheSurface", "depth = 125.0", "depth = -125.0",
+     "s.toml:28: target[0].depth: found -125 m, expected a depth from 0 to 12000 m"},
+    {"TargetBelowTheBottom", "depth = 125.0", "depth = 5125.0",
+     "s.toml:28: target[0].depth: found depth 5125 m at 0 s, expected a depth between the surface "
+     "(0 m) and the bottom (5000 m)"},
+    {"TargetSurfaces", "strength_db = 15.0", "strength_db = 15.0\nvelocity = [0, 0, -2]",
+     "s.toml:30: target[0].velocity: found depth -115 m at 120 s, expected a depth between the "
+     "surface (0 m) and the bottom (5000 m)"},
+    {"TargetOnThePlatform", "range = 25000.0\nbearing_deg = 90.0\ndepth = 125.0",
+     "position = [0, 0, 4500.5]",
+     "s.toml:26: target[0].position: found 0.5 m at 0 s, expected a target at least 1 m from the "
+     "platform"},
+    {"TwoPlacesOfATarget", "range = 25000.0", "position = [1, 2, 3]",
+     "s.toml:27: target[0].bearing_deg: found 90, expected no \"bearing_deg\" beside "
+     "position"},
+    {"TargetIsNoTable", "[[target]]", "[target]",
+     "s.toml:25: target: found a table, expected an array of tables, [[target]]"},
+    {"LastPingFirst", "strength_db = 15.0", "strength_db = 15.0\nfirst_ping = 3\nlast_ping = 2",
+     "s.toml:31: target[0].last_ping: found 2, expected at least first_ping, 3"},
+    {"ZeroDuration", "duration = 1.0", "duration = 0.0",
+     "s.toml:19: pulse.duration: found 0 s, expected a duration above 0 and at most 100000 s"},
+    {"NegativeRecording", "recording_duration = 60", "recording_duration = -60",
+     "s.toml:32: pings.recording_duration: found -60 s, expected a duration above 0 and at most "
+     "100000 s"},
+    {"TooBigForMemory", "recording_duration = 60", "recording_duration = 4000",
+     "s.toml:32: pings.recording_duration: found 4000 s at 16000 Hz on 16 phones, 3.8 GiB a ping, "
+     "expected at most 2 GiB of pressure a ping"},
+    {"SampledTooSlowly", "recording_duration = 60", "sample_rate = 8000",
+     "s.toml:32: pings.sample_rate: found 8000 Hz, expected a sample rate above 8004 Hz: twice "
+     "the highest frequency of the pulse with its Doppler shift"},
+    {"TwoElevations", "recording_duration = 60", "elevations_deg = [1, 2]",
+     "s.toml:32: pings.elevations_deg: found an array of 2, expected no elevations_deg beside "
+     "transmitter.elevation_deg"},
+    {"NegativeSeed", "[environment]", "seed = -1\n[environment]",
+     "s.toml:1: seed: found -1, expected a whole number of at least 0"},
+    {"Date", "wind_speed = 5", "wind_speed = 2013-05-01",
+     "s.toml:2: found a date or time, expected a number, a string, true or false, an array or a "
+     "table"},
+    {"Syntax", "kind = \"cw\"", "kind = cw",
+     "s.toml:17:8: found a fault (Error while parsing value: could not determine value type), "
+     "expected TOML 1.0"},
+    {"DuplicateKey", "count = 2", "count = 2\ncount = 3",
+     "s.toml:32:9: found a fault (Error while parsing key-value pair: cannot redefine existing "
+     "integer 'count'), expected TOML 1.0"},
+    {"NoInclude", "[environment]", "include = \"sea.toml\"\n[environment]",
+     "s.toml:1: include: found no such file \"sea.toml\", expected a TOML file with an "
+     "[environment]"},
+};
+INSTANTIATE_TEST_SUITE_P(EveryFault, ScenarioFault, testing::ValuesIn(faults),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+struct OverrideFault {
+  const char* assignment;
+  const char* message;
+};
+
+TEST(ScenarioReader, WrongOverridesAreReportedAsSuch) {
+  const OverrideFault wrong[] = {
+      {"pulse.duration=-1",
+       "--set pulse.duration: found -1 s, expected a duration above 0 and at most 100000 s"},
+      {"pulse.duratoin=1",
+       "--set pulse.duratoin: found an unknown key, expected a known key (did you mean "
+       "\"duration\"?)"},
+      {"target.3.strength_db=1",
+       "--set target.3.strength_db: found index \"3\" of target, expected an index from 0 to 0"},
+      {"target.x.strength_db=1",
+       "--set target.x.strength_db: found index \"x\" of target, expected an index from 0 to 0"},
+      {"pulse.duration.long=1",
+       "--set pulse.duration.long: found \"long\" below pulse.duration, which is 1, expected a "
+       "path through tables and arrays"},
+      {"pulse", "--set: found \"pulse\", expected key=value"},
+      {"=3", "--set: found \"=3\", expected key=value"},
+      {"target.0.depth=6000",
+       "--set target.0.depth: target[0].depth: found depth 6000 m at 0 s, expected a depth "
+       "between the surface (0 m) and the bottom (5000 m)"},
+      {"pulse={kind=",
+       "--set pulse: found a fault (Error while parsing key-value pair: encountered end-of-file), "
+       "expected a TOML value"},
+      {"pulse.kind=beep",
+       "--set pulse.kind: found \"beep\", expected \"cw\", \"lfm\", \"hfm\" or \"file\""},
+  };
+  for (const OverrideFault& fault : wrong) {
+    const std::vector<std::string> overrides{fault.assignment};
+    try {
+      static_cast<void>(parse_scenario(small_scenario, "s.toml", overrides));
+      ADD_FAILURE() << fault.assignment << " was read without complaint";
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), fault.message);
+    }
+  }
+}
+
+TEST(ScenarioReader, FaultsInCsvProfilesNameTheirLine) {
+  const support::TemporaryDirectory folder;
+  std::string text(small_scenario);
+  const std::string arrays = "depth = [0.0, 100.0, 5000.0]\nspeed = [1510.0, 1500.0, 1540.0]";
+  text.replace(text.find(arrays), arrays.size(), "file = \"p.csv\"");
+  const std::pair<const char*, const char*> wrong[] = {
+      {"depth,speed\n0,1500\n100,fast\n", ":3: speed: found \"fast\", expected a finite number"},
+      {"depth,speed\n# spring\n\n0,1500\n100\n", ":5: found 1 fields, expected 2 as in the header"},
+      {"depth,speed\n0,1500\n100,nan\n", ":3: speed: found \"nan\", expected a finite number"},
+      {"depth,speed\n0,1500\n100,1510\n50,1511\n",
+       ":4: depth: found 50 m, expected a depth below the one before it, 100 m"},
+      {"depth,speed\n0,-1500\n",
+       ":2: speed: found -1500 m/s, expected a speed above 0 and at most 10000 m/s"},
+      {"depth,temperature\n0,15\n",
+       ": found the columns \"depth,temperature\", expected a column \"speed\""},
+      {"", ": found an empty file, expected a header and at least one row of numbers"},
+      {"depth,speed\n",
+       ": found a header without rows, expected a header and at least one row of numbers"},
+  };
+  for (const auto& [content, message] : wrong) {
+    const auto csv = folder.write("p.csv", content);
+    try {
+      static_cast<void>(parse_scenario(text, folder / "s.toml"));
+      ADD_FAILURE() << "read without complaint: " << content;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), csv.string() + message);
+    }
+  }
+  // A byte-order mark, CRLF, spaces and comments do no harm.
+  static_cast<void>(
+      folder.write("p.csv", "\xEF\xBB\xBF# x\r\nDepth , Speed\r\n0, 1500\r\n\r\n+100 ,1501\r\n"));
+  EXPECT_EQ(parse_scenario(text, folder / "s.toml").environment.water.depths()[1], 100.0);
+}
+
+TEST(ScenarioReader, FilesThatCannotBeReadAreNamed) {
+  const support::TemporaryDirectory folder;
+  try {
+    static_cast<void>(read_scenario(folder / "none.toml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              (folder / "none.toml").string() + ": found no such file, expected a scenario file");
+  }
+  EXPECT_THROW(static_cast<void>(read_scenario(folder.path())), InputError);
+}
+
+}  // namespace
+}  // namespace asdic
