@@ -221,7 +221,7 @@ def simulate(s: Settings):
                     if not level <= best[1]:
                         best = (delay, level)
             summary.append((1, launch.size**2, *best))
-        if s.reverberation:
+        if s.reverberation and fan[4].max() > 0:
             hit = [(r[i], t[i], np.degrees(np.abs(e[i])), a) for r, t, e, b, a in
                    zip(fan[0], fan[2], fan[3], fan[4], fan_angles) for i in [int(np.argmax(b > 0))] if b.max() > 0]
             r, t, g, a = np.array(sorted(hit, key=lambda h: h[1])).T
