@@ -64,7 +64,7 @@ TEST(NrlSurface, NoRoughnessNoInterface) {
 }
 
 // Above 30° the printed law rises without limit as the wind dies (b → ∞: at 0.1 m/s, 60°, 1 kHz it
-// would say +67 dB). Ours never rises as the wind falls.
+// would say +23 dB). Ours never rises as the wind falls.
 TEST(ChapmanHarris, LightAirsDoNotRoar) {
   double before = -1e9;
   for (double wind = 0.01; wind < 15.0; wind *= 1.1) {
