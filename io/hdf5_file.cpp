@@ -13,20 +13,32 @@
 namespace asdic {
 namespace hdf5 {
 
-void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void quiet() {
+  // Once a write has failed (disk full), 1.10 crashes when it closes the file, at exit too if left
+  // to itself. Files are closed by Hdf5File, so nothing is left to do at exit.
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::string last_message() {
-  std::string text;
+  std::vector<std::string> messages;  // innermost first
   const auto collect = [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
-    auto& message = *static_cast<std::string*>(into);
-    if (error->desc == nullptr || *error->desc == '\0') return 0;
-    if (message.find(error->desc) != std::string::npos) return 0;
-    message += (message.empty() ? "" : "; ") + std::string(error->desc);
+    if (error->desc != nullptr && *error->desc != '\0')
+      static_cast<std::vector<std::string>*>(into)->emplace_back(error->desc);
     return 0;
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &text);
-  if (text.find("No space left") != std::string::npos) return "the disk is full (" + text + ")";
-  return text.empty() ? "HDF5 gives no reason" : text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &messages);
+  if (messages.empty()) return "HDF5 gives no reason";
+  // "file write failed: time = …, errno = 28, error message = 'No space left on device', buf = …"
+  const std::string& inner = messages.front();
+  constexpr std::string_view mark = "error message = '";
+  if (const auto at = inner.find(mark); at != std::string::npos) {
+    const auto begin = at + mark.size();
+    const std::string system = inner.substr(begin, inner.find('\'', begin) - begin);
+    const std::string full = system.starts_with("No space left") ? "the disk is full: " : "";
+    return full + system + " (HDF5: " + inner.substr(0, inner.find(':')) + ")";
+  }
+  return inner == messages.back() ? inner : inner + "; " + messages.back();
 }
 
 void fail(const std::filesystem::path& file, const std::string& object, const std::string& action) {
@@ -85,7 +97,7 @@ Hdf5File::Hdf5File(Hdf5File&&) noexcept = default;
 Hdf5File& Hdf5File::operator=(Hdf5File&&) noexcept = default;
 
 Hdf5File::~Hdf5File() {
-  if (impl_ != nullptr && impl_->file >= 0) H5Fclose(impl_->file);
+  if (impl_ != nullptr && impl_->file >= 0 && !impl_->failed) H5Fclose(impl_->file);
 }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {

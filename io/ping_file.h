@@ -12,8 +12,9 @@ namespace asdic {
 
 /// Who made a file, when, with what.
 struct Provenance {
-  std::string program_version, build;  ///< at the root: the results may depend on them
-  std::string host, started, cpu, library_versions;  ///< under /run, apart from the results
+  std::string program_version{}, build{};  ///< at the root: the results may depend on them
+  /// Under /run, apart from the results.
+  std::string host{}, started{}, cpu{}, library_versions{};
   int threads = 1;
 };
 
@@ -22,11 +23,11 @@ struct RayPaths {
   enum class Kind { fan = 0, eigenray = 1 };
   struct Path {
     Kind kind = Kind::fan;
-    double launch_elevation = 0.0;     ///< positive up [rad]
-    std::vector<double> range, depth;  ///< [points] [m]
+    double launch_elevation = 0.0;         ///< positive up [rad]
+    std::vector<double> range{}, depth{};  ///< [points] [m]
   };
-  std::vector<Path> paths;
-  std::vector<double> hit_range;  ///< where the fan meets the surface [m]
+  std::vector<Path> paths{};
+  std::vector<double> hit_range{};  ///< where the fan meets the surface [m]
 };
 
 /// Writes docs/formats/ping.md while a run goes on: NAME.part, readable after every append() even

@@ -48,11 +48,13 @@ namespace asdic {
 struct Hdf5File::Impl {
   std::filesystem::path path;
   std::int64_t file = -1;
+  mutable bool failed = false;  // a write may have: the file is then left as it lies
 
   /// The identifier if it is one, else the failure.
   std::int64_t check(std::int64_t id, const std::string& object, const std::string& action) const {
-    if (id < 0) hdf5::fail(path, object, action);
-    return id;
+    if (id >= 0) return id;
+    failed = true;
+    hdf5::fail(path, object, action);
   }
   [[nodiscard]] hdf5::Handle open_dataset(const std::string& dataset) const;
   [[nodiscard]] hdf5::Handle open_object(const std::string& object) const;

@@ -63,7 +63,8 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
                  .amplitude = {0.6e-3, -0.8e-3},
                  .spreading = 1e-3,
                  .absorption_db = 0.1,
-                 .path_length = 3000.0};
+                 .path_length = 3000.0,
+                 .bounces = {}};
   Arrival bounced = direct;
   bounced.surface_bounces = 1;
   bounced.bounces = {{BoundaryKind::surface, radians(30.0), 1500.0}};
@@ -72,7 +73,7 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
                          .bearing = radians(90.0),
                          .range = 3000.0,
                          .arrivals = {direct, bounced}});
-  EchoPath echo{.target = 0, .outgoing = 0, .returning = 1, .level_db = 90.0};
+  EchoPath echo{.target = 0, .outgoing = 0, .returning = 1, .level_db = 90.0, .heard = {}};
   echo.heard.delay = 4.0;
   echo.heard.doppler = 1.001;
   echo.heard.slowness = Vec3(-std::cos(radians(5.0)), 0.0, std::sin(radians(5.0))) / 1500.0;

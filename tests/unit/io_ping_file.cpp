@@ -7,9 +7,9 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 
 #include "core/error.h"
+#include "io/text/csv_table.h"
 #include "support/ping_record.h"
 #include "support/temporary_directory.h"
 
@@ -163,7 +163,8 @@ TEST(PingFile, AFullDiskIsARunErrorThatSaysSo) {
   EXPECT_EXIT(
       {
         signal(SIGXFSZ, SIG_IGN);
-        const rlimit limit{.rlim_cur = 300'000, .rlim_max = 300'000};
+        rlimit limit{};
+        limit.rlim_cur = limit.rlim_max = 300'000;
         setrlimit(RLIMIT_FSIZE, &limit);
         try {
           PingFileWriter writer(path, scenario, provenance);
@@ -175,7 +176,8 @@ TEST(PingFile, AFullDiskIsARunErrorThatSaysSo) {
         }
         std::exit(0);
       },
-      testing::ExitedWithCode(1), "p.h5.part: .*File too large");
+      testing::ExitedWithCode(1),
+      "p.h5.part: .*failed: File too large \\(HDF5: file write failed\\)");
 }
 
 TEST(PingFile, OtherFilesAreInputErrors) {
@@ -197,8 +199,7 @@ TEST(PingFile, OtherFilesAreInputErrors) {
     writer.append(small_record(scenario, 1));
     writer.finish(true);
   }
-  std::ifstream whole(folder / "p.h5", std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(whole), {});
+  const std::string bytes = read_text_file(folder / "p.h5");
   const auto cut = folder.write("cut.h5", bytes.substr(0, bytes.size() / 2));
   EXPECT_THAT(message(cut),
               HasSubstr("cut.h5: found a file that cannot be opened (truncated file"));
