@@ -39,7 +39,10 @@ int run(int argc, char** argv) {
       "Example:  asdic ping scenarios/deep_ocean.toml -o deep_ocean.h5\n"
       "Exit status: 0 done, 1 it could not be done, 2 the input is wrong.");
   app::Action action;
-  app::add_ping_command(program, action);
+  for (auto* add : {app::add_ping_command, app::add_rays_command, app::add_arrivals_command,
+                    app::add_validate_command, app::add_info_command, app::add_plot_command,
+                    app::add_export_command})
+    add(program, action);
   for (CLI::App* command : program.get_subcommands({}))
     command->set_version_flag("--version", app::version_text());
   try {
