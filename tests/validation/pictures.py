@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pictures of a ping file: every one is drawn, none is empty, and what they compute is right.
+"""The pictures of a ping file: every one is drawn, none is empty, and bad input is told plainly.
 
 Synthetic files with known contents (tests/support/make_ping_file.py) stand for the simulator's.
 """
@@ -28,10 +28,10 @@ import matplotlib.image  # noqa: E402
 from asdic_pictures import command  # noqa: E402
 
 ALWAYS = ["rays", "pressure", "bearing_time", "levels", "spectrogram"]
-# A small sea: 3 s of 4 phones at a low rate, so that each case draws in about a second.
+# A small sea: 6 s of 8 phones at a low rate, so that a case costs little more than its drawing.
 SMALL = dict(duration=6.0, sample_rate=2500.0, frequency=1000.0, pulse=0.25, phones=8, spacing=0.75,
-             depth=500.0,
-             water=1200.0, targets=[(3000.0, 65.0, 60.0)], strength=30.0, target_speed=4.0)
+             depth=500.0, water=1200.0, targets=[(3000.0, 65.0, 60.0)], strength=30.0,
+             target_speed=4.0)
 
 
 def small(**changes):
