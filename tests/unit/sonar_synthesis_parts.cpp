@@ -45,12 +45,14 @@ TEST(Fft, BothPrecisionsBothWays) {
   check_transforms<double>(1e-12);
 }
 
-// Σ_j φ(j − x) e^{−i2πξj} = φ̂(ξ) e^{−i2πξx} + images. Images are −90 dB at the band's edge, less
-// inside; the polynomials' rounding is float's.
+// Σ_j φ(j − x) e^{−i2πξj} = φ̂(ξ) e^{−i2πξx} + images. The same sums with the exact bump, in double
+// precision (numpy), give −94.1 dB up to the band's edge and −107.6 dB over its inner three
+// quarters; what is left of the tolerance is for the polynomials and float.
 TEST(DelayKernel, PlacesImpulsesBetweenSamples) {
   const DelayKernel kernel;
   double worst = 0.0, inside = 0.0;
-  for (double xi = -0.4; xi <= 0.4001; xi += 0.02)
+  const double edge = 0.5 / DelayKernel::oversampling;
+  for (double xi = -edge; xi <= edge; xi += edge / 24.0)
     for (float fraction = 0.0F; fraction < 1.0F; fraction += 0.0625F) {
       const auto taps = kernel.weights(fraction);
       std::complex<double> sum = 0.0;
@@ -59,9 +61,9 @@ TEST(DelayKernel, PlacesImpulsesBetweenSamples) {
                std::polar(1.0, -2.0 * pi * xi * (j - DelayKernel::before - double(fraction)));
       const double error = std::abs(sum / kernel.spectrum(xi) - 1.0);
       worst = std::max(worst, error);
-      if (std::abs(xi) < 0.3) inside = std::max(inside, error);
+      if (std::abs(xi) <= 0.75 * edge) inside = std::max(inside, error);
     }
-  EXPECT_LT(db_from_amplitude(worst), -85.0);
+  EXPECT_LT(db_from_amplitude(worst), -92.0);
   EXPECT_LT(db_from_amplitude(inside), -105.0);
 }
 
