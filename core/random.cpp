@@ -8,19 +8,21 @@
 
 namespace asdic {
 
-RandomStream::RandomStream(std::uint64_t seed, Draw purpose, std::uint32_t realisation,
-                           std::uint64_t entity)
-    // The 64-bit seed is folded with the purpose into the 64-bit key by one bijective multiply-xor,
-    // so seeds differing in any bit and purposes differing at all give different keys.
-    : key_{},
-      counter_{realisation, static_cast<std::uint32_t>(entity),
-               static_cast<std::uint32_t>(entity >> 32)} {
+std::array<std::uint32_t, 2> random_key(std::uint64_t seed, Draw purpose) noexcept {
+  // The 64-bit seed is folded with the purpose into the 64-bit key by one bijective multiply-xor,
+  // so seeds differing in any bit and purposes differing at all give different keys.
   std::uint64_t mixed = seed + 0x9E3779B97F4A7C15ULL * static_cast<std::uint64_t>(purpose);
   mixed = (mixed ^ (mixed >> 30)) * 0xBF58476D1CE4E5B9ULL;
   mixed = (mixed ^ (mixed >> 27)) * 0x94D049BB133111EBULL;
   mixed ^= mixed >> 31;
-  key_ = {static_cast<std::uint32_t>(mixed), static_cast<std::uint32_t>(mixed >> 32)};
+  return {static_cast<std::uint32_t>(mixed), static_cast<std::uint32_t>(mixed >> 32)};
 }
+
+RandomStream::RandomStream(std::uint64_t seed, Draw purpose, std::uint32_t realisation,
+                           std::uint64_t entity)
+    : key_(random_key(seed, purpose)),
+      counter_{realisation, static_cast<std::uint32_t>(entity),
+               static_cast<std::uint32_t>(entity >> 32)} {}
 
 std::array<std::uint32_t, 4> RandomStream::block(std::uint32_t block) const noexcept {
   const r123::Philox4x32::ctr_type counter = {{block, counter_[0], counter_[1], counter_[2]}};

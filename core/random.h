@@ -13,6 +13,9 @@ enum class Draw : std::uint32_t {
   volume_weight = 4,
 };
 
+/// Philox's key of all streams of one seed and purpose.
+[[nodiscard]] std::array<std::uint32_t, 2> random_key(std::uint64_t seed, Draw purpose) noexcept;
+
 /// A stream of random numbers that belongs to the thing simulated, not to the thread that happens
 /// to compute it.
 ///

@@ -32,10 +32,11 @@ std::vector<double> bessel_tails(double z) {
 }
 
 DopplerBand chebyshev_band(double lowest, double highest, std::size_t count) {
-  DopplerBand band{.lowest = lowest, .highest = highest, .nodes = {}};
+  DopplerBand band{.lowest = lowest, .highest = highest, .nodes = {}, .barycentric = {}};
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = std::cos(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
-    band.nodes.push_back(0.5 * (lowest + highest) - 0.5 * (highest - lowest) * x);
+    const double theta = pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    band.nodes.push_back(0.5 * (lowest + highest) - 0.5 * (highest - lowest) * std::cos(theta));
+    band.barycentric.push_back(i % 2 == 0 ? std::sin(theta) : -std::sin(theta));
   }
   if (count == 1 && lowest == highest) band.nodes[0] = lowest;
   return band;
@@ -46,21 +47,17 @@ DopplerBand chebyshev_band(double lowest, double highest, std::size_t count) {
 void DopplerBand::weights(double doppler, std::span<float> weights) const noexcept {
   const std::size_t n = nodes.size();
   double sum = 0.0;
-  const auto barycentric = [&](std::size_t i) {
-    const double w = std::sin(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
-    return i % 2 == 0 ? w : -w;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double distance = doppler - nodes[i];
-    if (std::abs(distance) < 1e-15 || n == 1) {
+  for (std::size_t m = 0; m < n; ++m) {
+    const double distance = doppler - nodes[m];
+    if (std::abs(distance) < 1e-15 || n == 1) {  // on the node
       std::fill(weights.begin(), weights.end(), 0.0F);
-      weights[i] = 1.0F;
+      weights[m] = 1.0F;
       return;
     }
-    sum += barycentric(i) / distance;
+    sum += barycentric[m] / distance;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    weights[i] = static_cast<float>(barycentric(i) / (doppler - nodes[i]) / sum);
+  for (std::size_t m = 0; m < n; ++m)
+    weights[m] = static_cast<float>(barycentric[m] / ((doppler - nodes[m]) * sum));
 }
 
 DopplerExpansion::DopplerExpansion(const BandLimitedPulse& pulse)

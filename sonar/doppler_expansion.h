@@ -10,7 +10,8 @@ namespace asdic {
 /// A stretch of Doppler factors served by a few stretched pulses: s₊(ηu) ≈ Σ_m ℓ_m(η) s₊(η_m u).
 struct DopplerBand {
   double lowest = 1.0, highest = 1.0;
-  std::vector<double> nodes;  ///< η_m, Chebyshev points of [lowest, highest]
+  std::vector<double> nodes;        ///< η_m, Chebyshev points of [lowest, highest]
+  std::vector<double> barycentric;  ///< their weights, (−1)^m sin θ_m
 
   /// ℓ_m(η): Lagrange's polynomials in barycentric form. \param weights [nodes.size()]
   void weights(double doppler, std::span<float> weights) const noexcept;

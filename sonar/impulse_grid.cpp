@@ -4,18 +4,11 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 
 namespace asdic {
 namespace {
-
-constexpr std::size_t block = 256;  // returns worked on at one time
-
-/// Where a block of returns falls and what it weighs at one phone.
-struct Block {
-  alignas(64) std::array<double, block> position;  // in grid samples
-  alignas(64) std::array<double, block> real, imag;
-};
 
 /// To the nearest integer, for |x| < 2⁵¹; vectorises where std::round does not.
 inline double nearest(double x) noexcept {
@@ -49,6 +42,27 @@ inline void turn_back(double cycles, double& re, double& im) noexcept {
   re = turned;
 }
 
+using Lanes = DelayKernel::Lanes;
+constexpr auto not_heard = static_cast<std::size_t>(-1);
+
+/// Returns that fall between the same two samples.
+struct Run {
+  const Lanes* taps;
+  std::size_t count;
+  const float* weights;  // ℓ_m(η) of the first
+  std::size_t row;       // from the weights of one return to the next's
+
+  /// grid m + j += Σ_r weights[r][m + j]·taps[r], j < nodes. \param stride of the grids [floats]
+  template <std::size_t nodes>
+  void add(std::size_t m, float* grid, std::size_t stride) const noexcept {
+    std::array<Lanes, nodes> sum;
+    for (std::size_t j = 0; j < nodes; ++j) sum[j].setZero();
+    for (std::size_t r = 0; r < count; ++r)
+      for (std::size_t j = 0; j < nodes; ++j) sum[j] += weights[r * row + m + j] * taps[r];
+    for (std::size_t j = 0; j < nodes; ++j) Eigen::Map<Lanes>(grid + (m + j) * stride) += sum[j];
+  }
+};
+
 }  // namespace
 
 OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExpansion& expansion,
@@ -60,11 +74,11 @@ OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExp
 
   struct Place {
     std::size_t band, listener;
-    double delay;
+    double middle;
     std::size_t index;
     bool operator<(const Place& o) const noexcept {
-      return std::tie(band, listener, delay, index) <
-             std::tie(o.band, o.listener, o.delay, o.index);
+      return std::tie(band, listener, middle, index) <
+             std::tie(o.band, o.listener, o.middle, o.index);
     }
   };
   std::vector<Place> order(returns.size());
@@ -75,7 +89,7 @@ OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExp
         [](double doppler, const DopplerBand& band) { return doppler < band.lowest; });
     order[i] = {.band = static_cast<std::size_t>(after - found.begin()) - 1,
                 .listener = static_cast<std::size_t>(r.channel - Return::all_channels),
-                .delay = r.delay,
+                .middle = r.delay + 0.5 * pulse_duration / r.doppler,
                 .index = i};
   }
   tbb::parallel_sort(order.begin(), order.end());
@@ -85,7 +99,7 @@ OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExp
     array->resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Return& r = returns[order[i].index];
-    middle[i] = r.delay + 0.5 * pulse_duration / r.doppler;
+    middle[i] = order[i].middle;
     slowness_x[i] = r.slowness.x();
     slowness_y[i] = r.slowness.y();
     slowness_z[i] = r.slowness.z();
@@ -122,50 +136,64 @@ OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExp
 void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band& band,
                       std::size_t first_node, std::size_t count, std::size_t channel,
                       const Vec3& phone, std::complex<float>* grids) const noexcept {
-  using Lanes = DelayKernel::Lanes;
   const Lanes even = Lanes::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
   const Lanes odd = 1.0F - even;
-  const double x = phone.x(), y = phone.y(), z = phone.z();
+  const float unit_weight = 1.0F;
+  const std::size_t row = band.nodes == 1 ? 0 : band.nodes;
   Block at;
+  std::array<Lanes, block> taps;
+  std::array<std::size_t, block> below;  // the sample at or below the impulse
 
   const auto lay_segment = [&](std::size_t begin, std::size_t end) {
     for (std::size_t start = begin; start < end; start += block) {
       const std::size_t n = std::min(block, end - start);
-      const double* __restrict middle = returns.middle.data() + start;
-      const double* __restrict sx = returns.slowness_x.data() + start;
-      const double* __restrict sy = returns.slowness_y.data() + start;
-      const double* __restrict sz = returns.slowness_z.data() + start;
-      const double* __restrict re = returns.real.data() + start;
-      const double* __restrict im = returns.imag.data() + start;
-      for (std::size_t i = 0; i < n; ++i) {
-        const double delay = middle[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
-        double a = re[i], b = im[i];
-        turn_back(carrier * delay, a, b);  // e^{−i2π f_c τ}
-        at.position[i] = (delay - first) * rate;
-        at.real[i] = a;
-        at.imag[i] = b;
-      }
+      locate(returns, start, n, phone, at);
       for (std::size_t i = 0; i < n; ++i) {
         const double position = at.position[i];
-        if (!(position >= DelayKernel::taps && position <= last_position)) continue;  // not heard
-        const auto below = static_cast<std::size_t>(position);
-        const auto fraction = static_cast<float>(position - static_cast<double>(below));
-        const Lanes taps = kernel.weights(fraction) * (static_cast<float>(at.real[i]) * even +
-                                                       static_cast<float>(at.imag[i]) * odd);
-        float* grid = reinterpret_cast<float*>(grids + (below - DelayKernel::before));
-        if (band.nodes == 1) {
-          Eigen::Map<Lanes>(grid) += taps;
-          continue;
-        }
-        const float* weight = returns.weights.data() + band.first_weight +
-                              (start + i - band.ends[0]) * band.nodes + first_node;
-        for (std::size_t m = 0; m < count; ++m)
-          Eigen::Map<Lanes>(grid + 2 * m * stride) += weight[m] * taps;
+        const bool heard = position >= DelayKernel::taps && position <= last_position;
+        below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
+        if (!heard) continue;
+        const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
+        taps[i] = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
+      }
+      const float* weights = row == 0 ? &unit_weight
+                                      : returns.weights.data() + band.first_weight +
+                                            (start - band.ends[0]) * row + first_node;
+      // Sorted by delay, neighbours mostly fall between the same two samples: summed in registers.
+      for (std::size_t i = 0, next = 0; i < n; i = next) {
+        for (next = i + 1; next < n && below[next] == below[i];) ++next;
+        if (below[i] == not_heard) continue;
+        const Run run = {
+            .taps = taps.data() + i, .count = next - i, .weights = weights + i * row, .row = row};
+        float* grid = reinterpret_cast<float*>(grids + (below[i] - DelayKernel::before));
+        std::size_t m = 0;
+        for (; m + 8 <= count; m += 8) run.add<8>(m, grid, 2 * stride);
+        if (m + 4 <= count) run.add<4>(m, grid, 2 * stride), m += 4;
+        for (; m < count; ++m) run.add<1>(m, grid, 2 * stride);
       }
     }
   };
   lay_segment(band.ends[0], band.ends[1]);
   lay_segment(band.ends[channel + 1], band.ends[channel + 2]);
+}
+
+void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,
+                         const Vec3& phone, Block& at) const noexcept {
+  const double x = phone.x(), y = phone.y(), z = phone.z();
+  const double* __restrict middle = returns.middle.data() + start;
+  const double* __restrict sx = returns.slowness_x.data() + start;
+  const double* __restrict sy = returns.slowness_y.data() + start;
+  const double* __restrict sz = returns.slowness_z.data() + start;
+  const double* __restrict re = returns.real.data() + start;
+  const double* __restrict im = returns.imag.data() + start;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double delay = middle[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
+    double a = re[i], b = im[i];
+    turn_back(carrier * delay, a, b);  // e^{−i2π f_c τ}
+    at.position[i] = (delay - first) * rate;
+    at.real[i] = static_cast<float>(a);
+    at.imag[i] = static_cast<float>(b);
+  }
 }
 
 }  // namespace asdic

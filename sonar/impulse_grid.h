@@ -46,11 +46,22 @@ struct ImpulseGrid {
   double last_position;  ///< impulses beyond are not heard in the record [samples]
   std::size_t stride;    ///< from the grid of one node to the next
 
+  static constexpr std::size_t most_nodes = 32;  ///< grids laid at one time: they stay in cache
+
   /// Adds the impulses that this phone hears to the grids of the band's nodes first…first + count.
   /// \param grids [count × stride]
   void lay(const OrderedReturns& returns, const OrderedReturns::Band& band, std::size_t first_node,
            std::size_t count, std::size_t channel, const Vec3& phone,
            std::complex<float>* grids) const noexcept;
+
+ private:
+  static constexpr std::size_t block = 256;  // returns located at one time
+  struct Block {                             // where they fall at one phone, and what they weigh
+    std::array<double, block> position;      // [samples]
+    std::array<float, block> real, imag;     // amplitude·e^{−i2π f_c τ}
+  };
+  void locate(const OrderedReturns& returns, std::size_t start, std::size_t n, const Vec3& phone,
+              Block& at) const noexcept;
 };
 
 }  // namespace asdic

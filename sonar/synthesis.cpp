@@ -15,13 +15,18 @@
 namespace asdic {
 namespace {
 
-/// Nodes laid into grids at one time: the lines of cache they touch stay near, and the scratch
-/// small.
-constexpr std::size_t nodes_per_pass = 16;
-
 struct Scratch {
   FftBuffer<std::complex<float>> grids, sum;
 };
+
+/// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64
+/// lines that share a place in the first-level cache, five lines on, so that one impulse's taps in
+/// sixteen grids do not evict each other.
+std::size_t grid_stride(std::size_t length) {
+  std::size_t lines = FftBuffer<std::complex<float>>::row_stride(length) / 8;
+  while (lines % 64 != 5) ++lines;
+  return 8 * lines;
+}
 
 /// sum[k] += grid[k]·spectrum[k] over the band, grid in FFT order.
 void multiply_add(const std::complex<float>* grid, const std::complex<float>* spectrum,
@@ -60,7 +65,7 @@ Baseband Synthesizer::baseband(std::span<const Return> returns,
 
   const OrderedReturns ordered(returns, plan.expansion, plan.pulse_duration, phones.size());
   const ComplexFft<float> fft(plan.length);
-  const std::size_t stride = FftBuffer<std::complex<float>>::row_stride(plan.length);
+  const std::size_t stride = grid_stride(plan.length);
   tbb::enumerable_thread_specific<Scratch> workspaces;
 
   const std::size_t bins = 2 * static_cast<std::size_t>(plan.highest_bin) + 1;
@@ -97,8 +102,8 @@ Baseband Synthesizer::baseband(std::span<const Return> returns,
     std::fill_n(scratch.sum.data(), plan.length, 0.0F);
     for (const OrderedReturns::Band& band : ordered.bands) {
       if (!band.heard_by(channel)) continue;
-      for (std::size_t m = 0; m < band.nodes; m += nodes_per_pass) {
-        const std::size_t count = std::min(nodes_per_pass, band.nodes - m);
+      for (std::size_t m = 0; m < band.nodes; m += ImpulseGrid::most_nodes) {
+        const std::size_t count = std::min(ImpulseGrid::most_nodes, band.nodes - m);
         scratch.grids.reserve(count * stride);
         std::fill_n(scratch.grids.data(), count * stride, 0.0F);
         grid.lay(ordered, band, m, count, channel, phones[channel], scratch.grids.data());

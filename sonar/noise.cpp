@@ -1,0 +1,36 @@
+#include "sonar/noise.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "core/normal.h"
+#include "core/units.h"
+
+namespace asdic {
+
+double white_noise_variance(double spectral_level_db, double sample_rate) noexcept {
+  return power_from_db(spectral_level_db) * 0.5 * sample_rate * micropascal * micropascal;
+}
+
+void add_white_noise(std::span<float> pressure, std::size_t channels, double spectral_level_db,
+                     double sample_rate, std::uint64_t seed, std::uint32_t ping) {
+  assert(channels > 0 && pressure.size() % channels == 0);
+  const std::size_t samples = pressure.size() / channels;
+  const auto rms =
+      static_cast<float>(std::sqrt(white_noise_variance(spectral_level_db, sample_rate)));
+  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t channel) {
+    float* row = pressure.data() + channel * samples;
+    std::array<float, 1024> normals;
+    for (std::size_t first = 0; first < samples; first += normals.size()) {
+      const std::size_t n = std::min(normals.size(), samples - first);
+      fill_normal(std::span(normals).first(n), seed, Draw::ambient_noise, ping, channel, first);
+      for (std::size_t i = 0; i < n; ++i) row[first + i] += rms * normals[i];
+    }
+  });
+}
+
+}  // namespace asdic
