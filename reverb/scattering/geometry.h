@@ -2,14 +2,15 @@
 #include <concepts>
 #include <string_view>
 
+#include "core/units.h"
+
 namespace asdic {
 
 /// How sound comes to a scattering surface and leaves it.
 struct ScatterGeometry {
-  double grazing_in = 0.0;   ///< [rad] above the surface plane
-  double grazing_out = 0.0;  ///< [rad]
-  double azimuth =
-      3.14159265358979323846;  ///< change of horizontal direction [rad]: 0 forward, π backscatter
+  double grazing_in = 0.0;   ///< above the plane of the surface [rad], 0..π/2
+  double grazing_out = 0.0;  ///< [rad], 0..π/2
+  double azimuth = pi;       ///< change of horizontal direction [rad]: 0 forward, π backscatter
 };
 
 /// The limits of a model's parameter, for checking and for the manual.
@@ -18,16 +19,30 @@ struct Range {
   double high;
 };
 
+/// Takes a parameter as `describe` presents it, and does nothing: what concepts are checked with.
+struct IgnoreParameter {
+  void operator()(std::string_view /*key*/, double& /*value*/, Range /*limits*/) const {}
+};
+
 /// A scattering model: parameters, name and σ, the scattering cross-section per unit area and
 /// steradian [1/sr] (10·log₁₀σ is the scattering strength in dB). `describe(field)` calls
 /// field("key", value, Range{…}) for every parameter, and so gives the scenario reader, the HDF5
 /// provenance, the manual's table and the property tests what they need. cross_section must be
 /// reciprocal (in ↔ out) and finite, and 0 (never log of 0) where the model says nothing scatters.
 template <class Model>
-concept ScatteringModel = requires(const Model& model, const ScatterGeometry& geometry,
-                                   double frequency) {
+concept ScatteringModel = requires(Model& model, const Model& constant,
+                                   const ScatterGeometry& geometry, double frequency) {
   { Model::name } -> std::convertible_to<std::string_view>;
-  { model.cross_section(geometry, frequency) } -> std::same_as<double>;
+  { constant.cross_section(geometry, frequency) } -> std::same_as<double>;
+  model.describe(IgnoreParameter{});
+};
+
+/// A model of the sea surface also knows the sea above it; `describe` leaves these two out, since
+/// the environment gives them. cross_section is 0 without wind.
+template <class Model>
+concept SurfaceScatteringModel = ScatteringModel<Model> && requires(Model& model) {
+  { model.wind_speed } -> std::same_as<double&>;   // at 10 m [m/s]
+  { model.sound_speed } -> std::same_as<double&>;  // of the water at the surface [m/s]
 };
 
 }  // namespace asdic

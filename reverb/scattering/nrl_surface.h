@@ -11,19 +11,19 @@ namespace asdic {
 /// Sea-surface scattering of the Naval Research Laboratory: rough interface plus subsurface
 /// bubbles, bistatic, incoherent part only.
 ///
-///   σ = σ_int + σ_bub
-///   σ_int = 4k⁴ sin²θᵢ sin²θₛ · A_s·U/(h₀Q)^γ₂,  at most 1     (first-order perturbation theory,
-///   |β/2|²·W(Q)) Q²    = k²[cos²θᵢ + cos²θₛ + 2 cos θᵢ cos θₛ cos φ′]         (φ′ = π − change of
-///   direction) σ_bub = 0.0019·d^1.15·k^−0.6·F(kd sin θᵢ, kd sin θₛ)         (0.0019 carries
-///   m^−1.75: SI only)
+///   σ     = σ_int + σ_bub,  k = 2πf/c
+///   σ_int = |β/2|²·W(Q) = 4k⁴ sin²θᵢ sin²θₛ · A_s·U/(h₀Q)^γ₂, at most 1
+///   Q²    = k²[cos²θᵢ + cos²θₛ − 2 cos θᵢ cos θₛ cos φ]   (φ change of direction, π backscatter)
+///   σ_bub = 0.0019·d^1.15·k^−0.6·F(kd sin θᵢ, kd sin θₛ)   (0.0019 carries m^−1.75: SI only)
 ///
 /// Gauss, Fialkowski & Wurmser, NRL/FR/7100--02-10,042 (2002) as quoted by Danesh (2013),
 /// eqs 4.3–4.12, with his 4.4 corrected (|β/2|², not |β²/2|). A_s, γ₂ and h₀ were never published
 /// as numbers; the defaults reproduce the simulated columns of his Tables 5.3 and 5.4. Bubble term:
 /// to 5 kHz, with a transition to 10 kHz; forward and near-specular values are not to be trusted.
+/// docs/theory/surface-scattering.md.
 struct NrlSurface {
   static constexpr std::string_view name = "nrl";
-  double A_s = 5.5e-4;          ///< spectral strength per wind speed, w₂ = A_s·U [s/m·m⁴]
+  double A_s = 5.5e-4;          ///< spectral strength per wind speed, w₂ = A_s·U [m⁴/(m/s)]
   double gamma2 = 3.9;          ///< exponent of the roughness spectrum
   double h0 = 1.0;              ///< its reference length [m]
   double wind_speed = 10.0;     ///< U at 10 m [m/s]
@@ -43,40 +43,42 @@ struct NrlSurface {
                                                double frequency) const noexcept {
     const double k = 2.0 * pi * frequency / sound_speed;
     const double sin_in = std::sin(g.grazing_in), sin_out = std::sin(g.grazing_out);
-    const double cos_in = std::cos(g.grazing_in), cos_out = std::cos(g.grazing_out);
-    if (wind_speed <= 0.0 || sin_in <= 0.0 || sin_out <= 0.0) return 0.0;
-    // |Q|: horizontal wavenumber change; towards 0 at the vertical, where the cap of 1 takes over.
-    const double q2 = k * k *
-                      std::max(0.0, cos_in * cos_in + cos_out * cos_out -
-                                        2.0 * cos_in * cos_out * std::cos(g.azimuth));
-    const double spectrum =
-        A_s * wind_speed / std::pow(h0 * h0 * q2, gamma2 / 2.0);  // W(Q) = w₂/(h₀Q)^γ₂
-    return std::min(1.0, 4.0 * std::pow(k, 4) * sin_in * sin_in * sin_out * sin_out * spectrum);
+    const double w2 = A_s * wind_speed;
+    if (k <= 0.0 || w2 <= 0.0 || sin_in <= 0.0 || sin_out <= 0.0) return 0.0;
+    // Q² as (cos θᵢ − cos θₛ)² + 4 cos θᵢ cos θₛ sin²(φ/2), in products: nothing cancels forward.
+    const double difference = 2.0 * std::sin(0.5 * (g.grazing_in + g.grazing_out)) *
+                              std::sin(0.5 * (g.grazing_in - g.grazing_out));
+    const double turn = std::sin(0.5 * g.azimuth);
+    const double cosines = std::cos(g.grazing_in) * std::cos(g.grazing_out);
+    const double q2 = k * k * (difference * difference + 4.0 * cosines * turn * turn);
+    if (q2 <= 0.0) return 1.0;  // vertical or specular: W(0) is infinite, the cap takes over
+    const double spectrum = w2 / std::pow(h0 * h0 * q2, 0.5 * gamma2);  // W(Q) = w₂/(h₀Q)^γ₂
+    const double half_beta = 2.0 * k * k * sin_in * sin_out;            // |β/2|
+    return std::min(1.0, half_beta * half_beta * spectrum);
   }
 
   [[nodiscard]] double bubble_cross_section(const ScatterGeometry& g,
                                             double frequency) const noexcept {
     const double k = 2.0 * pi * frequency / sound_speed;
     const double d = bubble_depth(wind_speed);
-    if (d <= 0.0) return 0.0;
-    // F = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]} over one denominator: the sum
-    // of fractions cancels at small p, q.
-    const double p2 = std::pow(k * d * std::sin(g.grazing_in), 2),
-                 q2 = std::pow(k * d * std::sin(g.grazing_out), 2);
-    const double pq2 = p2 * q2;
-    const double sum = p2 + q2;
-    const double numerator = 0.5 * pq2 * (6.0 + 3.0 * sum + std::pow(p2 - q2, 2));
-    const double denominator = (1.0 + p2) * (1.0 + q2) * ((1.0 + sum) * (1.0 + sum) - 4.0 * pq2);
+    if (k <= 0.0 || d <= 0.0) return 0.0;
+    // F = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]}, written over one denominator
+    // because the sum of fractions cancels at small p, q.
+    const double p = k * d * std::sin(g.grazing_in), q = k * d * std::sin(g.grazing_out);
+    const double p2 = p * p, q2 = q * q;
+    const double minus = (p - q) * (p - q), plus = (p + q) * (p + q);
+    const double numerator = 0.5 * p2 * q2 * (6.0 + 3.0 * (p2 + q2) + (p2 - q2) * (p2 - q2));
+    const double denominator = (1.0 + p2) * (1.0 + q2) * (1.0 + minus) * (1.0 + plus);
     return 0.0019 * std::pow(d, 1.15) * std::pow(k, -0.6) * numerator / denominator;
   }
 
   /// e-folding depth of the bubble layer against wind speed [m]; Danesh (2013), Table 4.2.
   [[nodiscard]] static double bubble_depth(double wind) noexcept {
-    if (wind < 3.0) return 0.0;
+    if (wind <= 3.0) return 0.0;
     if (wind <= 7.5) return -0.19509 + 0.06503 * wind;
     return 0.557 - 0.117 * wind + 0.0109 * wind * wind;
   }
 };
-static_assert(ScatteringModel<NrlSurface>);
+static_assert(SurfaceScatteringModel<NrlSurface>);
 
 }  // namespace asdic

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <variant>
+
+#include "core/units.h"
+#include "reverb/scattering/models.h"
+
+namespace asdic {
+namespace {
+
+double between(double low, double high) {
+  constexpr int steps = 1'000'000;
+  return low + (high - low) * *rc::gen::inRange(0, steps + 1) / steps;
+}
+
+template <class Variant>
+struct AlternativesOf;
+template <class... Model>
+struct AlternativesOf<std::variant<Model...>> {
+  using Types = testing::Types<Model...>;
+};
+
+/// A model with parameters anywhere in their ranges, under any sea.
+template <class Model>
+Model any() {
+  Model model;
+  model.describe([](std::string_view, double& value, Range limits) {
+    value = between(limits.low, limits.high);
+  });
+  model.wind_speed = between(0.0, 40.0);
+  model.sound_speed = between(1400.0, 1600.0);
+  return model;
+}
+
+ScatterGeometry any_geometry() {
+  return {.grazing_in = between(0.0, pi / 2),
+          .grazing_out = between(0.0, pi / 2),
+          .azimuth = between(-pi, pi)};
+}
+
+double any_frequency() { return between(10.0, 50'000.0); }
+
+// Runs over AnySurfaceScattering: a new model is tested on arrival.
+template <class Model>
+class EverySurfaceScattering : public testing::Test {};
+TYPED_TEST_SUITE(EverySurfaceScattering, AlternativesOf<AnySurfaceScattering>::Types);
+
+// Source and receiver may change places; only the order of additions differs.
+TYPED_TEST(EverySurfaceScattering, IsReciprocal) {
+  EXPECT_TRUE(rc::check([] {
+    const TypeParam model = any<TypeParam>();
+    const ScatterGeometry g = any_geometry();
+    const double f = any_frequency();
+    const ScatterGeometry back = {
+        .grazing_in = g.grazing_out, .grazing_out = g.grazing_in, .azimuth = -g.azimuth};
+    const double forth = model.cross_section(g, f);
+    RC_ASSERT(std::abs(model.cross_section(back, f) - forth) <= 1e-12 * forth);
+  }));
+}
+
+TYPED_TEST(EverySurfaceScattering, IsFiniteAndNotNegative) {
+  EXPECT_TRUE(rc::check([] {
+    const double sigma = any<TypeParam>().cross_section(any_geometry(), any_frequency());
+    RC_ASSERT(std::isfinite(sigma));
+    RC_ASSERT(sigma >= 0.0);
+  }));
+}
+
+// Each mechanism (interface, bubbles) scatters at most 1 /sr, wherever its law is driven to.
+TYPED_TEST(EverySurfaceScattering, IsBounded) {
+  EXPECT_TRUE(rc::check(
+      [] { RC_ASSERT(any<TypeParam>().cross_section(any_geometry(), any_frequency()) <= 2.0); }));
+}
+
+TYPED_TEST(EverySurfaceScattering, CalmSeaScattersNothing) {
+  EXPECT_TRUE(rc::check([] {
+    TypeParam model = any<TypeParam>();
+    model.wind_speed = 0.0;
+    RC_ASSERT(model.cross_section(any_geometry(), any_frequency()) == 0.0);
+  }));
+}
+
+TYPED_TEST(EverySurfaceScattering, GrazingSoundScattersNothing) {
+  EXPECT_TRUE(rc::check([] {
+    ScatterGeometry g = any_geometry();
+    g.grazing_in = 0.0;
+    RC_ASSERT(any<TypeParam>().cross_section(g, any_frequency()) == 0.0);
+  }));
+}
+
+// More wind never makes the sea smoother.
+TYPED_TEST(EverySurfaceScattering, RisesWithWind) {
+  EXPECT_TRUE(rc::check([] {
+    TypeParam model = any<TypeParam>();
+    const double grazing = between(0.0, radians(40.0));
+    const ScatterGeometry g = {.grazing_in = grazing, .grazing_out = grazing};
+    const double f = between(50.0, 6400.0);
+    const double before = model.cross_section(g, f);
+    model.wind_speed += 0.5;
+    RC_ASSERT(model.cross_section(g, f) >= before * (1.0 - 1e-12));
+  }));
+}
+
+TYPED_TEST(EverySurfaceScattering, DefaultsAreWithinTheirRanges) {
+  TypeParam model;
+  model.describe([](std::string_view key, const double& value, Range limits) {
+    EXPECT_GE(value, limits.low) << key;
+    EXPECT_LE(value, limits.high) << key;
+  });
+}
+
+}  // namespace
+}  // namespace asdic
