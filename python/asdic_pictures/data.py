@@ -1,0 +1,339 @@
+"""Reads a ping file (docs/formats/ping.md). Whatever is wrong with it becomes an InputError."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+
+import h5py
+import numpy as np
+
+from . import signal
+
+
+class InputError(Exception):
+    """The file is not what it should be: where, what was found, what was expected."""
+
+    def __init__(self, where, found, expected):
+        super().__init__(f"{where}: found {found}, expected {expected}")
+
+
+@dataclass
+class Echo:
+    """The path pairs of one target at the array's reference point. [n] each"""
+
+    target: int
+    name: str
+    delay: np.ndarray          # of the leading edge [s]
+    level_db: np.ndarray       # [dB re 1 µPa]
+    doppler: np.ndarray        # frequency factor
+    direction: np.ndarray      # [n, 3] of travel at the array (east, north, depth)
+
+    @property
+    def strongest(self) -> int:
+        return int(np.argmax(self.level_db))
+
+    def strong(self, first: float, last: float, within_db: float = 20.0):
+        """[n] which pairs are worth a mark: near the strongest in level, between two times [s]"""
+        loud = self.level_db >= self.level_db.max() - within_db
+        return loud & (self.delay >= first) & (self.delay <= last)
+
+
+def travel_direction(elevation_deg, bearing_deg):
+    """Unit vectors (east, north, depth), [n, 3]. Elevation positive up, bearing from north."""
+    e, b = np.radians(elevation_deg), np.radians(bearing_deg)
+    return np.stack([np.cos(e) * np.sin(b), np.cos(e) * np.cos(b), -np.sin(e)], axis=-1)
+
+
+class PingFile:
+    """A ping file open for reading; every ping is given by its row, from 0.
+
+    Raises InputError if it is missing, damaged, or something else
+    """
+
+    def __init__(self, path):
+        self.path = str(path)
+        self._bad_samples: dict[tuple[int, int], int] = {}
+        self._envelopes: dict[int, signal.Baseband] = {}
+        self._columns: dict[str, np.ndarray] = {}
+        if not os.path.exists(path):
+            raise InputError(path, "no such file", "a ping file written by `asdic ping`")
+        if os.path.isdir(path):
+            raise InputError(path, "a directory", "a ping file written by `asdic ping`")
+        if not os.access(path, os.R_OK):
+            raise InputError(path, "a file that may not be read", "one with read permission")
+        try:
+            self.file = h5py.File(path, "r")
+        except Exception as error:
+            whole = "truncated" not in str(error)
+            raise InputError(path, "a file that is not HDF5" if whole else "a truncated HDF5 file",
+                             "a ping file written by `asdic ping`") from error
+        kind = self._text(self.file.attrs, "filetype")
+        if kind != "asdic ping":
+            self.file.close()
+            raise InputError(path,
+                             f'filetype "{kind}"' if kind else "an HDF5 file without a filetype",
+                             'filetype "asdic ping"')
+        version = self._text(self.file.attrs, "version") or "none"
+        if version.split(".")[0] != "1":
+            self.file.close()
+            raise InputError(path, f"version {version} of the format", "version 1")
+        shape = self._dataset("pressure").shape
+        if len(shape) != 3 or 0 in shape:
+            raise InputError(path, f"pressure of shape {shape}",
+                             "(ping, channel, sample), none of them 0")
+        self.pings, self.channels, self.samples = shape
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    # ------------------------------------------------------------ reading, safely
+
+    @staticmethod
+    def _text(attributes, name) -> str | None:
+        try:
+            value = attributes[name]
+        except Exception:
+            return None
+        return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+    def _dataset(self, name):
+        try:
+            item = self.file[name]
+        except Exception as error:
+            raise InputError(self.path, f"no dataset {name}",
+                             "one (docs/formats/ping.md)") from error
+        if not isinstance(item, h5py.Dataset):
+            raise InputError(self.path, f"a group where the dataset {name} should be", "a dataset")
+        return item
+
+    def read(self, name, rows=()) -> np.ndarray:
+        """A dataset, or its part `rows`."""
+        dataset = self._dataset(name)
+        try:
+            return np.asarray(dataset[rows])
+        except Exception as error:
+            raise InputError(self.path, f"{name} that cannot be read ({error})",
+                             "a whole file") from error
+
+    def has(self, name) -> bool:
+        try:
+            return name in self.file
+        except Exception:
+            return False
+
+    def attribute(self, where, name) -> float:
+        """A number kept as an attribute of a dataset or group."""
+        try:
+            return float(np.ravel(self.file[where].attrs[name])[0])
+        except Exception as error:
+            raise InputError(self.path, f"no number in the attribute {name} of {where}",
+                             "one (docs/formats/ping.md)") from error
+
+    def _column(self, name):
+        """A column of a table, read once."""
+        if name not in self._columns:
+            self._columns[name] = self.read(name)
+        return self._columns[name]
+
+    def _of_ping(self, group, row, columns):
+        """The rows of a table that belong to one ping. → dictionary of columns"""
+        if not self.has(group):
+            return {name: np.zeros(0) for name in columns}
+        mine = self._column(f"{group}/ping") == self.numbers[row]
+        return {name: self._column(f"{group}/{name}")[mine] for name in columns}
+
+    # ------------------------------------------------------------ what is in it
+
+    @cached_property
+    def title(self) -> str:
+        return self._text(self.file.attrs, "title") or ""
+
+    @cached_property
+    def numbers(self) -> np.ndarray:
+        return self.read("ping")
+
+    @cached_property
+    def valid_samples(self) -> np.ndarray:
+        """[ping], never more than the record is long"""
+        return np.clip(self.read("valid_samples"), 0, self.samples)
+
+    @cached_property
+    def simulated(self) -> np.ndarray:
+        """Rows of the pings that were simulated: a run that was stopped may leave empty ones."""
+        return np.flatnonzero(self.valid_samples > 0)
+
+    @cached_property
+    def start(self) -> float:
+        """Time of the first sample [s]"""
+        return float(self.read("time", slice(0, 1))[0])
+
+    @cached_property
+    def sample_rate(self) -> float:
+        rate = self.attribute("pressure", "sample_rate_hz")
+        if not rate > 0:
+            raise InputError(self.path, f"a sample rate of {rate} Hz", "one above 0")
+        return rate
+
+    @cached_property
+    def centre_frequency(self) -> float:
+        return self.attribute("replica", "centre_frequency_hz")
+
+    @cached_property
+    def bandwidth(self) -> float:
+        return max(self.attribute("replica", "bandwidth_hz"), 0.0)
+
+    @cached_property
+    def pulse_duration(self) -> float:
+        return self.attribute("replica", "duration_s")
+
+    @cached_property
+    def pulse_kind(self) -> str:
+        return self._text(self.file["replica"].attrs, "kind") or ""
+
+    @cached_property
+    def elevation_deg(self) -> np.ndarray:
+        return self.read("elevation_deg")
+
+    def choose_ping(self, number: int | None) -> int:
+        """Row of ping `number`, or of the first one."""
+        if self.simulated.size == 0:
+            raise InputError(self.path, "no ping that was simulated", "at least one")
+        if number is None:
+            return int(self.simulated[0])
+        known = self.numbers[self.simulated]
+        found = self.simulated[known == number]
+        if found.size == 0:
+            raise InputError(self.path, f"no ping {number}",
+                             f"one of {known.min()} to {known.max()}")
+        return int(found[0])
+
+    def heading(self, row: int) -> str:
+        """For titles: the scenario and, where there are several, the ping."""
+        requested = self.pings
+        if "pings_requested" in self.file.attrs:
+            requested = int(self.attribute("/", "pings_requested"))
+        text = self.title or os.path.basename(self.path)
+        if max(requested, self.pings) > 1:
+            text += f" · ping {self.numbers[row]} of {self.simulated.size}"
+        if self.stopped:
+            text += f" (stopped; {requested} were asked for)"
+        return text
+
+    @cached_property
+    def stopped(self) -> bool:
+        return "complete" in self.file.attrs and not int(self.attribute("/", "complete"))
+
+    def pressure(self, row: int, channel: int) -> np.ndarray:
+        """Pressure of one phone [Pa]; samples that are not numbers are 0 (see `warnings`)."""
+        valid = slice(0, int(self.valid_samples[row]))
+        p = self.read("pressure", (row, channel, valid)).astype(float)
+        self._bad_samples[row, channel] = int(np.count_nonzero(~np.isfinite(p)))
+        return np.nan_to_num(p, nan=0.0, posinf=0.0, neginf=0.0)
+
+    def warnings(self) -> list[str]:
+        """What the reader of the pictures should know, after they are drawn."""
+        bad = sum(self._bad_samples.values())
+        return [f"{bad} samples of pressure are not numbers; drawn as 0"] if bad else []
+
+    @cached_property
+    def band(self) -> float:
+        """Width around the centre frequency that holds the pulse and its Doppler shifts [Hz]"""
+        factors = self.read("echoes/doppler_factor") if self.has("echoes") else np.zeros(0)
+        span = float(np.max(np.abs(factors[np.isfinite(factors)] - 1.0), initial=0.0))
+        velocity = np.nan_to_num(self.read("platform_velocity"))
+        speed = np.linalg.norm(velocity, axis=-1).max(initial=0.0)
+        span = min(max(span, 2.0 * float(speed) / 1400.0), 0.1)
+        return signal.band_width(self.bandwidth, self.centre_frequency, span, self.pulse_duration)
+
+    def envelope(self, row: int) -> signal.Baseband:
+        """Every phone's complex envelope in `band`."""
+        if row not in self._envelopes:  # one ping at a time: a file may hold thousands
+            self._envelopes.clear()
+            phones = (self.pressure(row, channel) for channel in range(self.channels))
+            self._envelopes[row] = signal.baseband(phones, self.sample_rate, self.centre_frequency,
+                                                   self.band, self.start)
+        return self._envelopes[row]
+
+    def phones(self, row: int) -> np.ndarray:
+        """[channel, 3] east, north, depth [m]"""
+        return self.read("phone_position", row)
+
+    def platform(self, row: int) -> np.ndarray:
+        return self.read("platform_position", row)
+
+    @cached_property
+    def profile(self):
+        """Depth [m], sound speed [m/s]"""
+        return self.read("environment/depth"), self.read("environment/sound_speed")
+
+    def sound_speed(self, depth: float) -> float:
+        """At a depth [m/s]"""
+        z, c = self.profile
+        good = np.isfinite(z) & np.isfinite(c) & (c > 0)
+        if not good.any():
+            raise InputError(self.path, "no sound speed that is a number",
+                             "a profile in /environment")
+        return float(np.interp(depth, z[good], c[good]))
+
+    @cached_property
+    def bottom_depth(self) -> float:
+        return self.attribute("environment", "bottom_depth_m")
+
+    @cached_property
+    def target_names(self) -> list[str]:
+        if not self.has("target_index"):
+            return []
+        count = self._dataset("target_index").shape[0]
+        names = self.file["target_index"].attrs.get("names", [])
+        if isinstance(names, (str, bytes)):  # one string, names apart by commas or lines
+            names = names.decode() if isinstance(names, bytes) else names
+            names = names.replace("\n", ",").split(",")
+        names = [n.decode() if isinstance(n, bytes) else str(n) for n in np.ravel(names)]
+        names = [n.strip() for n in names] + [""] * count
+        return [names[i] or f"target {i + 1}" for i in range(count)]
+
+    def targets(self, row: int):
+        """[(index, name, east-north-depth [m])] of those that are there"""
+        if not self.target_names:
+            return []
+        there, place = self.read("target_present", row), self.read("target_position", row)
+        return [(i, self.target_names[i], place[i]) for i in range(len(self.target_names))
+                if there[i] and np.all(np.isfinite(place[i]))]
+
+    def echoes(self, row: int) -> list[Echo]:
+        """One entry a target that answers, as heard at the array's reference point.
+
+        Where every phone has its own paths, as heard at the middle phone.
+        """
+        t = self._of_ping("echoes", row,
+                          ["target", "channel", "delay", "doppler_factor", "level_db",
+                                          "arrival_elevation_deg", "arrival_bearing_deg"])
+        good = np.isfinite(t["delay"]) & np.isfinite(t["level_db"])
+        found = []
+        for target in np.unique(t["target"][good]).astype(int):
+            mine = good & (t["target"] == target)
+            channels = np.unique(t["channel"][mine])
+            mine &= t["channel"] == (-1 if -1 in channels else channels[len(channels) // 2])
+            order = np.flatnonzero(mine)[np.argsort(t["delay"][mine], kind="stable")]
+            known = target < len(self.target_names)
+            name = self.target_names[target] if known else f"target {target + 1}"
+            direction = travel_direction(t["arrival_elevation_deg"][order],
+                                         t["arrival_bearing_deg"][order])
+            found.append(Echo(target, name, t["delay"][order], t["level_db"][order],
+                              t["doppler_factor"][order], direction))
+        return found
+
+    def levels(self, row: int):
+        """Time [s] and the mean-square pressures [Pa²] of echo, reverberation and noise"""
+        time = self.read("levels/level_time")
+        return time, {k: self.read(f"levels/{k}", row).astype(float)
+                      for k in ("echo", "reverberation", "noise")}
+
+    def rays(self):
+        """Launch elevation [ray], range and depth [ray, point], kind [ray], surface hits [hit]"""
+        return [self.read(f"rays/{k}")
+                for k in ("launch_elevation_deg", "range", "depth", "kind", "hit_range")]

@@ -1,0 +1,49 @@
+"""Spectrogram around the pulse's band, mean over the phones."""
+from __future__ import annotations
+
+import numpy as np
+
+from . import signal, style
+from .pressure import mark_echoes
+
+TITLE = "Spectrogram around the pulse's band"
+
+
+def nothing_to_show(data, ping):
+    return None
+
+
+def draw(data, ping):
+    b = data.envelope(ping)
+    # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which
+    # resolves time and frequency alike.
+    sweep = data.pulse_kind in ("lfm", "hfm") and data.bandwidth > 0
+    length = np.sqrt(data.pulse_duration / data.bandwidth) if sweep else data.pulse_duration
+    window = int(np.clip(round(length * b.rate), 16, max(b.values.shape[1] // 4, 16)))
+    time, frequency, density = signal.spectrogram(b, window, 900)
+    db = signal.decibels(density)
+    inside = np.abs(frequency - b.carrier) <= 0.5 * b.width
+    frequency, db = frequency[inside], db[inside]
+
+    fig, axes = style.figure(TITLE, 4.8)
+    low, high = style.colour_limits(db, 20.0)
+    mesh = axes.pcolormesh(style.cell_edges(time),
+                           style.cell_edges(frequency - data.centre_frequency), db, cmap=style.MAP,
+                           vmin=low, vmax=high,
+                           shading="flat", rasterized=True)
+    style.image_frame(axes)
+    style.time_axis(axes, b.start, b.times[-1] + 1.0 / b.rate)
+    axes.set_ylim(frequency[0] - data.centre_frequency, frequency[-1] - data.centre_frequency)
+    axes.set_ylabel(f"frequency above {data.centre_frequency:g} Hz / Hz")
+    if data.pulse_kind == "cw":
+        speed = data.sound_speed(float(np.mean(data.phones(ping)[:, 2])))
+        # two-way Doppler, Hz per m/s
+        shift = 2.0 * data.centre_frequency / speed
+        right = axes.secondary_yaxis("right", functions=(lambda f: f / shift, lambda v: v * shift))
+        right.set_ylabel("closing speed / m/s")
+        right.tick_params(length=3)
+    style.colour_bar(fig, mesh, axes, "spectral level / dB re 1 µPa²/Hz")
+    phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
+    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, windows of {window / b.rate:.3g} s")
+    style.legend_below(axes, mark_echoes(axes, data.echoes(ping)))
+    return fig

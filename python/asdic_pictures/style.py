@@ -1,0 +1,137 @@
+"""The common look: sizes, axes, colours (Okabe & Ito's, safe for the colour-blind), and writing."""
+from __future__ import annotations
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib import patheffects, ticker  # noqa: E402
+
+INK, GREY = "#222222", "#8a8a8a"
+BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
+ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
+TARGETS = [VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY]
+MAP = "viridis"
+# keeps a light mark readable on any colour
+OVER_MAP = [patheffects.withStroke(linewidth=2.6, foreground=INK)]
+
+plt.rcParams.update({
+    "figure.dpi": 150, "savefig.dpi": 150, "figure.constrained_layout.use": True,
+    "figure.facecolor": "white",
+    "font.family": "DejaVu Sans", "font.size": 10, "text.color": INK,
+    "axes.titlesize": 11, "axes.titlelocation": "left", "axes.titlepad": 8, "axes.labelsize": 10,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": GREY, "axes.linewidth": 0.8, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.axisbelow": True,
+    "xtick.labelsize": 9, "ytick.labelsize": 9, "xtick.color": GREY, "ytick.color": GREY,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK,
+    "grid.color": "#e8e8e8", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False, "legend.fontsize": 9, "legend.handlelength": 1.6,
+    "legend.columnspacing": 1.6,
+    "agg.path.chunksize": 20000,
+})
+
+
+def colour(target: int) -> str:
+    return TARGETS[target % len(TARGETS)]
+
+
+def figure(what: str, height: float = 4.6, **grid):
+    """A figure under a title that says what it is. → figure, axes (as plt.subplots)"""
+    fig, axes = plt.subplots(figsize=(10.0, height), **grid)
+    fig.suptitle(what, x=0.012, ha="left", fontsize=13, fontweight="bold")
+    fig.set_constrained_layout_pads(w_pad=0.1, h_pad=0.07, wspace=0.02, hspace=0.03)
+    return fig, axes
+
+
+def subtitle(axes, text: str) -> None:
+    """One grey line above the axes: what it is of."""
+    axes.set_title(shorten(text), color="#555555", fontsize=9.5, fontweight="normal")
+
+
+def shorten(text: str, limit: int = 125) -> str:
+    text = " ".join(str(text).replace("$", r"\$").split())
+    return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def name(text: str) -> str:
+    """A target's name for a legend: never read as mathematics, never long, never hidden for its
+    leading underscore.
+    """
+    return shorten(text, 28).lstrip("_") or "target"
+
+
+def time_axis(axes, first: float, last: float, label: str = "time after the ping / s") -> None:
+    axes.set_xlim(first, last if last > first else first + 1e-3)
+    axes.set_xlabel(label)
+
+
+def legend_below(axes, handles=None, below: float = 0.13, **options) -> None:
+    """A legend in a row under the axes, where it can hide nothing."""
+    handles = handles if handles is not None else axes.get_legend_handles_labels()[0]
+    if handles:
+        # in characters; about 115 fit in a row
+        widest = sum(len(h.get_label()) + 6 for h in handles)
+        columns = min(options.pop("ncol", 6), -(-len(handles) // -(-widest // 115)))
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, -below), ncol=columns,
+                    borderaxespad=0.3, **options)
+
+
+def image_frame(axes) -> None:
+    """Axes around an image: all four sides, ticks outwards; grey where there are no data."""
+    axes.set_facecolor("#ececec")
+    for side in axes.spines.values():
+        side.set_visible(True)
+    axes.tick_params(direction="out", length=3)
+
+
+def silence(axes, db) -> None:
+    """Says so where there is nothing to be drawn."""
+    if not np.isfinite(db).any():
+        axes.text(0.5, 0.5, "silence", transform=axes.transAxes, ha="center", va="center",
+                  color=GREY)
+
+
+def colour_bar(fig, mesh, axes, label: str, extend: str = "both"):
+    silence(axes, mesh.get_array())
+    bar = fig.colorbar(mesh, ax=axes, pad=0.015, fraction=0.05, aspect=28, extend=extend)
+    bar.set_label(label)
+    bar.outline.set_linewidth(0.6)
+    bar.outline.set_edgecolor(GREY)
+    bar.locator = ticker.MaxNLocator(7, steps=[1, 2, 5, 10])
+    bar.update_ticks()
+    return bar
+
+
+def colour_limits(db, floor_percentile: float = 30.0, least: float = 20.0, most: float = 60.0):
+    """Limits in dB, multiples of 5: from just below the background to just below the peak, at least
+    20 and at most 60 dB apart.
+    """
+    good = db[np.isfinite(db)]
+    if good.size == 0:
+        return 0.0, least
+    top = 5.0 * np.ceil(np.percentile(good, 99.9) / 5.0)
+    low = 5.0 * np.floor((np.percentile(good, floor_percentile) - 2.0) / 5.0)
+    return float(np.clip(low, top - most, top - least)), float(top)
+
+
+def cell_edges(centres):
+    """Edges of the cells around evenly spaced centres. [n] → [n + 1]"""
+    centres = np.asarray(centres, float)
+    if centres.size == 1:
+        return centres[0] + np.array([-0.5, 0.5])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
+
+
+def write(fig, path) -> None:
+    """\\throws OSError with the path when the picture cannot be written"""
+    try:
+        fig.savefig(path)
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
+    finally:
+        plt.close(fig)

@@ -1,0 +1,125 @@
+#include "raytrace/eigenrays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "raytrace/layered/hermite.h"
+#include "raytrace/layered/path_builder.h"
+
+namespace asdic {
+namespace {
+
+/// Source and receiver at one depth in water without gradient are joined by a horizontal ray, which
+/// r(σ) of two equal depths cannot tell; a micrometre between them changes no answer by more than
+/// rounding.
+constexpr double depth_offset = 1e-6;
+
+/// Distance below which two roots of one branch are one [m of range per slope].
+constexpr double same_root = 1e-9;
+
+/// The root of r(σ) = range inside a stretch that has it between its ends: from the cubic's guess
+/// by Newton, kept inside a shrinking bracket.
+double refine(const BranchTable& table, const MonotoneStretch& s, double range) {
+  double low = s.sigma_begin, high = s.sigma_end;
+  const bool rising = s.range_end > s.range_begin;
+  double x =
+      low +
+      (high - low) * std::clamp((range - s.range_begin) / (s.range_end - s.range_begin), 0.0, 1.0);
+  const Hermite cubic({s.sigma_begin, s.range_begin, s.slope_begin},
+                      {s.sigma_end, s.range_end, s.slope_end});
+  for (int i = 0; i < 4; ++i) {  // the cubic costs nothing: start from its root
+    const double slope = cubic.slope(x);
+    const double next = slope != 0.0 ? x - (cubic.value(x) - range) / slope : x;
+    if (!(next > low && next < high)) break;
+    x = next;
+  }
+  for (int i = 0; i < 100; ++i) {
+    const auto [r, slope] = table.evaluate(*s.interval, s.branch, x);
+    const double miss = r - range;
+    ((miss < 0.0) == rising ? low : high) = x;
+    if (std::abs(miss) < 1e-5) break;
+    double next = slope != 0.0 ? x - miss / slope : low;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (next == x || high - low < 1e-16 * high) break;
+    x = next;
+  }
+  return x;
+}
+
+void sort_and_drop_doubles(Arrivals& arrivals) {
+  std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
+    return a.delay != b.delay ? a.delay < b.delay : a.launch_elevation < b.launch_elevation;
+  });
+  const auto same = [](const Arrival& a, const Arrival& b) {
+    return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
+           a.upper_turns + a.lower_turns == b.upper_turns + b.lower_turns &&
+           std::abs(a.launch_elevation - b.launch_elevation) < same_root &&
+           std::abs(a.delay - b.delay) < same_root;
+  };
+  arrivals.erase(std::unique(arrivals.begin(), arrivals.end(), same), arrivals.end());
+}
+
+}  // namespace
+
+EigenraySolver::EigenraySolver(const Environment& environment) : environment_(environment) {
+  if (!(environment.bottom.depth > environment.surface.depth))
+    throw InputError({.where = "bottom.depth",
+                      .got = std::to_string(environment.bottom.depth) + " m",
+                      .expected = "a depth below the surface at " +
+                                  std::to_string(environment.surface.depth) + " m"});
+  layers_ = make_layers(environment.water, environment.surface.depth, environment.bottom.depth);
+}
+
+BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
+                                  const PathLimits& limits) const {
+  if (source_depth == receiver_depth) {
+    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
+    receiver_depth += room_below ? depth_offset : -depth_offset;
+  }
+  return {Column(layers_, source_depth, receiver_depth), limits};
+}
+
+Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,
+                              double frequency, const PathLimits& limits) const {
+  return std::move(
+      find(source_depth, receiver_depth, std::span(&range, 1), frequency, limits).front());
+}
+
+std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_depth,
+                                           std::span<const double> ranges, double frequency,
+                                           const PathLimits& limits) const {
+  std::vector<Arrivals> found(ranges.size());
+  if (ranges.empty()) return found;
+  std::vector<std::size_t> order(ranges.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return ranges[a] < ranges[b]; });
+
+  // A receiver straight above or below is met by the vertical ray, ξ = 0, which a range of a
+  // micrometre stands for.
+  const auto range_of = [&](std::size_t i) { return std::max(ranges[order[i]], 1e-6); };
+
+  const BranchTable fan = table(source_depth, receiver_depth, limits);
+  const PathBuilder builder(environment_, fan.column(), frequency);
+  fan.for_each_stretch(
+      range_of(0), range_of(order.size() - 1), [&](const MonotoneStretch& stretch) {
+        const double low = std::min(stretch.range_begin, stretch.range_end),
+                     high = std::max(stretch.range_begin, stretch.range_end);
+        // A stretch owns its slow end, so that a root on a common end is found once.
+        const auto first = std::partition_point(order.begin(), order.end(), [&](std::size_t i) {
+          return std::max(ranges[i], 1e-6) < low;
+        });
+        for (auto it = first; it != order.end(); ++it) {
+          const double range = std::max(ranges[*it], 1e-6);
+          if (range > high) break;
+          found[*it].push_back(
+              builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range));
+        }
+      });
+  for (Arrivals& arrivals : found) sort_and_drop_doubles(arrivals);
+  return found;
+}
+
+}  // namespace asdic

@@ -1,0 +1,187 @@
+#include "raytrace/ground_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "raytrace/layered/hermite.h"
+#include "raytrace/layered/path_builder.h"
+
+namespace asdic {
+namespace {
+
+struct CellPath {
+  std::uint32_t cell;
+  GroundPath path;
+};
+
+/// A point of a branch: range and delay as functions of σ, with exact slopes.
+struct BranchPoint {
+  HermiteNode range, delay;  // dτ/dσ = ξ·dr/dσ
+  double length = 0.0;       // of the path so far [m]
+};
+
+/// |dr/dξ| below which a caustic's rays are no longer told apart: with r = r_c + ½r″(ξ − ξ_c)² two
+/// rays differ in time by (4√2/3)δ^{3/2}/√|r″|, Airy's argument is ζ = (3ωΔτ/4)^{2/3}, and the
+/// largest Airy amplitude 2√π·Ai(−1.019) ζ^{1/4} A, shared by two rays adding at random, is reached
+/// by each at ζ = 0.307.
+double airy_floor(double curvature, double frequency) {
+  constexpr double zeta = 0.307;
+  return std::cbrt(2.0) * std::sqrt(zeta) * std::pow(curvature, 2.0 / 3.0) /
+         std::cbrt(2.0 * pi * frequency);
+}
+
+class BranchFollower {
+ public:
+  BranchFollower(const Environment& environment, const BranchTable& fan, BoundaryKind boundary,
+                 double spacing, double max_range, double frequency, std::vector<CellPath>& out)
+      : fan_(fan),
+        builder_(environment, fan.column(), frequency),
+        boundary_(boundary),
+        spacing_(spacing),
+        max_range_(max_range),
+        frequency_(frequency),
+        out_(out) {}
+
+  void follow(const MonotoneStretch& s) {
+    if (s.branch.arrives_upward() != (boundary_ == BoundaryKind::surface))
+      return;  // the field that falls on the boundary
+    stretch_ = &s;
+    weights_ = weights(s.branch, fan_.column().source_is_upper());
+    turns_ = (s.interval->turns_above ? s.branch.top_vertices() : 0) +
+             (s.interval->turns_below ? s.branch.bottom_vertices() : 0);
+    floor_ = 0.0;
+    const Hermite cubic({s.sigma_begin, s.range_begin, s.slope_begin},
+                        {s.sigma_end, s.range_end, s.slope_end});
+    if (s.caustic_begin) floor_ = std::max(floor_, floor_at(s.sigma_begin, s.sigma_end, cubic));
+    if (s.caustic_end) floor_ = std::max(floor_, floor_at(s.sigma_end, s.sigma_begin, cubic));
+    refine(point(s.sigma_begin), point(s.sigma_end), 0);
+  }
+
+ private:
+  RayParameter ray(double sigma) const { return {stretch_->interval->reference_speed, sigma}; }
+
+  BranchPoint point(double sigma) const {
+    const RayParameter r = ray(sigma);
+    const ColumnSums sums = fan_.column().sums(r);
+    const ColumnDetails details = fan_.column().details(r);
+    const double range = weights_.of(sums.up.range, sums.middle.range, sums.down.range);
+    const double slope = weights_.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) *
+                         r.slowness_per_sigma();
+    return {.range = {sigma, range, slope},
+            .delay = {sigma, weights_.of(details.up.time, details.middle.time, details.down.time),
+                      slope * r.slowness},
+            .length = weights_.of(details.up.length, details.middle.length, details.down.length)};
+  }
+
+  double floor_at(double caustic, double other, const Hermite& cubic) const {
+    const double step =
+        1e-3 * (other - caustic);  // r″ with respect to σ at the caustic, where r′ = 0
+    const double per_sigma2 = std::abs(cubic.slope(caustic + step) / step);
+    const double chain = ray(caustic).slowness_per_sigma();
+    return airy_floor(per_sigma2 / (chain * chain), frequency_);
+  }
+
+  void refine(const BranchPoint& a, const BranchPoint& b, int depth) {
+    const double low = std::min(a.range.value, b.range.value),
+                 high = std::max(a.range.value, b.range.value);
+    if (high < 0.5 * spacing_ || low > max_range_) return;
+    const Hermite range(a.range, b.range), delay(a.delay, b.delay);
+    if (depth < 12 && high - low > 0.5 * spacing_) {
+      const double middle = 0.5 * (a.range.x + b.range.x);
+      const BranchPoint m = point(middle);
+      const double error = std::abs(range.value(middle) - m.range.value) +
+                           std::abs(delay.value(middle) - m.delay.value) / ray(middle).slowness;
+      if (error > 0.01 * spacing_) {
+        refine(a, m, depth + 1);
+        refine(m, b, depth + 1);
+        return;
+      }
+    }
+    lay(a, b, range, delay);
+  }
+
+  /// Every cell centre between the ranges of two points.
+  void lay(const BranchPoint& a, const BranchPoint& b, const Hermite& range, const Hermite& delay) {
+    const bool rising = b.range.value > a.range.value;
+    const BranchPoint& near = rising ? a : b;
+    const BranchPoint& far = rising ? b : a;
+    const double first = std::max(0.0, std::ceil(near.range.value / spacing_ - 0.5));
+    const double limit = std::min(far.range.value, max_range_);
+    const double lo = std::min(near.range.x, far.range.x), hi = std::max(near.range.x, far.range.x);
+    double sigma = near.range.x;
+    for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
+      const double r = (cell + 0.5) * spacing_;
+      if (r >= limit) return;
+      for (int i = 0; i < 3; ++i) {  // the cubic's root, from the neighbour's
+        const double slope = range.slope(sigma);
+        if (slope == 0.0) break;
+        sigma = std::clamp(sigma - (range.value(sigma) - r) / slope, lo, hi);
+      }
+      const double share = (r - near.range.value) / (far.range.value - near.range.value);
+      out_.push_back({cell, path(sigma, r, delay.value(sigma), range.slope(sigma),
+                                 near.length + share * (far.length - near.length))});
+    }
+  }
+
+  GroundPath path(double sigma, double range, double delay, double slope, double length) const {
+    const RayParameter r = ray(sigma);
+    const Column& column = fan_.column();
+    const Branch& branch = stretch_->branch;
+    double per_slowness = slope / r.slowness_per_sigma();
+    const int caustics = caustics_passed(turns_, per_slowness);
+    per_slowness = std::max(std::abs(per_slowness), floor_);
+    const int tops = stretch_->interval->turns_above ? 0 : branch.top_vertices();
+    const int bottoms = stretch_->interval->turns_below ? 0 : branch.bottom_vertices();
+    static constexpr std::complex<double> quarter_turns[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    const double size = builder_.spreading(r, range, per_slowness) *
+                        amplitude_from_db(-builder_.absorption_db_per_metre() * length);
+    return {
+        .delay = delay,
+        .amplitude = size * quarter_turns[caustics % 4] * builder_.reflections(r, tops, bottoms),
+        .launch_elevation =
+            (branch.starts_up ? 1.0 : -1.0) *
+            std::atan2(builder_.sine_at_source(r), r.slowness * column.source_speed()),
+        .grazing = std::atan2(builder_.sine_at_receiver(r), r.slowness * column.receiver_speed()),
+        .horizontal_slowness = r.slowness};
+  }
+
+  const BranchTable& fan_;
+  PathBuilder builder_;
+  BoundaryKind boundary_;
+  double spacing_, max_range_, frequency_;
+  std::vector<CellPath>& out_;
+  const MonotoneStretch* stretch_ = nullptr;
+  BranchWeights weights_;
+  int turns_ = 0;
+  double floor_ = 0.0;
+};
+
+}  // namespace
+
+GroundPaths ground_paths(const EigenraySolver& solver, double source_depth, BoundaryKind boundary,
+                         double spacing, double max_range, double frequency,
+                         const PathLimits& limits) {
+  const Environment& ocean = solver.environment();
+  const double depth = boundary == BoundaryKind::surface ? ocean.surface.depth : ocean.bottom.depth;
+  const BranchTable fan = solver.table(source_depth, depth, limits);
+  std::vector<CellPath> found;
+  BranchFollower follower(ocean, fan, boundary, spacing, max_range, frequency, found);
+  fan.for_each_stretch(0.0, max_range,
+                       [&](const MonotoneStretch& stretch) { follower.follow(stretch); });
+
+  GroundPaths ground;
+  ground.spacing_ = spacing;
+  const auto cells = static_cast<std::size_t>(std::max(0.0, std::ceil(max_range / spacing - 0.5)));
+  ground.first_.assign(cells + 1, 0);
+  for (const CellPath& p : found)
+    ++ground.first_[p.cell +
+                    1];  // counting sort, stable: the order within a cell is the order of branches
+  for (std::size_t i = 0; i < cells; ++i) ground.first_[i + 1] += ground.first_[i];
+  ground.paths_.resize(found.size());
+  std::vector<std::uint32_t> next(ground.first_.begin(), ground.first_.end());
+  for (const CellPath& p : found) ground.paths_[next[p.cell]++] = p.path;
+  return ground;
+}
+
+}  // namespace asdic

@@ -1,0 +1,57 @@
+#pragma once
+#include <complex>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raytrace/eigenrays.h"
+
+namespace asdic {
+
+/// One path from a source to one cell of a boundary: the incident field, before the boundary
+/// answers.
+struct GroundPath {
+  double delay = 0.0;  ///< [s]
+  std::complex<double> amplitude =
+      0.0;  ///< as Arrival::amplitude, up to the boundary but without its own reflection
+  double launch_elevation = 0.0;     ///< [rad], positive up
+  double grazing = 0.0;              ///< at the cell [rad]
+  double horizontal_slowness = 0.0;  ///< ξ [s/m]
+};
+
+/// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
+/// i·spacing to (i + 1)·spacing. Paths of one cell add coherently; the cells are the same whatever
+/// the fan.
+class GroundPaths {
+ public:
+  [[nodiscard]] double spacing() const noexcept { return spacing_; }
+  [[nodiscard]] std::size_t cells() const noexcept {
+    return first_.empty() ? 0 : first_.size() - 1;
+  }
+  [[nodiscard]] double range(std::size_t cell) const noexcept {
+    return (double(cell) + 0.5) * spacing_;
+  }  ///< of its centre [m]
+  [[nodiscard]] std::span<const GroundPath> paths(std::size_t cell) const noexcept {
+    return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
+
+ private:
+  friend GroundPaths ground_paths(const EigenraySolver&, double, BoundaryKind, double, double,
+                                  double, const PathLimits&);
+  double spacing_ = 0.0;
+  std::vector<std::uint32_t> first_;  // [cells + 1]
+  std::vector<GroundPath> paths_;
+};
+
+/// Where the fan of a source meets a boundary, interpolated along each branch of the fan onto one
+/// ground grid: delay and range by cubics whose slopes are exact (dτ/dr = ξ), refined until range
+/// and delay are right to a hundredth of the spacing; the amplitude follows from dr/dξ there. Near
+/// a caustic |dr/dξ| is held at the value where two coalescing rays have their greatest (Airy)
+/// amplitude, for the integral of intensity² over range diverges in ray theory. \param spacing  of
+/// the grid [m]   \param max_range  [m]   \param frequency  [Hz]
+[[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
+                                       BoundaryKind boundary, double spacing, double max_range,
+                                       double frequency, const PathLimits& limits);
+
+}  // namespace asdic

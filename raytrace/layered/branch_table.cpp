@@ -1,0 +1,229 @@
+#include "raytrace/layered/branch_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "raytrace/layered/hermite.h"
+
+namespace asdic {
+namespace {
+
+/// A speed at which the fan is singular; `logarithmic` where it is a smooth maximum of the profile,
+/// near which a ray lingers.
+struct CriticalSpeed {
+  double speed;
+  bool logarithmic;
+};
+
+bool is_smooth_extremum(const Layer& layer, double depth) {
+  if (layer.closed_form()) return false;
+  const SoundSpeed here = layer.at(depth);
+  return std::abs(here.dc_dz) < 1e-6 * std::abs(here.d2c_dz2) * layer.thickness();
+}
+
+std::vector<CriticalSpeed> critical_speeds(const Column& column, double slowest, double fastest) {
+  std::vector<CriticalSpeed> critical = {{slowest, false}, {fastest, false}};
+  for (const Layer& layer : column.layers()) {
+    critical.push_back({layer.c_top, is_smooth_extremum(layer, layer.top)});
+    critical.push_back({layer.c_bottom, is_smooth_extremum(layer, layer.bottom)});
+  }
+  std::erase_if(critical,
+                [&](const CriticalSpeed& c) { return c.speed < slowest || c.speed > fastest; });
+  std::sort(critical.begin(), critical.end(),
+            [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  std::vector<CriticalSpeed> distinct;
+  for (const CriticalSpeed& c : critical) {
+    if (!distinct.empty() && c.speed - distinct.back().speed <= 1e-13 * c.speed)
+      distinct.back().logarithmic |= c.logarithmic;
+    else
+      distinct.push_back(c);
+  }
+  return distinct;
+}
+
+/// Nodes over (0, σ_end): denser towards 0, where r(σ) bends within the distance to the next slower
+/// knot; geometric towards logarithmic ends.
+std::vector<double> node_sigmas(double sigma_end, int count, bool log_begin, bool log_end) {
+  std::vector<double> sigma;
+  const double first = sigma_end / (count * count);
+  sigma.push_back(1e-10 * sigma_end);
+  if (log_begin)
+    for (int m = 14; m >= 1; --m) sigma.push_back(first * std::pow(0.25, m));
+  for (int j = 1; j < count; ++j) sigma.push_back(sigma_end * (j * j) / (double(count) * count));
+  if (log_end)
+    for (int m = 1; m <= 14; ++m)
+      sigma.push_back(sigma_end * (1.0 - 2.0 / count * std::pow(0.25, m)));
+  sigma.push_back(sigma_end * (1.0 - 1e-12));
+  return sigma;
+}
+
+}  // namespace
+
+BranchTable::BranchTable(Column column, const PathLimits& limits)
+    : column_(std::move(column)), limits_(limits) {
+  const double slowest = column_.barrier_speed();
+  const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * 3.14159265358979));
+  const double fastest = column_.source_speed() / std::max(steepest, 1e-9);
+  if (fastest <= slowest) return;
+  const auto critical = critical_speeds(column_, slowest, fastest);
+  intervals_.reserve(critical.size());
+  for (std::size_t i = 0; i + 1 < critical.size(); ++i)
+    add_interval(critical[i].speed, critical[i + 1].speed, critical[i].logarithmic,
+                 critical[i + 1].logarithmic);
+}
+
+void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
+                               bool singular_fast) {
+  const double ratio = c_slow / c_fast;
+  const double sigma_end = std::sqrt((1.0 - ratio) * (1.0 + ratio));
+  // One analytic law over the whole depth has few, wide intervals; a table has one from sample to
+  // sample.
+  const bool wide = column_.layers().front().law == Layer::Law::munk;
+  FanInterval interval{.reference_speed = c_slow};
+  interval.sigma = node_sigmas(sigma_end, wide ? 16 : 7, singular_slow, singular_fast);
+  const std::size_t n = interval.sigma.size();
+  for (auto* values : {&interval.up, &interval.middle, &interval.down, &interval.d_up,
+                       &interval.d_middle, &interval.d_down})
+    values->resize(n);
+  interval.shortest_cycle = 1e300;
+  for (std::size_t i = 0; i < n; ++i) {
+    const RayParameter ray(c_slow, interval.sigma[i]);
+    const ColumnSums sums = column_.sums(ray);
+    const double chain = ray.slowness_per_sigma();
+    interval.up[i] = sums.up.range;
+    interval.middle[i] = sums.middle.range;
+    interval.down[i] = sums.down.range;
+    interval.d_up[i] = sums.up.d_range * chain;
+    interval.d_middle[i] = sums.middle.d_range * chain;
+    interval.d_down[i] = sums.down.d_range * chain;
+    interval.turns_above = sums.turns_above;
+    interval.turns_below = sums.turns_below;
+    interval.shortest_cycle =
+        std::min(interval.shortest_cycle, sums.up.range + sums.middle.range + sums.down.range);
+  }
+  intervals_.push_back(std::move(interval));
+}
+
+BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const Branch& branch,
+                                              double sigma) const noexcept {
+  const RayParameter ray(interval.reference_speed, sigma);
+  const ColumnSums sums = column_.sums(ray);
+  const BranchWeights w = weights(branch, column_.source_is_upper());
+  return {w.of(sums.up.range, sums.middle.range, sums.down.range),
+          w.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) * ray.slowness_per_sigma()};
+}
+
+namespace {
+
+/// Splits the stretch between two nodes wherever the cubic through their ranges and slopes says
+/// that r has an extremum; the extrema themselves are found on the exact r.
+class StretchSplitter {
+ public:
+  StretchSplitter(const BranchTable& table, const FanInterval& interval, const Branch& branch,
+                  const std::function<void(const MonotoneStretch&)>& visit)
+      : table_(table), interval_(interval), branch_(branch), visit_(visit) {}
+
+  void split(HermiteNode a, HermiteNode b, bool caustic_a = false, int depth = 0) {
+    const Hermite cubic(a, b);
+    const auto turns = cubic.extrema();
+    if (depth < 4 && !turns.empty()) {
+      // A change of sign of the exact slope brackets an extremum; without one the cubic saw a
+      // wiggle: look at its place and decide there.
+      const double guess = turns.front();
+      const HermiteNode middle = node(guess);
+      if ((a.slope > 0.0) != (b.slope > 0.0) || (middle.slope > 0.0) != (a.slope > 0.0)) {
+        const HermiteNode caustic =
+            (middle.slope > 0.0) != (a.slope > 0.0) ? extremum(a, middle) : extremum(middle, b);
+        emit(a, caustic, caustic_a, true);
+        split(caustic, b, true, depth + 1);
+        return;
+      }
+      split(a, middle, caustic_a, depth + 1);
+      split(middle, b, false, depth + 1);
+      return;
+    }
+    emit(a, b, caustic_a, false);
+  }
+
+ private:
+  HermiteNode node(double sigma) const {
+    const auto [range, slope] = table_.evaluate(interval_, branch_, sigma);
+    return {sigma, range, slope};
+  }
+
+  /// The zero of the exact slope between two nodes where it has different signs: secant steps
+  /// inside a shrinking bracket.
+  HermiteNode extremum(HermiteNode a, HermiteNode b) const {
+    const bool rises = a.slope > 0.0;
+    HermiteNode best = a;
+    for (int i = 0; i < 60; ++i) {
+      double x = a.x - a.slope * (b.x - a.x) / (b.slope - a.slope);
+      if (i % 3 == 2 || !(x > a.x && x < b.x)) x = 0.5 * (a.x + b.x);
+      best = node(x);
+      ((best.slope > 0.0) == rises ? a : b) = best;
+      // With curvature r″ the range there differs from the extremum by slope²/(2r″).
+      const double curvature = std::abs((b.slope - a.slope) / (b.x - a.x));
+      if (best.slope * best.slope < 2e-6 * curvature || b.x - a.x < 1e-14 * b.x) break;
+    }
+    best.slope = rises ? -1e-300 : 1e-300;  // zero, with the sign of what follows
+    return best;
+  }
+
+  void emit(const HermiteNode& a, const HermiteNode& b, bool caustic_a, bool caustic_b) const {
+    if (!(b.x > a.x)) return;
+    visit_({.interval = &interval_,
+            .branch = branch_,
+            .sigma_begin = a.x,
+            .sigma_end = b.x,
+            .range_begin = a.value,
+            .range_end = b.value,
+            .slope_begin = a.slope,
+            .slope_end = b.slope,
+            .caustic_begin = caustic_a,
+            .caustic_end = caustic_b});
+  }
+
+  const BranchTable& table_;
+  const FanInterval& interval_;
+  Branch branch_;
+  const std::function<void(const MonotoneStretch&)>& visit_;
+};
+
+}  // namespace
+
+void BranchTable::for_each_stretch(double low, double high,
+                                   const std::function<void(const MonotoneStretch&)>& visit) const {
+  const bool upper = column_.source_is_upper();
+  for (const FanInterval& interval : intervals_) {
+    const std::size_t n = interval.sigma.size();
+    for (const bool starts_up : {true, false}) {
+      for (int k = 0; k <= limits_.max_vertices; ++k) {
+        const Branch branch{.starts_up = starts_up, .vertices = k};
+        if (!interval.turns_above && branch.top_vertices() > limits_.max_surface_bounces) break;
+        if (!interval.turns_below && branch.bottom_vertices() > limits_.max_bottom_bounces) break;
+        if (k > 1 && (k - 1) * interval.shortest_cycle > high) break;
+        if (k == 0 && starts_up == upper) continue;  // the receiver lies the other way
+        const BranchWeights w = weights(branch, upper);
+        const auto node = [&](std::size_t i) {
+          return HermiteNode{interval.sigma[i],
+                             w.of(interval.up[i], interval.middle[i], interval.down[i]),
+                             w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i])};
+        };
+        StretchSplitter splitter(*this, interval, branch, visit);
+        HermiteNode a = node(0);
+        for (std::size_t i = 1; i < n; ++i) {
+          const HermiteNode b = node(i);
+          // A cubic stays within its ends widened by a quarter of what its slopes could add.
+          const double margin = 0.25 * (b.x - a.x) * (std::abs(a.slope) + std::abs(b.slope)) + 1e-3;
+          if (std::max(a.value, b.value) + margin >= low &&
+              std::min(a.value, b.value) - margin <= high)
+            splitter.split(a, b);
+          a = b;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace asdic

@@ -1,0 +1,73 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "raytrace/layered/branch.h"
+#include "raytrace/layered/column.h"
+
+namespace asdic {
+
+/// What is searched for, between one source and one receiver depth. A path is kept when it is
+/// within all the limits.
+struct PathLimits {
+  int max_surface_bounces = 3;
+  int max_bottom_bounces = 3;
+  double max_launch_angle = 1.5707963267948966;  ///< from the horizontal [rad]
+  int max_vertices = 256;  ///< turning points and bounces together: at a kink of the profile ever
+                           ///< smaller cycles have no end
+};
+
+/// Rays between two depths as functions of their parameter: what a fan of rays would find,
+/// tabulated.
+///
+/// The fan is split at the singular rays of a piecewise profile (those that turn at a knot, graze a
+/// boundary, or are horizontal at source or receiver): within an interval all ranges are smooth
+/// functions of σ, the sine of the ray's angle at the slower of the interval's two singular depths.
+struct FanInterval {
+  double reference_speed = 0.0;  ///< σ = sin θ where the speed is this [m/s]
+  bool turns_above = false, turns_below = false;
+  std::vector<double> sigma;                   ///< [n] increasing nodes
+  std::vector<double> up, middle, down;        ///< [n] ranges of the three pieces [m]
+  std::vector<double> d_up, d_middle, d_down;  ///< [n] their derivatives with respect to σ [m]
+  double shortest_cycle = 0.0;  ///< least range from vertex to vertex over the nodes [m]
+};
+
+/// A stretch of an interval over which a branch's range is monotone in σ.
+struct MonotoneStretch {
+  const FanInterval* interval = nullptr;
+  Branch branch;
+  double sigma_begin = 0.0, sigma_end = 0.0;
+  double range_begin = 0.0, range_end = 0.0;        ///< r at the two ends [m]
+  double slope_begin = 0.0, slope_end = 0.0;        ///< dr/dσ there [m]; 0 at a caustic
+  bool caustic_begin = false, caustic_end = false;  ///< the end is an extremum of r
+};
+
+class BranchTable {
+ public:
+  BranchTable(Column column, const PathLimits& limits);
+
+  [[nodiscard]] const Column& column() const noexcept { return column_; }
+  [[nodiscard]] const PathLimits& limits() const noexcept { return limits_; }
+
+  /// Exact r and dr/dσ of a branch.
+  struct RangeSlope {
+    double range, slope;
+  };
+  [[nodiscard]] RangeSlope evaluate(const FanInterval& interval, const Branch& branch,
+                                    double sigma) const noexcept;
+
+  /// Calls `visit` for every monotone stretch of every branch within the limits. With a non-empty
+  /// [low, high] only stretches whose ranges may meet it are split and visited.
+  void for_each_stretch(double low, double high,
+                        const std::function<void(const MonotoneStretch&)>& visit) const;
+
+ private:
+  void add_interval(double c_slow, double c_fast, bool singular_slow, bool singular_fast);
+
+  Column column_;
+  PathLimits limits_;
+  std::vector<FanInterval> intervals_;
+};
+
+}  // namespace asdic

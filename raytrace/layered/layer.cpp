@@ -1,0 +1,126 @@
+#include "raytrace/layered/layer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+/// Depths strictly inside (top, bottom) where the layer's dc/dz changes sign.
+std::vector<double> extrema(const Layer& layer) {
+  std::vector<double> found;
+  const auto keep = [&](double z) {
+    const double margin = 1e-9 * (layer.bottom - layer.top);
+    if (z > layer.top + margin && z < layer.bottom - margin) found.push_back(z);
+  };
+  if (layer.law == Layer::Law::munk) keep(layer.coefficient[1]);
+  if (layer.law ==
+      Layer::Law::cubic) {  // c' = a₁ + 2a₂t + 3a₃t², by the formula that does not cancel
+    const double a = 3.0 * layer.coefficient[3], b = 2.0 * layer.coefficient[2],
+                 c = layer.coefficient[1];
+    const double discriminant = b * b - 4.0 * a * c;
+    if (discriminant > 0.0) {
+      const double half = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+      if (a != 0.0) keep(layer.origin + half / a);
+      if (half != 0.0) keep(layer.origin + c / half);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// The part of a layer between two depths inside it. The speeds at kept ends stay the same to the
+/// last bit.
+Layer slice(const Layer& layer, double top, double bottom) {
+  Layer part = layer;
+  if (top != layer.top) part.c_top = layer.at(top).c;
+  if (bottom != layer.bottom) part.c_bottom = layer.at(bottom).c;
+  part.top = top;
+  part.bottom = bottom;
+  return part;
+}
+
+/// The layer between two depths with no sample of the profile between them.
+Layer interval_layer(const SoundSpeedProfile& water, double top, double bottom) {
+  const SoundSpeed upper = water.at(top), lower = water.at(bottom);
+  Layer layer{.top = top, .bottom = bottom, .c_top = upper.c, .c_bottom = lower.c};
+  const double h = bottom - top;
+  if (const auto& munk = water.munk_parameters()) {
+    layer.law = Layer::Law::munk;
+    layer.coefficient = {munk->axis_speed, munk->axis_depth, munk->scale_depth, munk->perturbation};
+  } else if (water.depths().size() < 2 || water.interpolation() == Interpolation::c_linear) {
+    layer.gradient = (lower.c - upper.c) / h;
+  } else if (water.interpolation() == Interpolation::n2_linear) {
+    layer.law = Layer::Law::n2_linear;
+    layer.gradient = (1.0 / (lower.c * lower.c) - 1.0 / (upper.c * upper.c)) / h;
+  } else {  // the Hermite cubic through both ends' speeds and slopes
+    layer.law = Layer::Law::cubic;
+    layer.origin = top;
+    const double secant = (lower.c - upper.c) / h;
+    layer.coefficient = {upper.c, upper.dc_dz, (3.0 * secant - 2.0 * upper.dc_dz - lower.dc_dz) / h,
+                         (upper.dc_dz + lower.dc_dz - 2.0 * secant) / (h * h)};
+  }
+  return layer;
+}
+
+}  // namespace
+
+SoundSpeed Layer::at(double depth) const noexcept {
+  switch (law) {
+    case Law::c_linear:
+      return {c_top + gradient * (depth - top), gradient, 0.0};
+    case Law::n2_linear: {  // c' = −c³/2·d(n²)/dz, c″ = 3c'²/c
+      const double c = 1.0 / std::sqrt(1.0 / (c_top * c_top) + gradient * (depth - top));
+      const double slope = -0.5 * c * c * c * gradient;
+      return {c, slope, 3.0 * slope * slope / c};
+    }
+    case Law::cubic: {
+      const double t = depth - origin;
+      const auto& a = coefficient;
+      return {a[0] + t * (a[1] + t * (a[2] + t * a[3])), a[1] + t * (2.0 * a[2] + 3.0 * t * a[3]),
+              2.0 * a[2] + 6.0 * t * a[3]};
+    }
+    case Law::munk:
+      break;
+  }
+  const auto& [c1, z1, scale, epsilon] =
+      coefficient;  // c = c₁[1 + ε(η − 1 + e^−η)], η = 2(z − z₁)/B
+  const double eta = 2.0 * (depth - z1) / scale, decay = std::exp(-eta);
+  const double k = 2.0 / scale;
+  return {c1 * (1.0 + epsilon * (eta - 1.0 + decay)), c1 * epsilon * k * (1.0 - decay),
+          c1 * epsilon * k * k * decay};
+}
+
+std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top, double bottom) {
+  std::vector<double> cuts = {top};
+  for (const double z : water.depths())
+    if (z > top && z < bottom) cuts.push_back(z);
+  cuts.push_back(bottom);
+
+  std::vector<Layer> layers;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const Layer whole = interval_layer(water, cuts[i], cuts[i + 1]);
+    double from = whole.top;
+    for (const double z : extrema(whole)) {
+      layers.push_back(slice(whole, from, z));
+      from = z;
+    }
+    layers.push_back(slice(whole, from, whole.bottom));
+  }
+  // Neighbours share the speed at their common depth to the last bit.
+  for (std::size_t i = 0; i + 1 < layers.size(); ++i) layers[i + 1].c_top = layers[i].c_bottom;
+  return layers;
+}
+
+void cut_at(std::vector<Layer>& layers, double depth) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (depth <= layers[i].top || depth >= layers[i].bottom) continue;
+    const Layer lower = slice(layers[i], depth, layers[i].bottom);
+    layers[i] = slice(layers[i], layers[i].top, depth);
+    layers[i].c_bottom = lower.c_top;
+    layers.insert(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, lower);
+    return;
+  }
+}
+
+}  // namespace asdic

@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "raytrace/ocean/sound_speed.h"
+
+namespace asdic {
+
+/// A slab of water in which the speed is monotone in depth and follows one law.
+struct Layer {
+  enum class Law : unsigned char { c_linear, n2_linear, cubic, munk };
+
+  double top = 0.0, bottom = 0.0;      ///< depths [m]
+  double c_top = 0.0, c_bottom = 0.0;  ///< speeds there [m/s]
+  Law law = Law::c_linear;
+  double gradient = 0.0;  ///< c-linear: dc/dz [1/s]; n²-linear: d(1/c²)/dz [s²/m³]
+  double origin = 0.0;    ///< cubic: depth from which its polynomial counts [m]
+  std::array<double, 4> coefficient{};  ///< cubic: c = Σ aᵢ(z − origin)ⁱ; Munk: c₁, z₁, B, ε
+
+  [[nodiscard]] SoundSpeed at(double depth) const noexcept;
+  [[nodiscard]] double thickness() const noexcept { return bottom - top; }
+  [[nodiscard]] bool closed_form() const noexcept {
+    return law == Law::c_linear || law == Law::n2_linear;
+  }
+};
+
+/// The water between two depths as layers from top to bottom: cut at the profile's samples and
+/// wherever dc/dz is zero.
+[[nodiscard]] std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top,
+                                             double bottom);
+
+/// The layers with a further cut at `depth` (no change if there is one already).
+void cut_at(std::vector<Layer>& layers, double depth);
+
+}  // namespace asdic

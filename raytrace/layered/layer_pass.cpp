@@ -1,0 +1,188 @@
+#include "raytrace/layered/layer_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/layered/smooth_quadrature.h"
+
+namespace asdic {
+namespace {
+
+/// (atanh x)/x and (asin x)/x, for |x| < 1, without cancellation at 0.
+double atanh_over(double x) { return std::abs(x) < 1e-4 ? 1.0 + x * x / 3.0 : std::atanh(x) / x; }
+double asin_over(double x) {
+  return std::abs(x) < 1e-4 ? 1.0 + x * x / 6.0 : std::asin(std::clamp(x, -1.0, 1.0)) / x;
+}
+
+/// A turning piece so thin that its law is a straight line to rounding; nodes in it could not be
+/// told apart.
+bool is_straight(const Layer& layer, double turn, double edge) {
+  const SoundSpeed there = layer.at(edge);
+  return std::abs(turn - edge) * std::abs(there.d2c_dz2) < 1e-7 * std::abs(there.dc_dz);
+}
+
+/// c linear between two depths at distance h where the speeds are c_a, c_b and the sines s_a, s_b.
+/// Arc of a circle.
+PassDetail arc(double c_a, double c_b, double s_a, double s_b, double h, double gradient,
+               double slowness) {
+  // time = (1/g)·atanh[(s_a − s_b)/(1 − s_a s_b)], length = asin[s_a·ξc_b − s_b·ξc_a]/(ξg), both
+  // rearranged to hold as g → 0 and ξ → 0.
+  const double a2 = slowness * slowness * c_a * c_a;
+  const double y_time =
+      (c_a + c_b) * h / (s_a + s_b) * (1.0 + s_a * s_b) / (c_a * c_a + c_b * c_b - a2 * c_b * c_b);
+  const double y_length = (c_a + c_b) * h / (s_a * c_b + s_b * c_a);
+  return {.time = y_time * atanh_over(gradient * y_time),
+          .length = y_length * asin_over(slowness * gradient * y_length)};
+}
+
+/// 1/c² linear: time = ∫w dz + ξΔr, length = (1/b)[Δ(nw) + ξ²Δln(n + w)], n = 1/c, w = s/c.
+PassDetail parabola(double c_a, double c_b, double w_a, double w_b, double h, double gradient,
+                    double slowness) {
+  const double range = 2.0 * slowness * h / (w_a + w_b);
+  const double time =
+      2.0 / 3.0 * h * (w_a * w_a + w_a * w_b + w_b * w_b) / (w_a + w_b) + slowness * range;
+  const double n_a = 1.0 / c_a, n_b = 1.0 / c_b;
+  double length = 0.0;
+  if (std::abs(gradient * h) > 1e-3 * n_a * n_a) {
+    length = ((n_b * w_b - n_a * w_a) + slowness * slowness * std::log((n_b + w_b) / (n_a + w_a))) /
+             gradient;
+  } else {  // nearly uniform: ∫ n/w dz with dz = 2w dw/b, so length = ∫ 2n dw·(h/(w_b − w_a)/(w_a +
+            // w_b)) = 2h/(w_a + w_b)·⟨n⟩ over w
+    gauss_legendre(0.0, 1.0, [&](double x, double weight) {
+      const double w = w_a + x * (w_b - w_a);
+      length += weight * 2.0 * h / (w_a + w_b) * std::sqrt(w * w + slowness * slowness);
+    });
+  }
+  return {.time = time, .length = length};
+}
+
+}  // namespace
+
+double turning_depth(const Layer& layer, const RayParameter& ray) noexcept {
+  const double target = ray.turning_speed();
+  const double span = layer.c_bottom - layer.c_top;
+  if (layer.law == Layer::Law::c_linear)
+    return span > 0 ? layer.bottom - (layer.c_bottom - target) / layer.gradient
+                    : layer.top + (target - layer.c_top) / layer.gradient;
+  if (layer.law == Layer::Law::n2_linear)
+    return layer.top +
+           (ray.slowness * ray.slowness - 1.0 / (layer.c_top * layer.c_top)) / layer.gradient;
+  // Newton inside a shrinking bracket: the law is monotone in the layer.
+  double low = layer.top, high = layer.bottom;
+  double z = low + (high - low) * std::clamp((target - layer.c_top) / span, 0.0, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    const SoundSpeed here = layer.at(z);
+    ((here.c < target) == (span > 0.0) ? low : high) = z;
+    const double step = here.dc_dz != 0.0 ? (target - here.c) / here.dc_dz : 0.0;
+    double next = z + step;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - z) <= 1e-15 * (std::abs(z) + 1.0)) return next;
+    z = next;
+  }
+  return z;
+}
+
+Pass cross(const Layer& layer, const RayParameter& ray, double sine_top,
+           double sine_bottom) noexcept {
+  const double xi = ray.slowness, h = layer.thickness();
+  if (layer.law == Layer::Law::c_linear) {
+    const double per_xi = (layer.c_top + layer.c_bottom) * h / (sine_top + sine_bottom);
+    return {.range = xi * per_xi, .d_range = per_xi / (sine_top * sine_bottom)};
+  }
+  if (layer.law == Layer::Law::n2_linear) {
+    const double w_a = sine_top / layer.c_top, w_b = sine_bottom / layer.c_bottom;
+    const double per_xi = 2.0 * h / (w_a + w_b);
+    return {.range = xi * per_xi, .d_range = per_xi * (1.0 + xi * xi / (w_a * w_b))};
+  }
+  Pass pass;
+  integrate_crossing(layer, ray, sine_top, sine_bottom, [&](double c, double s, double dz) {
+    const double c_over_s = dz * c / s;
+    pass.range += c_over_s;              // dr = (ξc/s) dz
+    pass.d_range += c_over_s / (s * s);  // ∂/∂ξ of it: c/s³ dz
+  });
+  pass.range *= xi;
+  return pass;
+}
+
+PassDetail cross_detail(const Layer& layer, const RayParameter& ray, double sine_top,
+                        double sine_bottom) noexcept {
+  const double h = layer.thickness();
+  if (layer.law == Layer::Law::c_linear)
+    return arc(layer.c_top, layer.c_bottom, sine_top, sine_bottom, h, layer.gradient, ray.slowness);
+  if (layer.law == Layer::Law::n2_linear)
+    return parabola(layer.c_top, layer.c_bottom, sine_top / layer.c_top,
+                    sine_bottom / layer.c_bottom, h, layer.gradient, ray.slowness);
+  PassDetail detail;
+  integrate_crossing(layer, ray, sine_top, sine_bottom, [&](double c, double s, double dz) {
+    detail.time += dz / (c * s);
+    detail.length += dz / s;
+  });
+  return detail;
+}
+
+Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
+  const double xi = ray.slowness;
+  const bool downward = layer.c_bottom > layer.c_top;
+  const double edge = downward ? layer.top : layer.bottom,
+               c_edge = downward ? layer.c_top : layer.c_bottom;
+  const auto circle = [&](double gradient) {  // r = s/(ξ|g|), dr/dξ = −1/(ξ²|g|s)
+    const double range = sine / (xi * std::abs(gradient));
+    return Pass{.range = range, .d_range = -range / (xi * sine * sine)};
+  };
+  if (layer.law == Layer::Law::c_linear) return circle(layer.gradient);
+  if (layer.law == Layer::Law::n2_linear) {  // r = 2ξw/|b|, dr/dξ = (2/|b|)(w − ξ²/w)
+    const double w = sine / c_edge, two_over_b = 2.0 / std::abs(layer.gradient);
+    return {.range = xi * two_over_b * w, .d_range = two_over_b * (w - xi * xi / w)};
+  }
+  const double turn_z = turning_depth(layer, ray);
+  if (is_straight(layer, turn_z, edge)) return circle(layer.at(edge).dc_dz);
+
+  // Near the turning point dr/dξ = (1/ξ²){[1/(s c')] + ∫ c″/(s c'²) dz} (by parts, the end at s = 0
+  // dropped); ∫ c/s³ dz beyond.
+  Pass pass;
+  double by_parts = 0.0;
+  const double orientation = downward ? -1.0 : 1.0;  // dz from the turning depth to the edge
+  const double hand_over = integrate_turning(
+      layer, ray, turn_z,
+      [&](double c, double s, double dz) {
+        pass.range += dz * c / s;
+        pass.d_range += dz * c / (s * s * s);
+      },
+      [&](const SoundSpeed& water, double s, double dz) {
+        pass.range += dz * water.c / s;
+        by_parts += dz * water.d2c_dz2 / (s * water.dc_dz * water.dc_dz);
+      });
+  const SoundSpeed end = layer.at(hand_over);
+  const double s_end = hand_over == edge ? sine : std::sqrt(ray.sine2(end.c));
+  by_parts += orientation / (s_end * end.dc_dz);
+  pass.range *= xi;
+  pass.d_range += by_parts / (xi * xi);
+  return pass;
+}
+
+PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine) noexcept {
+  const bool downward = layer.c_bottom > layer.c_top;
+  const double edge = downward ? layer.top : layer.bottom,
+               c_edge = downward ? layer.c_top : layer.c_bottom;
+  const double turn_z = turning_depth(layer, ray);
+  const double c_turn = ray.turning_speed();
+  const auto circle = [&](double gradient) {
+    return arc(c_edge, c_turn, sine, 0.0, std::abs(turn_z - edge), std::abs(gradient),
+               ray.slowness);
+  };
+  if (layer.law == Layer::Law::c_linear) return circle(layer.gradient);
+  if (layer.law == Layer::Law::n2_linear)
+    return parabola(c_edge, c_turn, sine / c_edge, 0.0, std::abs(turn_z - edge),
+                    -std::abs(layer.gradient), ray.slowness);
+  if (is_straight(layer, turn_z, edge)) return circle(layer.at(edge).dc_dz);
+  PassDetail detail;
+  const auto add = [&](double c, double s, double dz) {
+    detail.time += dz / (c * s);
+    detail.length += dz / s;
+  };
+  integrate_turning(layer, ray, turn_z, add,
+                    [&](const SoundSpeed& water, double s, double dz) { add(water.c, s, dz); });
+  return detail;
+}
+
+}  // namespace asdic

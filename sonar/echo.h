@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include "raytrace/eigenrays.h"
+#include "sonar/ping_record.h"
+#include "sonar/scenario.h"
+#include "sonar/transmitter.h"
+
+namespace asdic {
+
+/// What the echoes of one ping need to know. Times count from the start of the ping.
+struct EchoContext {
+  const EigenraySolver& ocean;
+  const Scenario& scenario;
+  const BeamPattern& pattern;
+  double frequency;  ///< centre of the pulse [Hz]
+  double ping_time;  ///< since the start of the scenario [s]
+};
+
+/// The echoes of one target: eigenrays out, eigenrays back, and every pair of them.
+struct TargetEchoes {
+  std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
+  std::vector<EchoPath> echoes;
+};
+
+/// Delays are solved for the target's position when the sound strikes it and the array's when it is
+/// heard: eigenrays are found for the positions at the times of the first arrival, and each path's
+/// own delay follows from ∂τ/∂x = ±slowness (7 m/s over 20 s is 144 m; from one path to the next it
+/// is a few metres). Each pair has its exact Doppler factor from velocities, ray directions and
+/// local speeds. Source: docs/theory/echoes.md
+[[nodiscard]] TargetEchoes target_echoes(const EchoContext& context, int target);
+
+}  // namespace asdic

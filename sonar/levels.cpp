@@ -1,0 +1,76 @@
+#include "sonar/levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+
+LevelMeter::LevelMeter(const Recording& recording) {
+  const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
+  // 50 ms, and not more than 20 000 steps.
+  series_.time_step = std::max(0.05, duration / 20000.0);
+  const auto steps = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::ceil(duration / series_.time_step - 1e-9)));
+  for (auto* part : {&series_.echo, &series_.reverberation, &series_.noise})
+    part->assign(steps, 0.0F);
+}
+
+void LevelMeter::add_noise(double variance) {
+  for (float& value : series_.noise) value += static_cast<float>(variance);
+}
+
+void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<float>& into) const {
+  std::vector<double> power(into.size(), 0.0);
+  std::vector<std::size_t> count(into.size(), 0);
+  for (std::size_t n = 0; n < heard.channels; ++n) {
+    const auto row = heard.channel(n);
+    for (std::size_t i = 0; i < heard.recorded; ++i) {
+      const auto step = std::min(
+          into.size() - 1,
+          static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
+      power[step] += static_cast<double>(std::norm(row[i]));
+      ++count[step];
+    }
+  }
+  for (std::size_t step = 0; step < into.size();
+       ++step)  // mean square of a tone is half its envelope's square
+    if (count[step] > 0)
+      into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power[step] /
+                                       static_cast<double>(count[step]));
+}
+
+std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& scenario,
+                                     const Pulse& pulse,
+                                     const std::function<double(double)>& reverberation_db) {
+  std::vector<TargetSummary> summary;
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    TargetSummary row{
+        .name = target.name,
+        .present = record.ping >= target.first_ping && record.ping <= target.last_ping};
+    const EchoPath* strongest = nullptr;
+    for (const EchoPath& echo : record.echoes) {
+      if (echo.target != static_cast<int>(i)) continue;
+      ++row.paths;
+      if (strongest == nullptr || echo.level_db > strongest->level_db) strongest = &echo;
+    }
+    row.echo_level_db = row.signal_excess_db = -infinity;
+    row.echo_time = std::nan("");
+    row.reverberation_db = -infinity;
+    row.noise_db = scenario.noise.spectral_level_db
+                       ? *scenario.noise.spectral_level_db + db_from_power(pulse.bandwidth_40db())
+                       : -infinity;
+    if (strongest != nullptr) {
+      row.echo_time = strongest->heard.delay;
+      row.echo_level_db = strongest->level_db;
+      row.reverberation_db = reverberation_db(strongest->heard.delay +
+                                              0.5 * pulse.duration() / strongest->heard.doppler);
+      row.signal_excess_db = row.echo_level_db - db_from_power(power_from_db(row.reverberation_db) +
+                                                               power_from_db(row.noise_db));
+    }
+    summary.push_back(row);
+  }
+  return summary;
+}
+
+}  // namespace asdic

@@ -1,0 +1,44 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "reverb/patches.h"
+#include "sonar/ping_record.h"
+#include "sonar/pulse.h"
+#include "sonar/scenario.h"
+#include "sonar/transmitter.h"
+
+namespace asdic {
+
+/// Where and how the sonar hears its own reverberation in one ping.
+struct ReverberationContext {
+  const Scenario& scenario;
+  const BeamPattern& pattern;
+  Kinematics platform;
+  double sound_speed;  ///< at the platform [m/s]
+  std::uint32_t ping;
+};
+
+/// The patches as returns: every ring is split into azimuth sectors, each with its own direction,
+/// Doppler factor and complex Gaussian weight, E|w|² = 1, keyed by (seed, ping, ground cell,
+/// sector) and shared by all path pairs through it. Pairs that the beam leaves 100 dB below the
+/// ping's strongest are left out.
+[[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
+                                            std::span<const Patch> patches);
+
+/// Expected level of the reverberation at the array at time t [dB re 1 µPa, peak envelope/√2]: SL +
+/// 10·log₁₀ Σ_cells |Σ_pairs A·D·s(t − τ)|². −∞ where there is none.
+[[nodiscard]] double expected_reverberation_db(const ReverberationContext& context,
+                                               std::span<const Patch> patches, const Pulse& pulse,
+                                               double t);
+
+/// The patches as rows of the file, at most `most` of them; \return {rows, every}: each every-th
+/// cell is kept.
+struct PatchRows {
+  std::vector<PatchRow> rows;
+  int every = 1;
+};
+[[nodiscard]] PatchRows patch_rows(const ReverberationContext& context,
+                                   std::span<const Patch> patches, std::size_t most);
+
+}  // namespace asdic

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "core/units.h"
+#include "raytrace/eigenrays.h"
+#include "support/csv.h"
+
+// Every eigenray of the reference files is found and none is invented: delay within 1 µs, angles
+// within 0.001°, amplitude within 0.02 dB. The references are closed forms or integrations at 1e-12
+// (tests/data/README.md), so the tolerances are the solver's.
+namespace asdic {
+namespace {
+
+struct Expected {
+  double launch_deg, arrival_deg, delay, amplitude;
+  int surface = -1, bottom = -1, caustics = -1;
+};
+
+double angle_error(const Arrival& a, const Expected& e) {
+  return std::max(std::abs(degrees(a.launch_elevation) - e.launch_deg),
+                  std::abs(degrees(a.arrival_elevation) - e.arrival_deg));
+}
+
+/// The arrival whose launch angle is nearest.
+const Arrival& nearest(const Arrivals& found, const Expected& wanted) {
+  return *std::min_element(found.begin(), found.end(), [&](const Arrival& a, const Arrival& b) {
+    return angle_error(a, wanted) < angle_error(b, wanted);
+  });
+}
+
+void expect_match(const Arrivals& found, const Expected& wanted) {
+  ASSERT_FALSE(found.empty());
+  const Arrival& a = nearest(found, wanted);
+  EXPECT_LT(angle_error(a, wanted), 1e-3);
+  EXPECT_NEAR(a.delay, wanted.delay, 1e-6);
+  EXPECT_NEAR(db_from_amplitude(std::abs(a.amplitude) / wanted.amplitude), 0.0, 0.02);
+  if (wanted.surface >= 0) {
+    EXPECT_EQ(a.surface_bounces, wanted.surface);
+  }
+  if (wanted.bottom >= 0) {
+    EXPECT_EQ(a.bottom_bounces, wanted.bottom);
+  }
+  if (wanted.caustics >= 0) {
+    EXPECT_EQ(a.caustics, wanted.caustics);
+  }
+}
+
+TEST(Eigenrays, IsovelocityImages) {
+  const support::Csv csv("physics-reference/rays_isovelocity_images.csv");
+  std::map<std::tuple<double, double, double, double, double>, std::vector<Expected>> cases;
+  for (std::size_t i = 0; i < csv.rows(); ++i)
+    cases[{csv["range_m"][i], csv["zs_m"][i], csv["zr_m"][i], csv["depth_m"][i], csv["c"][i]}]
+        .push_back({csv["launch_elev_deg_up"][i], csv["arrival_elev_deg_up"][i], csv["delay_s"][i],
+                    csv["signed_amplitude"][i], static_cast<int>(csv["n_surface"][i]),
+                    static_cast<int>(csv["n_bottom"][i])});
+  for (const auto& [where, wanted] : cases) {
+    const auto [range, zs, zr, depth, c] = where;
+    Environment ocean{.water = SoundSpeedProfile::isovelocity(c)};
+    ocean.bottom.depth = depth;
+    const Arrivals found = EigenraySolver(ocean).find(
+        zs, zr, range, 1000.0, {.max_surface_bounces = 20, .max_bottom_bounces = 20});
+    ASSERT_GE(found.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size();
+         ++i) {  // the file holds the first 14; images come in order of delay
+      const Arrival& a = found[i];
+      EXPECT_LT(angle_error(a, wanted[i]), 1e-3);
+      EXPECT_NEAR(a.delay, wanted[i].delay, 1e-6);
+      EXPECT_NEAR(a.amplitude.real(), wanted[i].amplitude,
+                  1e-9 * std::abs(wanted[i].amplitude));  // the sign too
+      EXPECT_NEAR(a.amplitude.imag(), 0.0, 1e-12);
+      EXPECT_EQ(a.surface_bounces, wanted[i].surface);
+      EXPECT_EQ(a.bottom_bounces, wanted[i].bottom);
+    }
+  }
+}
+
+// The rows' paths run in an unbounded medium: boundaries are put far away and bounces forbidden.
+TEST(Eigenrays, ConstantGradientArcs) {
+  const support::Csv csv("physics-reference/rays_const_gradient.csv");
+  for (std::size_t i = 0; i < csv.rows(); ++i) {
+    const double c0 = csv["c0"][i], g = csv["g"][i];
+    const std::vector<double> depth = {0.0, 5000.0}, speed = {c0, c0 + g * 5000.0};
+    Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear)};
+    ocean.surface.depth = -20e3;
+    ocean.bottom.depth = g > 0 ? 60e3 : 25e3;
+    const Arrivals found =
+        EigenraySolver(ocean).find(csv["zs_m"][i], csv["zr_m"][i], csv["range_m"][i], 1000.0,
+                                   {.max_surface_bounces = 0, .max_bottom_bounces = 0});
+    ASSERT_EQ(found.size(), 1U) << "row " << i;  // two points lie on one arc without reflection
+    expect_match(found, {csv["launch_elev_deg_up"][i], csv["arrival_elev_deg_up"][i],
+                         csv["delay_s"][i], csv["amplitude"][i], 0, 0});
+    EXPECT_NEAR(found[0].path_length, csv["path_m"][i], 1e-6 * csv["path_m"][i]);
+    EXPECT_NEAR(std::abs(found[0].q), csv["q_m"][i], 1e-6 * csv["q_m"][i]);
+  }
+}
+
+TEST(Eigenrays, N2LinearParabolas) {
+  const support::Csv csv("physics-reference/rays_n2_linear.csv");
+  for (std::size_t i = 0; i < csv.rows();
+       i += 2) {  // rows come in pairs: the two parabolas through two points
+    const double c0 = csv["c0"][i], a = csv["a_per_m"][i];  // 1/c² = (1 + a z)/c0²
+    const auto speed_at = [&](double z) { return c0 / std::sqrt(1.0 + a * z); };
+    const std::vector<double> depth = {-7499.9, 5000.0}, speed = {speed_at(-7499.9), speed_at(5000.0)};
+    Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::n2_linear)};
+    ocean.surface.depth = -7499.9;  // n² vanishes at −7500 m
+    ocean.bottom.depth = 10e3;
+    const Arrivals found =
+        EigenraySolver(ocean).find(csv["zs_m"][i], csv["zr_m"][i], csv["range_m"][i], 1000.0,
+                                   {.max_surface_bounces = 0, .max_bottom_bounces = 0});
+    EXPECT_EQ(found.size(), 2U) << "row " << i;
+    for (std::size_t row : {i, i + 1})
+      expect_match(found, {csv["launch_elev_deg_up"][row], csv["arrival_elev_deg_up"][row],
+                           csv["delay_s"][row], csv["amplitude"][row], 0, 0,
+                           static_cast<int>(csv["kmah"][row])});
+  }
+}
+
+// Munk's profile by its analytic derivatives. The file holds every eigenray with at most 3 bounces
+// in all, launched within ±80°.
+TEST(Eigenrays, Munk) {
+  const support::Csv csv("physics-reference/rays_munk_eigenrays.csv");
+  std::map<std::tuple<double, double, double, double>, std::vector<std::size_t>> cases;
+  for (std::size_t i = 0; i < csv.rows(); ++i)
+    cases[{csv["water_depth_m"][i], csv["zs_m"][i], csv["zr_m"][i], csv["range_m"][i]}].push_back(
+        i);
+  std::size_t rows = 0;
+  for (const auto& [where, wanted] : cases) {
+    const auto [depth, zs, zr, range] = where;
+    SCOPED_TRACE(testing::Message() << "depth " << depth << " source " << zs << " range " << range);
+    Environment ocean{.water = SoundSpeedProfile::munk()};
+    ocean.bottom.depth = depth;
+    Arrivals found = EigenraySolver(ocean).find(
+        zs, zr, range, 1000.0,
+        {.max_surface_bounces = 3, .max_bottom_bounces = 3, .max_launch_angle = radians(80.0)});
+    std::erase_if(found, [](const Arrival& a) { return a.surface_bounces + a.bottom_bounces > 3; });
+    EXPECT_EQ(found.size(), wanted.size());
+    for (const std::size_t i : wanted) {
+      // TL = 0.2 dB where |q| is small against its largest value along the ray; no row of this file
+      // is.
+      expect_match(found,
+                   {csv["launch_elev_deg_up"][i], csv["arrival_elev_deg_up"][i], csv["delay_s"][i],
+                    csv["amplitude_re1m"][i], static_cast<int>(csv["n_surface"][i]),
+                    static_cast<int>(csv["n_bottom"][i]), static_cast<int>(csv["kmah"][i])});
+      EXPECT_NEAR(
+          nearest(found, {csv["launch_elev_deg_up"][i], csv["arrival_elev_deg_up"][i], 0, 0})
+              .path_length,
+          csv["path_m"][i], 1e-3);
+      ++rows;
+    }
+  }
+  EXPECT_EQ(rows, csv.rows());
+}
+
+}  // namespace
+}  // namespace asdic
