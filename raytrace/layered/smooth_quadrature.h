@@ -71,7 +71,7 @@ void at_cubic_nodes(const Layer& layer, const RayParameter& ray, double top, dou
 /// `near_turn(SoundSpeed, s, dz)` on the piece that ends at a turning point, where nodes are placed
 /// in u = √|z − z_turn| so that 1/s is smooth. The caller sums what it needs.
 ///
-/// Away from a turning point the panels grow fourfold from the edge where the ray is flattest: an
+/// Away from a turning point the panels grow threefold from the edge where the ray is flattest: an
 /// integrand like (δ + x)^(−3/2) is then resolved to 1e-10 however small δ is.
 template <class Direct>
 void panels_from_flat_edge(const Layer& layer, const RayParameter& ray, double flat, double steep,
@@ -89,10 +89,10 @@ void panels_from_flat_edge(const Layer& layer, const RayParameter& ray, double f
   };
   double from = 0.0, to = std::max(scale, 1e-12 * total);
   while (from < total) {
-    if (to > 0.5 * total) to = total;
+    if (1.5 * to > total) to = total;
     panel(from, to);
     from = to;
-    to *= 4.0;
+    to *= 3.0;
   }
 }
 
