@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Pictures of a ping file: asdic_plot.py FILE.h5 [-o DIR] [--ping N]
 
-Writes PNGs and prints a line for each. Exit code: 0 all written, 1 they could not be written, 2 the input is wrong.
+Writes PNGs and prints a line for each. Exit code: 0 all written, 1 they could not be written, 2 the
+input is wrong.
 """
 import sys
 from pathlib import Path

@@ -51,7 +51,8 @@ DelayKernel::DelayKernel() {
 double DelayKernel::spectrum(double frequency) const noexcept {
   const double a = pi * taps * frequency;
   const double root = std::sqrt(beta * beta - a * a);  // real inside the band
-  return taps * std::sinh(root) / (root * std::cyl_bessel_i(0.0, beta));
+  static const double peak = std::cyl_bessel_i(0.0, beta);
+  return taps * std::sinh(root) / (root * peak);
 }
 
 }  // namespace asdic

@@ -42,6 +42,27 @@ inline void turn_back(double cycles, double& re, double& im) noexcept {
   re = turned;
 }
 
+using Lanes = DelayKernel::Lanes;
+constexpr auto not_heard = static_cast<std::size_t>(-1);
+
+/// Returns that fall between the same two samples.
+struct Run {
+  const Lanes* taps;
+  std::size_t count;
+  const float* weights;  // ℓ_m(η) of the first
+  std::size_t row;       // from the weights of one return to the next's
+
+  /// grid m + j += Σ_r weights[r][m + j]·taps[r], j < nodes. \param stride of the grids [floats]
+  template <std::size_t nodes>
+  void add(std::size_t m, float* grid, std::size_t stride) const noexcept {
+    std::array<Lanes, nodes> sum;
+    for (std::size_t j = 0; j < nodes; ++j) sum[j].setZero();
+    for (std::size_t r = 0; r < count; ++r)
+      for (std::size_t j = 0; j < nodes; ++j) sum[j] += weights[r * row + m + j] * taps[r];
+    for (std::size_t j = 0; j < nodes; ++j) Eigen::Map<Lanes>(grid + (m + j) * stride) += sum[j];
+  }
+};
+
 }  // namespace
 
 OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExpansion& expansion,
@@ -115,25 +136,13 @@ OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExp
 void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band& band,
                       std::size_t first_node, std::size_t count, std::size_t channel,
                       const Vec3& phone, std::complex<float>* grids) const noexcept {
-  using Lanes = DelayKernel::Lanes;
-  assert(count <= most_nodes);
   const Lanes even = Lanes::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
   const Lanes odd = 1.0F - even;
   const float unit_weight = 1.0F;
+  const std::size_t row = band.nodes == 1 ? 0 : band.nodes;
   Block at;
-
-  // Sorted by delay, neighbours mostly fall between the same two samples: their taps are summed
-  // here, and reach the grids when the place changes.
-  std::array<Lanes, most_nodes> sums;
-  std::fill_n(sums.begin(), count, Lanes::Zero());
-  std::size_t place = DelayKernel::taps;
-  const auto flush = [&] {
-    float* grid = reinterpret_cast<float*>(grids + (place - DelayKernel::before));
-    for (std::size_t m = 0; m < count; ++m) {
-      Eigen::Map<Lanes>(grid + 2 * m * stride) += sums[m];
-      sums[m].setZero();
-    }
-  };
+  std::array<Lanes, block> taps;
+  std::array<std::size_t, block> below;  // the sample at or below the impulse
 
   const auto lay_segment = [&](std::size_t begin, std::size_t end) {
     for (std::size_t start = begin; start < end; start += block) {
@@ -141,25 +150,31 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
       locate(returns, start, n, phone, at);
       for (std::size_t i = 0; i < n; ++i) {
         const double position = at.position[i];
-        if (!(position >= DelayKernel::taps && position <= last_position)) continue;  // not heard
-        const auto below = static_cast<std::size_t>(position);
-        if (below != place) {
-          flush();
-          place = below;
-        }
-        const auto fraction = static_cast<float>(position - static_cast<double>(below));
-        const Lanes taps = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
-        const float* weight = band.nodes == 1
-                                  ? &unit_weight
-                                  : returns.weights.data() + band.first_weight +
-                                        (start + i - band.ends[0]) * band.nodes + first_node;
-        for (std::size_t m = 0; m < count; ++m) sums[m] += weight[m] * taps;
+        const bool heard = position >= DelayKernel::taps && position <= last_position;
+        below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
+        if (!heard) continue;
+        const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
+        taps[i] = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
+      }
+      const float* weights = row == 0 ? &unit_weight
+                                      : returns.weights.data() + band.first_weight +
+                                            (start - band.ends[0]) * row + first_node;
+      // Sorted by delay, neighbours mostly fall between the same two samples: summed in registers.
+      for (std::size_t i = 0, next = 0; i < n; i = next) {
+        for (next = i + 1; next < n && below[next] == below[i];) ++next;
+        if (below[i] == not_heard) continue;
+        const Run run = {
+            .taps = taps.data() + i, .count = next - i, .weights = weights + i * row, .row = row};
+        float* grid = reinterpret_cast<float*>(grids + (below[i] - DelayKernel::before));
+        std::size_t m = 0;
+        for (; m + 8 <= count; m += 8) run.add<8>(m, grid, 2 * stride);
+        if (m + 4 <= count) run.add<4>(m, grid, 2 * stride), m += 4;
+        for (; m < count; ++m) run.add<1>(m, grid, 2 * stride);
       }
     }
   };
   lay_segment(band.ends[0], band.ends[1]);
   lay_segment(band.ends[channel + 1], band.ends[channel + 2]);
-  flush();
 }
 
 void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,

@@ -46,7 +46,7 @@ struct ImpulseGrid {
   double last_position;  ///< impulses beyond are not heard in the record [samples]
   std::size_t stride;    ///< from the grid of one node to the next
 
-  static constexpr std::size_t most_nodes = 16;  ///< laid at one time: their sums stay in registers
+  static constexpr std::size_t most_nodes = 32;  ///< grids laid at one time: they stay in cache
 
   /// Adds the impulses that this phone hears to the grids of the band's nodes first…first + count.
   /// \param grids [count × stride]

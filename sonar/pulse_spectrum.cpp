@@ -33,7 +33,7 @@ PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
   const double duration = pulse.duration();
   const std::size_t intervals = analysis_intervals(pulse.settings());
   const double step = duration / static_cast<double>(intervals);
-  const std::size_t length = fast_fft_length(2 * intervals + 2);
+  const std::size_t length = fast_fft_length(4 * intervals);
   FftBuffer<std::complex<double>> x(length);
   for (std::size_t j = 0; j <= intervals; ++j) {
     // The edges are nudged inside, where the pulse has its one-sided limit, and weigh half.

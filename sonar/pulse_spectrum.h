@@ -10,7 +10,8 @@ class Pulse;
 ///
 /// C(ν) = ∫ s₊(u + T/2) e^{−i2π f_c u} e^{−i2πνu} du by the trapezoidal rule on samples far denser
 /// than the phones', so that jumps at the edges alias by less than −90 dB of the peak. The period
-/// 1/ bin_width is at least 2T: room for the ringing of a filter.
+/// 1/ bin_width is at least 4T: side lobes are not missed, and there is room for the ringing of a
+/// filter.
 struct PulseSpectrum {
   double bin_width = 0.0;                  ///< [Hz]
   std::vector<std::complex<double>> bins;  ///< [n] C at ν = k·bin_width, k = 0…n/2, −n/2+1…−1 [s]

@@ -61,6 +61,11 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
   rate = static_cast<double>(length) / period;
   lead = static_cast<std::size_t>(std::ceil(longest * rate)) + DelayKernel::taps;
   last_position = static_cast<double>(lead) + (record_duration + longest) * rate + 1.0;
+  for (std::ptrdiff_t k = -highest_bin; k <= highest_bin; ++k) {
+    const double frequency = static_cast<double>(k) / static_cast<double>(length);
+    deconvolution.push_back(
+        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(length))));
+  }
 }
 
 void Synthesizer::Plan::stretched_spectrum(double doppler, std::complex<float>* scratch,
@@ -80,10 +85,8 @@ void Synthesizer::Plan::stretched_spectrum(double doppler, std::complex<float>* 
   }
   ComplexFft<float>(length).forward(scratch);
   for (std::ptrdiff_t k = -highest_bin; k <= highest_bin; ++k) {
-    const double frequency = static_cast<double>(k) / static_cast<double>(length);
-    const auto scale =
-        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(length)));
-    spectrum[static_cast<std::size_t>(k + highest_bin)] = scale * scratch[k < 0 ? k + n : k];
+    const auto i = static_cast<std::size_t>(k + highest_bin);
+    spectrum[i] = deconvolution[i] * scratch[k < 0 ? k + n : k];
   }
 }
 

@@ -27,14 +27,15 @@ struct Synthesizer::Plan {
   DopplerExpansion expansion;
   DelayKernel kernel;
 
-  std::size_t length = 0;           ///< of the baseband FFT
-  std::size_t passband_length = 0;  ///< of the real FFT at the phones' rate
-  double rate = 0.0;                ///< of the baseband [Hz]
-  double carrier = 0.0;             ///< [Hz]
-  std::ptrdiff_t carrier_bin = 0;   ///< carrier·P
-  std::ptrdiff_t highest_bin = 0;   ///< the band is −highest_bin … highest_bin
-  std::size_t lead = 0;             ///< grid samples before the record where impulses may lie
-  double last_position = 0.0;       ///< of an impulse in the grid, in samples
+  std::size_t length = 0;            ///< of the baseband FFT
+  std::size_t passband_length = 0;   ///< of the real FFT at the phones' rate
+  double rate = 0.0;                 ///< of the baseband [Hz]
+  double carrier = 0.0;              ///< [Hz]
+  std::ptrdiff_t carrier_bin = 0;    ///< carrier·P
+  std::ptrdiff_t highest_bin = 0;    ///< the band is −highest_bin … highest_bin
+  std::size_t lead = 0;              ///< grid samples before the record where impulses may lie
+  double last_position = 0.0;        ///< of an impulse in the grid, in samples
+  std::vector<float> deconvolution;  ///< [2·highest_bin + 1] 1/(kernel's spectrum · length)
 
   /// Spectrum of the pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
   /// \param scratch [length] \param spectrum [2·highest_bin + 1] from −highest_bin up

@@ -7,9 +7,11 @@ from matplotlib.lines import Line2D
 from . import signal, style
 
 TITLE = "Bearing–time record, conventional beams"
-TITLES = {"horizontal": "Bearing–time record of the horizontal array", "vertical": "Elevation–time record of the vertical array",
+TITLES = {"horizontal": "Bearing–time record of the horizontal array",
+          "vertical": "Elevation–time record of the vertical array",
           "azimuth": "Bearing–time record of the array"}
-LABELS = {"horizontal": "apparent bearing\nclockwise from broadside", "vertical": "look elevation, up positive",
+LABELS = {"horizontal": "apparent bearing\nclockwise from broadside",
+          "vertical": "look elevation, up positive",
           "azimuth": "look bearing, horizontal"}
 COLUMNS = 900
 
@@ -42,7 +44,8 @@ def angle_axis(axes, where):
     else:
         ticks = np.array([-90, -60, -45, -30, -15, 0, 15, 30, 45, 60, 90])
         axes.set_yticks(np.sin(np.radians(ticks)))
-    axes.set_yticklabels([f"{t}°" if where.kind == "azimuth" else f"{t:+d}°".replace("+0°", "0°").replace("-", "−") for t in ticks])
+    signed = where.kind != "azimuth"
+    axes.set_yticklabels([f"{t:+d}°".replace("-", "−") if signed and t else f"{t}°" for t in ticks])
     axes.set_ylabel(LABELS[where.kind])
 
 
@@ -50,20 +53,24 @@ def draw(data, ping):
     where, edges, db = record(data, ping)
     fig, axes = style.figure(TITLES[where.kind], 5.0)
     low, high = style.colour_limits(db)
-    mesh = axes.pcolormesh(edges, style.cell_edges(where.coordinate), db, cmap=style.MAP, vmin=low, vmax=high, shading="flat", rasterized=True)
+    mesh = axes.pcolormesh(edges, style.cell_edges(where.coordinate), db, cmap=style.MAP, vmin=low,
+                           vmax=high, shading="flat", rasterized=True)
     axes.set_ylim(where.coordinate[0], where.coordinate[-1])
     angle_axis(axes, where)
     style.image_frame(axes)
     style.time_axis(axes, edges[0], edges[-1])
-    style.colour_bar(fig, mesh, axes, f"beam level in {data.envelope(ping).width:.0f} Hz / dB re 1 µPa")
-    style.subtitle(axes, f"{data.heading(ping)}  ·  {data.channels} phones, {data.centre_frequency:g} Hz")
+    style.colour_bar(fig, mesh, axes,
+                     f"beam level in {data.envelope(ping).width:.0f} Hz / dB re 1 µPa")
+    style.subtitle(axes,
+                   f"{data.heading(ping)}  ·  {data.channels} phones, {data.centre_frequency:g} Hz")
     handles = []
     for echo in data.echoes(ping):
-        strong = (echo.level_db >= echo.level_db.max() - 20.0) & (echo.delay >= edges[0]) & (echo.delay <= edges[-1])
+        strong = echo.strong(edges[0], edges[-1])
         if strong.any():
-            axes.plot(echo.delay[strong], signal.apparent(where, echo.direction[strong]), ls="none", marker="o", ms=11, mfc="none",
-                      mec="white", mew=1.3, path_effects=style.OVER_MAP, zorder=4)
-            handles.append(Line2D([], [], ls="none", marker="o", ms=9, mfc="none", mec=style.INK, mew=1.3, label=
-                                  f"{style.name(echo.name)}: true arrivals (leading edge, direction)"))
+            axes.plot(echo.delay[strong], signal.apparent(where, echo.direction[strong]), ls="none",
+                      marker="o", ms=11, mfc="none", mec="white", mew=1.3,
+                      path_effects=style.OVER_MAP, zorder=4)
+            handles.append(Line2D([], [], ls="none", marker="o", ms=9, mfc="none", mec=style.INK,
+                                  mew=1.3, label=f"{style.name(echo.name)}: true arrivals"))
     style.legend_below(axes, handles[:4], ncol=2)
     return fig

@@ -11,9 +11,11 @@ from .data import InputError, PingFile
 
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="asdic plot", description="Draws the pictures of a ping file.")
+    parser = argparse.ArgumentParser(prog="asdic plot",
+                                     description="Draws the pictures of a ping file.")
     parser.add_argument("file", metavar="FILE.h5", help="a ping file, written by `asdic ping`")
-    parser.add_argument("-o", "--output", metavar="DIR", help="folder for the pictures (default: FILE without .h5)")
+    parser.add_argument("-o", "--output", metavar="DIR",
+                        help="folder for the pictures (default: FILE without .h5)")
     parser.add_argument("--ping", metavar="N", type=int, help="ping to draw (default: the first)")
     return parser.parse_args(argv)
 
@@ -36,9 +38,10 @@ def complain(line: str) -> None:
 
 
 def draw_all(data: PingFile, ping: int, folder: Path) -> None:
-    """Draws each picture. A picture without anything to show is left out, with a line that says why.
+    """Draws each picture, or says why it is left out: there is nothing to show.
 
-    A picture of an earlier run that is left out now is removed, so a folder never shows two files' pictures.
+    A picture of an earlier run that is left out now is removed, so a folder never shows two files'
+    pictures.
     """
     from . import bearing_time, levels, pressure, rays, spectrogram, style, sweep
 
@@ -66,7 +69,7 @@ def run(argv=None) -> int:
 
 
 def main(argv=None) -> int:
-    """Runs and turns every failure into one line and an exit code: 2 the input, 1 the rest, 130 interrupted."""
+    """Runs; a failure becomes one line and an exit code: 2 the input, 130 Ctrl-C, 1 the rest."""
     warnings.simplefilter("ignore")
     try:
         return run(argv)
@@ -81,5 +84,6 @@ def main(argv=None) -> int:
     except Exception as error:  # ours: say so in a line that helps to report it
         if os.environ.get("ASDIC_DEBUG"):
             raise
-        complain(f"a fault of asdic itself ({type(error).__name__}: {error}); ASDIC_DEBUG=1 shows where. Please report it.")
+        complain(f"a fault of asdic itself, please report it ({type(error).__name__}: {error}); "
+                 "ASDIC_DEBUG=1 shows where")
         return 1

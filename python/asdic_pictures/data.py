@@ -1,4 +1,4 @@
-"""Reads a ping file (docs/formats/ping.md). Whatever is wrong with the file becomes an InputError."""
+"""Reads a ping file (docs/formats/ping.md). Whatever is wrong with it becomes an InputError."""
 from __future__ import annotations
 
 import os
@@ -33,9 +33,14 @@ class Echo:
     def strongest(self) -> int:
         return int(np.argmax(self.level_db))
 
+    def strong(self, first: float, last: float, within_db: float = 20.0):
+        """[n] which pairs are worth a mark: near the strongest in level, between two times [s]"""
+        loud = self.level_db >= self.level_db.max() - within_db
+        return loud & (self.delay >= first) & (self.delay <= last)
+
 
 def travel_direction(elevation_deg, bearing_deg):
-    """Unit vectors (east, north, depth) of travel. [n, 3]; elevation positive up, bearing clockwise from north"""
+    """Unit vectors (east, north, depth), [n, 3]. Elevation positive up, bearing from north."""
     e, b = np.radians(elevation_deg), np.radians(bearing_deg)
     return np.stack([np.cos(e) * np.sin(b), np.cos(e) * np.cos(b), -np.sin(e)], axis=-1)
 
@@ -43,13 +48,14 @@ def travel_direction(elevation_deg, bearing_deg):
 class PingFile:
     """A ping file open for reading; every ping is given by its row, from 0.
 
-    \\throws InputError  if it is missing, damaged, or something else
+    Raises InputError if it is missing, damaged, or something else
     """
 
     def __init__(self, path):
         self.path = str(path)
         self._bad_samples: dict[tuple[int, int], int] = {}
         self._envelopes: dict[int, signal.Baseband] = {}
+        self._columns: dict[str, np.ndarray] = {}
         if not os.path.exists(path):
             raise InputError(path, "no such file", "a ping file written by `asdic ping`")
         if os.path.isdir(path):
@@ -65,14 +71,17 @@ class PingFile:
         kind = self._text(self.file.attrs, "filetype")
         if kind != "asdic ping":
             self.file.close()
-            raise InputError(path, f'filetype "{kind}"' if kind else "an HDF5 file without a filetype", 'filetype "asdic ping"')
+            raise InputError(path,
+                             f'filetype "{kind}"' if kind else "an HDF5 file without a filetype",
+                             'filetype "asdic ping"')
         version = self._text(self.file.attrs, "version") or "none"
         if version.split(".")[0] != "1":
             self.file.close()
             raise InputError(path, f"version {version} of the format", "version 1")
         shape = self._dataset("pressure").shape
         if len(shape) != 3 or 0 in shape:
-            raise InputError(path, f"pressure of shape {shape}", "(ping, channel, sample), none of them 0")
+            raise InputError(path, f"pressure of shape {shape}",
+                             "(ping, channel, sample), none of them 0")
         self.pings, self.channels, self.samples = shape
 
     def __enter__(self):
@@ -95,7 +104,8 @@ class PingFile:
         try:
             item = self.file[name]
         except Exception as error:
-            raise InputError(self.path, f"no dataset {name}", "one (docs/formats/ping.md)") from error
+            raise InputError(self.path, f"no dataset {name}",
+                             "one (docs/formats/ping.md)") from error
         if not isinstance(item, h5py.Dataset):
             raise InputError(self.path, f"a group where the dataset {name} should be", "a dataset")
         return item
@@ -106,7 +116,8 @@ class PingFile:
         try:
             return np.asarray(dataset[rows])
         except Exception as error:
-            raise InputError(self.path, f"{name} that cannot be read ({error})", "a whole file") from error
+            raise InputError(self.path, f"{name} that cannot be read ({error})",
+                             "a whole file") from error
 
     def has(self, name) -> bool:
         try:
@@ -119,14 +130,21 @@ class PingFile:
         try:
             return float(np.ravel(self.file[where].attrs[name])[0])
         except Exception as error:
-            raise InputError(self.path, f"no number in the attribute {name} of {where}", "one (docs/formats/ping.md)") from error
+            raise InputError(self.path, f"no number in the attribute {name} of {where}",
+                             "one (docs/formats/ping.md)") from error
+
+    def _column(self, name):
+        """A column of a table, read once."""
+        if name not in self._columns:
+            self._columns[name] = self.read(name)
+        return self._columns[name]
 
     def _of_ping(self, group, row, columns):
         """The rows of a table that belong to one ping. → dictionary of columns"""
         if not self.has(group):
             return {name: np.zeros(0) for name in columns}
-        mine = self.read(f"{group}/ping") == self.numbers[row]
-        return {name: self.read(f"{group}/{name}")[mine] for name in columns}
+        mine = self._column(f"{group}/ping") == self.numbers[row]
+        return {name: self._column(f"{group}/{name}")[mine] for name in columns}
 
     # ------------------------------------------------------------ what is in it
 
@@ -189,12 +207,15 @@ class PingFile:
         known = self.numbers[self.simulated]
         found = self.simulated[known == number]
         if found.size == 0:
-            raise InputError(self.path, f"no ping {number}", f"one of {known.min()} to {known.max()}")
+            raise InputError(self.path, f"no ping {number}",
+                             f"one of {known.min()} to {known.max()}")
         return int(found[0])
 
     def heading(self, row: int) -> str:
         """For titles: the scenario and, where there are several, the ping."""
-        requested = int(self.attribute("/", "pings_requested")) if "pings_requested" in self.file.attrs else self.pings
+        requested = self.pings
+        if "pings_requested" in self.file.attrs:
+            requested = int(self.attribute("/", "pings_requested"))
         text = self.title or os.path.basename(self.path)
         if max(requested, self.pings) > 1:
             text += f" · ping {self.numbers[row]} of {self.simulated.size}"
@@ -207,8 +228,9 @@ class PingFile:
         return "complete" in self.file.attrs and not int(self.attribute("/", "complete"))
 
     def pressure(self, row: int, channel: int) -> np.ndarray:
-        """Pressure of one phone [Pa], float64; samples that are not numbers are 0 (see `warnings`)."""
-        p = self.read("pressure", (row, channel, slice(0, int(self.valid_samples[row])))).astype(float)
+        """Pressure of one phone [Pa]; samples that are not numbers are 0 (see `warnings`)."""
+        valid = slice(0, int(self.valid_samples[row]))
+        p = self.read("pressure", (row, channel, valid)).astype(float)
         self._bad_samples[row, channel] = int(np.count_nonzero(~np.isfinite(p)))
         return np.nan_to_num(p, nan=0.0, posinf=0.0, neginf=0.0)
 
@@ -219,18 +241,21 @@ class PingFile:
 
     @cached_property
     def band(self) -> float:
-        """Width around the centre frequency that holds the pulse and the Doppler shifts of this file [Hz]"""
+        """Width around the centre frequency that holds the pulse and its Doppler shifts [Hz]"""
         factors = self.read("echoes/doppler_factor") if self.has("echoes") else np.zeros(0)
         span = float(np.max(np.abs(factors[np.isfinite(factors)] - 1.0), initial=0.0))
-        speed = np.linalg.norm(np.nan_to_num(self.read("platform_velocity")), axis=-1).max(initial=0.0)
+        velocity = np.nan_to_num(self.read("platform_velocity"))
+        speed = np.linalg.norm(velocity, axis=-1).max(initial=0.0)
         span = min(max(span, 2.0 * float(speed) / 1400.0), 0.1)
         return signal.band_width(self.bandwidth, self.centre_frequency, span, self.pulse_duration)
 
     def envelope(self, row: int) -> signal.Baseband:
         """Every phone's complex envelope in `band`."""
-        if row not in self._envelopes:
+        if row not in self._envelopes:  # one ping at a time: a file may hold thousands
+            self._envelopes.clear()
             phones = (self.pressure(row, channel) for channel in range(self.channels))
-            self._envelopes[row] = signal.baseband(phones, self.sample_rate, self.centre_frequency, self.band, self.start)
+            self._envelopes[row] = signal.baseband(phones, self.sample_rate, self.centre_frequency,
+                                                   self.band, self.start)
         return self._envelopes[row]
 
     def phones(self, row: int) -> np.ndarray:
@@ -250,7 +275,8 @@ class PingFile:
         z, c = self.profile
         good = np.isfinite(z) & np.isfinite(c) & (c > 0)
         if not good.any():
-            raise InputError(self.path, "no sound speed that is a number", "a profile in /environment")
+            raise InputError(self.path, "no sound speed that is a number",
+                             "a profile in /environment")
         return float(np.interp(depth, z[good], c[good]))
 
     @cached_property
@@ -264,20 +290,27 @@ class PingFile:
         count = self._dataset("target_index").shape[0]
         names = self.file["target_index"].attrs.get("names", [])
         if isinstance(names, (str, bytes)):  # one string, names apart by commas or lines
-            names = (names.decode() if isinstance(names, bytes) else names).replace("\n", ",").split(",")
+            names = names.decode() if isinstance(names, bytes) else names
+            names = names.replace("\n", ",").split(",")
         names = [n.decode() if isinstance(n, bytes) else str(n) for n in np.ravel(names)]
-        return [names[i].strip() if i < len(names) and names[i].strip() else f"target {i + 1}" for i in range(count)]
+        names = [n.strip() for n in names] + [""] * count
+        return [names[i] or f"target {i + 1}" for i in range(count)]
 
     def targets(self, row: int):
-        """[(name, east-north-depth [m])] of those that are there"""
+        """[(index, name, east-north-depth [m])] of those that are there"""
         if not self.target_names:
             return []
         there, place = self.read("target_present", row), self.read("target_position", row)
-        return [(i, n, p) for i, (n, p, t) in enumerate(zip(self.target_names, place, there)) if t and np.all(np.isfinite(p))]
+        return [(i, self.target_names[i], place[i]) for i in range(len(self.target_names))
+                if there[i] and np.all(np.isfinite(place[i]))]
 
     def echoes(self, row: int) -> list[Echo]:
-        """One entry a target that answers, at the reference point (or, with exact paths per phone, at the middle phone)."""
-        t = self._of_ping("echoes", row, ["target", "channel", "delay", "doppler_factor", "level_db",
+        """One entry a target that answers, as heard at the array's reference point.
+
+        Where every phone has its own paths, as heard at the middle phone.
+        """
+        t = self._of_ping("echoes", row,
+                          ["target", "channel", "delay", "doppler_factor", "level_db",
                                           "arrival_elevation_deg", "arrival_bearing_deg"])
         good = np.isfinite(t["delay"]) & np.isfinite(t["level_db"])
         found = []
@@ -286,16 +319,21 @@ class PingFile:
             channels = np.unique(t["channel"][mine])
             mine &= t["channel"] == (-1 if -1 in channels else channels[len(channels) // 2])
             order = np.flatnonzero(mine)[np.argsort(t["delay"][mine], kind="stable")]
-            name = self.target_names[target] if target < len(self.target_names) else f"target {target + 1}"
-            direction = travel_direction(t["arrival_elevation_deg"][order], t["arrival_bearing_deg"][order])
-            found.append(Echo(target, name, t["delay"][order], t["level_db"][order], t["doppler_factor"][order], direction))
+            known = target < len(self.target_names)
+            name = self.target_names[target] if known else f"target {target + 1}"
+            direction = travel_direction(t["arrival_elevation_deg"][order],
+                                         t["arrival_bearing_deg"][order])
+            found.append(Echo(target, name, t["delay"][order], t["level_db"][order],
+                              t["doppler_factor"][order], direction))
         return found
 
     def levels(self, row: int):
         """Time [s] and the mean-square pressures [Pa²] of echo, reverberation and noise"""
         time = self.read("levels/level_time")
-        return time, {k: self.read(f"levels/{k}", row).astype(float) for k in ("echo", "reverberation", "noise")}
+        return time, {k: self.read(f"levels/{k}", row).astype(float)
+                      for k in ("echo", "reverberation", "noise")}
 
     def rays(self):
-        """Of the first ping: launch elevation [ray], range and depth [ray, point], kind [ray], range of the surface hits [hit]"""
-        return [self.read(f"rays/{k}") for k in ("launch_elevation_deg", "range", "depth", "kind", "hit_range")]
+        """Launch elevation [ray], range and depth [ray, point], kind [ray], surface hits [hit]"""
+        return [self.read(f"rays/{k}")
+                for k in ("launch_elevation_deg", "range", "depth", "kind", "hit_range")]

@@ -16,7 +16,7 @@ def nothing_to_show(data, ping):
 
 
 def measured(data, ping, step: float):
-    """Mean-square pressure of all phones together in steps of time. → time of the middles [s], [Pa²]"""
+    """Mean-square pressure over all phones, step by step. → time of the middles [s], [Pa²]"""
     per = max(int(round(step * data.sample_rate)), 1)
     total = None
     for channel in range(data.channels):
@@ -37,11 +37,16 @@ def draw(data, ping):
     t_band = b.start + (np.arange(len(in_band)) + 0.5) * b.values.shape[1] / b.rate / len(in_band)
 
     fig, axes = style.figure(TITLE, 4.8)
-    middle = time + 0.5 * step
-    axes.plot(t_total, signal.decibels(total), color=style.INK, lw=0.9, label="measured, all frequencies", zorder=3)
-    axes.plot(t_band, signal.decibels(in_band), color=style.INK, lw=0.9, ls=(0, (4, 1.5)), label=f"measured, in {b.width:.0f} Hz", zorder=3)
+    # level_time tells where a step starts
+    starts = time.size and time[0] - data.start < 0.25 * step
+    middle = time + 0.5 * step if starts else time
+    axes.plot(t_total, signal.decibels(total), color=style.INK, lw=0.9,
+              label="measured, all frequencies", zorder=3)
+    axes.plot(t_band, signal.decibels(in_band), color=style.INK, lw=0.9, ls=(0, (4, 1.5)),
+              label=f"measured, in {b.width:.0f} Hz", zorder=3)
     shown = [signal.decibels(total), signal.decibels(in_band)]
-    for key, colour in (("noise", style.GREY), ("reverberation", style.BLUE), ("echo", style.VERMILION)):
+    for key, colour in (("noise", style.GREY), ("reverberation", style.BLUE),
+                        ("echo", style.VERMILION)):
         db = signal.decibels(parts[key])
         if np.isfinite(db).any():
             axes.plot(middle, db, color=colour, lw=1.9, label=key, zorder=4, alpha=0.9)
@@ -50,19 +55,20 @@ def draw(data, ping):
     style.time_axis(axes, data.start, max(t_total[-1] + 0.5 * step, data.start + step))
     axes.set_ylabel("level / dB re 1 µPa")
     axes.grid(True)
-    style.subtitle(axes, f"{data.heading(ping)}  ·  mean over {data.channels} phone{'s' * (data.channels > 1)}, {1e3 * step:.0f} ms steps")
+    phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
+    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, steps of {1e3 * step:.0f} ms")
     marks = mark_echoes(axes, data.echoes(ping))
     style.legend_below(axes, axes.get_legend_handles_labels()[0] + marks)
     return fig
 
 
 def limits(axes, curves):
-    """From 10 dB below what is measured, down to 100 dB below the peak at most: tails that nothing hears are cut."""
+    """From 10 dB below what is measured, at most 100 dB below the peak: tails unheard are cut."""
     good = [c[np.isfinite(c)] for c in curves]
     values = np.concatenate(good) if good else np.zeros(0)
     if values.size == 0:
         axes.set_ylim(0.0, 100.0)
-        axes.text(0.5, 0.5, "silence", transform=axes.transAxes, ha="center", color=style.GREY)
+        style.silence(axes, values)
         return
     top = values.max() + 5.0
     heard = np.concatenate(good[:2])

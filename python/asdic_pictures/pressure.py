@@ -1,4 +1,4 @@
-"""Pressures of all phones over each other: the whole record, and the pulse's band near the strongest echo."""
+"""Pressures of all phones over each other: the record, and the pulse's band near the best echo."""
 from __future__ import annotations
 
 import numpy as np
@@ -15,7 +15,10 @@ def nothing_to_show(data, ping):
 
 
 def extremes(p, columns: int = COLUMNS):
-    """Smallest and largest sample in each of `columns` stretches: draws no less than every sample would. → min, max, edges"""
+    """Smallest and largest sample of each stretch, which draw what all samples would.
+
+    → least, greatest, index of each stretch's first sample
+    """
     columns = max(min(columns, len(p)), 1)
     starts = np.linspace(0, len(p), columns + 1).astype(int)[:-1]
     return np.minimum.reduceat(p, starts), np.maximum.reduceat(p, starts), starts
@@ -46,21 +49,22 @@ def draw_phones(axes, pressures, first: int, last: int, data):
             axes.fill_between(t, factor * low, factor * high, color=colour, alpha=0.5, lw=0.35)
     axes.set_ylim(-1.08 * max(factor * peak, 1e-3), 1.08 * max(factor * peak, 1e-3))
     axes.set_ylabel(f"pressure / {unit}")
-    style.time_axis(axes, data.start + first / data.sample_rate, data.start + last / data.sample_rate)
+    style.time_axis(axes, data.start + first / data.sample_rate,
+                    data.start + last / data.sample_rate)
     axes.grid(True)
 
 
-def mark_echoes(axes, echoes, within_db: float = 20.0):
-    """A mark on the upper edge for every path pair within 20 dB of its target's strongest. → handles for a legend"""
+def mark_echoes(axes, echoes):
+    """A mark on the upper edge for every strong path pair. → handles for a legend"""
     handles = []
     for echo in echoes:
-        strong = echo.level_db >= echo.level_db.max() - within_db
-        low, high = axes.get_xlim()
-        shown = echo.delay[strong & (echo.delay >= low) & (echo.delay <= high)]
-        axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(), ls="none", marker="v", ms=7,
-                  mfc=style.colour(echo.target), mec="white", mew=0.8, clip_on=False, zorder=5)
+        shown = echo.delay[echo.strong(*axes.get_xlim())]
         if shown.size:
-            handles.append(Line2D([], [], ls="none", marker="v", ms=7, mfc=style.colour(echo.target), mec="white",
+            axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(),
+                      ls="none", marker="v", ms=7, mfc=style.colour(echo.target), mec="white",
+                      mew=0.8, clip_on=False, zorder=5)
+            handles.append(Line2D([], [], ls="none", marker="v", ms=7,
+                                  mfc=style.colour(echo.target), mec="white",
                                   label=f"{style.name(echo.name)}: true echo times"))
     return handles[:6]
 
@@ -85,9 +89,10 @@ def draw(data, ping):
 
 def draw_strongest(axes, data, ping, echo):
     """The pulse's band alone, around the strongest path pair: ± the envelope of each phone."""
-    time, level = echo.delay[echo.strongest], echo.level_db[echo.strongest]
+    time = echo.delay[echo.strongest]
     b = data.envelope(ping)
-    shown = (b.times >= time - 2.0 * data.pulse_duration) & (b.times <= time + 4.0 * data.pulse_duration)
+    first, last = time - 2.0 * data.pulse_duration, time + 4.0 * data.pulse_duration
+    shown = (b.times >= first) & (b.times <= last)
     peak = float(np.abs(b.values[:, shown]).max(initial=0.0))
     factor, unit = prefix(peak)
     for colour, values in zip(phone_colours(data.channels), b.values):
@@ -96,7 +101,8 @@ def draw_strongest(axes, data, ping, echo):
         axes.plot(b.times[shown], -envelope, color=colour, lw=1.0, alpha=0.8)
     axes.set_ylim(-1.08 * max(factor * peak, 1e-3), 1.08 * max(factor * peak, 1e-3))
     axes.set_ylabel(f"± envelope / {unit}")
-    style.time_axis(axes, max(time - 2.0 * data.pulse_duration, b.times[0]), min(time + 4.0 * data.pulse_duration, b.times[-1]))
+    style.time_axis(axes, max(first, b.times[0]), min(last, b.times[-1]))
     axes.grid(True)
-    style.subtitle(axes, f"The {b.width:.0f} Hz around {data.centre_frequency:g} Hz, near the strongest path: "
-                   f"{style.name(echo.name)}, {time:.2f} s, {level:.0f} dB re 1 µPa")
+    level = echo.level_db[echo.strongest]
+    style.subtitle(axes, f"{b.width:.0f} Hz around {data.centre_frequency:g} Hz, near the "
+                   f"strongest path: {style.name(echo.name)}, {time:.2f} s, {level:.0f} dB re 1 µPa")

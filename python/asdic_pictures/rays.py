@@ -16,7 +16,7 @@ def nothing_to_show(data, ping):
 
 
 def eigenray_target(r, z, places):
-    """Index of the place (range, depth) in which a ray ends, the nearest one. \\param places  [(index, range, depth)]"""
+    """Index of the place nearest to a ray's end. places: [(index, range, depth)]"""
     good = np.flatnonzero(np.isfinite(r) & np.isfinite(z))
     if good.size == 0 or not places:
         return 0
@@ -39,37 +39,50 @@ def draw_profile(axes, data):
 def draw(data, ping):
     row = int(data.simulated[0])          # the file holds the rays of the first ping alone
     launch, r, z, kind, hits = data.rays()
-    fig, (left, right) = style.figure(TITLE, 5.2, ncols=2, sharey=True, gridspec_kw={"width_ratios": [1, 6.2]})
+    fig, (left, right) = style.figure(TITLE, 5.2, ncols=2, sharey=True,
+                                      gridspec_kw={"width_ratios": [1, 6.2]})
     draw_profile(left, data)
 
     platform = data.platform(row)
-    places = [(i, float(np.hypot(*(p - platform)[:2])), float(p[2])) for i, _, p in data.targets(row)]
+    places = [(i, float(np.hypot(*(p - platform)[:2])), float(p[2]))
+              for i, _, p in data.targets(row)]
     names = {i: n for i, n, _ in data.targets(row)}
     fan = np.flatnonzero(kind == 0)
     for k in fan:
         right.plot(r[k] / 1e3, z[k], color=style.GREY, lw=0.6, alpha=0.55, zorder=2)
     for k in np.flatnonzero(kind == 1):
-        right.plot(r[k] / 1e3, z[k], color=style.colour(eigenray_target(r[k], z[k], places)), lw=1.5, alpha=0.9, zorder=3)
+        right.plot(r[k] / 1e3, z[k], color=style.colour(eigenray_target(r[k], z[k], places)),
+                   lw=1.5, alpha=0.9, zorder=3)
     hits = hits[np.isfinite(hits)]
-    right.plot(hits / 1e3, np.zeros(hits.size), ls="none", marker="|", ms=9, mew=1.1, color=style.INK, clip_on=False, zorder=5)
+    if hits.size:
+        right.plot(hits / 1e3, np.zeros(hits.size), ls="none", marker="|", ms=9, mew=1.1,
+                   color=style.INK, clip_on=False, zorder=5)
     for i, distance, depth in places:
-        right.plot(distance / 1e3, depth, marker="o", ms=9, mfc=style.colour(i), mec="white", mew=1.4, zorder=6, clip_on=False)
-    right.plot(0.0, platform[2], marker="D", ms=8, mfc=style.INK, mec="white", mew=1.2, zorder=6, clip_on=False)
+        right.plot(distance / 1e3, depth, marker="o", ms=9, mfc=style.colour(i), mec="white",
+                   mew=1.4, zorder=6, clip_on=False)
+    right.plot(0.0, platform[2], marker="D", ms=8, mfc=style.INK, mec="white", mew=1.2, zorder=6,
+               clip_on=False)
 
-    reach = max([np.nanmax(r, initial=0.0, where=np.isfinite(r))] + [p[1] for p in places] + [hits.max(initial=0.0)])
+    reach = max([np.max(r, initial=0.0, where=np.isfinite(r)), hits.max(initial=0.0)]
+                + [p[1] for p in places])
     right.set_xlim(0.0, max(reach, 1.0) / 1e3 * 1.02)
     right.set_xlabel("range from the source / km")
     draw_boundaries(data, (left, right))
-    style.subtitle(right, f"{data.title or data.path}  ·  beam {data.elevation_deg[row]:+g}°, first ping")
-    handles = [Line2D([], [], marker="D", ls="none", ms=7, mfc=style.INK, mec="white", label="source")]
+    style.subtitle(right,
+                   f"{data.title or data.path}  ·  beam {data.elevation_deg[row]:+g}°, first ping")
+    handles = [Line2D([], [], marker="D", ls="none", ms=7, mfc=style.INK, mec="white",
+                      label="source")]
     if fan.size:
         handles.append(Line2D([], [], color=style.GREY, lw=1.0, label="fan of the beam"))
     if hits.size:
-        handles.append(Line2D([], [], marker="|", ls="none", ms=9, mew=1.1, color=style.INK, label="fan meets the surface"))
-    count = {i: sum(eigenray_target(r[k], z[k], places) == i for k in np.flatnonzero(kind == 1)) for i, _, _ in places}
+        handles.append(Line2D([], [], marker="|", ls="none", ms=9, mew=1.1, color=style.INK,
+                              label="fan meets the surface"))
+    count = {i: sum(eigenray_target(r[k], z[k], places) == i for k in np.flatnonzero(kind == 1))
+             for i, _, _ in places}
     for i, _, _ in places[:6]:
+        label = f"{style.name(names[i])}, {count[i]} eigenray{'s' * (count[i] != 1)}"
         handles.append(Line2D([], [], marker="o", ms=7, color=style.colour(i), mec="white",
-                              label=f"{style.name(names[i])}, {count[i]} eigenray{'s' * (count[i] != 1)}"))
+                              label=label))
     style.legend_below(right, handles, ncol=min(len(handles), 5))
     return fig
 
@@ -83,7 +96,8 @@ def draw_boundaries(data, panels):
     for axes in panels:
         axes.axhspan(bottom, bottom * 1.045, color="#cdbfa9", lw=0, zorder=1)
         axes.axhline(0.0, color=style.BLUE, lw=1.2, zorder=1)
-    panels[1].text(0.995, bottom * 1.0225, "sea floor", transform=panels[1].get_yaxis_transform(), ha="right", va="center_baseline",
+    panels[1].text(0.995, bottom * 1.0225, "sea floor", transform=panels[1].get_yaxis_transform(),
+                   ha="right", va="center_baseline",
                    fontsize=8, color="#5d4f38")
     panels[1].tick_params(labelleft=False)
     panels[1].grid(True)

@@ -1,4 +1,4 @@
-"""What is computed from the phones' pressures: baseband, beams, levels, spectra. Plain numpy, no files, no pictures."""
+"""What is computed from the pressures: baseband, beams, levels, spectra. No files, no pictures."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ REFERENCE = 1e-12  # (1 µPa)² [Pa²]
 
 
 def decibels(mean_square):
-    """dB re 1 µPa (or re 1 µPa²/Hz) of a mean square [Pa²] (or density [Pa²/Hz]); NaN where it is not positive"""
+    """dB re 1 µPa of mean squares [Pa²], or re 1 µPa²/Hz of densities; NaN where not positive"""
     x = np.asarray(mean_square, float)
     return 10.0 * np.log10(np.where(x > 0, x, np.nan) / REFERENCE)
 
 
 @dataclass
 class Baseband:
-    """Complex envelope of every phone: |values| is the peak envelope, so |values|²/2 is mean-square pressure."""
+    """Complex envelope of every phone; |values| is the peak envelope, |values|²/2 mean square."""
 
     values: np.ndarray   # [channel, sample] [Pa]
     rate: float          # [Hz]
@@ -29,11 +29,13 @@ class Baseband:
         return self.start + np.arange(self.values.shape[1]) / self.rate
 
 
-def baseband(channels, sample_rate: float, carrier: float, width: float, start: float = 0.0) -> Baseband:
-    """Keeps `width` Hz around `carrier` of every phone, as analytic signal shifted to zero frequency and decimated.
+def baseband(channels, sample_rate: float, carrier: float, width: float,
+             start: float = 0.0) -> Baseband:
+    """Keeps `width` Hz around `carrier`: the analytic signal, shifted to frequency zero, decimated.
 
-    One FFT a phone: the bins of the band are all that is kept (positive frequencies, doubled), their inverse FFT is the envelope.
-    The new rate is 1.25 × the width. \\param channels  iterable of [sample] arrays of equal length [Pa]
+    One FFT a phone: the bins of the band are all that is kept (positive frequencies, doubled),
+    their inverse FFT is the envelope. The new rate is 1.25 × the width.
+    channels: iterable of [sample] arrays of equal length [Pa]
     """
     rows = []
     for p in channels:
@@ -46,17 +48,19 @@ def baseband(channels, sample_rate: float, carrier: float, width: float, start: 
         m = max(int(round(1.25 * 2 * half)), 4)
         kept = np.zeros(m, complex)
         if high >= low:
-            kept[np.arange(low, high + 1) - centre] = 2.0 * spectrum[low : high + 1] / n * m   # negative indices wrap, as FFT order wants
+            # negative indices wrap, as FFT order wants
+            kept[np.arange(low, high + 1) - centre] = 2.0 * spectrum[low : high + 1] / n * m
         rows.append(np.fft.ifft(kept))
     carrier_bin = centre * spacing
     envelope = np.array(rows) if rows else np.zeros((0, 0), complex)
     rate = m * sample_rate / n
     # rfft's phase counts from the first sample; the carrier's, from t = 0
-    return Baseband(envelope * np.exp(-2j * np.pi * carrier_bin * start), rate, carrier_bin, start, 2 * half * spacing)
+    return Baseband(envelope * np.exp(-2j * np.pi * carrier_bin * start), rate, carrier_bin, start,
+                    2 * half * spacing)
 
 
 def band_width(bandwidth: float, carrier: float, doppler_span: float, duration: float) -> float:
-    """Width that holds the pulse and its Doppler shifts [Hz]: the pulse's own, ± carrier·span, and a little room."""
+    """Width that holds the pulse and its Doppler shifts, with a little room [Hz]."""
     return max(1.2 * bandwidth, 4.0 / max(duration, 1e-6)) + 2.0 * carrier * (doppler_span + 0.0005)
 
 
@@ -76,13 +80,15 @@ class Scan:
     """The directions that an array is steered to."""
 
     kind: str                # "horizontal", "vertical", "azimuth"
-    looks: np.ndarray        # [beam, 3] unit vectors (east, north, depth) towards where sound comes from
-    coordinate: np.ndarray   # [beam] the picture's axis: sin of the angle for a line, degrees for azimuth
+    # [beam, 3] unit vectors (east, north, depth) towards where sound comes from
+    looks: np.ndarray
+    # [beam] the picture's axis: sin of the angle for a line, degrees for azimuth
+    coordinate: np.ndarray
     axis: np.ndarray | None  # of a line array, in the sense in which `coordinate` grows
 
 
 def line_axis(phones):
-    """Direction of the line through the phones from first to last, None if they are not on one. \\param phones [n, 3]"""
+    """Direction of the line from the first phone to the last, or None. phones: [n, 3]"""
     centred = phones - phones.mean(axis=0)
     _, size, directions = np.linalg.svd(centred, full_matrices=False)
     if size[0] == 0 or (len(size) > 1 and size[1] > 0.02 * size[0]):
@@ -92,8 +98,10 @@ def line_axis(phones):
 
 
 def scan(phones, beams: int = 181) -> Scan:
-    """Horizontal line: apparent bearing from broadside, sin(app) = sin(bearing)·cos(elevation), counted clockwise from the
-    broadside at heading + 90°. Vertical line: look elevation. Anything else: azimuth at the horizontal.
+    """The directions that suit an array.
+
+    Horizontal line: apparent bearing, sin(app) = sin(bearing)·cos(elevation), clockwise from the
+    broadside at heading + 90°. Vertical line: look elevation. Others: azimuth, horizontally.
     """
     axis = line_axis(phones)
     if axis is None:
@@ -105,7 +113,8 @@ def scan(phones, beams: int = 181) -> Scan:
     if vertical:
         axis = axis if axis[2] < 0 else -axis    # grows upwards: depth is positive down
     else:
-        axis = -axis                             # clockwise from broadside is towards the line's tail
+        # clockwise from broadside is towards the line's tail
+        axis = -axis
     across = np.cross(axis, [0.0, 0.0, 1.0] if not vertical else [1.0, 0.0, 0.0])
     across /= np.linalg.norm(across)
     looks = sine[:, None] * axis + np.sqrt(np.maximum(1 - sine[:, None] ** 2, 0.0)) * across
@@ -121,11 +130,12 @@ def apparent(where: Scan, travel):
 
 
 def beam_power(b: Baseband, phones, looks, speed: float, columns: int):
-    """Mean-square pressure at the output of each beam, averaged over `columns` stretches of time. → [beam, column] [Pa²]
+    """Mean-square output of each beam in `columns` stretches of time. → [beam, column] [Pa²]
 
-    Conventional, equal weights. A plane wave along u reaches the phone at x with the delay u·x/c (x from the array's centre),
-    so the beam is y(f) = 1/N Σ p(f)·exp(+i2πf u·x/c), u = −look. The phase is taken at the middle of sub-bands so narrow that
-    the delay across the array times their width stays below 1/20: one for a tone, more for a wide sweep.
+    Conventional, equal weights. A plane wave along u reaches the phone at x with the delay u·x/c (x
+    from the array's centre), so the beam is y(f) = 1/N Σ p(f)·exp(+i2πf u·x/c), u = −look. The
+    phase is taken at the middle of sub-bands so narrow that the delay across the array times their
+    width stays below 1/20: one for a tone, more for a wide sweep.
     """
     x = phones - phones.mean(axis=0)
     delay = -(looks @ x.T) / speed                                           # [beam, phone] [s]
@@ -136,13 +146,15 @@ def beam_power(b: Baseband, phones, looks, speed: float, columns: int):
     edges = np.linspace(-b.rate / 2, b.rate / 2, pieces + 1)
     columns = min(columns, m)
     out = np.empty((len(looks), columns))
-    for first in range(0, len(looks), 32):                                    # 32 beams at a time keep memory small
+    # 32 beams at a time keep memory small
+    for first in range(0, len(looks), 32):
         mine = slice(first, first + 32)
         beam = np.zeros((len(delay[mine]), m), complex)
         for low, high in zip(edges[:-1], edges[1:]):
             bins = np.flatnonzero((f >= low) & ((f < high) | (high == edges[-1])))
             if bins.size:
-                weights = np.exp(2j * np.pi * (b.carrier + 0.5 * (low + high)) * delay[mine]) / len(phones)
+                middle = b.carrier + 0.5 * (low + high)
+                weights = np.exp(2j * np.pi * middle * delay[mine]) / len(phones)
                 beam[:, bins] = weights @ spectrum[:, bins]
         out[mine] = average(0.5 * np.abs(np.fft.ifft(beam, axis=1)) ** 2, columns)
     return out
@@ -151,16 +163,20 @@ def beam_power(b: Baseband, phones, looks, speed: float, columns: int):
 # ---------------------------------------------------------------- spectra
 
 def spectrogram(b: Baseband, window: int, columns: int):
-    """One-sided power spectral density of pressure, mean over the phones. → time [column] [s], frequency [bin] [Hz], [bin, column] [Pa²/Hz]
+    """One-sided power spectral density of pressure, mean over the phones.
 
-    Hann windows of `window` samples, about `columns` of them, overlapping by half or more. The envelope's density is twice the pressure's.
+    → time [column] [s], frequency [bin] [Hz], density [bin, column] [Pa²/Hz]
+
+    Hann windows of `window` samples, about `columns` of them, overlapping by half or more. The
+    envelope's density is twice the pressure's.
     """
     n = b.values.shape[1]
     window = max(min(window, n), 2)
     hop = max(min(window // 2, (n - window) // max(columns - 1, 1)), 1)
     starts = np.arange(0, n - window + 1, hop)
     taper = np.sin(np.pi * (np.arange(window) + 0.5) / window) ** 2
-    points = 4 * window                                                       # finer bins of the same resolution, for the eye
+    # finer bins of the same resolution, for the eye
+    points = 4 * window
     density = np.zeros((points, len(starts)))
     for channel in b.values:
         pieces = channel[starts[:, None] + np.arange(window)] * taper

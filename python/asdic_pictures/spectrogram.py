@@ -15,7 +15,8 @@ def nothing_to_show(data, ping):
 
 def draw(data, ping):
     b = data.envelope(ping)
-    # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which resolves time and frequency alike.
+    # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which
+    # resolves time and frequency alike.
     sweep = data.pulse_kind in ("lfm", "hfm") and data.bandwidth > 0
     length = np.sqrt(data.pulse_duration / data.bandwidth) if sweep else data.pulse_duration
     window = int(np.clip(round(length * b.rate), 16, max(b.values.shape[1] // 4, 16)))
@@ -26,7 +27,9 @@ def draw(data, ping):
 
     fig, axes = style.figure(TITLE, 4.8)
     low, high = style.colour_limits(db, 20.0)
-    mesh = axes.pcolormesh(style.cell_edges(time), style.cell_edges(frequency - data.centre_frequency), db, cmap=style.MAP, vmin=low, vmax=high,
+    mesh = axes.pcolormesh(style.cell_edges(time),
+                           style.cell_edges(frequency - data.centre_frequency), db, cmap=style.MAP,
+                           vmin=low, vmax=high,
                            shading="flat", rasterized=True)
     style.image_frame(axes)
     style.time_axis(axes, b.start, b.times[-1] + 1.0 / b.rate)
@@ -34,7 +37,8 @@ def draw(data, ping):
     axes.set_ylabel(f"frequency above {data.centre_frequency:g} Hz / Hz")
     if data.pulse_kind == "cw":
         speed = data.sound_speed(float(np.mean(data.phones(ping)[:, 2])))
-        shift = 2.0 * data.centre_frequency / speed                      # two-way Doppler, Hz per m/s
+        # two-way Doppler, Hz per m/s
+        shift = 2.0 * data.centre_frequency / speed
         right = axes.secondary_yaxis("right", functions=(lambda f: f / shift, lambda v: v * shift))
         right.set_ylabel("closing speed / m/s")
         right.tick_params(length=3)

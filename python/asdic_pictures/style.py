@@ -1,4 +1,4 @@
-"""The common look: sizes, colours (Okabe & Ito's, safe for the colour-blind), axes, and writing a picture."""
+"""The common look: sizes, axes, colours (Okabe & Ito's, safe for the colour-blind), and writing."""
 from __future__ import annotations
 
 import matplotlib
@@ -9,19 +9,27 @@ import numpy as np  # noqa: E402
 from matplotlib import patheffects, ticker  # noqa: E402
 
 INK, GREY = "#222222", "#8a8a8a"
-BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9"
+BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
+ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
 TARGETS = [VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY]
 MAP = "viridis"
-OVER_MAP = [patheffects.withStroke(linewidth=2.6, foreground=INK)]  # keeps a light mark readable on any colour
+# keeps a light mark readable on any colour
+OVER_MAP = [patheffects.withStroke(linewidth=2.6, foreground=INK)]
 
 plt.rcParams.update({
-    "figure.dpi": 150, "savefig.dpi": 150, "figure.constrained_layout.use": True, "figure.facecolor": "white",
+    "figure.dpi": 150, "savefig.dpi": 150, "figure.constrained_layout.use": True,
+    "figure.facecolor": "white",
     "font.family": "DejaVu Sans", "font.size": 10, "text.color": INK,
-    "axes.titlesize": 11, "axes.titlelocation": "left", "axes.titlepad": 8, "axes.labelsize": 10, "axes.labelcolor": INK,
-    "axes.edgecolor": GREY, "axes.linewidth": 0.8, "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
-    "xtick.labelsize": 9, "ytick.labelsize": 9, "xtick.color": GREY, "ytick.color": GREY, "xtick.labelcolor": INK, "ytick.labelcolor": INK,
-    "grid.color": "#e8e8e8", "grid.linewidth": 0.7, "lines.linewidth": 1.4, "lines.solid_capstyle": "round",
-    "legend.frameon": False, "legend.fontsize": 9, "legend.handlelength": 1.6, "legend.columnspacing": 1.6,
+    "axes.titlesize": 11, "axes.titlelocation": "left", "axes.titlepad": 8, "axes.labelsize": 10,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": GREY, "axes.linewidth": 0.8, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.axisbelow": True,
+    "xtick.labelsize": 9, "ytick.labelsize": 9, "xtick.color": GREY, "ytick.color": GREY,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK,
+    "grid.color": "#e8e8e8", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False, "legend.fontsize": 9, "legend.handlelength": 1.6,
+    "legend.columnspacing": 1.6,
     "agg.path.chunksize": 20000,
 })
 
@@ -49,7 +57,9 @@ def shorten(text: str, limit: int = 125) -> str:
 
 
 def name(text: str) -> str:
-    """A target's name for a legend: never read as mathematics, never long, never hidden for its leading underscore."""
+    """A target's name for a legend: never read as mathematics, never long, never hidden for its
+    leading underscore.
+    """
     return shorten(text, 28).lstrip("_") or "target"
 
 
@@ -62,9 +72,11 @@ def legend_below(axes, handles=None, below: float = 0.13, **options) -> None:
     """A legend in a row under the axes, where it can hide nothing."""
     handles = handles if handles is not None else axes.get_legend_handles_labels()[0]
     if handles:
-        widest = sum(len(h.get_label()) + 6 for h in handles)      # in characters; about 115 fit in a row
+        # in characters; about 115 fit in a row
+        widest = sum(len(h.get_label()) + 6 for h in handles)
         columns = min(options.pop("ncol", 6), -(-len(handles) // -(-widest // 115)))
-        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, -below), ncol=columns, borderaxespad=0.3, **options)
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, -below), ncol=columns,
+                    borderaxespad=0.3, **options)
 
 
 def image_frame(axes) -> None:
@@ -75,7 +87,15 @@ def image_frame(axes) -> None:
     axes.tick_params(direction="out", length=3)
 
 
+def silence(axes, db) -> None:
+    """Says so where there is nothing to be drawn."""
+    if not np.isfinite(db).any():
+        axes.text(0.5, 0.5, "silence", transform=axes.transAxes, ha="center", va="center",
+                  color=GREY)
+
+
 def colour_bar(fig, mesh, axes, label: str, extend: str = "both"):
+    silence(axes, mesh.get_array())
     bar = fig.colorbar(mesh, ax=axes, pad=0.015, fraction=0.05, aspect=28, extend=extend)
     bar.set_label(label)
     bar.outline.set_linewidth(0.6)
@@ -86,7 +106,9 @@ def colour_bar(fig, mesh, axes, label: str, extend: str = "both"):
 
 
 def colour_limits(db, floor_percentile: float = 30.0, least: float = 20.0, most: float = 60.0):
-    """Limits in dB, multiples of 5: from just below the background to just below the peak, at least 20 and at most 60 dB apart."""
+    """Limits in dB, multiples of 5: from just below the background to just below the peak, at least
+    20 and at most 60 dB apart.
+    """
     good = db[np.isfinite(db)]
     if good.size == 0:
         return 0.0, least

@@ -403,5 +403,23 @@ TEST(ScenarioReader, FilesThatCannotBeReadAreNamed) {
   EXPECT_THROW(static_cast<void>(read_scenario(folder.path())), InputError);
 }
 
+TEST(Scenarios, AllOfThemRead) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ASDIC_SCENARIOS)) {
+    if (entry.path().extension() != ".toml") continue;
+    if (entry.path().filename().string().starts_with("ocean_")) {  // fragments
+      const std::vector<std::string> include{"include=" + entry.path().string()};
+      const std::string text(small_scenario);
+      EXPECT_NO_THROW(static_cast<void>(
+          parse_scenario(text.substr(text.find("[platform]")), "s.toml", include)))
+          << entry.path();
+    } else {
+      EXPECT_NO_THROW(static_cast<void>(read_scenario(entry.path()))) << entry.path();
+    }
+    ++read;
+  }
+  EXPECT_GE(read, 5);
+}
+
 }  // namespace
 }  // namespace asdic
