@@ -20,6 +20,7 @@ template <>
 struct Fftw<float> {
   using Complex = fftwf_complex;
   using Plan = fftwf_plan;
+  static void destroy(Plan plan) { fftwf_destroy_plan(plan); }
   static Plan c2c(int n, Complex* x, int sign) {
     return fftwf_plan_dft_1d(n, x, x, sign, FFTW_ESTIMATE);
   }
@@ -44,6 +45,7 @@ template <>
 struct Fftw<double> {
   using Complex = fftw_complex;
   using Plan = fftw_plan;
+  static void destroy(Plan plan) { fftw_destroy_plan(plan); }
   static Plan c2c(int n, Complex* x, int sign) {
     return fftw_plan_dft_1d(n, x, x, sign, FFTW_ESTIMATE);
   }
@@ -72,12 +74,21 @@ auto* fftw_pointer(std::complex<Real>* x) {
 // FFTW's planner is not thread safe in either precision, and the two share nothing we may rely on.
 std::mutex planner_mutex;
 
+/// Frees its plans when the program ends.
+template <class Real>
+struct Plans {
+  std::map<std::pair<Kind, std::size_t>, typename Fftw<Real>::Plan> made;
+  ~Plans() {
+    for (auto& [key, plan] : made) Fftw<Real>::destroy(plan);
+  }
+};
+
 /// The plan for this kind and length, made on first use.
 template <class Real>
 const void* plan(Kind kind, std::size_t length) {
-  static std::map<std::pair<Kind, std::size_t>, typename Fftw<Real>::Plan> plans;
+  static Plans<Real> plans;
   const std::lock_guard lock(planner_mutex);
-  auto& known = plans[{kind, length}];
+  auto& known = plans.made[{kind, length}];
   if (known) return known;
   FftBuffer<std::complex<Real>> complex_data(length + 1);
   FftBuffer<Real> real_data(length);

@@ -39,8 +39,8 @@ class Pulse {
   [[nodiscard]] double duration() const noexcept { return settings_.duration; }
   [[nodiscard]] double centre_frequency() const noexcept { return centre_frequency_; }
   /// Full width around the centre outside which the spectrum stays 40 dB below its peak [Hz]:
-  /// 64/T for an unwindowed tone with its slow side lobes, 6.4/T under a Hann window. At most twice
-  /// the centre frequency.
+  /// 63/T for an unwindowed tone with its slow side lobes, 5.75/T under a Hann window. At most
+  /// twice the centre frequency.
   [[nodiscard]] double bandwidth_40db() const noexcept { return bandwidth_40db_; }
   /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window.
   [[nodiscard]] double energy() const noexcept { return energy_; }
