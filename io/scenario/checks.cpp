@@ -126,7 +126,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario) {
                  scenario.environment.water.at(scenario.environment.bottom.depth * i / 100).c);
   // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
   const double doppler = 1.0 + 2.0 * (target_speed + fastest(scenario.platform)) / slowest_sound;
-  const double needed = 2.0 * (pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db()) * doppler;
+  const double needed = 2.0 * highest * doppler;
   TomlTable pings = root.table("pings");
   if (!(scenario.pings.sample_rate > needed))
     throw pings.fault("sample_rate",
