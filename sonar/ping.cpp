@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/error.h"
@@ -171,16 +172,15 @@ PingRecord PingSimulator::simulate(int ping) const {
   record.pressure.assign(scenario_.array.phones.size() * record.recording.samples, 0.0F);
   const Synthesizer synthesizer(pulse_, record.recording, max_doppler_);
   LevelMeter levels(record.recording);
-  if (!echo_returns.empty()) {
-    const Baseband heard = synthesizer.baseband(echo_returns, scenario_.array.phones);
-    synthesizer.add_passband(heard, peak_pressure, record.pressure);
-    levels.add_echo(heard, peak_pressure);
+  Baseband heard = synthesizer.baseband(echo_returns, scenario_.array.phones);
+  levels.add_echo(heard, peak_pressure);
+  {
+    const Baseband reverberated = synthesizer.baseband(patch_returns, scenario_.array.phones);
+    levels.add_reverberation(reverberated, peak_pressure);
+    std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
+                   heard.values.begin(), std::plus<>{});
   }
-  if (!patch_returns.empty()) {
-    const Baseband heard = synthesizer.baseband(patch_returns, scenario_.array.phones);
-    synthesizer.add_passband(heard, peak_pressure, record.pressure);
-    levels.add_reverberation(heard, peak_pressure);
-  }
+  synthesizer.add_passband(heard, peak_pressure, record.pressure);
   record.timings.synthesis = watch.lap();
 
   double noise_variance = 0.0;

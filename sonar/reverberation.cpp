@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/random.h"
 #include "sonar/doppler.h"
@@ -9,27 +10,58 @@
 
 namespace asdic {
 
-Returns reverberation_returns(const ReverberationContext& context, std::span<const Patch> patches) {
-  constexpr double faint = 1e-5;
-  const int azimuths = context.scenario.reverberation.azimuths;
-  std::vector<double> beamed(patches.size());  // |A·D|
-  double strongest = 0.0;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    beamed[i] = std::abs(patches[i].amplitude * context.pattern(patches[i].launch_elevation));
-    strongest = std::max(strongest, beamed[i]);
-  }
+namespace {
 
+/// Indices of the patches that matter, in their order: in every stretch of delay a quarter of a
+/// pulse long the weakest are left out as long as all that is left out there stays 50 dB below the
+/// stretch's power.
+std::vector<std::uint32_t> audible(std::span<const Patch> patches, const BeamPattern& pattern,
+                                   double pulse_duration) {
+  constexpr double left_out = 1e-5;
+  struct Entry {
+    std::uint32_t stretch, index;
+    double power;
+  };
+  std::vector<Entry> entries(patches.size());
+  const double length = 0.25 * pulse_duration;
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    entries[i] = {static_cast<std::uint32_t>(patches[i].delay / length),
+                  static_cast<std::uint32_t>(i),
+                  std::norm(patches[i].amplitude * pattern(patches[i].launch_elevation))};
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.stretch, a.power, a.index) < std::tie(b.stretch, b.power, b.index);
+  });
+  std::vector<std::uint32_t> kept;
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    double total = 0.0;
+    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
+      total += entries[end].power;
+    double dropped = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      dropped += entries[i].power;
+      if (dropped > left_out * total) kept.push_back(entries[i].index);
+    }
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+}  // namespace
+
+Returns reverberation_returns(const ReverberationContext& context, std::span<const Patch> patches) {
+  const int azimuths = context.scenario.reverberation.azimuths;
+  const std::vector<std::uint32_t> kept =
+      audible(patches, context.pattern, context.scenario.pulse.duration);
   Returns returns;
-  returns.reserve(patches.size() * static_cast<std::size_t>(azimuths));
+  returns.reserve(kept.size() * static_cast<std::size_t>(azimuths));
   std::vector<std::complex<double>> weights(static_cast<std::size_t>(azimuths));
   const double share =
       1.0 / std::sqrt(double(azimuths));  // of the ring's amplitude in a sector of its area
   const bool moving = !context.platform.velocity.isZero();
   std::uint32_t weighted_cell = 0;
   bool has_weights = false;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (beamed[i] <= faint * strongest) continue;
-    const Patch& patch = patches[i];
+  for (const std::uint32_t index : kept) {
+    const Patch& patch = patches[index];
     if (!has_weights || patch.cell != weighted_cell) {
       for (int k = 0; k < azimuths; ++k) {
         const std::uint64_t sector =

@@ -21,8 +21,8 @@ struct ReverberationContext {
 
 /// The patches as returns: every ring is split into azimuth sectors, each with its own direction,
 /// Doppler factor and complex Gaussian weight, E|w|² = 1, keyed by (seed, ping, ground cell,
-/// sector) and shared by all path pairs through it. Pairs that the beam leaves 100 dB below the
-/// ping's strongest are left out.
+/// sector) and shared by all path pairs through it. The weakest pairs are left out as long as all
+/// that is left out stays 50 dB below what is heard at its time.
 [[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
                                             std::span<const Patch> patches);
 

@@ -18,9 +18,11 @@ struct GaussLegendre<4> {
   static constexpr std::array weight = {0.6521451548625461, 0.3478548451374538};
 };
 template <>
-struct GaussLegendre<6> {
-  static constexpr std::array node = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
-  static constexpr std::array weight = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+struct GaussLegendre<8> {
+  static constexpr std::array node = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                      0.9602898564975363};
+  static constexpr std::array weight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                        0.1012285362903763};
 };
 template <>
 struct GaussLegendre<10> {
@@ -42,34 +44,68 @@ void gauss_legendre(double a, double b, F&& f) {
   }
 }
 
-/// Integrals over a way through a layer whose law has no closed form: `direct(c, s, dz)` is called
-/// at depths where s = sin θ is well away from zero compared with the node spacing;
+/// Calls f(c, 1/s, dz) at the n Gauss–Legendre nodes between two depths of a layer with a cubic
+/// law; the loop over nodes becomes vector instructions.
+template <std::size_t n, class F>
+void at_cubic_nodes(const Layer& layer, const RayParameter& ray, double top, double bottom, F&& f) {
+  using Rule = GaussLegendre<static_cast<int>(n)>;
+  const double centre = 0.5 * (top + bottom) - layer.origin, half = 0.5 * (bottom - top);
+  const auto [a0, a1, a2, a3] = layer.coefficient;
+  const double c_ref = ray.reference_speed, sigma2 = ray.sigma * ray.sigma,
+               per_c2 = 1.0 / (c_ref * c_ref);
+  std::array<double, n> speed, per_sine;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = i < n / 2 ? -Rule::node[n / 2 - 1 - i] : Rule::node[i - n / 2];
+    const double t = centre + half * x;
+    const double c = a0 + t * (a1 + t * (a2 + t * a3));
+    speed[i] = c;
+    per_sine[i] = 1.0 / std::sqrt(((c_ref - c) * (c_ref + c) + sigma2 * c * c) * per_c2);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    f(speed[i], per_sine[i],
+      half * (i < n / 2 ? Rule::weight[n / 2 - 1 - i] : Rule::weight[i - n / 2]));
+}
+
+/// Integrals over a way through a layer whose law has no closed form: `direct(c, 1/s, dz)` is
+/// called at depths where s = sin θ is well away from zero compared with the node spacing;
 /// `near_turn(SoundSpeed, s, dz)` on the piece that ends at a turning point, where nodes are placed
 /// in u = √|z − z_turn| so that 1/s is smooth. The caller sums what it needs.
 ///
-/// Away from a turning point the panels grow fourfold from the edge where the ray is flattest: an
+/// Away from a turning point the panels grow threefold from the edge where the ray is flattest: an
 /// integrand like (δ + x)^(−3/2) is then resolved to 1e-10 however small δ is.
 template <class Direct>
 void panels_from_flat_edge(const Layer& layer, const RayParameter& ray, double flat, double steep,
                            double scale, Direct&& direct) {
   const double sign = steep > flat ? 1.0 : -1.0, total = std::abs(steep - flat);
-  const auto at = [&](double x, double w) {
-    const double c = layer.at(flat + sign * x).c;
-    direct(c, std::sqrt(std::max(ray.sine2(c), 1e-300)), w);
+  const auto panel = [&](double a, double b) {
+    if (layer.law == Layer::Law::cubic) {
+      const double z_a = flat + sign * a, z_b = flat + sign * b;
+      return at_cubic_nodes<8>(layer, ray, std::min(z_a, z_b), std::max(z_a, z_b), direct);
+    }
+    gauss_legendre(a, b, [&](double x, double w) {
+      const double c = layer.at(flat + sign * x).c;
+      direct(c, 1.0 / std::sqrt(std::max(ray.sine2(c), 1e-300)), w);
+    });
   };
-  // Bernstein: on (0, h) the error of n nodes for a singularity at −scale falls as ρ^(−2n), ρ = x +
-  // √(x² − 1), x = 1 + 2·scale/h.
-  if (layer.law == Layer::Law::cubic && scale > 16.0 * total)
-    return gauss_legendre<4>(0.0, total, at);  // ρ ≈ 66
-  if (layer.law == Layer::Law::cubic && scale > 2.0 * total)
-    return gauss_legendre<6>(0.0, total, at);  // ρ ≈ 10
   double from = 0.0, to = std::max(scale, 1e-12 * total);
   while (from < total) {
-    if (to > 0.5 * total) to = total;
-    gauss_legendre(from, to, at);
+    if (1.5 * to > total) to = total;
+    panel(from, to);
     from = to;
-    to *= 4.0;
+    to *= 3.0;
   }
+}
+
+/// How far from its flatter edge s² of a ray has doubled: s² ≈ s₀² + A·x + B·x² there, so x =
+/// 2s₀²/(A + √(A² + 4Bs₀²)) [m].
+[[nodiscard]] inline double doubling_distance(const Layer& layer, const RayParameter& ray,
+                                              double flat_edge, double s2) {
+  const SoundSpeed edge = layer.at(flat_edge);
+  const double k = 2.0 * ray.slowness * ray.slowness;
+  const double a = k * edge.c * std::abs(edge.dc_dz);
+  const double b = 0.5 * k * std::abs(edge.c * edge.d2c_dz2 + edge.dc_dz * edge.dc_dz);
+  const double root = a + std::sqrt(a * a + 4.0 * b * s2);
+  return root > 0.0 ? 2.0 * s2 / root : 1e300;
 }
 
 /// Over a layer that the ray crosses.
@@ -80,13 +116,7 @@ void integrate_crossing(const Layer& layer, const RayParameter& ray, double sine
   const double flat = flat_at_top ? layer.top : layer.bottom,
                steep = flat_at_top ? layer.bottom : layer.top;
   const double s2 = flat_at_top ? sine_top * sine_top : sine_bottom * sine_bottom;
-  // s² ≈ s₀² + A·x + B·x² near the flat edge: it has doubled after x = 2s₀²/(A + √(A² + 4Bs₀²)).
-  const SoundSpeed edge = layer.at(flat);
-  const double k = 2.0 * ray.slowness * ray.slowness;
-  const double a = k * edge.c * std::abs(edge.dc_dz);
-  const double b = 0.5 * k * std::abs(edge.c * edge.d2c_dz2 + edge.dc_dz * edge.dc_dz);
-  const double root = a + std::sqrt(a * a + 4.0 * b * s2);
-  const double scale = root > 0.0 ? 2.0 * s2 / root : layer.thickness();
+  const double scale = std::min(doubling_distance(layer, ray, flat, s2), layer.thickness());
   panels_from_flat_edge(layer, ray, flat, steep, scale, direct);
 }
 

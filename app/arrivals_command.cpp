@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/arrivals_output.h"
+#include "app/command.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "core/error.h"
+#include "io/scenario_reader.h"
+#include "sonar/echo.h"
+#include "sonar/ping.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  ScenarioChoice scenario;
+  std::vector<std::string> legs;  // "target", "array"; both when empty
+  std::optional<int> target;      // from 0
+  int ping = 1;
+  std::optional<double> source_depth, receiver_depth, range, frequency;
+  bool json = false;
+  std::string output;
+};
+
+/// From the platform's depth (or another) to any depth and range.
+Leg to_receiver(const PingSimulator& simulator, const Options& options) {
+  const Environment& ocean = simulator.scenario().environment;
+  if (!options.receiver_depth || !options.range)
+    throw InputError({.where = options.range ? "--receiver-depth" : "--range",
+                      .got = "nothing",
+                      .expected = "a length: --receiver-depth and --range go together"});
+  const auto in_water = [&](const std::string& option, double depth) {
+    if (depth >= ocean.surface.depth && depth <= ocean.bottom.depth) return depth;
+    throw InputError({.where = option,
+                      .got = fmt::format("{} m", depth),
+                      .expected = fmt::format("a depth between {} and {} m", ocean.surface.depth,
+                                              ocean.bottom.depth)});
+  };
+  const PropagationSettings& limits = simulator.scenario().propagation;
+  const double time = (options.ping - 1) * simulator.scenario().pings.interval;
+  const double source =
+      options.source_depth.value_or(simulator.scenario().platform.at(time).position.z());
+  Leg leg{.range = *options.range};
+  leg.arrivals = simulator.ocean().find(
+      in_water("--source-depth", source), in_water("--receiver-depth", *options.receiver_depth),
+      *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
+      {.max_surface_bounces = limits.max_surface_bounces,
+       .max_bottom_bounces = limits.max_bottom_bounces,
+       .max_launch_angle = limits.max_launch_angle});
+  return leg;
+}
+
+std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& options) {
+  const Scenario& scenario = simulator.scenario();
+  const int n = static_cast<int>(scenario.targets.size());
+  if (n == 0)
+    throw InputError({.where = options.scenario.path + ": target",
+                      .got = "none",
+                      .expected = "a target, or --receiver-depth and --range"});
+  if (options.target && *options.target >= n)
+    throw InputError({.where = "--target",
+                      .got = std::to_string(*options.target),
+                      .expected = fmt::format("a target from 0 to {}", n - 1)});
+  const double time = (options.ping - 1) * scenario.pings.interval;
+  const Transmitter transmitter = simulator.transmitter(options.ping);
+  const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
+  const double c = scenario.environment.water.at(scenario.platform.at(time).position.z()).c;
+  const BeamPattern pattern(transmitter, c / frequency);
+  const EchoContext context{.ocean = simulator.ocean(),
+                            .scenario = scenario,
+                            .pattern = pattern,
+                            .frequency = frequency,
+                            .ping_time = time};
+  const auto wanted = [&](Leg::Kind kind) {
+    const std::string name = kind == Leg::Kind::source_to_target ? "target" : "array";
+    return options.legs.empty() ||
+           std::find(options.legs.begin(), options.legs.end(), name) != options.legs.end();
+  };
+  std::vector<Leg> legs;
+  for (int i = 0; i < n; ++i) {
+    if (options.target && *options.target != i) continue;
+    for (Leg& leg : target_echoes(context, i).legs)
+      if (wanted(leg.kind)) legs.push_back(std::move(leg));
+  }
+  return legs;
+}
+
+int arrivals(const Options& options) {
+  const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
+  const Scenario& scenario = simulator.scenario();
+  const bool free = options.receiver_depth || options.range;
+  const ArrivalsResult result{
+      .scenario = &scenario,
+      .ping = options.ping,
+      .frequency = options.frequency.value_or(simulator.pulse().centre_frequency()),
+      .to_receiver = free,
+      .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
+  if (!options.output.empty()) {
+    check_output(options.output, options.scenario.path);
+    write_arrivals_file(options.output, result);
+  }
+  if (options.json)
+    print(arrivals_json(result));
+  else if (options.output.empty())
+    print(arrivals_table(result));
+  return 0;
+}
+
+}  // namespace
+
+void add_arrivals_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "arrivals",
+      "Every eigenray from the platform to the targets and back, or to any depth and range.");
+  add_scenario_options(*command, options->scenario);
+  command
+      ->add_option("--leg", options->legs,
+                   "target: platform to target; array: target to array; default: both")
+      ->type_name("LEG")
+      ->check(CLI::IsMember({"target", "array"}))
+      ->allow_extra_args(false);
+  command->add_option("--target", options->target, "this target alone, from 0; default: all")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--ping", options->ping, "positions of this ping")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  add_length_option(
+      *command, "--receiver-depth", [options](double x) { options->receiver_depth = x; },
+      "depth of a receiver, instead of targets; with --range");
+  add_length_option(
+      *command, "--range", [options](double x) { options->range = x; },
+      "horizontal distance of that receiver, e.g. 30km");
+  add_length_option(
+      *command, "--source-depth", [options](double x) { options->source_depth = x; },
+      "depth of the source, with --range; default: the platform's");
+  command
+      ->add_option("--frequency", options->frequency,
+                   "at which losses are told [Hz]; default: the pulse's centre")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
+  command
+      ->add_option("-o,--output", options->output,
+                   "write HDF5 (docs/formats/arrivals.md), instead of the table")
+      ->type_name("FILE.h5");
+  command->footer(
+      "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
+      "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"
+      "          asdic arrivals scenarios/deep_ocean.toml --receiver-depth 125m --range 25km "
+      "--json");
+  command->callback([options, &action] { action = [options] { return arrivals(*options); }; });
+}
+
+}  // namespace asdic::app

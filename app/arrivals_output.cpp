@@ -1,0 +1,220 @@
+#include "app/arrivals_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/console.h"
+#include "app/output.h"
+#include "app/provenance.h"
+#include "core/units.h"
+#include "io/ping/growing_table.h"
+
+namespace asdic::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+double bearing_deg(const Leg& leg) {
+  const double bearing = degrees(leg.bearing);
+  return bearing < 0.0 ? bearing + 360.0 : bearing;
+}
+
+std::string leg_name(const Leg& leg) {
+  return leg.kind == Leg::Kind::source_to_target ? "target" : "array";
+}
+
+std::string title_of(const ArrivalsResult& result, const Leg& leg) {
+  const std::string distance = fmt::format("{} km", number(leg.range / 1000.0, 3));
+  const std::string found = count_of(leg.arrivals.size(), "path");
+  if (result.to_receiver) return fmt::format("to a receiver at {}: {}", distance, found);
+  const std::string& target = result.scenario->targets[static_cast<std::size_t>(leg.target)].name;
+  return fmt::format("{}, {}, bearing {} deg: {}",
+                     leg.kind == Leg::Kind::source_to_target ? fmt::format("platform to {}", target)
+                                                             : fmt::format("{} to array", target),
+                     distance, number(bearing_deg(leg), 1), found);
+}
+
+/// s12.3 b20.1: in order, surface or bottom with the grazing angle.
+std::string bounces_of(const Arrival& arrival) {
+  std::string text;
+  for (const Bounce& bounce : arrival.bounces)
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ",
+                        bounce.boundary == BoundaryKind::surface ? 's' : 'b',
+                        number(degrees(bounce.grazing), 2));
+  return text;
+}
+
+}  // namespace
+
+std::string arrivals_table(const ArrivalsResult& result) {
+  std::string text;
+  for (const Leg& leg : result.legs) {
+    if (!text.empty()) text += '\n';
+    text += emphasised(title_of(result, leg)) + '\n';
+    if (leg.arrivals.empty()) continue;
+    Table table({{"path"},
+                 {"launch", "deg"},
+                 {"arrival", "deg"},
+                 {"delay", "s"},
+                 {"level", "dB"},
+                 {"phase", "deg"},
+                 {"spreading", "dB"},
+                 {"absorption", "dB"},
+                 {"reflection", "dB"},
+                 {"turns"},
+                 {"caustics"},
+                 {"bounces", "deg", true}});
+    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
+      const Arrival& a = leg.arrivals[i];
+      table.row({std::to_string(i), number(degrees(a.launch_elevation), 3),
+                 number(degrees(a.arrival_elevation), 3), number(a.delay, 5),
+                 number(db_from_amplitude(std::abs(a.amplitude)), 2),
+                 number(degrees(std::arg(a.amplitude)), 1),
+                 number(-db_from_amplitude(a.spreading), 2), number(a.absorption_db, 2),
+                 number(-db_from_amplitude(std::abs(a.reflection)), 2),
+                 std::to_string(a.upper_turns + a.lower_turns), std::to_string(a.caustics),
+                 bounces_of(a)});
+    }
+    text += table.text();
+  }
+  return text + fmt::format(
+                    "\nlosses at {} Hz; level re the pressure at 1 m; elevations of travel, "
+                    "positive up; bounces: s surface, b bottom, with grazing angle\n",
+                    result.frequency);
+}
+
+std::string arrivals_json(const ArrivalsResult& result) {
+  ordered_json legs = ordered_json::array();
+  for (const Leg& leg : result.legs) {
+    ordered_json paths = ordered_json::array();
+    for (const Arrival& a : leg.arrivals) {
+      ordered_json bounces = ordered_json::array();
+      for (const Bounce& bounce : a.bounces)
+        bounces.push_back(
+            {{"boundary", bounce.boundary == BoundaryKind::surface ? "surface" : "bottom"},
+             {"grazing_deg", degrees(bounce.grazing)},
+             {"range", bounce.range}});
+      paths.push_back({{"launch_elevation_deg", degrees(a.launch_elevation)},
+                       {"arrival_elevation_deg", degrees(a.arrival_elevation)},
+                       {"delay", a.delay},
+                       {"level_db", db_from_amplitude(std::abs(a.amplitude))},
+                       {"phase_deg", degrees(std::arg(a.amplitude))},
+                       {"amplitude_real", a.amplitude.real()},
+                       {"amplitude_imag", a.amplitude.imag()},
+                       {"spreading_db", -db_from_amplitude(a.spreading)},
+                       {"absorption_db", a.absorption_db},
+                       {"reflection_db", -db_from_amplitude(std::abs(a.reflection))},
+                       {"path_length", a.path_length},
+                       {"upper_turns", a.upper_turns},
+                       {"lower_turns", a.lower_turns},
+                       {"caustics", a.caustics},
+                       {"bounces", bounces}});
+    }
+    ordered_json one;
+    if (!result.to_receiver) {
+      one["leg"] = leg_name(leg);
+      one["target"] = leg.target;
+      one["target_name"] = result.scenario->targets[static_cast<std::size_t>(leg.target)].name;
+      one["bearing_deg"] = bearing_deg(leg);
+    } else {
+      one["leg"] = "receiver";
+    }
+    one["range"] = leg.range;
+    one["arrivals"] = paths;
+    legs.push_back(one);
+  }
+  const ordered_json all = {{"filetype", "asdic arrivals"},
+                            {"version", "1.0"},
+                            {"title", result.scenario->title},
+                            {"scenario", result.scenario->path},
+                            {"ping", result.ping},
+                            {"frequency_hz", result.frequency},
+                            {"legs", legs}};
+  return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result) {
+  Hdf5Output output(path);
+  Hdf5File& file = output.file();
+  const Scenario& scenario = *result.scenario;
+  const Provenance made = provenance(1);
+  file.set_attribute("", "filetype", "asdic arrivals");
+  file.set_attribute("", "version", "1.0");
+  file.set_attribute("", "title", scenario.title);
+  file.set_attribute("", "program_version", made.program_version);
+  file.set_attribute("", "build", made.build);
+  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  file.set_attribute("", "frequency_hz", result.frequency);
+  if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
+  file.write_text("scenario", scenario.text);
+  describe(file, "scenario", "the scenario file, verbatim");
+
+  // /arrivals and /bounces as in a ping file
+  using Type = ElementType;
+  GrowingTable arrivals(
+      file, "arrivals", "arrival",
+      {{"ping", "number of the ping", "", Type::int32},
+       {"leg", "0 source to target, 1 target to array, 3 source to receiver", "", Type::int32},
+       {"target", "number of the target, -1: none", "", Type::int32},
+       {"channel", "number of the phone, -1: the reference point", "", Type::int32},
+       {"path", "number within its leg", "", Type::int32},
+       {"bearing_deg", "direction of travel, clockwise from north", "degree"},
+       {"range", "horizontal distance of the leg", "m"},
+       {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
+       {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},
+       {"delay", "travel time", "s"},
+       {"amplitude_real", "pressure re 1 m, real part", ""},
+       {"amplitude_imag", "pressure re 1 m, imaginary part", ""},
+       {"spreading_db", "spreading loss", "dB"},
+       {"absorption_db", "absorption loss", "dB"},
+       {"path_length", "length along the ray", "m"},
+       {"surface_bounces", "reflections at the surface", "", Type::int32},
+       {"bottom_bounces", "reflections at the bottom", "", Type::int32},
+       {"upper_turns", "turning points below the surface", "", Type::int32},
+       {"lower_turns", "turning points above the bottom", "", Type::int32},
+       {"caustics", "caustics passed", "", Type::int32},
+       {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
+       {"bounce_count", "rows of /bounces", "", Type::int32}});
+  GrowingTable bounces(file, "bounces", "bounce",
+                       {{"boundary", "0 surface, 1 bottom", "", Type::int8},
+                        {"grazing_deg", "angle between ray and boundary", "degree"},
+                        {"range", "horizontal distance from the start of the leg", "m"}});
+  for (const Leg& leg : result.legs)
+    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
+      const Arrival& a = leg.arrivals[i];
+      const double first = a.bounces.empty() ? -1.0 : static_cast<double>(bounces.rows());
+      for (const Bounce& bounce : a.bounces)
+        bounces.row({bounce.boundary == BoundaryKind::surface ? 0.0 : 1.0, degrees(bounce.grazing),
+                     bounce.range});
+      const double kind = result.to_receiver ? 3.0 : static_cast<double>(leg.kind);
+      arrivals.row({double(result.ping),
+                    kind,
+                    double(leg.target),
+                    double(leg.channel),
+                    static_cast<double>(i),
+                    result.to_receiver ? std::nan("") : bearing_deg(leg),
+                    leg.range,
+                    degrees(a.launch_elevation),
+                    degrees(a.arrival_elevation),
+                    a.delay,
+                    a.amplitude.real(),
+                    a.amplitude.imag(),
+                    -db_from_amplitude(a.spreading),
+                    a.absorption_db,
+                    a.path_length,
+                    double(a.surface_bounces),
+                    double(a.bottom_bounces),
+                    double(a.upper_turns),
+                    double(a.lower_turns),
+                    double(a.caustics),
+                    first,
+                    static_cast<double>(a.bounces.size())});
+    }
+  arrivals.write();
+  bounces.write();
+  output.finish();
+}
+
+}  // namespace asdic::app

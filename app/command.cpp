@@ -1,0 +1,50 @@
+#include "app/command.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace asdic::app {
+
+void add_scenario_options(CLI::App& command, ScenarioChoice& choice) {
+  command.add_option("SCENARIO", choice.path, "scenario file (TOML)")->required();
+  command
+      .add_option(
+          "--set", choice.overrides,
+          "replace one value of the scenario by its path, in SI units as in the file; "
+          "may be repeated: --set transmitter.elevation_deg=12 --set target.0.strength_db=20")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+double parse_length(const std::string& name, const std::string& text) {
+  const auto wrong = [&] {
+    return InputError(
+        {.where = name, .got = '"' + text + '"', .expected = "a length such as 60km, 500m or 500"});
+  };
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || !std::isfinite(value) || value < 0.0) throw wrong();
+  std::string unit(rest, end);
+  if (unit.starts_with(' ')) unit.erase(0, 1);
+  if (unit == "km") return 1000.0 * value;
+  if (unit.empty() || unit == "m") return value;
+  throw wrong();
+}
+
+CLI::Option* add_length_option(CLI::App& command, const std::string& name,
+                               std::function<void(double)> store, const std::string& help) {
+  const std::string long_name = name.substr(name.find("--"));
+  return command
+      .add_option_function<std::string>(
+          name,
+          [store = std::move(store), long_name](const std::string& text) {
+            store(parse_length(long_name, text));
+          },
+          help)
+      ->type_name("LENGTH");
+}
+
+}  // namespace asdic::app

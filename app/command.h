@@ -1,0 +1,40 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace asdic::app {
+
+/// What the command line asked for. \return the exit status
+using Action = std::function<int()>;
+
+// Each adds its command to the program; when the command is chosen, `action` becomes what it does.
+void add_ping_command(CLI::App& program, Action& action);
+void add_rays_command(CLI::App& program, Action& action);
+void add_arrivals_command(CLI::App& program, Action& action);
+void add_validate_command(CLI::App& program, Action& action);
+void add_info_command(CLI::App& program, Action& action);
+void add_plot_command(CLI::App& program, Action& action);
+void add_export_command(CLI::App& program, Action& action);
+void add_ocean_command(CLI::App& program, Action& action);
+
+/// A scenario as the command line names it.
+struct ScenarioChoice {
+  std::string path;
+  std::vector<std::string> overrides;  ///< key.path=value
+};
+
+/// SCENARIO and --set, as every command that reads a scenario has them.
+void add_scenario_options(CLI::App& command, ScenarioChoice& choice);
+
+/// An option that takes a length: 60km, 500m, or plain metres. Negative ones are refused.
+/// \throws InputError naming the option, while the command line is parsed
+CLI::Option* add_length_option(CLI::App& command, const std::string& name,
+                               std::function<void(double)> store, const std::string& help);
+
+/// The same for words outside of CLI11: metres out of "60km", "500 m", "2.5e3".
+/// \throws InputError{where: `name`}
+[[nodiscard]] double parse_length(const std::string& name, const std::string& text);
+
+}  // namespace asdic::app

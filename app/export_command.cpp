@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "core/error.h"
+#include "io/ping_file.h"
+#include "io/wav.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  std::string file, folder = ".";
+  bool wav = false;
+  std::optional<int> ping;
+};
+
+int export_wav(const Options& options) {
+  const PingFile file(options.file);
+  if (options.ping && static_cast<std::size_t>(*options.ping) > file.pings())
+    throw InputError({.where = "--ping",
+                      .got = std::to_string(*options.ping),
+                      .expected = fmt::format("a ping from 1 to {}", file.pings())});
+  if (file.pings() == 0)
+    throw InputError({.where = options.file, .got = "no ping", .expected = "at least one"});
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) throw RunError(options.folder + ": " + error.message());
+  const std::string stem = std::filesystem::path(options.file).stem().string();
+  const std::size_t first = options.ping ? static_cast<std::size_t>(*options.ping) - 1 : 0;
+  const std::size_t end = options.ping ? first + 1 : file.pings();
+  for (std::size_t i = first; i < end; ++i) {
+    std::vector<float> pressure;
+    for (std::size_t channel = 0; channel < file.channels(); ++channel) {
+      const std::vector<float> phone = file.pressure(i, channel);
+      pressure.insert(pressure.end(), phone.begin(), phone.end());
+    }
+    const std::filesystem::path path =
+        std::filesystem::path(options.folder) / fmt::format("{}_ping{:03}.wav", stem, i + 1);
+    const WavScale scale = write_wav(path, pressure, file.channels(), file.sample_rate());
+    print(fmt::format("{}: {}, {} Hz, full scale {:.6g} Pa\n", path.string(),
+                      count_of(file.channels(), "channel"), scale.sample_rate,
+                      scale.pascal_per_unit));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("export", "Write the phones of a ping file in another format.");
+  command->add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")->required();
+  command
+      ->add_flag("--wav", options->wav,
+                 "NAME_pingNNN.wav, 32-bit float, a channel a phone, and NAME_pingNNN.wav.json "
+                 "with the scale in pascal")
+      ->required();
+  command->add_option("-o,--output", options->folder, "folder to write into; made if need be")
+      ->capture_default_str()
+      ->type_name("DIR");
+  command->add_option("--ping", options->ping, "this ping alone; default: all")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
+  command->callback([options, &action] { action = [options] { return export_wav(*options); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/ping_report.h"
+#include "core/error.h"
+#include "io/ping_file.h"
+
+namespace asdic::app {
+namespace {
+
+/// An attribute as text, "unknown" if it is not there.
+std::string attribute(const PingFile& file, const std::string& object, const std::string& key) {
+  return file.file().has_attribute(object, key) ? file.file().attribute_text(object, key)
+                                                : "unknown";
+}
+
+std::string completeness(const PingFile& file) {
+  const std::string requested = attribute(file, "", "pings_requested");
+  return file.complete() ? "complete"
+                         : fmt::format("not complete: {} of {}", file.pings(),
+                                       requested == "1" ? "1 ping" : requested + " pings");
+}
+
+std::string summary(const PingFile& file) {
+  constexpr std::size_t most = 40;  // pings: one screen
+  if (!file.file().has("summary/present")) return "targets      none\n";
+  const auto elevations = file.file().read<double>("elevation_deg");
+  Table table(summary_columns());
+  for (std::size_t i = 0; i < std::min(most, file.pings()); ++i)
+    for (const TargetSummary& target : file.summary(i))
+      table.row(summary_row(static_cast<int>(i) + 1, elevations[i], target));
+  std::string text = table.text();
+  if (file.pings() > most) text += fmt::format("... and {} more pings\n", file.pings() - most);
+  return text;
+}
+
+int info(const std::string& path) {
+  const PingFile file(path);
+  const auto root = [&](const std::string& key) { return attribute(file, "", key); };
+  const std::string title = root("title");
+  print(emphasised(title.empty() ? path : title) + '\n');
+  print(fmt::format("file         {}, {}, {}\n", path,
+                    byte_count(static_cast<double>(std::filesystem::file_size(path))),
+                    completeness(file)));
+  const double rate = file.channels() > 0 && file.file().has("pressure") ? file.sample_rate() : 0.0;
+  print(fmt::format("holds        {}, {}, {} samples at {:g} Hz: {:g} s\n",
+                    count_of(file.pings(), "ping"), count_of(file.channels(), "phone"),
+                    file.samples(), rate,
+                    rate > 0.0 ? static_cast<double>(file.samples()) / rate : 0.0));
+  const auto pulse = [&](const std::string& key) { return attribute(file, "replica", key); };
+  print(fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",
+                    pulse("kind"), pulse("centre_frequency_hz"), pulse("duration_s"),
+                    pulse("window"), pulse("bandwidth_hz"), pulse("source_level_db")));
+  print(fmt::format("made         {} on {}, {}, {} threads\n", attribute(file, "run", "started"),
+                    attribute(file, "run", "host"), attribute(file, "run", "cpu"),
+                    attribute(file, "run", "threads")));
+  print(fmt::format("by           asdic {}, {}\n", root("program_version"), root("build")));
+  print(fmt::format("with         {}\n", attribute(file, "run", "library_versions")));
+  print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
+  if (file.file().has_attribute("", "overrides"))
+    print(fmt::format("changed by   {}\n", root("overrides")));
+  print(summary(file));
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, Action& action) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = program.add_subcommand("info", "Say what a ping file holds.");
+  command->add_option("FILE", *path, "ping file (HDF5), written by asdic ping; NAME.part too")
+      ->required();
+  command->footer("Example:  asdic info deep_ocean.h5");
+  command->callback([path, &action] { action = [path] { return info(*path); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,26 @@
+#pragma once
+#include <stop_token>
+#include <thread>
+
+namespace asdic::app {
+
+/// While it lives, the first SIGINT or SIGTERM asks for a stop, and the second ends the program at
+/// once. One at a time.
+///
+/// The handler only sets an atomic; a thread that watches it requests the stop.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
+  [[nodiscard]] static bool requested() noexcept;
+
+ private:
+  std::stop_source stop_;
+  std::jthread watcher_;
+};
+
+}  // namespace asdic::app

@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "io/hdf5_file.h"
+
+namespace asdic::app {
+
+/// Before hours of work: that a result could have this name. \param input  what it is made from
+/// \throws InputError for a folder, the input itself, or a folder that is not there
+void check_output(const std::filesystem::path& path, const std::filesystem::path& input);
+
+/// A small HDF5 file that gets its name when it is whole.
+class Hdf5Output {
+ public:
+  explicit Hdf5Output(const std::filesystem::path& path);
+  ~Hdf5Output();  ///< without finish(): nothing is left
+  Hdf5Output(const Hdf5Output&) = delete;
+  Hdf5Output& operator=(const Hdf5Output&) = delete;
+
+  [[nodiscard]] Hdf5File& file() noexcept { return file_; }
+  void finish();  ///< \throws RunError
+
+ private:
+  std::filesystem::path path_, part_;
+  Hdf5File file_;
+  bool finished_ = false;
+};
+
+/// A whole text file at once: under its name it is complete. \throws RunError
+void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace asdic::app

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/drawn_rays.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/ping_report.h"
+#include "app/progress_bar.h"
+#include "app/provenance.h"
+#include "core/error.h"
+#include "io/scenario_reader.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  ScenarioChoice scenario;
+  std::string output;
+  std::optional<int> pings, threads;
+  std::optional<std::int64_t> seed;
+  bool quiet = false;
+};
+
+/// --pings and --seed are overrides like any other: so the file tells of them.
+std::vector<std::string> overrides(const Options& options) {
+  std::vector<std::string> all = options.scenario.overrides;
+  if (options.pings) all.push_back(fmt::format("pings.count={}", *options.pings));
+  if (options.seed) all.push_back(fmt::format("seed={}", *options.seed));
+  return all;
+}
+
+/// What Ctrl-C left. \return the exit status
+int interrupted(int done, int count, const std::filesystem::path& output) {
+  if (done == 0) throw RunError("interrupted before the first ping was done; no file was written");
+  throw RunError(fmt::format("interrupted after {} of {}; {} holds them, marked as not complete",
+                             done, count_of(std::size_t(count), "ping"), output.string()));
+}
+
+int ping(const Options& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Scenario scenario = read_scenario(options.scenario.path, overrides(options));
+  const std::filesystem::path output =
+      options.output.empty() ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
+                             : options.output;
+  check_output(output, options.scenario.path);
+
+  const int threads = options.threads.value_or(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  const Interrupt interrupt;
+  const PingSimulator simulator(std::move(scenario));
+  const int count = simulator.scenario().pings.count;
+  PingReport report(simulator.scenario());
+  PingFileWriter writer(output, simulator.scenario(), provenance(threads));
+  int done = 0;
+  try {
+    writer.write_rays(drawn_rays(simulator));
+    ProgressBar bar("ping", count, !options.quiet);
+    run_pings(simulator,
+              [&](PingRecord&& record) {
+                const auto start = std::chrono::steady_clock::now();
+                writer.append(record);
+                const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+                record.timings.write = wall.count();
+                report.add(record);
+                bar.done(++done);
+              },
+              {.stop = interrupt.token()});
+    writer.finish(done == count);
+  } catch (const RunError& error) {
+    if (done == 0) throw;
+    throw RunError(fmt::format("{}; {}.part holds the {} before", error.what(), output.string(),
+                               done == 1 ? "ping" : fmt::format("{} pings", done)));
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  if (!options.quiet && done > 0) {
+    print(report.text(wall.count()));
+    print(fmt::format("{}: {}\n", output.string(),
+                      byte_count(static_cast<double>(std::filesystem::file_size(output)))));
+    flush_output();
+  }
+  return done == count ? 0 : interrupted(done, count, output);
+}
+
+}  // namespace
+
+void add_ping_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.");
+  add_scenario_options(*command, options->scenario);
+  command
+      ->add_option("-o,--output", options->output,
+                   "file to write; default: the scenario's name with .h5, in this folder")
+      ->type_name("FILE.h5");
+  command->add_option("--pings", options->pings, "number of pings, instead of pings.count")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--threads", options->threads,
+                   "that compute; default: one a core. The results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command->footer(
+      "Ctrl-C finishes the pings in hand and closes the file; a second one ends at once.\n"
+      "Example:  asdic ping scenarios/deep_ocean.toml --set target.0.strength_db=20");
+  command->callback([options, &action] { action = [options] { return ping(*options); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,79 @@
+#include "app/ping_report.h"
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+
+namespace asdic::app {
+namespace {
+constexpr int most_lines = 200;  // of a long sequence; the file has them all
+}
+
+std::vector<Table::Column> summary_columns() {
+  return {{"ping"},
+          {"elevation", "deg"},
+          {"target", "", true},
+          {"paths"},
+          {"echo at", "s"},
+          {"echo", "dB re 1 µPa"},
+          {"reverberation", "dB re 1 µPa"},
+          {"noise in band", "dB re 1 µPa"},
+          {"signal excess", "dB"}};
+}
+
+std::vector<std::string> summary_row(int ping, double elevation_deg, const TargetSummary& target) {
+  std::vector<std::string> row{std::to_string(ping), number(elevation_deg, 1), target.name};
+  if (!target.present) {
+    row.insert(row.end(), {"absent", "-", "-", "-", "-", "-"});
+  } else {
+    row.insert(row.end(), {std::to_string(target.paths), number(target.echo_time, 3),
+                           number(target.echo_level_db, 1), number(target.reverberation_db, 1),
+                           number(target.noise_db, 1), number(target.signal_excess_db, 1)});
+  }
+  return row;
+}
+
+void PingReport::add(const PingRecord& record) {
+  ++pings_;
+  for (const TargetSummary& target : record.summary) {
+    if (lines_ == most_lines) {
+      ++left_out_;
+      continue;
+    }
+    ++lines_;
+    table_.row(summary_row(record.ping, degrees(record.elevation), target));
+  }
+  const Timings& t = record.timings;
+  total_.rays += t.rays;
+  total_.eigenrays += t.eigenrays;
+  total_.patches += t.patches;
+  total_.synthesis += t.synthesis;
+  total_.noise += t.noise;
+  total_.write += t.write;
+}
+
+std::string PingReport::text(double wall) const {
+  std::string result =
+      fmt::format("{}\n", emphasised(scenario_.title.empty() ? scenario_.path : scenario_.title));
+  for (const std::string& note : scenario_.notes) result += fmt::format("note: {}\n", note);
+  const PingSchedule& p = scenario_.pings;
+  result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
+                        count_of(scenario_.array.phones.size(), "phone"), p.recording_duration,
+                        p.sample_rate);
+  if (scenario_.targets.empty()) {
+    result += "no targets\n";
+  } else {
+    result += table_.text();
+    if (left_out_ > 0)
+      result += fmt::format("... and {} more lines; the file has them\n", left_out_);
+    result += "echo: the strongest path, its peak; reverberation: expected at its time\n";
+  }
+  result += fmt::format(
+      "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "
+      "noise {}, writing {}\n",
+      duration(wall), duration(total_.rays), duration(total_.eigenrays), duration(total_.patches),
+      duration(total_.synthesis), duration(total_.noise), duration(total_.write));
+  return result;
+}
+
+}  // namespace asdic::app

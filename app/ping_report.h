@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/console.h"
+#include "sonar/ping_record.h"
+#include "sonar/scenario.h"
+
+namespace asdic::app {
+
+/// The columns of a line per ping and target, and that line.
+[[nodiscard]] std::vector<Table::Column> summary_columns();
+[[nodiscard]] std::vector<std::string> summary_row(int ping, double elevation_deg,
+                                                   const TargetSummary& target);
+
+/// What a run prints at its end: a line per ping and target, and where the time went.
+class PingReport {
+ public:
+  /// \param scenario  outlives the report
+  explicit PingReport(const Scenario& scenario) : scenario_(scenario) {}
+
+  void add(const PingRecord& record);
+  /// \param wall  of the whole run [s]
+  [[nodiscard]] std::string text(double wall) const;
+
+ private:
+  const Scenario& scenario_;
+  Table table_{summary_columns()};
+  int pings_ = 0, lines_ = 0, left_out_ = 0;
+  Timings total_;
+};
+
+}  // namespace asdic::app

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+#include "io/ping_file.h"
+
+namespace asdic::app {
+
+/// Who makes a file here and now. \param threads  that compute
+[[nodiscard]] Provenance provenance(int threads);
+
+/// "asdic 0.1.0", its build and its libraries, for --version.
+[[nodiscard]] std::string version_text();
+
+}  // namespace asdic::app
