@@ -99,12 +99,10 @@ void write_attribute(const hdf5::Handle& object, const std::string& key, std::in
 void Hdf5File::set_attribute(const std::string& object, const std::string& key,
                              std::string_view value) {
   const std::string text(value);
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);  // of fixed length: what netCDF reads as text
-  H5Tset_size(type, std::max<std::size_t>(1, text.size()));
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const char* pointer = text.c_str();
+  const Handle type = variable_text();  // which h5py and netCDF4 read as str, not as bytes
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  write_attribute(impl_->open_object(object), key, type, space, text.c_str(), impl_->path, object);
+  write_attribute(impl_->open_object(object), key, type, space, &pointer, impl_->path, object);
 }
 
 void Hdf5File::set_attribute(const std::string& object, const std::string& key, double value) {

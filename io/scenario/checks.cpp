@@ -104,13 +104,18 @@ void check_targets(TomlTable& root, const Scenario& scenario) {
   }
 }
 
-/// fs > 2·(highest frequency·η_max + margin); the margin is the half width of a Hann window's main
-/// lobe, 2/duration. The synthesizer judges the pulse's true band more strictly.
+/// fs > 2·(f_c + B/2)·η_max, B the width outside which the pulse's spectrum is 40 dB down: what the
+/// synthesizer asks for as well.
 void check_sampling(TomlTable& root, const Scenario& scenario) {
-  const PulseSettings& pulse = scenario.pulse;
-  double highest = pulse.frequency;
-  if (pulse.kind == PulseKind::lfm || pulse.kind == PulseKind::hfm)
-    highest = std::max(pulse.start_frequency, pulse.end_frequency);
+  const PulseSettings& settings = scenario.pulse;
+  double highest = settings.kind == PulseKind::cw ? settings.frequency
+                   : settings.kind == PulseKind::file
+                       ? 0.0
+                       : std::max(settings.start_frequency, settings.end_frequency);
+  if (scenario.pings.sample_rate > 2.0 * highest) {  // else it is too slow without a spectrum
+    const Pulse pulse(settings);
+    highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
+  }
   double target_speed = 0.0;
   for (const Target& target : scenario.targets)
     target_speed = std::max(target_speed, fastest(target.track));
@@ -121,7 +126,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario) {
                  scenario.environment.water.at(scenario.environment.bottom.depth * i / 100).c);
   // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
   const double doppler = 1.0 + 2.0 * (target_speed + fastest(scenario.platform)) / slowest_sound;
-  const double needed = 2.0 * (highest * doppler + 2.0 / pulse.duration);
+  const double needed = 2.0 * highest * doppler;
   TomlTable pings = root.table("pings");
   if (!(scenario.pings.sample_rate > needed))
     throw pings.fault("sample_rate",
@@ -138,6 +143,13 @@ void check_size(TomlTable& root, const Scenario& scenario) {
     throw pings.fault("recording_duration", "at least two samples",
                       to_text(scenario.pings.recording_duration) + " s at " +
                           to_text(scenario.pings.sample_rate) + " Hz");
+  const double end = scenario.pings.recording_start + scenario.pings.recording_duration;
+  if (scenario.pulse.duration > end) {
+    TomlTable pulse = root.table("pulse");
+    throw pulse.fault(pulse.has("file") ? "file" : "duration",
+                      "a pulse no longer than the record, " + to_text(end) + " s",
+                      to_text(scenario.pulse.duration) + " s");
+  }
   const auto phones = scenario.array.phones.size();
   const double bytes = samples * static_cast<double>(phones) * sizeof(float);
   if (bytes > limit)
@@ -153,8 +165,8 @@ void check_size(TomlTable& root, const Scenario& scenario) {
 void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_platform(root, scenario);
   check_targets(root, scenario);
-  check_sampling(root, scenario);
   check_size(root, scenario);
+  check_sampling(root, scenario);
 }
 
 }  // namespace asdic::scenario

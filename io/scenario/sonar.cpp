@@ -83,10 +83,6 @@ void read_pulse(TomlTable table, const std::filesystem::path& folder, Scenario& 
     pulse.samples = sampled.samples;
     pulse.sample_rate = sampled.sample_rate;
     pulse.duration = static_cast<double>(sampled.samples.size()) / sampled.sample_rate;
-    pulse.frequency = table.number("centre_frequency", frequency_quantity);
-    if (2.0 * pulse.frequency >= pulse.sample_rate)
-      throw table.fault("centre_frequency", "less than half the file's sample rate, " +
-                                                to_text(pulse.sample_rate / 2.0) + " Hz");
     pulse.window = PulseWindow::none;
   } else if (kind == "cw") {
     pulse.kind = PulseKind::cw;

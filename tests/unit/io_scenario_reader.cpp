@@ -292,8 +292,13 @@ const Fault faults[] = {
     {"TooBigForMemory", "recording_duration = 60", "recording_duration = 4000",
      "s.toml:32: pings.recording_duration: found 4000 s at 16000 Hz on 16 phones, 3.8 GiB a ping, "
      "expected at most 2 GiB of pressure a ping"},
+    {"PulseLongerThanTheRecord", "duration = 1.0", "duration = 61.0",
+     "s.toml:19: pulse.duration: found 61 s, expected a pulse no longer than the record, 60 s"},
     {"SampledTooSlowly", "recording_duration = 60", "sample_rate = 8000",
-     "s.toml:32: pings.sample_rate: found 8000 Hz, expected a sample rate above 8004 Hz: twice "
+     "s.toml:32: pings.sample_rate: found 8000 Hz, expected a sample rate above 8000 Hz: twice "
+     "the highest frequency of the pulse with its Doppler shift"},
+    {"SampledTooSlowlyForItsSideLobes", "recording_duration = 60", "sample_rate = 8004",
+     "s.toml:32: pings.sample_rate: found 8004 Hz, expected a sample rate above 8006 Hz: twice "
      "the highest frequency of the pulse with its Doppler shift"},
     {"TwoElevations", "recording_duration = 60", "elevations_deg = [1, 2]",
      "s.toml:32: pings.elevations_deg: found an array of 2, expected no elevations_deg beside "
