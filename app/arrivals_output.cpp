@@ -104,7 +104,7 @@ std::string arrivals_json(const ArrivalsResult& result) {
                        {"amplitude_imag", a.amplitude.imag()},
                        {"spreading_db", -db_from_amplitude(a.spreading)},
                        {"absorption_db", a.absorption_db},
-                       {"reflection_db", -db_from_amplitude(std::abs(a.reflection))},
+                       {"reflection_db", 0.0 - db_from_amplitude(std::abs(a.reflection))},
                        {"path_length", a.path_length},
                        {"upper_turns", a.upper_turns},
                        {"lower_turns", a.lower_turns},
