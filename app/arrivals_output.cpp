@@ -7,7 +7,6 @@
 
 #include "app/console.h"
 #include "app/output.h"
-#include "app/provenance.h"
 #include "core/units.h"
 #include "io/ping/growing_table.h"
 
@@ -105,7 +104,7 @@ std::string arrivals_json(const ArrivalsResult& result) {
                        {"amplitude_imag", a.amplitude.imag()},
                        {"spreading_db", -db_from_amplitude(a.spreading)},
                        {"absorption_db", a.absorption_db},
-                       {"reflection_db", -db_from_amplitude(std::abs(a.reflection))},
+                       {"reflection_db", 0.0 - db_from_amplitude(std::abs(a.reflection))},
                        {"path_length", a.path_length},
                        {"upper_turns", a.upper_turns},
                        {"lower_turns", a.lower_turns},
@@ -138,18 +137,8 @@ std::string arrivals_json(const ArrivalsResult& result) {
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result) {
   Hdf5Output output(path);
   Hdf5File& file = output.file();
-  const Scenario& scenario = *result.scenario;
-  const Provenance made = provenance(1);
-  file.set_attribute("", "filetype", "asdic arrivals");
-  file.set_attribute("", "version", "1.0");
-  file.set_attribute("", "title", scenario.title);
-  file.set_attribute("", "program_version", made.program_version);
-  file.set_attribute("", "build", made.build);
-  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  write_root(file, "asdic arrivals", *result.scenario);
   file.set_attribute("", "frequency_hz", result.frequency);
-  if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
-  file.write_text("scenario", scenario.text);
-  describe(file, "scenario", "the scenario file, verbatim");
 
   // /arrivals and /bounces as in a ping file
   using Type = ElementType;

@@ -34,14 +34,14 @@ int run(int argc, char** argv) {
       "refracts, strikes the surface and the targets, and comes back to every phone.",
       "asdic");
   program.set_version_flag("--version", app::version_text());
-  program.require_subcommand(1);
+  program.require_subcommand(0, 1);
   program.footer(
       "Example:  asdic ping scenarios/deep_ocean.toml -o deep_ocean.h5\n"
       "Exit status: 0 done, 1 it could not be done, 2 the input is wrong.");
   app::Action action;
   for (auto* add : {app::add_ping_command, app::add_rays_command, app::add_arrivals_command,
                     app::add_validate_command, app::add_info_command, app::add_plot_command,
-                    app::add_export_command})
+                    app::add_export_command, app::add_ocean_command})
     add(program, action);
   for (CLI::App* command : program.get_subcommands({}))
     command->set_version_flag("--version", app::version_text());
@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return complain(std::string(error.what()) + "; see " + help_of(program), bad_input);
   }
+  if (!action) return complain("no command was given; see asdic --help", bad_input);
   const int status = action();
   app::flush_output();
   return status;

@@ -4,7 +4,9 @@
 #include <cstring>
 #include <fstream>
 
+#include "app/provenance.h"
 #include "core/error.h"
+#include "io/ping/growing_table.h"
 
 namespace asdic::app {
 namespace {
@@ -56,6 +58,19 @@ void Hdf5Output::finish() {
   file_.close();
   give_name(part_, path_);
   finished_ = true;
+}
+
+void write_root(Hdf5File& file, const std::string& filetype, const Scenario& scenario) {
+  const Provenance made = provenance(1);
+  file.set_attribute("", "filetype", filetype);
+  file.set_attribute("", "version", "1.0");
+  file.set_attribute("", "title", scenario.title);
+  file.set_attribute("", "program_version", made.program_version);
+  file.set_attribute("", "build", made.build);
+  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
+  file.write_text("scenario", scenario.text);
+  describe(file, "scenario", "the scenario file, verbatim");
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {

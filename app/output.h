@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "io/hdf5_file.h"
+#include "sonar/scenario.h"
 
 namespace asdic::app {
 
@@ -27,6 +28,9 @@ class Hdf5Output {
   Hdf5File file_;
   bool finished_ = false;
 };
+
+/// What every file of results tells of itself: filetype, version, title, program, and the scenario.
+void write_root(Hdf5File& file, const std::string& filetype, const Scenario& scenario);
 
 /// A whole text file at once: under its name it is complete. \throws RunError
 void write_text_file(const std::filesystem::path& path, std::string_view text);

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "core/error.h"
+#include "io/climatology.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  double latitude = 0.0, longitude = 0.0;  // [°]
+  std::optional<int> month;
+  std::optional<double> bearing, range;  // [°], [m]
+  std::string data, output;
+};
+
+int ocean(const Options& options) {
+  if (options.bearing.has_value() != options.range.has_value())
+    throw InputError({.where = options.bearing ? "--range" : "--bearing",
+                      .got = "nothing",
+                      .expected = "a value: --bearing and --range go together"});
+  if (!options.output.empty()) check_output(options.output, {});
+  const OceanSources sources =
+      options.data.empty() ? default_ocean_sources() : default_ocean_sources(options.data);
+  const OceanSample sample =
+      sample_ocean(sources, options.latitude, options.longitude, options.month);
+  std::optional<Transect> transect;
+  if (options.bearing)
+    transect = sample_transect(sources, options.latitude, options.longitude, *options.bearing,
+                               *options.range);
+  const std::string fragment = write_scenario_fragment(sample, transect);
+  if (options.output.empty()) {
+    print(fragment);
+    return 0;
+  }
+  write_text_file(options.output, fragment);
+  print(fmt::format("{}: {} to {:g} m, water {:g} m deep\n", options.output,
+                    count_of(sample.depth.size(), "level"), sample.depth.back(),
+                    sample.water_depth));
+  for (const std::string& note : sample.notes) print(fmt::format("note: {}\n", note));
+  if (transect)
+    for (const std::string& note : transect->notes) print(fmt::format("note: {}\n", note));
+  return 0;
+}
+
+}  // namespace
+
+void add_ocean_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "ocean", "Write the [environment] of a real place, out of measured climatologies.");
+  command->add_option("--latitude", options->latitude, "degrees north")
+      ->required()
+      ->type_name("DEG")
+      ->check(CLI::Range(-90.0, 90.0));
+  command->add_option("--longitude", options->longitude, "degrees east, -180 to 180 or 0 to 360")
+      ->required()
+      ->type_name("DEG")
+      ->check(CLI::Range(-180.0, 360.0));
+  command->add_option("--month", options->month, "1 to 12; default: the mean of the year")
+      ->type_name("N")
+      ->check(CLI::Range(1, 12));
+  command
+      ->add_option("--bearing", options->bearing,
+                   "of a track along which the depth of the sea is told as well [deg]")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0));
+  add_length_option(
+      *command, "--range", [options](double x) { options->range = x; },
+      "length of that track, e.g. 60km");
+  command
+      ->add_option("--data", options->data,
+                   "folder of the climatologies; default: where Debian's ferret-datasets is")
+      ->type_name("DIR");
+  command->add_option("-o,--output", options->output, "file to write; default: standard output")
+      ->type_name("FILE.toml");
+  command->footer(
+      "A scenario takes it with include = \"FILE.toml\".\n"
+      "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
+  command->callback([options, &action] { action = [options] { return ocean(*options); }; });
+}
+
+}  // namespace asdic::app

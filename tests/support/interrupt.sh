@@ -1,0 +1,68 @@
+# Shared by tests/validation/cli_interrupt.sh and scripts/deep_check.sh: what an interrupted run may leave behind.
+# Wants $ASDIC, the program. Sourced, not run.
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+# A sequence of pings, each long enough to be interrupted. interrupt_scenario FILE
+interrupt_scenario() {
+  cat >"$1" <<'TOML'
+title = "a sequence to interrupt"
+[environment.sound_speed]
+kind = "munk"
+[environment.bottom]
+depth = 5000.0
+kind = "rigid"
+[platform]
+position = [0.0, 0.0, 1000.0]
+velocity = [2.0, 0.0, 0.0]
+[transmitter]
+source_level_db = 210.0
+taper = "omnidirectional"
+[pulse]
+kind = "cw"
+frequency = 2000.0
+duration = 0.5
+[array]
+kind = "horizontal"
+phones = 8
+spacing = 0.375
+[[target]]
+position = [20000.0, 0.0, 200.0]
+velocity = [-2.0, 0.0, 0.0]
+strength_db = 20.0
+[noise]
+spectral_level_db = 40.0
+[pings]
+count = 2000
+interval = 40.0
+recording_duration = 30.0
+sample_rate = 8000.0
+TOML
+}
+
+# Waits until FILE holds a whole ping: it has grown past the first ping's pressure, 7.7 MB. wait_for_ping FILE
+wait_for_ping() {
+  local i
+  for ((i = 0; i < 600; ++i)); do
+    [ "$(stat -c %s "$1" 2>/dev/null || echo 0)" -gt 8000000 ] && return 0
+    sleep 0.02
+  done
+  fail "no ping in $1 after 12 s"
+}
+
+# The file opens elsewhere too, and every ping that it counts is whole. h5py_reads FILE
+h5py_reads() {
+  /usr/bin/python3 - "$1" <<'PY'
+import sys
+import h5py
+import numpy as np
+with h5py.File(sys.argv[1], "r") as f:
+    n = f["ping"].shape[0]
+    assert (f["ping"][:] == np.arange(1, n + 1)).all(), "pings are not 1, 2, ..."
+    for name in ("pressure", "valid_samples", "ping_time", "summary/paths", "levels/echo"):
+        assert n == 0 or f[name].shape[0] >= n, f"{name} has fewer rows than there are pings"
+    for i in {0, n - 1} if n else ():
+        assert np.isfinite(f["pressure"][i]).all() and (f["pressure"][i] != 0).any(), "an empty ping"
+    print(n)
+PY
+}
