@@ -5,15 +5,15 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
 
 namespace asdic {
 namespace {
 
-/// Source and receiver at one depth in water without gradient are joined by a horizontal ray, which
-/// r(σ) of two equal depths cannot tell; a micrometre between them changes no answer by more than
-/// rounding.
+/// Of a source and a receiver at one depth; the sums take them apart, no answer changes by more
+/// than rounding [m].
 constexpr double depth_offset = 1e-6;
 
 /// Distance below which two roots of one branch are one [m of range per slope].
@@ -46,6 +46,28 @@ double refine(const BranchTable& table, const MonotoneStretch& s, double range) 
     x = next;
   }
   return x;
+}
+
+/// The ray along a depth where the speed has no gradient, which r(σ) cannot tell: it stays there,
+/// and its beam obeys d²q/dr² = −(c″/c)·q.
+Arrival horizontal_ray(const Environment& ocean, double depth, double range, double frequency) {
+  const SoundSpeed water = ocean.water.at(depth);
+  const double k =
+      std::sqrt(std::abs(water.d2c_dz2) /
+                water.c);  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
+  Arrival path;
+  path.q = k * range < 1e-6
+               ? range
+               : (water.d2c_dz2 > 0.0 ? std::sin(k * range) : std::sinh(k * range)) / k;
+  path.caustics = water.d2c_dz2 > 0.0 ? static_cast<int>(k * range / pi) : 0;
+  path.spreading = 1.0 / std::sqrt(range * std::abs(path.q));
+  path.delay = range / water.c;
+  path.path_length = range;
+  path.horizontal_slowness = 1.0 / water.c;
+  path.absorption_db = 1e-3 * absorption_db_per_km(ocean.absorption, frequency) * range;
+  path.amplitude =
+      path.spreading * amplitude_from_db(-path.absorption_db) * caustic_phase(path.caustics);
+  return path;
 }
 
 void sort_and_drop_doubles(Arrivals& arrivals) {
@@ -118,7 +140,16 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
               builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range));
         }
       });
-  for (Arrivals& arrivals : found) sort_and_drop_doubles(arrivals);
+  const bool along_a_level =
+      source_depth == receiver_depth && environment_.water.at(source_depth).dc_dz == 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (along_a_level && ranges[i] > 0.0) {
+      // Rays that stay within centimetres of the level are this one, seen through rounding.
+      std::erase_if(found[i], [](const Arrival& a) { return std::abs(a.launch_elevation) < 1e-5; });
+      found[i].push_back(horizontal_ray(environment_, source_depth, ranges[i], frequency));
+    }
+    sort_and_drop_doubles(found[i]);
+  }
   return found;
 }
 

@@ -133,12 +133,11 @@ class BranchFollower {
     per_slowness = std::max(std::abs(per_slowness), floor_);
     const int tops = stretch_->interval->turns_above ? 0 : branch.top_vertices();
     const int bottoms = stretch_->interval->turns_below ? 0 : branch.bottom_vertices();
-    static constexpr std::complex<double> quarter_turns[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     const double size = builder_.spreading(r, range, per_slowness) *
                         amplitude_from_db(-builder_.absorption_db_per_metre() * length);
     return {
         .delay = delay,
-        .amplitude = size * quarter_turns[caustics % 4] * builder_.reflections(r, tops, bottoms),
+        .amplitude = size * caustic_phase(caustics) * builder_.reflections(r, tops, bottoms),
         .launch_elevation =
             (branch.starts_up ? 1.0 : -1.0) *
             std::atan2(builder_.sine_at_source(r), r.slowness * column.source_speed()),

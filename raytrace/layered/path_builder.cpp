@@ -94,10 +94,8 @@ Arrival PathBuilder::build(const FanInterval& interval, const Branch& branch, do
   path.absorption_db = absorption_db_per_metre_ * path.path_length;
   path.reflection = reflections(ray, path.surface_bounces, path.bottom_bounces);
 
-  static constexpr std::complex<double> quarter_turns[4] = {
-      {1, 0}, {0, 1}, {-1, 0}, {0, -1}};  // e^{+iπ/2} a caustic
   path.amplitude = path.spreading * amplitude_from_db(-path.absorption_db) * path.reflection *
-                   quarter_turns[path.caustics % 4];
+                   caustic_phase(path.caustics);
 
   // Vertices follow one another at half cycles; those that are bounces are recorded.
   const double half_cycle = sums.up.range + sums.middle.range + sums.down.range;

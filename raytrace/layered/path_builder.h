@@ -39,4 +39,10 @@ class PathBuilder {
   return range_per_slowness < 0.0 ? turning_points - 1 : turning_points;
 }
 
+/// e^{+iπ/2} for every caustic.
+[[nodiscard]] inline std::complex<double> caustic_phase(int caustics) noexcept {
+  constexpr std::complex<double> quarter_turns[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  return quarter_turns[caustics % 4];
+}
+
 }  // namespace asdic

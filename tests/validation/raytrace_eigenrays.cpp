@@ -81,6 +81,35 @@ TEST(Eigenrays, IsovelocityImages) {
   }
 }
 
+// Source and receiver at one depth without gradient: the direct ray runs along it. On the axis of
+// Munk's profile its beam focuses with k = √(c″/c): q = sin(kr)/k.
+TEST(Eigenrays, AlongALevel) {
+  const double range = 30e3;
+  Environment uniform{.water = SoundSpeedProfile::isovelocity(1500.0)};
+  const Arrivals direct = EigenraySolver(uniform).find(
+      4500.0, 4500.0, range, 1000.0, {.max_surface_bounces = 0, .max_bottom_bounces = 0});
+  ASSERT_EQ(direct.size(), 1U);
+  EXPECT_NEAR(direct[0].delay, 20.0, 1e-12);
+  EXPECT_NEAR(direct[0].amplitude.real(), 1.0 / range, 1e-15);
+
+  const Environment munk{.water = SoundSpeedProfile::munk()};
+  const Arrivals ducted = EigenraySolver(munk).find(
+      1300.0, 1300.0, range, 1000.0, {.max_surface_bounces = 0, .max_bottom_bounces = 0});
+  const auto axial = std::count_if(ducted.begin(), ducted.end(), [](const Arrival& a) {
+    return std::abs(a.launch_elevation) < 1e-6;
+  });
+  EXPECT_EQ(axial, 1);
+  const auto axis = std::find_if(ducted.begin(), ducted.end(), [](const Arrival& a) {
+    return std::abs(a.launch_elevation) < 1e-6;
+  });
+  ASSERT_NE(axis, ducted.end());
+  const double k = std::sqrt(munk.water.at(1300.0).d2c_dz2 / 1500.0);
+  EXPECT_NEAR(axis->delay, range / 1500.0, 1e-9);
+  EXPECT_NEAR(std::abs(axis->q), std::abs(std::sin(k * range) / k),
+              1e-3 * std::abs(std::sin(k * range) / k));
+  EXPECT_EQ(axis->caustics, static_cast<int>(k * range / pi));
+}
+
 // The rows' paths run in an unbounded medium: boundaries are put far away and bounces forbidden.
 TEST(Eigenrays, ConstantGradientArcs) {
   const support::Csv csv("physics-reference/rays_const_gradient.csv");
