@@ -55,6 +55,9 @@ Returns reverberation_returns(const ReverberationContext& context, std::span<con
   Returns returns;
   returns.reserve(kept.size() * static_cast<std::size_t>(azimuths));
   std::vector<std::complex<double>> weights(static_cast<std::size_t>(azimuths));
+  std::vector<Vec3> towards;  // of every sector, from the platform, horizontal
+  for (int k = 0; k < azimuths; ++k)
+    towards.push_back(direction(2.0 * pi * (k + 0.5) / azimuths, 0.0));
   const double share =
       1.0 / std::sqrt(double(azimuths));  // of the ring's amplitude in a sector of its area
   const bool moving = !context.platform.velocity.isZero();
@@ -75,18 +78,22 @@ Returns reverberation_returns(const ReverberationContext& context, std::span<con
     }
     const std::complex<double> amplitude =
         patch.amplitude * context.pattern(patch.launch_elevation);
+    const double level = std::cos(patch.return_elevation) /
+                         context.sound_speed;  // horizontal and vertical slowness of the
+    const double down =
+        std::sin(patch.return_elevation) / context.sound_speed;  // sound that comes back
     for (int k = 0; k < azimuths; ++k) {
-      const double bearing = 2.0 * pi * (k + 0.5) / azimuths;  // of the sector, from the platform
-      const Vec3 arriving = -direction(bearing, patch.return_elevation) /
-                            context.sound_speed;  // travels the other way
+      const auto sector = static_cast<std::size_t>(k);
+      const Vec3 arriving(-level * towards[sector].x(), -level * towards[sector].y(), down);
       double doppler = 1.0;
       if (moving) {  // the scatterer stands still
-        const Vec3 leaving = direction(bearing, patch.launch_elevation) / context.sound_speed;
+        const Vec3 leaving = direction(2.0 * pi * (k + 0.5) / azimuths, patch.launch_elevation) /
+                             context.sound_speed;
         doppler = leg_doppler({context.platform.velocity, leaving}, {}) *
                   leg_doppler({}, {context.platform.velocity, arriving});
       }
       returns.push_back({.delay = patch.delay,
-                         .amplitude = amplitude * weights[static_cast<std::size_t>(k)],
+                         .amplitude = amplitude * weights[sector],
                          .doppler = doppler,
                          .slowness = arriving});
     }

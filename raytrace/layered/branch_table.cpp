@@ -24,9 +24,16 @@ bool is_smooth_extremum(const Layer& layer, double depth) {
 
 std::vector<CriticalSpeed> critical_speeds(const Column& column, double slowest, double fastest) {
   std::vector<CriticalSpeed> critical = {{slowest, false}, {fastest, false}};
-  for (const Layer& layer : column.layers()) {
-    critical.push_back({layer.c_top, is_smooth_extremum(layer, layer.top)});
+  const auto& layers = column.layers();
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer& layer = layers[i];
+    const bool extremum = is_smooth_extremum(layer, layer.top);
+    // Cuts inside an analytic law are no knots: nothing happens to a ray that turns there.
+    if (i == 0 || extremum || layer.law != Layer::Law::munk)
+      critical.push_back({layer.c_top, extremum});
     critical.push_back({layer.c_bottom, is_smooth_extremum(layer, layer.bottom)});
+    if (layer.law == Layer::Law::munk && i + 1 < layers.size() && !critical.back().logarithmic)
+      critical.pop_back();
   }
   std::erase_if(critical,
                 [&](const CriticalSpeed& c) { return c.speed < slowest || c.speed > fastest; });

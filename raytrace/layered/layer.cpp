@@ -6,14 +6,20 @@
 namespace asdic {
 namespace {
 
-/// Depths strictly inside (top, bottom) where the layer's dc/dz changes sign.
-std::vector<double> extrema(const Layer& layer) {
+/// Depths strictly inside (top, bottom) where the layer is cut: where dc/dz changes sign, and for
+/// Munk's law more.
+std::vector<double> inner_cuts(const Layer& layer) {
   std::vector<double> found;
   const auto keep = [&](double z) {
     const double margin = 1e-9 * (layer.bottom - layer.top);
     if (z > layer.top + margin && z < layer.bottom - margin) found.push_back(z);
   };
-  if (layer.law == Layer::Law::munk) keep(layer.coefficient[1]);
+  if (layer.law ==
+      Layer::Law::munk) {  // the axis, and cuts between which dc/dz ∝ 1 − e^−η at most doubles
+    for (const double eta :
+         {-4.0, -3.4, -2.8, -2.2, -1.6, -1.0, -0.6, -0.35, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.9})
+      keep(layer.coefficient[1] + 0.5 * eta * layer.coefficient[2]);
+  }
   if (layer.law ==
       Layer::Law::cubic) {  // c' = a₁ + 2a₂t + 3a₃t², by the formula that does not cancel
     const double a = 3.0 * layer.coefficient[3], b = 2.0 * layer.coefficient[2],
@@ -38,6 +44,16 @@ Layer slice(const Layer& layer, double top, double bottom) {
   part.top = top;
   part.bottom = bottom;
   return part;
+}
+
+bool is_evenly_bent(const Layer& layer) {
+  double least = 1e300, most = 0.0;
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const double slope = std::abs(layer.at(layer.top + share * layer.thickness()).dc_dz);
+    least = std::min(least, slope);
+    most = std::max(most, slope);
+  }
+  return least > 0.5 * most;
 }
 
 /// The layer between two depths with no sample of the profile between them.
@@ -101,12 +117,13 @@ std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top, doubl
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const Layer whole = interval_layer(water, cuts[i], cuts[i + 1]);
     double from = whole.top;
-    for (const double z : extrema(whole)) {
+    for (const double z : inner_cuts(whole)) {
       layers.push_back(slice(whole, from, z));
       from = z;
     }
     layers.push_back(slice(whole, from, whole.bottom));
   }
+  for (Layer& layer : layers) layer.evenly_bent = is_evenly_bent(layer);
   // Neighbours share the speed at their common depth to the last bit.
   for (std::size_t i = 0; i + 1 < layers.size(); ++i) layers[i + 1].c_top = layers[i].c_bottom;
   return layers;

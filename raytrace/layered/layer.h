@@ -17,6 +17,8 @@ struct Layer {
   double origin = 0.0;    ///< cubic: depth from which its polynomial counts [m]
   std::array<double, 4> coefficient{};  ///< cubic: c = Σ aᵢ(z − origin)ⁱ; Munk: c₁, z₁, B, ε
 
+  bool evenly_bent = false;  ///< dc/dz varies by less than a factor of two
+
   [[nodiscard]] SoundSpeed at(double depth) const noexcept;
   [[nodiscard]] double thickness() const noexcept { return bottom - top; }
   [[nodiscard]] bool closed_form() const noexcept {

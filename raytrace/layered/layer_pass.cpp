@@ -120,8 +120,23 @@ Pass cross(const Layer& layer, const RayParameter& ray, double sine_top,
     pass.range += c_over_s;                    // dr = (ξc/s) dz
     pass.d_range += c_over_s * per_s * per_s;  // ∂/∂ξ of it: c/s³ dz
   };
-  if (!few_nodes_suffice(layer, ray, sine_top, sine_bottom, add))
+  if (few_nodes_suffice(layer, ray, sine_top, sine_bottom, add)) {
+  } else if (layer.evenly_bent) {
+    // Where the ray is nearly flat, by parts: (2) of docs/theory/layered-rays.md, whose integrand
+    // is smooth. Elsewhere its terms would cancel.
+    const double top2 = sine_top * sine_top, bottom2 = sine_bottom * sine_bottom;
+    const bool flat = std::min(top2, bottom2) < 0.2 * std::max(top2, bottom2);
+    double by_parts = 1.0 / (sine_bottom * layer.at(layer.bottom).dc_dz) -
+                      1.0 / (sine_top * layer.at(layer.top).dc_dz);
+    integrate_evenly_bent(layer, ray, sine_top, sine_bottom,
+                          [&](const SoundSpeed& water, double per_s, double dz) {
+                            add(water.c, per_s, dz);
+                            by_parts += dz * water.d2c_dz2 * per_s / (water.dc_dz * water.dc_dz);
+                          });
+    if (flat) pass.d_range = by_parts / (xi * xi);
+  } else {
     integrate_crossing(layer, ray, sine_top, sine_bottom, add);
+  }
   pass.range *= xi;
   return pass;
 }
@@ -139,8 +154,14 @@ PassDetail cross_detail(const Layer& layer, const RayParameter& ray, double sine
     detail.time += dz * per_s / c;
     detail.length += dz * per_s;
   };
-  if (!few_nodes_suffice(layer, ray, sine_top, sine_bottom, add))
+  if (few_nodes_suffice(layer, ray, sine_top, sine_bottom, add)) {
+  } else if (layer.evenly_bent) {
+    integrate_evenly_bent(
+        layer, ray, sine_top, sine_bottom,
+        [&](const SoundSpeed& water, double per_s, double dz) { add(water.c, per_s, dz); });
+  } else {
     integrate_crossing(layer, ray, sine_top, sine_bottom, add);
+  }
   return detail;
 }
 
@@ -172,9 +193,9 @@ Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
         pass.range += dz * c * per_s;
         pass.d_range += dz * c * per_s * per_s * per_s;
       },
-      [&](const SoundSpeed& water, double s, double dz) {
-        pass.range += dz * water.c / s;
-        by_parts += dz * water.d2c_dz2 / (s * water.dc_dz * water.dc_dz);
+      [&](const SoundSpeed& water, double per_s, double dz) {
+        pass.range += dz * water.c * per_s;
+        by_parts += dz * water.d2c_dz2 * per_s / (water.dc_dz * water.dc_dz);
       });
   const SoundSpeed end = layer.at(hand_over);
   const double s_end = hand_over == edge ? sine : std::sqrt(ray.sine2(end.c));
@@ -204,8 +225,8 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
     detail.time += dz * per_s / c;
     detail.length += dz * per_s;
   };
-  integrate_turning(layer, ray, turn_z, add, [&](const SoundSpeed& water, double s, double dz) {
-    add(water.c, 1.0 / s, dz);
+  integrate_turning(layer, ray, turn_z, add, [&](const SoundSpeed& water, double per_s, double dz) {
+    add(water.c, per_s, dz);
   });
   return detail;
 }

@@ -8,71 +8,105 @@
 
 namespace asdic {
 
-/// Positive Gauss–Legendre nodes on (−1, 1) and their weights, n even. Abramowitz & Stegun (1964),
-/// table 25.4.
-template <int n>
+/// Gauss–Legendre nodes on (−1, 1) and their weights. Abramowitz & Stegun (1964), table 25.4.
+template <std::size_t n>
 struct GaussLegendre;
 template <>
 struct GaussLegendre<4> {
-  static constexpr std::array node = {0.3399810435848563, 0.8611363115940526};
-  static constexpr std::array weight = {0.6521451548625461, 0.3478548451374538};
+  static constexpr std::array<double, 4> node = {-0.8611363115940526, -0.3399810435848563,
+                                                 0.3399810435848563, 0.8611363115940526};
+  static constexpr std::array<double, 4> weight = {0.3478548451374538, 0.6521451548625461,
+                                                   0.6521451548625461, 0.3478548451374538};
 };
 template <>
 struct GaussLegendre<8> {
-  static constexpr std::array node = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                      0.9602898564975363};
-  static constexpr std::array weight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                        0.1012285362903763};
+  static constexpr std::array<double, 8> node = {
+      -0.9602898564975363, -0.7966664774136267, -0.5255324099163290, -0.1834346424956498,
+      0.1834346424956498,  0.5255324099163290,  0.7966664774136267,  0.9602898564975363};
+  static constexpr std::array<double, 8> weight = {
+      0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620,
+      0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
 };
 template <>
 struct GaussLegendre<10> {
-  static constexpr std::array node = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
-                                      0.8650633666889845, 0.9739065285171717};
-  static constexpr std::array weight = {0.2955242247147529, 0.2692667193099963, 0.2190863625159821,
-                                        0.1494513491505806, 0.0666713443086881};
+  static constexpr std::array<double, 10> node = {
+      -0.9739065285171717, -0.8650633666889845, -0.6794095682990244, -0.4333953941292472,
+      -0.1488743389816312, 0.1488743389816312,  0.4333953941292472,  0.6794095682990244,
+      0.8650633666889845,  0.9739065285171717};
+  static constexpr std::array<double, 10> weight = {
+      0.0666713443086881, 0.1494513491505806, 0.2190863625159821, 0.2692667193099963,
+      0.2955242247147529, 0.2955242247147529, 0.2692667193099963, 0.2190863625159821,
+      0.1494513491505806, 0.0666713443086881};
 };
 
 /// ∫ f over (a, b): f(x, weight) is called at each of the n nodes; exact for polynomials to degree
 /// 2n − 1.
-template <int n = 10, class F>
+template <std::size_t n = 10, class F>
 void gauss_legendre(double a, double b, F&& f) {
   const double centre = 0.5 * (a + b), half = 0.5 * (b - a);
-  for (std::size_t i = 0; i < GaussLegendre<n>::node.size(); ++i) {
-    const double dx = half * GaussLegendre<n>::node[i], w = half * GaussLegendre<n>::weight[i];
-    f(centre - dx, w);
-    f(centre + dx, w);
-  }
+  for (std::size_t i = 0; i < n; ++i)
+    f(centre + half * GaussLegendre<n>::node[i], half * GaussLegendre<n>::weight[i]);
 }
 
 /// Calls f(c, 1/s, dz) at the n Gauss–Legendre nodes between two depths of a layer with a cubic
 /// law; the loop over nodes becomes vector instructions.
 template <std::size_t n, class F>
 void at_cubic_nodes(const Layer& layer, const RayParameter& ray, double top, double bottom, F&& f) {
-  using Rule = GaussLegendre<static_cast<int>(n)>;
+  using Rule = GaussLegendre<n>;
   const double centre = 0.5 * (top + bottom) - layer.origin, half = 0.5 * (bottom - top);
   const auto [a0, a1, a2, a3] = layer.coefficient;
   const double c_ref = ray.reference_speed, sigma2 = ray.sigma * ray.sigma,
                per_c2 = 1.0 / (c_ref * c_ref);
   std::array<double, n> speed, per_sine;
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = i < n / 2 ? -Rule::node[n / 2 - 1 - i] : Rule::node[i - n / 2];
-    const double t = centre + half * x;
+    const double t = centre + half * Rule::node[i];
     const double c = a0 + t * (a1 + t * (a2 + t * a3));
     speed[i] = c;
     per_sine[i] = 1.0 / std::sqrt(((c_ref - c) * (c_ref + c) + sigma2 * c * c) * per_c2);
   }
-  for (std::size_t i = 0; i < n; ++i)
-    f(speed[i], per_sine[i],
-      half * (i < n / 2 ? Rule::weight[n / 2 - 1 - i] : Rule::weight[i - n / 2]));
+  for (std::size_t i = 0; i < n; ++i) f(speed[i], per_sine[i], half * Rule::weight[i]);
+}
+
+/// Calls f(SoundSpeed, 1/s, dz) at 8 Gauss–Legendre nodes in u = √|z − vertex| between two
+/// distances from a vertex, a depth where s² of the ray is zero or, carried on in a straight line,
+/// would be: there s is nearly proportional to u, so that u/s is smooth however flat the ray is.
+template <class F>
+void at_nodes_in_root(const Layer& layer, const RayParameter& ray, double vertex, double sign,
+                      double from, double to, F&& f) {
+  using Rule = GaussLegendre<8>;
+  const double u_from = std::sqrt(from), u_to = std::sqrt(to);
+  const double centre = 0.5 * (u_from + u_to), half = 0.5 * (u_to - u_from);
+  std::array<SoundSpeed, 8> water;
+  std::array<double, 8> per_sine, dz;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double u = centre + half * Rule::node[i];
+    water[i] = layer.at(vertex + sign * u * u);
+    per_sine[i] = 1.0 / std::sqrt(std::max(ray.sine2(water[i].c), 1e-300));
+    dz[i] = 2.0 * u * half * Rule::weight[i];
+  }
+  for (std::size_t i = 0; i < 8; ++i) f(water[i], per_sine[i], dz[i]);
+}
+
+/// Over a layer whose dc/dz hardly varies, from the flatter edge's virtual vertex at distance
+/// s₀²/|ds²/dz|.
+template <class F>
+void integrate_evenly_bent(const Layer& layer, const RayParameter& ray, double sine_top,
+                           double sine_bottom, F&& f) {
+  const bool flat_at_top = sine_top < sine_bottom;
+  const double flat = flat_at_top ? layer.top : layer.bottom, sign = flat_at_top ? 1.0 : -1.0;
+  const double s2 = flat_at_top ? sine_top * sine_top : sine_bottom * sine_bottom;
+  const SoundSpeed edge = layer.at(flat);
+  const double before = s2 / (2.0 * ray.slowness * ray.slowness * edge.c * std::abs(edge.dc_dz));
+  at_nodes_in_root(layer, ray, flat - sign * before, sign, before, before + layer.thickness(), f);
 }
 
 /// Integrals over a way through a layer whose law has no closed form: `direct(c, 1/s, dz)` is
 /// called at depths where s = sin θ is well away from zero compared with the node spacing;
-/// `near_turn(SoundSpeed, s, dz)` on the piece that ends at a turning point, where nodes are placed
-/// in u = √|z − z_turn| so that 1/s is smooth. The caller sums what it needs.
+/// `near_turn(SoundSpeed, 1/s, dz)` on the piece that ends at a turning point, where nodes are
+/// placed in u = √|z − z_turn| so that 1/s is smooth. The caller sums what it needs.
 ///
 /// Away from a turning point the panels grow threefold from the edge where the ray is flattest: an
-/// integrand like (δ + x)^(−3/2) is then resolved to 1e-10 however small δ is.
+/// integrand like (δ + x)^(−3/2) is then resolved to 1e-9 however small δ is.
 template <class Direct>
 void panels_from_flat_edge(const Layer& layer, const RayParameter& ray, double flat, double steep,
                            double scale, Direct&& direct) {
@@ -135,10 +169,7 @@ double integrate_turning(const Layer& layer, const RayParameter& ray, double tur
   if (std::abs(there.d2c_dz2) * near > 0.5 * std::abs(there.dc_dz))
     near = 0.5 * std::abs(there.dc_dz / there.d2c_dz2);
   while (std::abs(layer.at(turn + sign * near).dc_dz) < 0.5 * std::abs(there.dc_dz)) near *= 0.5;
-  gauss_legendre(0.0, std::sqrt(near), [&](double u, double w) {
-    const SoundSpeed water = layer.at(turn + sign * u * u);
-    near_turn(water, std::sqrt(std::max(ray.sine2(water.c), 1e-300)), 2.0 * u * w);
-  });
+  at_nodes_in_root(layer, ray, turn, sign, 0.0, near, near_turn);
   const double hand_over = turn + sign * near;
   if (near < total) panels_from_flat_edge(layer, ray, hand_over, edge, near, direct);
   return hand_over;
