@@ -53,6 +53,7 @@ fi
 
 # kill -9: nothing under the final name; NAME.part can be read.
 for delay in 0.0 0.13 0.29; do
+  rm -f killed.h5.part
   start killed
   wait_for_ping killed.h5.part
   sleep "$delay"
