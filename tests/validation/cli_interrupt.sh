@@ -53,6 +53,7 @@ fi
 
 # kill -9: nothing under the final name; NAME.part can be read.
 for delay in 0.0 0.13 0.29; do
+  rm -f killed.h5.part
   start killed
   wait_for_ping killed.h5.part
   sleep "$delay"
@@ -65,8 +66,8 @@ for delay in 0.0 0.13 0.29; do
   echo "kill -9 after $delay s more: $pings pings in killed.h5.part"
 done
 
-# Ctrl-C before the first ping: no file at all.
-sed -e 's/phones = 8/phones = 64/' -e 's/sample_rate = 8000.0/sample_rate = 16000.0/' run.toml >slow.toml
+# Ctrl-C as soon as the file is there: the pings in hand, or no file at all.
+sed -e 's/phones = 8/phones = 64/' run.toml >slow.toml
 mv slow.toml run.toml
 start early
 for ((i = 0; i < 200; ++i)); do

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# What takes too long for every day: sanitizers, kills at random moments, a long run's memory. A line with a verdict for each.
+#   scripts/deep_check.sh [--no-asan]       ASDIC=path/to/asdic to test another than build/ci's
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$PWD
+source tests/support/interrupt.sh
+failures=0
+verdict() { # verdict NAME good|FAILED DETAILS
+  printf '%-12s %-6s %s\n' "$1" "$2" "$3"
+  [ "$2" = good ] || failures=$((failures + 1))
+}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+if [ "${1:-}" != --no-asan ]; then
+  cmake --preset asan >/dev/null
+  if cmake --build --preset asan >"$folder/asan.log" 2>&1 &&
+    ctest --preset asan -L 'unit|property' -j "$(nproc)" >>"$folder/asan.log" 2>&1; then
+    verdict sanitizers good "$(grep 'tests passed' "$folder/asan.log")"
+  else
+    verdict sanitizers FAILED "$(tail -n 5 "$folder/asan.log" | tr '\n' ' ')"
+  fi
+fi
+
+if [ -z "${ASDIC:-}" ]; then
+  cmake --preset ci >/dev/null && cmake --build --preset ci --target asdic_app >/dev/null
+  ASDIC=$root/build/ci/bin/asdic
+fi
+export ASDIC
+
+if said=$(bash tests/validation/cli_interrupt.sh 2>&1); then
+  verdict interrupt good "$(grep -c . <<<"$said") checks of Ctrl-C, SIGTERM and kill -9"
+else
+  verdict interrupt FAILED "$(tail -n 1 <<<"$said")"
+fi
+
+# kill -9 at random moments after the first ping: nothing under the final name, every ping that was written readable.
+cd "$folder"
+interrupt_scenario kill.toml
+kills=20 bad=0 pings=0
+for ((i = 0; i < kills; ++i)); do
+  rm -f kill.h5 kill.h5.part
+  "$ASDIC" ping kill.toml -q --set pings.recording_duration=15 --set target.0.position=[9000.0,0.0,200.0] -o kill.h5 &
+  run=$!
+  wait_for_ping kill.h5.part
+  sleep "0.$(printf '%03d' $((RANDOM % 1000)))"
+  kill -KILL "$run"
+  wait "$run" 2>/dev/null || true
+  if [ -e kill.h5 ] || ! n=$(h5py_reads kill.h5.part 2>/dev/null) || ! "$ASDIC" info kill.h5.part >/dev/null 2>&1; then
+    bad=$((bad + 1))
+  else
+    pings=$((pings + n))
+  fi
+done
+rm -f kill.h5 kill.h5.part
+if [ "$bad" = 0 ]; then verdict kills good "$kills kills, $pings pings, all readable"; else verdict kills FAILED "$bad of $kills left a file that is not as it should be"; fi
+
+# Soak: the most memory ever used (VmHWM) after many small pings is that after few, within a tenth and 10 MB.
+interrupt_scenario soak.toml
+small=(--set array.phones=2 --set pings.recording_duration=3 --set pings.sample_rate=4000 --set pulse.frequency=1000.0
+  --set target.0.position=[1500.0,0.0,500.0] --set target.0.velocity=[0.0,0.0,0.0] --set pings.interval=5)
+peak() { # peak PINGS: kB
+  /usr/bin/python3 - "$ASDIC" ping soak.toml -q -o soak.h5 "${small[@]}" --pings "$1" <<'PY'
+import os, sys
+child = os.spawnv(os.P_NOWAIT, sys.argv[1], sys.argv[1:])
+_, status, usage = os.wait4(child, 0)
+print(usage.ru_maxrss if status == 0 else f"failed with {status}")
+PY
+}
+few=$(peak 50) many=$(peak 800)
+if [[ "$few$many" =~ ^[0-9]+$ ]] && [ "$many" -le $((few * 11 / 10 + 10000)) ]; then
+  verdict soak good "at most $few kB over 50 pings, $many kB over 800"
+else
+  verdict soak FAILED "at most $few kB over 50 pings, $many kB over 800"
+fi
+
+[ "$failures" = 0 ] && echo "deep check: all good" || { echo "deep check: $failures failed"; exit 1; }
