@@ -76,15 +76,34 @@ void at_nodes_in_root(const Layer& layer, const RayParameter& ray, double vertex
   using Rule = GaussLegendre<8>;
   const double u_from = std::sqrt(from), u_to = std::sqrt(to);
   const double centre = 0.5 * (u_from + u_to), half = 0.5 * (u_to - u_from);
-  std::array<SoundSpeed, 8> water;
-  std::array<double, 8> per_sine, dz;
-  for (std::size_t i = 0; i < 8; ++i) {
-    const double u = centre + half * Rule::node[i];
-    water[i] = layer.at(vertex + sign * u * u);
-    per_sine[i] = 1.0 / std::sqrt(std::max(ray.sine2(water[i].c), 1e-300));
-    dz[i] = 2.0 * u * half * Rule::weight[i];
+  std::array<double, 8> c, slope, bend, per_sine, dz;
+  if (layer.law == Layer::Law::cubic) {  // in a loop that becomes vector instructions
+    const auto [a0, a1, a2, a3] = layer.coefficient;
+    const double origin = vertex - layer.origin;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double u = centre + half * Rule::node[i];
+      const double t = origin + sign * u * u;
+      c[i] = a0 + t * (a1 + t * (a2 + t * a3));
+      slope[i] = a1 + t * (2.0 * a2 + 3.0 * t * a3);
+      bend[i] = 2.0 * a2 + 6.0 * t * a3;
+    }
+  } else {
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double u = centre + half * Rule::node[i];
+      const SoundSpeed water = layer.at(vertex + sign * u * u);
+      c[i] = water.c;
+      slope[i] = water.dc_dz;
+      bend[i] = water.d2c_dz2;
+    }
   }
-  for (std::size_t i = 0; i < 8; ++i) f(water[i], per_sine[i], dz[i]);
+  const double c_ref = ray.reference_speed, sigma2 = ray.sigma * ray.sigma,
+               per_c2 = 1.0 / (c_ref * c_ref);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double s2 = ((c_ref - c[i]) * (c_ref + c[i]) + sigma2 * c[i] * c[i]) * per_c2;
+    per_sine[i] = 1.0 / std::sqrt(s2 > 1e-300 ? s2 : 1e-300);
+    dz[i] = 2.0 * (centre + half * Rule::node[i]) * half * Rule::weight[i];
+  }
+  for (std::size_t i = 0; i < 8; ++i) f(SoundSpeed{c[i], slope[i], bend[i]}, per_sine[i], dz[i]);
 }
 
 /// Over a layer whose dc/dz hardly varies, from the flatter edge's virtual vertex at distance
