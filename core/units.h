@@ -17,6 +17,12 @@ inline constexpr double micropascal = 1e-6;  ///< the reference pressure of unde
 constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
 constexpr double degrees(double radians) { return radians * (180.0 / pi); }
 
+/// A bearing in degrees, 0 ≤ x < 360, out of radians of any sign.
+inline double compass_degrees(double radians) {
+  const double turn = std::fmod(degrees(radians), 360.0);
+  return turn < 0.0 ? turn + 360.0 : turn;
+}
+
 /// 10^(x/10): a ratio of powers out of decibels. −∞ dB is 0.
 inline double power_from_db(double db) { return std::pow(10.0, db / 10.0); }
 /// 10^(x/20): a ratio of amplitudes out of decibels. −∞ dB is 0.

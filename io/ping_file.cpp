@@ -235,7 +235,7 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
                     double(leg.target),
                     double(leg.channel),
                     static_cast<double>(i),
-                    degrees(leg.bearing),
+                    compass_degrees(leg.bearing),
                     leg.range,
                     degrees(a.launch_elevation),
                     degrees(a.arrival_elevation),
@@ -257,8 +257,7 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   for (const EchoPath& echo : record.echoes) {
     const Vec3& s = echo.heard.slowness;  // along the direction of travel, z down
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
-    double bearing = degrees(std::atan2(s.x(), s.y()));
-    if (bearing < 0.0) bearing += 360.0;
+    const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
     echoes.row({double(record.ping), double(echo.target), double(echo.heard.channel),
                 double(echo.outgoing), double(echo.returning), echo.heard.delay, echo.heard.doppler,
                 echo.level_db, degrees(elevation), bearing});
@@ -310,6 +309,7 @@ PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario
   ping_file::write_replica(impl_->file, scenario);
   ping_file::write_environment(impl_->file, scenario);
   impl_->create_ping_datasets();
+  impl_->file.flush();  // readable from now on, whatever happens
 }
 
 PingFileWriter::PingFileWriter(PingFileWriter&&) noexcept = default;
@@ -322,7 +322,10 @@ PingFileWriter::~PingFileWriter() {
   std::filesystem::remove(part, ignored);
 }
 
-void PingFileWriter::write_rays(const RayPaths& rays) { ping_file::write_rays(impl_->file, rays); }
+void PingFileWriter::write_rays(const RayPaths& rays) {
+  ping_file::write_rays(impl_->file, rays);
+  impl_->file.flush();
+}
 
 void PingFileWriter::append(const PingRecord& record) {
   const auto begin = std::chrono::steady_clock::now();
