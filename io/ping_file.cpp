@@ -305,17 +305,25 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
 PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
                                const Provenance& provenance)
     : impl_(std::make_unique<Impl>(path, scenario)) {
-  ping_file::write_root(impl_->file, scenario, provenance);
-  ping_file::write_replica(impl_->file, scenario);
-  ping_file::write_environment(impl_->file, scenario);
-  impl_->create_ping_datasets();
-  impl_->file.flush();  // readable from now on, whatever happens
+  try {
+    ping_file::write_root(impl_->file, scenario, provenance);
+    ping_file::write_replica(impl_->file, scenario);
+    ping_file::write_environment(impl_->file, scenario);
+    impl_->create_ping_datasets();
+    impl_->file.flush();  // readable from now on, whatever happens
+  } catch (...) {
+    remove_part();
+    throw;
+  }
 }
 
 PingFileWriter::PingFileWriter(PingFileWriter&&) noexcept = default;
 
 PingFileWriter::~PingFileWriter() {
-  if (impl_ == nullptr || impl_->finished || impl_->pings > 0) return;
+  if (impl_ != nullptr && !impl_->finished && impl_->pings == 0) remove_part();
+}
+
+void PingFileWriter::remove_part() noexcept {
   const std::filesystem::path part = impl_->part;
   impl_.reset();  // closes
   std::error_code ignored;

@@ -49,6 +49,8 @@ class PingFileWriter {
   void finish(bool complete);
 
  private:
+  void remove_part() noexcept;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
