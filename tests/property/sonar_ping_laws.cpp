@@ -118,8 +118,8 @@ double delay_of(const EigenraySolver& ocean, double from, double to, double rang
 // array is by then: against a fixed-point iteration path by path with nothing linearised, 1 µs, for
 // the paths within 0.3 s of the first: 7.3 m/s·0.3 s = 2.2 m off the straight line, whose delay the
 // curvature of the front changes by (2.2 m)²/(2·1500 m/s·3000 m) = 0.5 µs. Known limit: the delay
-// is linear in the motion between paths, so paths seconds later (by the bottom) miss by up to 44 µs
-// here; the property worst_ns_of_all_paths says by how much.
+// is linear in the motion between paths, so paths seconds later (by the bottom) miss by up to 147
+// µs here; the property worst_ns_of_all_paths says by how much.
 TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
   Scenario s = busy();
   s.reverberation.enabled = false;
