@@ -31,12 +31,30 @@ PathLimits limits_of(const PropagationSettings& settings) {
           .max_launch_angle = settings.max_launch_angle};
 }
 
-/// One way from a fixed point at a known time to something that moves: eigenrays to where it is
-/// when the first of them comes.
+/// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
+/// a reference time.
 struct Way {
   Leg leg;
   Mover end;
 };
+
+/// The same path after its ends have moved by metres: same history, nearest launch angle. Null if
+/// it is there no more.
+const Arrival* same_path(const Arrivals& arrivals, const Arrival& path) {
+  const Arrival* nearest = nullptr;
+  double least = radians(1.0);
+  for (const Arrival& a : arrivals) {
+    if (a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
+        a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
+      continue;
+    const double difference = std::abs(a.launch_elevation - path.launch_elevation);
+    if (difference < least) {
+      least = difference;
+      nearest = &a;
+    }
+  }
+  return nearest;
+}
 
 class EchoFinder {
  public:
@@ -65,28 +83,74 @@ class EchoFinder {
  private:
   double speed_at(double depth) const { return context_.ocean.environment().water.at(depth).c; }
 
+  /// Eigenrays from a point to where a track is at a time since the ping's start.
+  Way way_at(const Vec3& from, const Track& track, const Vec3& offset, Leg::Kind kind,
+             double time) const {
+    Way way;
+    way.end = Mover::on(track, offset, context_.ping_time, time);
+    const Vec3& to = way.end.at_reference.position;
+    const Separation s = separation(from, to);
+    way.leg.kind = kind;
+    way.leg.target = index_;
+    way.leg.bearing = s.bearing;
+    way.leg.range = s.range;
+    way.leg.arrivals = context_.ocean.find(from.z(), to.z(), s.range, context_.frequency,
+                                           limits_of(scenario_.propagation));
+    return way;
+  }
+
+  /// The same to where the track is when the first of them comes.
   Way way(const Vec3& from, double start, const Track& track, const Vec3& offset,
           Leg::Kind kind) const {
-    Way way;
-    double travel = 0.0;
-    for (int i = 0; i < 3; ++i) {  // the target moves metres in the correction of its own motion:
-                                   // two rounds reach rounding
-      way.end = Mover::on(track, offset, context_.ping_time, start + travel);
-      const Vec3& to = way.end.at_reference.position;
-      const Separation s = separation(from, to);
-      way.leg.kind = kind;
-      way.leg.target = index_;
-      way.leg.bearing = s.bearing;
-      way.leg.range = s.range;
-      way.leg.arrivals = context_.ocean.find(from.z(), to.z(), s.range, context_.frequency,
-                                             limits_of(scenario_.propagation));
-      if (way.leg.arrivals.empty()) break;
-      const double arrival = way.leg.arrivals.front().delay;
-      if (way.end.at_reference.velocity.isZero() && i > 0) break;
-      if (std::abs(arrival - travel) < 1e-9) break;
-      travel = arrival;
+    Way way = way_at(from, track, offset, kind, start);
+    for (int i = 0; i < 4 && !way.leg.arrivals.empty(); ++i) {  // each round gains a factor v/c
+      const double time = start + way.leg.arrivals.front().delay;
+      if (std::abs(time - way.end.reference_time) < 1e-9) break;
+      const Mover then = Mover::on(track, offset, context_.ping_time, time);
+      if (then.at_reference.position == way.end.at_reference.position) {
+        way.end = then;
+        break;
+      }
+      way = way_at(from, track, offset, kind, time);
     }
     return way;
+  }
+
+  /// When a path that starts at `start` reaches the end of its way, which has moved since the
+  /// reference time: t = start + τ + s·v(t − t_ref).
+  static double arrival_time(const Way& way, double start, const Arrival& path,
+                             const Vec3& slowness) {
+    const double along = slowness.dot(way.end.at_reference.velocity);
+    return (start + path.delay - along * way.end.reference_time) / (1.0 - along);
+  }
+
+  /// One path to where the track is when *that path* arrives. The linear step alone neglects the
+  /// curvature of τ, d²/(2rc) for a displacement d; where that is above 0.1 µs the path is found
+  /// again there.
+  struct Settled {
+    Way way;
+    Arrival path;
+    double time;  ///< of arrival
+  };
+  Settled settle(const Vec3& from, double start, const Track& track, const Vec3& offset,
+                 const Way& reference, const Arrival& path) const {
+    Settled settled{reference, path, 0.0};
+    for (int i = 0; i < 4; ++i) {
+      const double c = speed_at(settled.way.end.at_reference.position.z());
+      settled.time =
+          arrival_time(settled.way, start, settled.path,
+                       slowness_vector(settled.way.leg.bearing, settled.path.arrival_elevation, c));
+      const Mover then = Mover::on(track, offset, context_.ping_time, settled.time);
+      const double moved =
+          (then.at_reference.position - settled.way.end.at_reference.position).norm();
+      if (moved * moved <= 1e-7 * 2.0 * c * std::max(settled.way.leg.range, moved)) break;
+      Way again = way_at(from, track, offset, reference.leg.kind, settled.time);
+      const Arrival* same = same_path(again.leg.arrivals, settled.path);
+      if (same == nullptr) break;
+      settled.path = *same;
+      settled.way = std::move(again);
+    }
+    return settled;
   }
 
   void pair_up(const Kinematics& source, const Way& out, int channel, TargetEchoes& result) const {
@@ -96,43 +160,49 @@ class EchoFinder {
     Way back = way(out.end.at_reference.position, out.end.reference_time, scenario_.platform,
                    offset, Leg::Kind::target_to_array);
     back.leg.channel = channel;
-    for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i)
+    for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
+      const Settled there =
+          settle(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
+      const Kinematics struck = target_.track.at(context_.ping_time + there.time);
+      const bool moved = struck.position != out.end.at_reference.position;
+      const Way home = moved ? way(struck.position, there.time, scenario_.platform, offset,
+                                   Leg::Kind::target_to_array)
+                             : back;
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
-        EchoPath echo = pair(source, out, back, out.leg.arrivals[i], back.leg.arrivals[j]);
+        const Arrival* path =
+            moved ? same_path(home.leg.arrivals, back.leg.arrivals[j]) : &back.leg.arrivals[j];
+        if (path == nullptr) continue;  // by then it is gone
+        EchoPath echo =
+            pair(source, there, struck,
+                 settle(struck.position, there.time, scenario_.platform, offset, home, *path));
         echo.outgoing = static_cast<int>(i);
         echo.returning = static_cast<int>(j);
         echo.heard.channel = channel < 0 ? Return::all_channels : channel;
         result.echoes.push_back(echo);
       }
+    }
     result.legs.push_back(std::move(back.leg));
   }
 
-  EchoPath pair(const Kinematics& source, const Way& out, const Way& back, const Arrival& there,
-                const Arrival& home) const {
-    const Kinematics& target = out.end.at_reference;
-    const Kinematics& phone = back.end.at_reference;
+  EchoPath pair(const Kinematics& source, const Settled& there, const Kinematics& target,
+                const Settled& home) const {
+    const Kinematics& phone = home.way.end.at_reference;
     const double c_source = speed_at(source.position.z()), c_target = speed_at(target.position.z()),
                  c_phone = speed_at(phone.position.z());
-    const Vec3 at_source = slowness_vector(out.leg.bearing, there.launch_elevation, c_source);
-    const Vec3 into_target = slowness_vector(out.leg.bearing, there.arrival_elevation, c_target);
-    const Vec3 out_of_target = slowness_vector(back.leg.bearing, home.launch_elevation, c_target);
-    const Vec3 at_phone = slowness_vector(back.leg.bearing, home.arrival_elevation, c_phone);
-
-    // Struck at t₁ = τ₁ + s_in·v_T(t₁ − t_ref); heard at t₂ = t₁ + τ₂ − s_out·v_T(t₁ − t_ref) +
-    // s_R·v_R(t₂ − t_ref′).
-    const double into = into_target.dot(target.velocity);
-    const double struck = (there.delay - into * out.end.reference_time) / (1.0 - into);
-    const double late = struck - out.end.reference_time;
-    const double away = at_phone.dot(phone.velocity);
-    const double heard = (struck + home.delay - out_of_target.dot(target.velocity) * late -
-                          away * back.end.reference_time) /
-                         (1.0 - away);
+    const Vec3 at_source =
+        slowness_vector(there.way.leg.bearing, there.path.launch_elevation, c_source);
+    const Vec3 into_target =
+        slowness_vector(there.way.leg.bearing, there.path.arrival_elevation, c_target);
+    const Vec3 out_of_target =
+        slowness_vector(home.way.leg.bearing, home.path.launch_elevation, c_target);
+    const Vec3 at_phone =
+        slowness_vector(home.way.leg.bearing, home.path.arrival_elevation, c_phone);
 
     EchoPath echo;
     echo.target = index_;
-    echo.heard.delay = heard;
-    echo.heard.amplitude = there.amplitude * home.amplitude *
-                           context_.pattern(there.launch_elevation) *
+    echo.heard.delay = home.time;
+    echo.heard.amplitude = there.path.amplitude * home.path.amplitude *
+                           context_.pattern(there.path.launch_elevation) *
                            amplitude_from_db(target_.strength_db);
     echo.heard.doppler = echo_doppler({source.velocity, at_source}, {target.velocity, into_target},
                                       {target.velocity, out_of_target}, {phone.velocity, at_phone});

@@ -24,10 +24,9 @@ struct TargetEchoes {
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is
-/// heard: eigenrays are found for the positions at the times of the first arrival, and each path's
-/// own delay follows from ∂τ/∂x = ±slowness (7 m/s over 20 s is 144 m; from one path to the next it
-/// is a few metres). Each pair has its exact Doppler factor from velocities, ray directions and
-/// local speeds. Source: docs/theory/echoes.md
+/// heard, path by path: 7 m/s over 20 s is 144 m. Each pair has its exact Doppler factor from
+/// velocities, ray directions and local speeds. The legs hold the eigenrays at the times of the
+/// first arrivals. Source: docs/theory/echoes.md
 [[nodiscard]] TargetEchoes target_echoes(const EchoContext& context, int target);
 
 }  // namespace asdic

@@ -115,16 +115,11 @@ double delay_of(const EigenraySolver& ocean, double from, double to, double rang
 }
 
 // The echo of a target that moves comes from where the target is struck, and is heard where the
-// array is by then: against a fixed-point iteration path by path with nothing linearised, 1 µs, for
-// the paths within 0.3 s of the first: 7.3 m/s·0.3 s = 2.2 m off the straight line, whose delay the
-// curvature of the front changes by (2.2 m)²/(2·1500 m/s·3000 m) = 0.5 µs. Known limit: the delay
-// is linear in the motion between paths, so paths seconds later (by the bottom) miss by up to 147
-// µs here; the property worst_ns_of_all_paths says by how much.
+// array is by then: every path pair against a fixed-point iteration with nothing linearised, 1 µs.
 TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
   Scenario s = busy();
   s.reverberation.enabled = false;
   const PingSimulator simulator(s);
-  double worst = 0.0;
   int compared = 0;
   for (const int ping : {1, 3}) {
     const PingRecord record = simulator.simulate(ping);
@@ -147,16 +142,11 @@ TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
         const Vec3 phone = s.platform.at(start + heard).position;
         heard = struck + delay_of(simulator.ocean(), at.z(), phone.z(), range(at, phone), home);
       }
-      worst = std::max(worst, std::abs(heard - echo.heard.delay));
-      if (out.delay - record.legs[0].arrivals[0].delay < 0.3 &&
-          home.delay - record.legs[1].arrivals[0].delay < 0.3) {
-        EXPECT_NEAR(echo.heard.delay, heard, 1e-6);
-        ++compared;
-      }
+      EXPECT_NEAR(echo.heard.delay, heard, 1e-6);
+      ++compared;
     }
   }
-  EXPECT_GE(compared, 8);  // direct and surface, there and back, twice
-  RecordProperty("worst_ns_of_all_paths", std::to_string(worst * 1e9));
+  EXPECT_GE(compared, 18);
 }
 
 }  // namespace
