@@ -130,7 +130,7 @@ TEST_P(ThesisVerticalArray, PrintedAnglesAreEigenrays) {
 // if no other pair is nearer than half a pulse and 0.2 ms, and the time sound takes over half the
 // array between two such directions, 1.425 m·2 sin(el)/c. The vertical array of 20 phones at 0.15 m
 // then peaks at that path's angle within half of 0.886 λ/(N d) = 0.114 in the sine.
-// (Omnidirectional: the thesis's beam of 6° would leave the bottom's paths 60 dB down.)
+// (Omnidirectional: the thesis's beam of 6° would leave the bottom's paths to its side lobes.)
 TEST_P(ThesisVerticalArray, BeamsOfThePingPeakAtTheEigenrays) {
   Scenario s = support::thesis(SoundSpeedProfile::munk());
   s.environment.bottom.depth = 4620.0;
