@@ -8,17 +8,12 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "core/units.h"
-#include "io/ping/growing_table.h"
+#include "io/arrival_table.h"
 
 namespace asdic::app {
 namespace {
 
 using nlohmann::ordered_json;
-
-double bearing_deg(const Leg& leg) {
-  const double bearing = degrees(leg.bearing);
-  return bearing < 0.0 ? bearing + 360.0 : bearing;
-}
 
 std::string leg_name(const Leg& leg) {
   return leg.kind == Leg::Kind::source_to_target ? "target" : "array";
@@ -32,7 +27,7 @@ std::string title_of(const ArrivalsResult& result, const Leg& leg) {
   return fmt::format("{}, {}, bearing {} deg: {}",
                      leg.kind == Leg::Kind::source_to_target ? fmt::format("platform to {}", target)
                                                              : fmt::format("{} to array", target),
-                     distance, number(bearing_deg(leg), 1), found);
+                     distance, number(compass_degrees(leg.bearing), 1), found);
 }
 
 /// s12.3 b20.1: in order, surface or bottom with the grazing angle.
@@ -116,7 +111,7 @@ std::string arrivals_json(const ArrivalsResult& result) {
       one["leg"] = leg_name(leg);
       one["target"] = leg.target;
       one["target_name"] = result.scenario->targets[static_cast<std::size_t>(leg.target)].name;
-      one["bearing_deg"] = bearing_deg(leg);
+      one["bearing_deg"] = compass_degrees(leg.bearing);
     } else {
       one["leg"] = "receiver";
     }
@@ -140,69 +135,15 @@ void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult
   write_root(file, "asdic arrivals", *result.scenario);
   file.set_attribute("", "frequency_hz", result.frequency);
 
-  // /arrivals and /bounces as in a ping file
-  using Type = ElementType;
-  GrowingTable arrivals(
-      file, "arrivals", "arrival",
-      {{"ping", "number of the ping", "", Type::int32},
-       {"leg", "0 source to target, 1 target to array, 3 source to receiver", "", Type::int32},
-       {"target", "number of the target, -1: none", "", Type::int32},
-       {"channel", "number of the phone, -1: the reference point", "", Type::int32},
-       {"path", "number within its leg", "", Type::int32},
-       {"bearing_deg", "direction of travel, clockwise from north", "degree"},
-       {"range", "horizontal distance of the leg", "m"},
-       {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
-       {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},
-       {"delay", "travel time", "s"},
-       {"amplitude_real", "pressure re 1 m, real part", ""},
-       {"amplitude_imag", "pressure re 1 m, imaginary part", ""},
-       {"spreading_db", "spreading loss", "dB"},
-       {"absorption_db", "absorption loss", "dB"},
-       {"path_length", "length along the ray", "m"},
-       {"surface_bounces", "reflections at the surface", "", Type::int32},
-       {"bottom_bounces", "reflections at the bottom", "", Type::int32},
-       {"upper_turns", "turning points below the surface", "", Type::int32},
-       {"lower_turns", "turning points above the bottom", "", Type::int32},
-       {"caustics", "caustics passed", "", Type::int32},
-       {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
-       {"bounce_count", "rows of /bounces", "", Type::int32}});
-  GrowingTable bounces(file, "bounces", "bounce",
-                       {{"boundary", "0 surface, 1 bottom", "", Type::int8},
-                        {"grazing_deg", "angle between ray and boundary", "degree"},
-                        {"range", "horizontal distance from the start of the leg", "m"}});
-  for (const Leg& leg : result.legs)
-    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
-      const Arrival& a = leg.arrivals[i];
-      const double first = a.bounces.empty() ? -1.0 : static_cast<double>(bounces.rows());
-      for (const Bounce& bounce : a.bounces)
-        bounces.row({bounce.boundary == BoundaryKind::surface ? 0.0 : 1.0, degrees(bounce.grazing),
-                     bounce.range});
-      const double kind = result.to_receiver ? 3.0 : static_cast<double>(leg.kind);
-      arrivals.row({double(result.ping),
-                    kind,
-                    double(leg.target),
-                    double(leg.channel),
-                    static_cast<double>(i),
-                    result.to_receiver ? std::nan("") : bearing_deg(leg),
-                    leg.range,
-                    degrees(a.launch_elevation),
-                    degrees(a.arrival_elevation),
-                    a.delay,
-                    a.amplitude.real(),
-                    a.amplitude.imag(),
-                    -db_from_amplitude(a.spreading),
-                    a.absorption_db,
-                    a.path_length,
-                    double(a.surface_bounces),
-                    double(a.bottom_bounces),
-                    double(a.upper_turns),
-                    double(a.lower_turns),
-                    double(a.caustics),
-                    first,
-                    static_cast<double>(a.bounces.size())});
+  ArrivalTable arrivals(file);
+  for (Leg leg : result.legs) {
+    if (result.to_receiver) {
+      leg.kind = Leg::Kind::source_to_receiver;
+      leg.bearing = std::nan("");
     }
+    arrivals.add(result.ping, leg);
+  }
   arrivals.write();
-  bounces.write();
   output.finish();
 }
 

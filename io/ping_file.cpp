@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "io/arrival_table.h"
 #include "io/ping/growing_table.h"
 #include "io/ping/sections.h"
 
@@ -19,37 +20,6 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_patches = 2000;  // rows a ping
 using Type = ElementType;
-
-std::vector<GrowingTable::Column> arrival_columns() {
-  return {{"ping", "number of the ping", "", Type::int32},
-          {"leg", "0 source to target, 1 target to array, 2 source to array", "", Type::int32},
-          {"target", "number of the target, -1: none", "", Type::int32},
-          {"channel", "number of the phone, -1: the reference point", "", Type::int32},
-          {"path", "number within its leg", "", Type::int32},
-          {"bearing_deg", "direction of travel, clockwise from north", "degree"},
-          {"range", "horizontal distance of the leg", "m"},
-          {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
-          {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},
-          {"delay", "travel time", "s"},
-          {"amplitude_real", "pressure re 1 m, real part", ""},
-          {"amplitude_imag", "pressure re 1 m, imaginary part", ""},
-          {"spreading_db", "spreading loss", "dB"},
-          {"absorption_db", "absorption loss", "dB"},
-          {"path_length", "length along the ray", "m"},
-          {"surface_bounces", "reflections at the surface", "", Type::int32},
-          {"bottom_bounces", "reflections at the bottom", "", Type::int32},
-          {"upper_turns", "turning points below the surface", "", Type::int32},
-          {"lower_turns", "turning points above the bottom", "", Type::int32},
-          {"caustics", "caustics passed", "", Type::int32},
-          {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
-          {"bounce_count", "rows of /bounces", "", Type::int32}};
-}
-
-std::vector<GrowingTable::Column> bounce_columns() {
-  return {{"boundary", "0 surface, 1 bottom", "", Type::int8},
-          {"grazing_deg", "angle between ray and boundary", "degree"},
-          {"range", "horizontal distance from the start of the leg", "m"}};
-}
 
 std::vector<GrowingTable::Column> echo_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
@@ -101,7 +71,8 @@ struct PingFileWriter::Impl {
   Scenario scenario;
   std::size_t pings = 0;
   bool finished = false;
-  GrowingTable arrivals, bounces, echoes, patches;
+  ArrivalTable arrivals;
+  GrowingTable echoes, patches;
   std::size_t every = 1;
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
@@ -110,8 +81,7 @@ struct PingFileWriter::Impl {
         part(final_path.string() + ".part"),
         file(Hdf5File::create(part)),
         scenario(s),
-        arrivals(file, "arrivals", "arrival", arrival_columns()),
-        bounces(file, "bounces", "bounce", bounce_columns()),
+        arrivals(file),
         echoes(file, "echoes", "echo", echo_columns()),
         patches(file, "patches", "patch", patch_columns()) {}
 
@@ -223,37 +193,7 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
 }
 
 void PingFileWriter::Impl::append_tables(const PingRecord& record) {
-  for (const Leg& leg : record.legs) {
-    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
-      const Arrival& a = leg.arrivals[i];
-      const double first = a.bounces.empty() ? -1.0 : static_cast<double>(bounces.rows());
-      for (const Bounce& bounce : a.bounces)
-        bounces.row({bounce.boundary == BoundaryKind::surface ? 0.0 : 1.0, degrees(bounce.grazing),
-                     bounce.range});
-      arrivals.row({double(record.ping),
-                    double(static_cast<int>(leg.kind)),
-                    double(leg.target),
-                    double(leg.channel),
-                    static_cast<double>(i),
-                    compass_degrees(leg.bearing),
-                    leg.range,
-                    degrees(a.launch_elevation),
-                    degrees(a.arrival_elevation),
-                    a.delay,
-                    a.amplitude.real(),
-                    a.amplitude.imag(),
-                    -db_from_amplitude(a.spreading),
-                    a.absorption_db,
-                    a.path_length,
-                    double(a.surface_bounces),
-                    double(a.bottom_bounces),
-                    double(a.upper_turns),
-                    double(a.lower_turns),
-                    double(a.caustics),
-                    first,
-                    static_cast<double>(a.bounces.size())});
-    }
-  }
+  for (const Leg& leg : record.legs) arrivals.add(record.ping, leg);
   for (const EchoPath& echo : record.echoes) {
     const Vec3& s = echo.heard.slowness;  // along the direction of travel, z down
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
@@ -271,7 +211,6 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
                  p.scattering_strength_db, p.level_db});
   }
   arrivals.write();
-  bounces.write();
   echoes.write();
   patches.write();
   file.set_attribute("patches", "every", static_cast<std::int64_t>(every));

@@ -11,7 +11,7 @@ namespace asdic {
 
 /// Eigenrays of one leg of the way.
 struct Leg {
-  enum class Kind { source_to_target, target_to_array, source_to_array };
+  enum class Kind { source_to_target, target_to_array, source_to_array, source_to_receiver };
   Kind kind = Kind::source_to_target;
   int target = -1;  ///< index in the scenario, −1 for source_to_array (there and back, no target)
   int channel = -1;      ///< the phone, −1 for the array's reference point
