@@ -129,7 +129,7 @@ void add_arrivals_command(CLI::App& program, Action& action) {
   command->add_option("--ping", options->ping, "positions of this ping")
       ->capture_default_str()
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_length_option(
       *command, "--receiver-depth", [options](double x) { options->receiver_depth = x; },
       "depth of a receiver, instead of targets; with --range");
@@ -143,7 +143,7 @@ void add_arrivals_command(CLI::App& program, Action& action) {
       ->add_option("--frequency", options->frequency,
                    "at which losses are told [Hz]; default: the pulse's centre")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
   command
       ->add_option("-o,--output", options->output,

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/error.h"
 
@@ -45,6 +46,17 @@ CLI::Option* add_length_option(CLI::App& command, const std::string& name,
           },
           help)
       ->type_name("LENGTH");
+}
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value > 0.0 && std::isfinite(value)
+                   ? std::string()
+                   : "found " + text + ", expected a number above 0";
+      },
+      "ABOVE 0");
 }
 
 }  // namespace asdic::app

@@ -28,6 +28,9 @@ struct ScenarioChoice {
 /// SCENARIO and --set, as every command that reads a scenario has them.
 void add_scenario_options(CLI::App& command, ScenarioChoice& choice);
 
+/// A check for numbers above zero that says just that.
+[[nodiscard]] CLI::Validator above_zero();
+
 /// An option that takes a length: 60km, 500m, or plain metres. Negative ones are refused.
 /// \throws InputError naming the option, while the command line is parsed
 CLI::Option* add_length_option(CLI::App& command, const std::string& name,

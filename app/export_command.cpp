@@ -65,7 +65,7 @@ void add_export_command(CLI::App& program, Action& action) {
       ->type_name("DIR");
   command->add_option("--ping", options->ping, "this ping alone; default: all")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
   command->callback([options, &action] { action = [options] { return export_wav(*options); }; });
 }

@@ -102,7 +102,7 @@ void add_ping_command(CLI::App& program, Action& action) {
       ->type_name("FILE.h5");
   command->add_option("--pings", options->pings, "number of pings, instead of pings.count")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
       ->type_name("S")
       ->check(CLI::NonNegativeNumber);

@@ -100,7 +100,7 @@ void add_plot_command(CLI::App& program, Action& action) {
       ->type_name("DIR");
   command->add_option("--ping", options->ping, "ping to draw; default: the first")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
       "Example:  asdic plot deep_ocean.h5 -o pictures");

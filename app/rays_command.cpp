@@ -38,8 +38,11 @@ std::vector<double> elevations(const Options& options) {
       throw InputError({.where = "--elevations, --from, --to",
                         .got = fmt::format("{} degrees", elevation),
                         .expected = "an angle between -90 and 90 degrees, both excluded"});
-  if (!(options.range > 0.0))
-    throw InputError({.where = "--range", .got = "0 m", .expected = "a range above 0 m"});
+  constexpr double longest = 2e7;  // half way round the Earth [m]
+  if (!(options.range > 0.0 && options.range <= longest))
+    throw InputError({.where = "--range",
+                      .got = fmt::format("{} m", options.range),
+                      .expected = "a range above 0 m and at most 20000 km"});
   return all;
 }
 

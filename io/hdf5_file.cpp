@@ -106,6 +106,9 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   hdf5::quiet();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
+  // A link of that name is replaced, not followed: what it points to is somebody else's.
+  std::error_code ignored;
+  if (std::filesystem::is_symlink(path, ignored)) std::filesystem::remove(path, ignored);
   impl->file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   impl->check(impl->file, "", "creating the file");
   return Hdf5File(std::move(impl));

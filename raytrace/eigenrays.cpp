@@ -16,6 +16,25 @@ namespace {
 /// than rounding [m].
 constexpr double depth_offset = 1e-6;
 
+/// A receiver (almost) straight above or below is met by (almost) vertical rays, whose ξ is
+/// proportional to the range; they are found at this range and then put upright. The delay of a
+/// path of length h is longer by range²/(2hc), 3 ns at a metre [m].
+constexpr double least_range = 0.1;
+
+void raise(Arrival& path, double share, const Column& column) {
+  path.horizontal_slowness *= share;
+  path.launch_elevation = std::copysign(std::acos(path.horizontal_slowness * column.source_speed()),
+                                        path.launch_elevation);
+  path.arrival_elevation = std::copysign(
+      std::acos(path.horizontal_slowness * column.receiver_speed()), path.arrival_elevation);
+  for (Bounce& bounce : path.bounces) {
+    const double c =
+        bounce.boundary == BoundaryKind::surface ? column.surface_speed() : column.bottom_speed();
+    bounce.grazing = std::acos(path.horizontal_slowness * c);
+    bounce.range *= share;
+  }
+}
+
 /// Distance below which two roots of one branch are one [m of range per slope].
 constexpr double same_root = 1e-9;
 
@@ -119,9 +138,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return ranges[a] < ranges[b]; });
 
-  // A receiver straight above or below is met by the vertical ray, ξ = 0, which a range of a
-  // micrometre stands for.
-  const auto range_of = [&](std::size_t i) { return std::max(ranges[order[i]], 1e-6); };
+  const auto range_of = [&](std::size_t i) { return std::max(ranges[order[i]], least_range); };
 
   const BranchTable fan = table(source_depth, receiver_depth, limits);
   const PathBuilder builder(environment_, fan.column(), frequency);
@@ -131,13 +148,15 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
                      high = std::max(stretch.range_begin, stretch.range_end);
         // A stretch owns its slow end, so that a root on a common end is found once.
         const auto first = std::partition_point(order.begin(), order.end(), [&](std::size_t i) {
-          return std::max(ranges[i], 1e-6) < low;
+          return std::max(ranges[i], least_range) < low;
         });
         for (auto it = first; it != order.end(); ++it) {
-          const double range = std::max(ranges[*it], 1e-6);
+          const double range = std::max(ranges[*it], least_range);
           if (range > high) break;
-          found[*it].push_back(
-              builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range));
+          Arrival path =
+              builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range);
+          if (ranges[*it] < least_range) raise(path, ranges[*it] / least_range, fan.column());
+          found[*it].push_back(std::move(path));
         }
       });
   const bool along_a_level =

@@ -12,6 +12,8 @@ namespace {
 
 /// Walks one ray from layer to layer, a thin slice at a time.
 class RayWalker {
+  static constexpr int most_turns = 20000;
+
  public:
   RayWalker(const Environment& environment, double source_depth, double elevation,
             double depth_step)
@@ -19,7 +21,7 @@ class RayWalker {
             make_layers(environment.water, environment.surface.depth, environment.bottom.depth)),
         depth_(source_depth),
         down_(elevation < 0.0) {
-    cut_at(layers_, source_depth);
+    source_depth = cut_at(layers_, source_depth);
     // Thin slices everywhere: each is crossed or turned in by the exact sums.
     for (double z = environment.surface.depth + depth_step; z < environment.bottom.depth;
          z += depth_step)
@@ -35,7 +37,9 @@ class RayWalker {
 
   RayPath walk(double max_range, int max_bounces) {
     limit_ = max_range;
-    while (range_ < max_range && path_.surface_bounces + path_.bottom_bounces <= max_bounces) {
+    if (runs_along_a_minimum()) return straight(max_range);
+    while (range_ < max_range && path_.surface_bounces + path_.bottom_bounces <= max_bounces &&
+           path_.turns < most_turns) {
       if (down_ ? index_ == layers_.size() : index_ == 0) {
         bounce();
         continue;
@@ -56,6 +60,23 @@ class RayWalker {
   }
 
  private:
+  /// A horizontal ray at a depth that is not faster than the water on either side stays there.
+  bool runs_along_a_minimum() const {
+    if (ray_.sigma > 1e-6) return false;
+    const bool above = index_ == 0 || layers_[index_ - 1].c_top >= layers_[index_ - 1].c_bottom;
+    const bool below =
+        index_ == layers_.size() || layers_[index_].c_bottom >= layers_[index_].c_top;
+    return above && below;
+  }
+
+  RayPath straight(double max_range) {
+    range_ = path_.path_length = max_range;
+    time_ = max_range * ray_.slowness;
+    add();
+    path_.final_elevation = path_.launch_elevation;
+    return std::move(path_);
+  }
+
   void add() { path_.points.push_back({range_, depth_, time_}); }
 
   struct Way {
@@ -65,7 +86,7 @@ class RayWalker {
   /// From an edge of the layer to a depth inside it that the ray reaches.
   Way way(const Layer& layer, double edge, double depth) const {
     std::vector<Layer> parts = {layer};
-    cut_at(parts, depth);
+    depth = cut_at(parts, depth);
     const Layer& part = edge < depth ? parts.front() : parts.back();
     const double top = std::sqrt(std::max(ray_.sine2(part.c_top), 1e-300));
     const double bottom = std::sqrt(std::max(ray_.sine2(part.c_bottom), 1e-300));

@@ -23,7 +23,7 @@ struct RayPath {
 };
 
 /// Traces one ray of a layered ocean out to a range, with points at most `depth_step` apart in
-/// depth.
+/// depth. It ends early after `max_bounces`, or 20 000 turning points (almost along a kink).
 [[nodiscard]] RayPath trace_ray(const Environment& environment, double source_depth,
                                 double launch_elevation, double max_range, double depth_step = 50.0,
                                 int max_bounces = 100);

@@ -39,7 +39,7 @@ struct NoiseSettings {
 struct PropagationSettings {
   int max_surface_bounces = 3;
   int max_bottom_bounces = 3;
-  double max_launch_angle = 1.553343034274953;  ///< from the horizontal [rad], 89°
+  double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
 };
 

@@ -38,7 +38,6 @@ inline const Quantity frequency_quantity{
     .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
 inline const Quantity duration_quantity{
     .noun = "duration", .unit = "s", .low = 0.0, .high = 1e5, .above = true};
-inline const Quantity speed_of_sound{
-    .noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e4, .above = true};
+inline const Quantity speed_of_sound{.noun = "speed", .unit = "m/s", .low = 200.0, .high = 1e4};
 
 }  // namespace asdic::scenario

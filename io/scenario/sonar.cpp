@@ -23,7 +23,17 @@ std::vector<Waypoint> read_waypoints(TomlTable& table) {
     if (!waypoints.empty() && time <= waypoints.back().time)
       throw point.fault(
           "time", "a time after the waypoint before it, " + to_text(waypoints.back().time) + " s");
-    waypoints.push_back({.time = time, .position = point.vector("position", coordinate)});
+    const Vec3 position = point.vector("position", coordinate);
+    if (!waypoints.empty()) {
+      const double speed =
+          (position - waypoints.back().position).norm() / (time - waypoints.back().time);
+      if (speed > velocity_component.high)
+        throw point.fault(
+            "position",
+            "at most " + to_text(velocity_component.high) + " m/s from the waypoint before it",
+            to_text(speed) + " m/s");
+    }
+    waypoints.push_back({.time = time, .position = position});
     point.finish();
   }
   if (waypoints.empty()) throw table.fault("waypoints", "at least one { time, position }");
@@ -60,8 +70,7 @@ void read_transmitter(TomlTable table, Scenario& scenario) {
   transmitter.taper = taper == "hann"          ? Taper::hann
                       : taper == "rectangular" ? Taper::rectangular
                                                : Taper::omnidirectional;
-  constexpr Quantity width{
-      .noun = "beamwidth", .unit = "degrees", .low = 0.0, .high = 180.0, .above = true};
+  constexpr Quantity width{.noun = "beamwidth", .unit = "degrees", .low = 0.01, .high = 179.0};
   if (transmitter.taper == Taper::omnidirectional)
     exclude(table, "omnidirectional taper", {"beamwidth_deg"});
   else
@@ -183,7 +192,7 @@ void read_propagation(TomlTable table, Scenario& scenario) {
       static_cast<int>(table.integer("max_bottom_bounces", 0, 100, settings.max_bottom_bounces));
   settings.max_launch_angle = radians(table.number(
       "max_launch_angle_deg",
-      {.noun = "angle", .unit = "degrees", .low = 0.0, .high = 89.9, .above = true}, 89.0));
+      {.noun = "angle", .unit = "degrees", .low = 0.0, .high = 90.0, .above = true}, 90.0));
   settings.exact_per_phone = table.flag("exact_per_phone", false);
   table.finish();
 }

@@ -11,6 +11,16 @@
 namespace asdic::scenario {
 namespace {
 
+/// A fault of the samples together (a spline that swings too far) is told at the table's key.
+SoundSpeedProfile profile_of(const TomlTable& table, const std::vector<double>& depth,
+                             const std::vector<double>& speed, Interpolation interpolation) {
+  try {
+    return SoundSpeedProfile::table(depth, speed, interpolation);
+  } catch (const InputError& error) {
+    throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
+  }
+}
+
 constexpr Quantity temperature_quantity{
     .noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0};
 constexpr Quantity salinity_quantity{.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0};
@@ -78,7 +88,7 @@ SoundSpeedProfile read_table(TomlTable& table, const std::filesystem::path& fold
       read_columns(table, folder, {{"depth", depth_quantity}, {"speed", speed_of_sound}});
   const auto& depth = columns.values[0];
   const auto& speed = columns.values[1];
-  auto profile = SoundSpeedProfile::table(depth, speed, interpolation);
+  auto profile = profile_of(table, depth, speed, interpolation);
   // A short profile goes on by the law of its first or last interval, as far as that makes sense.
   const auto [least, most] = std::minmax_element(speed.begin(), speed.end());
   for (const double z : {0.0, bottom_depth}) {
@@ -150,7 +160,7 @@ SoundSpeedProfile read_temperature_salinity(TomlTable& table, const std::filesys
   const double rest = std::max(0.0, bottom_depth - given.back());
   const auto extra = static_cast<int>(std::ceil(rest / 250.0));
   for (int i = 1; i <= extra; ++i) add(given.back() + rest * i / extra, given.size() - 1);
-  return SoundSpeedProfile::table(depth, speed, interpolation);
+  return profile_of(table, depth, speed, interpolation);
 }
 
 }  // namespace

@@ -100,8 +100,12 @@ CsvTable read_csv(const std::filesystem::path& path) {
 
 std::string read_text_file(const std::filesystem::path& path, const std::string& expected) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw InputError({.where = path.string(), .got = "a directory", .expected = expected});
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError({.where = path.string(),
+                      .got = std::filesystem::is_directory(path, error)
+                                 ? "a directory"
+                                 : "something that is no file",
+                      .expected = expected});
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     const bool exists = std::filesystem::exists(path, error);

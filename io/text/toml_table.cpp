@@ -98,8 +98,17 @@ bool TomlTable::has(const std::string& key) { return find(key) != nullptr; }
 
 const TomlValue& TomlTable::require(const std::string& key, const std::string& expected) {
   const TomlValue* value = find(key);
-  if (value == nullptr) throw fault(key, expected);
-  return *value;
+  if (value != nullptr) return *value;
+  // A key that nobody asked for and that looks like this one is this one, misspelt.
+  std::vector<std::string> strange;
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(table_->data))
+    if (std::find(known_.begin(), known_.end(), entry.key) == known_.end())
+      strange.push_back(entry.key);
+  const std::string nearest = nearest_name(key, strange);
+  if (!nearest.empty())
+    throw fault_at(*table_->find(nearest), nearest, "a known key (did you mean \"" + key + "\"?)",
+                   "an unknown key");
+  throw fault(key, expected);
 }
 
 double TomlTable::checked(const TomlValue& value, const std::string& key,

@@ -93,7 +93,30 @@ std::string TomlValue::describe() const {
   return table() != nullptr ? "a table" : "nothing";
 }
 
+/// toml++ walks a dotted key by recursion, without a limit: a key of ten thousand parts would end
+/// the program.
+void refuse_endless_keys(std::string_view text, const std::string& file) {
+  constexpr int most_parts = 64;
+  int line = 1, dots = 0;
+  char quote = 0;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    if (quote != 0) {
+      if (c == quote || c == '\n') quote = 0;
+      continue;
+    }
+    if (c == '"' || c == '\'') quote = c;
+    if (c == '.') ++dots;
+    if (std::string_view(",[]{}=#\n").find(c) != std::string_view::npos) dots = 0;
+    if (dots > most_parts)
+      throw InputError({.where = file + ":" + std::to_string(line),
+                        .got = "a key of more than 64 parts",
+                        .expected = "TOML 1.0 with short keys"});
+  }
+}
+
 TomlValue parse_toml(std::string_view text, const std::string& file) {
+  refuse_endless_keys(text, file);
   try {
     TomlValue root = convert(toml::parse(text, file), file + ":1", file);
     root.origin = file + ":1";

@@ -129,15 +129,18 @@ std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top, doubl
   return layers;
 }
 
-void cut_at(std::vector<Layer>& layers, double depth) {
+double cut_at(std::vector<Layer>& layers, double depth) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    if (depth <= layers[i].top || depth >= layers[i].bottom) continue;
+    if (std::abs(depth - layers[i].top) <= same_depth) return layers[i].top;
+    if (std::abs(depth - layers[i].bottom) <= same_depth) return layers[i].bottom;
+    if (depth < layers[i].top || depth > layers[i].bottom) continue;
     const Layer lower = slice(layers[i], depth, layers[i].bottom);
     layers[i] = slice(layers[i], layers[i].top, depth);
     layers[i].c_bottom = lower.c_top;
     layers.insert(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, lower);
-    return;
+    return depth;
   }
+  return depth;
 }
 
 }  // namespace asdic

@@ -31,7 +31,10 @@ struct Layer {
 [[nodiscard]] std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top,
                                              double bottom);
 
-/// The layers with a further cut at `depth` (no change if there is one already).
-void cut_at(std::vector<Layer>& layers, double depth);
+/// The layers with a further cut at `depth`. No change where there is a cut within `same_depth`: a layer thinner than rounding has no gradient.
+/// \return the depth of the cut
+double cut_at(std::vector<Layer>& layers, double depth);
+
+inline constexpr double same_depth = 1e-7;  ///< [m]
 
 }  // namespace asdic

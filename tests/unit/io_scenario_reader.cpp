@@ -210,11 +210,11 @@ const Fault faults[] = {
      "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\" or \"file\" (did you "
      "mean \"cw\"?)"},
     {"OutOfRange", "beamwidth_deg = 6.0", "beamwidth_deg = 0",
-     "s.toml:15: transmitter.beamwidth_deg: found 0 degrees, expected a beamwidth above 0 and at "
-     "most 180 degrees"},
+     "s.toml:15: transmitter.beamwidth_deg: found 0 degrees, expected a beamwidth from 0.01 "
+     "to 179 degrees"},
     {"NegativeSpeed", "1500.0, 1540.0", "-1500.0, 1540.0",
-     "s.toml:6: environment.sound_speed.speed[1]: found -1500 m/s, expected a speed above 0 and "
-     "at most 10000 m/s"},
+     "s.toml:6: environment.sound_speed.speed[1]: found -1500 m/s, expected a speed from 200 to "
+     "10000 m/s"},
     {"NotANumber", "wind_speed = 5", "wind_speed = nan",
      "s.toml:2: environment.wind_speed: found nan, expected a wind speed from 0 to 60 m/s"},
     {"Infinite", "[0.0, 0.0, 4500.0]", "[0.0, inf, 4500.0]",
@@ -228,7 +228,7 @@ const Fault faults[] = {
      "depths, 3"},
     {"EmptyArray", "[1510.0, 1500.0, 1540.0]", "[]",
      "s.toml:6: environment.sound_speed.speed: found an array of 0, expected an array of numbers, "
-     "each a speed above 0 and at most 10000 m/s"},
+     "each a speed from 200 to 10000 m/s"},
     {"ShortSteepProfile", "[0.0, 100.0, 5000.0]", "[0.0, 10.0, 20.0]",
      "s.toml:5: environment.sound_speed.depth: found levels from 0 to 20 m, by which the speed at "
      "5000 m would be 3080 m/s, expected levels that reach from the surface to the bottom at "
@@ -374,7 +374,7 @@ TEST(ScenarioReader, FaultsInCsvProfilesNameTheirLine) {
       {"depth,speed\n0,1500\n100,1510\n50,1511\n",
        ":4: depth: found 50 m, expected a depth below the one before it, 100 m"},
       {"depth,speed\n0,-1500\n",
-       ":2: speed: found -1500 m/s, expected a speed above 0 and at most 10000 m/s"},
+       ":2: speed: found -1500 m/s, expected a speed from 200 to 10000 m/s"},
       {"depth,temperature\n0,15\n",
        ": found the columns \"depth,temperature\", expected a column \"speed\""},
       {"", ": found an empty file, expected a header and at least one row of numbers"},

@@ -110,6 +110,26 @@ TEST(Eigenrays, AlongALevel) {
   EXPECT_EQ(axis->caustics, static_cast<int>(k * range / pi));
 }
 
+// Straight above: one vertical path, up to the receiver, with spherical spreading and R = −1, +1
+// where it bounces.
+TEST(Eigenrays, StraightUp) {
+  Environment ocean{.water = SoundSpeedProfile::isovelocity(1500.0)};  // 5000 m, rigid
+  for (const double range : {0.0, 1e-6, 0.05}) {
+    const Arrivals found = EigenraySolver(ocean).find(
+        4500.0, 3500.0, range, 1000.0, {.max_surface_bounces = 1, .max_bottom_bounces = 1});
+    ASSERT_EQ(found.size(), 5U);  // direct; bottom; surface; surface and bottom in either order
+    EXPECT_NEAR(degrees(found[0].launch_elevation), 90.0, 0.01 + degrees(range / 1000.0));
+    EXPECT_NEAR(found[0].delay, 1000.0 / 1500.0, 1e-8);
+    EXPECT_NEAR(found[0].amplitude.real(), 1.0 / 1000.0, 1e-8);
+    EXPECT_NEAR(degrees(found[1].launch_elevation), -90.0, 0.01);
+    EXPECT_NEAR(found[1].amplitude.real(), 1.0 / 2000.0, 1e-8);
+    EXPECT_NEAR(found[2].amplitude.real(), -1.0 / 8000.0, 1e-8);
+    if (range == 0.0) {
+      EXPECT_EQ(found[0].launch_elevation, 0.5 * pi);
+    }
+  }
+}
+
 // The rows' paths run in an unbounded medium: boundaries are put far away and bounces forbidden.
 TEST(Eigenrays, ConstantGradientArcs) {
   const support::Csv csv("physics-reference/rays_const_gradient.csv");
