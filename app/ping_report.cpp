@@ -16,6 +16,7 @@ std::vector<Table::Column> summary_columns() {
           {"paths"},
           {"echo at", "s"},
           {"echo", "dB re 1 µPa"},
+          {"all paths", "dB re 1 µPa"},
           {"reverberation", "dB re 1 µPa"},
           {"noise in band", "dB re 1 µPa"},
           {"signal excess", "dB"}};
@@ -24,11 +25,12 @@ std::vector<Table::Column> summary_columns() {
 std::vector<std::string> summary_row(int ping, double elevation_deg, const TargetSummary& target) {
   std::vector<std::string> row{std::to_string(ping), number(elevation_deg, 1), target.name};
   if (!target.present) {
-    row.insert(row.end(), {"absent", "-", "-", "-", "-", "-"});
+    row.insert(row.end(), {"absent", "-", "-", "-", "-", "-", "-"});
   } else {
     row.insert(row.end(), {std::to_string(target.paths), number(target.echo_time, 3),
-                           number(target.echo_level_db, 1), number(target.reverberation_db, 1),
-                           number(target.noise_db, 1), number(target.signal_excess_db, 1)});
+                           number(target.echo_level_db, 1), number(target.echo_peak_db, 1),
+                           number(target.reverberation_db, 1), number(target.noise_db, 1),
+                           number(target.signal_excess_db, 1)});
   }
   return row;
 }
@@ -66,7 +68,10 @@ std::string PingReport::text(double wall) const {
     result += table_.text();
     if (left_out_ > 0)
       result += fmt::format("... and {} more lines; the file has them\n", left_out_);
-    result += "echo: the strongest path, its peak; reverberation: expected at its time\n";
+    result +=
+        "echo: the strongest path; all paths: the peak of their sum; reverberation: expected at "
+        "that time; noise: in the "
+        "pulse's -40 dB band; excess: all paths over both, before processing gain\n";
   }
   result += fmt::format(
       "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "

@@ -130,7 +130,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<double>("summary/reverberation_db", "expected at that time, re 1 uPa", "dB", scale,
                   {targets});
   growing<double>("summary/noise_db", "in the pulse's band, re 1 uPa", "dB", scale, {targets});
-  growing<double>("summary/signal_excess_db", "echo over reverberation plus noise", "dB", scale,
+  growing<double>("summary/echo_peak_db", "peak of all paths together, re 1 uPa", "dB", scale,
+                  {targets});
+  growing<double>("summary/signal_excess_db", "peak over reverberation plus noise", "dB", scale,
                   {targets});
 }
 
@@ -220,7 +222,7 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   if (scenario.targets.empty()) return;
   std::vector<std::int8_t> present;
   std::vector<std::int32_t> paths;
-  std::vector<double> time, level, reverberation, noise, excess;
+  std::vector<double> time, level, reverberation, noise, peak, excess;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const TargetSummary row = i < record.summary.size() ? record.summary[i] : TargetSummary{};
     const bool heard = row.present && row.paths > 0;
@@ -230,6 +232,7 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
     level.push_back(heard ? row.echo_level_db : missing);
     reverberation.push_back(heard ? row.reverberation_db : missing);
     noise.push_back(heard ? row.noise_db : missing);
+    peak.push_back(heard ? row.echo_peak_db : missing);
     excess.push_back(heard ? row.signal_excess_db : missing);
   }
   file.append<std::int8_t>("summary/present", present);
@@ -238,6 +241,7 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   file.append<double>("summary/echo_level_db", level);
   file.append<double>("summary/reverberation_db", reverberation);
   file.append<double>("summary/noise_db", noise);
+  file.append<double>("summary/echo_peak_db", peak);
   file.append<double>("summary/signal_excess_db", excess);
 }
 

@@ -57,7 +57,8 @@ std::vector<TargetSummary> PingFile::summary(std::size_t ping) const {
   };
   const auto present = column("present"), paths = column("paths"), time = column("echo_time"),
              level = column("echo_level_db"), reverberation = column("reverberation_db"),
-             noise = column("noise_db"), excess = column("signal_excess_db");
+             noise = column("noise_db"), peak = column("echo_peak_db"),
+             excess = column("signal_excess_db");
   std::vector<std::string> names = file_.attribute_texts("target_index", "names");
   names.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -68,6 +69,7 @@ std::vector<TargetSummary> PingFile::summary(std::size_t ping) const {
                     .echo_level_db = level[i],
                     .reverberation_db = reverberation[i],
                     .noise_db = noise[i],
+                    .echo_peak_db = peak[i],
                     .signal_excess_db = excess[i]});
   }
   return rows;

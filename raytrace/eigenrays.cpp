@@ -156,7 +156,8 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
           Arrival path =
               builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range);
           if (ranges[*it] < least_range) raise(path, ranges[*it] / least_range, fan.column());
-          found[*it].push_back(std::move(path));
+          if (std::isfinite(path.delay) && std::isfinite(path.spreading))
+            found[*it].push_back(std::move(path));
         }
       });
   const bool along_a_level =

@@ -39,6 +39,35 @@ void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<fl
                                        static_cast<double>(count[step]));
 }
 
+namespace {
+
+/// Largest envelope of the echoes of one target as they add at the reference point (of the first
+/// phone, where every phone has its own), over √2. They may cancel: the direct path and its surface
+/// reflection are a period apart or less.
+double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& pulse,
+                      double source_level_db) {
+  double first = infinity, last = -infinity, slowest = 1.0;
+  for (const EchoPath* echo : echoes) {
+    first = std::min(first, echo->heard.delay);
+    last = std::max(last, echo->heard.delay);
+    slowest = std::min(slowest, echo->heard.doppler);
+  }
+  last += pulse.duration() / slowest;
+  const auto steps =
+      static_cast<int>(std::clamp((last - first) * 4.0 * pulse.bandwidth_40db(), 16.0, 4000.0));
+  double peak = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = first + (last - first) * i / steps;
+    std::complex<double> sum = 0.0;
+    for (const EchoPath* echo : echoes)
+      sum += echo->heard.amplitude * pulse.analytic(echo->heard.doppler * (t - echo->heard.delay));
+    peak = std::max(peak, std::abs(sum));
+  }
+  return source_level_db + db_from_amplitude(peak);
+}
+
+}  // namespace
+
 std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& scenario,
                                      const Pulse& pulse,
                                      const std::function<double(double)>& reverberation_db) {
@@ -49,12 +78,15 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
         .name = target.name,
         .present = record.ping >= target.first_ping && record.ping <= target.last_ping};
     const EchoPath* strongest = nullptr;
+    std::vector<const EchoPath*> heard;
     for (const EchoPath& echo : record.echoes) {
       if (echo.target != static_cast<int>(i)) continue;
       ++row.paths;
+      if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
+        heard.push_back(&echo);
       if (strongest == nullptr || echo.level_db > strongest->level_db) strongest = &echo;
     }
-    row.echo_level_db = row.signal_excess_db = -infinity;
+    row.echo_level_db = row.echo_peak_db = row.signal_excess_db = -infinity;
     row.echo_time = std::nan("");
     row.reverberation_db = -infinity;
     row.noise_db = scenario.noise.spectral_level_db
@@ -65,8 +97,9 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
       row.echo_level_db = strongest->level_db;
       row.reverberation_db = reverberation_db(strongest->heard.delay +
                                               0.5 * pulse.duration() / strongest->heard.doppler);
-      row.signal_excess_db = row.echo_level_db - db_from_power(power_from_db(row.reverberation_db) +
-                                                               power_from_db(row.noise_db));
+      row.echo_peak_db = peak_of_sum_db(heard, pulse, scenario.transmitter.source_level_db);
+      row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
+                                                              power_from_db(row.noise_db));
     }
     summary.push_back(row);
   }

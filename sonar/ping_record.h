@@ -58,7 +58,10 @@ struct TargetSummary {
   double echo_level_db = 0.0;     ///< of the strongest pair [dB re 1 µPa]
   double reverberation_db = 0.0;  ///< expected level at that time [dB re 1 µPa]
   double noise_db = 0.0;          ///< in the pulse's band [dB re 1 µPa]
-  double signal_excess_db = 0.0;  ///< echo over reverberation plus noise [dB]
+  double echo_peak_db = 0.0;  ///< all paths together, as they add at the array's reference point:
+                              ///< the peak of their envelope/√2 [dB re 1 µPa]
+  double signal_excess_db = 0.0;  ///< that peak over reverberation plus noise in the band, before
+                                  ///< any processing gain [dB]
 };
 
 struct Timings {

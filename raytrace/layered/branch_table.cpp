@@ -88,27 +88,33 @@ void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
   // sample.
   const bool wide = column_.layers().front().law == Layer::Law::munk;
   FanInterval interval{.reference_speed = c_slow};
-  interval.sigma = node_sigmas(sigma_end, wide ? 16 : 7, singular_slow, singular_fast);
-  const std::size_t n = interval.sigma.size();
-  for (auto* values : {&interval.up, &interval.middle, &interval.down, &interval.d_up,
-                       &interval.d_middle, &interval.d_down})
-    values->resize(n);
+  const std::vector<double> nodes =
+      node_sigmas(sigma_end, wide ? 16 : 7, singular_slow, singular_fast);
+  for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
+                       &interval.d_up, &interval.d_middle, &interval.d_down})
+    values->reserve(nodes.size());
   interval.shortest_cycle = 1e300;
-  for (std::size_t i = 0; i < n; ++i) {
-    const RayParameter ray(c_slow, interval.sigma[i]);
+  for (const double sigma : nodes) {
+    const RayParameter ray(c_slow, sigma);
     const ColumnSums sums = column_.sums(ray);
     const double chain = ray.slowness_per_sigma();
-    interval.up[i] = sums.up.range;
-    interval.middle[i] = sums.middle.range;
-    interval.down[i] = sums.down.range;
-    interval.d_up[i] = sums.up.d_range * chain;
-    interval.d_middle[i] = sums.middle.d_range * chain;
-    interval.d_down[i] = sums.down.d_range * chain;
+    const double cycle = sums.up.range + sums.middle.range + sums.down.range;
+    const double slope = (sums.up.d_range + sums.middle.d_range + sums.down.d_range) * chain;
+    // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
+    // receiver and fainter than anything.
+    if (!std::isfinite(cycle) || !std::isfinite(slope)) continue;
+    interval.sigma.push_back(sigma);
+    interval.up.push_back(sums.up.range);
+    interval.middle.push_back(sums.middle.range);
+    interval.down.push_back(sums.down.range);
+    interval.d_up.push_back(sums.up.d_range * chain);
+    interval.d_middle.push_back(sums.middle.d_range * chain);
+    interval.d_down.push_back(sums.down.d_range * chain);
     interval.turns_above = sums.turns_above;
     interval.turns_below = sums.turns_below;
-    interval.shortest_cycle =
-        std::min(interval.shortest_cycle, sums.up.range + sums.middle.range + sums.down.range);
+    interval.shortest_cycle = std::min(interval.shortest_cycle, cycle);
   }
+  if (interval.sigma.size() < 2) return;
   intervals_.push_back(std::move(interval));
 }
 
@@ -178,7 +184,7 @@ class StretchSplitter {
   }
 
   void emit(const HermiteNode& a, const HermiteNode& b, bool caustic_a, bool caustic_b) const {
-    if (!(b.x > a.x)) return;
+    if (!(b.x > a.x) || !std::isfinite(a.value) || !std::isfinite(b.value)) return;
     visit_({.interval = &interval_,
             .branch = branch_,
             .sigma_begin = a.x,

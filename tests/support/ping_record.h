@@ -90,6 +90,7 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
                             .echo_level_db = 90.0,
                             .reverberation_db = 60.0,
                             .noise_db = 50.0,
+                            .echo_peak_db = 91.0,
                             .signal_excess_db = 29.6});
   return record;
 }

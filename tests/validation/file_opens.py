@@ -69,7 +69,7 @@ TABLES = {
         "arrival_elevation_deg scattering_strength_db level_db",
 }
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
-SUMMARY = "present paths echo_time echo_level_db reverberation_db noise_db signal_excess_db"
+SUMMARY = "present paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
 INTEGERS = {"ping", "leg", "target", "channel", "path", "outgoing", "returning", "surface_bounces",
             "bottom_bounces", "upper_turns",
