@@ -25,7 +25,9 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
-from asdic_pictures import command  # noqa: E402
+from asdic_pictures import command, style  # noqa: E402
+
+style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
 
 ALWAYS = ["rays", "pressure", "bearing_time", "levels", "spectrogram"]
 # A small sea: 6 s of 8 phones at a low rate, so that a case costs little more than its drawing.
