@@ -31,8 +31,8 @@ def record(data, ping):
     where = signal.scan(phones)
     b = data.envelope(ping)
     speed = data.sound_speed(float(phones[:, 2].mean()))
-    power = signal.beam_power(b, phones, where.looks, speed, COLUMNS)
-    edges = np.linspace(b.start, b.start + b.values.shape[1] / b.rate, power.shape[1] + 1)
+    edges = b.edges(min(COLUMNS, b.values.shape[1]))
+    power = signal.beam_power(b, phones, where.looks, speed, edges)
     return where, edges, signal.decibels(power)
 
 
@@ -52,9 +52,8 @@ def angle_axis(axes, where):
 def draw(data, ping):
     where, edges, db = record(data, ping)
     fig, axes = style.figure(TITLES[where.kind], 5.0)
-    low, high = style.colour_limits(db)
-    mesh = axes.pcolormesh(edges, style.cell_edges(where.coordinate), db, cmap=style.MAP, vmin=low,
-                           vmax=high, shading="flat", rasterized=True)
+    limits = style.colour_limits(db, data.loudest_echo(ping))
+    mesh = style.image(axes, edges, style.cell_edges(where.coordinate), db, limits)
     axes.set_ylim(where.coordinate[0], where.coordinate[-1])
     angle_axis(axes, where)
     style.image_frame(axes)
@@ -68,9 +67,10 @@ def draw(data, ping):
         strong = echo.strong(edges[0], edges[-1])
         if strong.any():
             axes.plot(echo.delay[strong], signal.apparent(where, echo.direction[strong]), ls="none",
-                      marker="o", ms=11, mfc="none", mec="white", mew=1.3,
+                      marker="o", ms=9, mfc="none", mec=style.colour(echo.target), mew=1.4,
                       path_effects=style.OVER_MAP, zorder=4)
-            handles.append(Line2D([], [], ls="none", marker="o", ms=9, mfc="none", mec=style.INK,
-                                  mew=1.3, label=f"{style.name(echo.name)}: true arrivals"))
+            handles.append(Line2D([], [], ls="none", marker="o", ms=9, mfc="none",
+                                  mec=style.colour(echo.target), mew=1.6,
+                                  label=f"{style.name(echo.name)}: true arrivals"))
     style.legend_below(axes, handles[:4], ncol=2)
     return fig

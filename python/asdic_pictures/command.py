@@ -43,9 +43,10 @@ def draw_all(data: PingFile, ping: int, folder: Path) -> None:
     A picture of an earlier run that is left out now is removed, so a folder never shows two files'
     pictures.
     """
-    from . import bearing_time, levels, pressure, rays, spectrogram, style, sweep
+    from . import (bearing_time, levels, matched_filter, pressure, rays, spectrogram, style,
+                   sweep)
 
-    for module in (rays, pressure, bearing_time, levels, spectrogram, sweep):
+    for module in (rays, pressure, bearing_time, levels, spectrogram, matched_filter, sweep):
         name = module.__name__.rsplit(".", 1)[1] + ".png"
         reason = module.nothing_to_show(data, ping)
         if reason:

@@ -11,6 +11,9 @@ import numpy as np
 from . import signal
 
 
+ENVELOPE_SAMPLES = 2000  # at least: two for every column of a picture
+
+
 class InputError(Exception):
     """The file is not what it should be: where, what was found, what was expected."""
 
@@ -255,7 +258,7 @@ class PingFile:
             self._envelopes.clear()
             phones = (self.pressure(row, channel) for channel in range(self.channels))
             self._envelopes[row] = signal.baseband(phones, self.sample_rate, self.centre_frequency,
-                                                   self.band, self.start)
+                                                   self.band, self.start, ENVELOPE_SAMPLES)
         return self._envelopes[row]
 
     def phones(self, row: int) -> np.ndarray:
@@ -297,12 +300,12 @@ class PingFile:
         return [names[i] or f"target {i + 1}" for i in range(count)]
 
     def targets(self, row: int):
-        """[(index, name, east-north-depth [m])] of those that are there"""
+        """[(index, name, east-north-depth [m], whether it is there)] of those that have a place"""
         if not self.target_names:
             return []
         there, place = self.read("target_present", row), self.read("target_position", row)
-        return [(i, self.target_names[i], place[i]) for i in range(len(self.target_names))
-                if there[i] and np.all(np.isfinite(place[i]))]
+        return [(i, self.target_names[i], place[i], bool(there[i]))
+                for i in range(len(self.target_names)) if np.all(np.isfinite(place[i]))]
 
     def echoes(self, row: int) -> list[Echo]:
         """One entry a target that answers, as heard at the array's reference point.
@@ -326,6 +329,12 @@ class PingFile:
             found.append(Echo(target, name, t["delay"][order], t["level_db"][order],
                               t["doppler_factor"][order], direction))
         return found
+
+    def loudest_echo(self, row: int) -> float:
+        """Level of the strongest path inside the record [dB re 1 µPa]; −∞ without one"""
+        last = self.start + self.valid_samples[row] / self.sample_rate
+        return max((float(e.level_db[heard].max()) for e in self.echoes(row)
+                    if (heard := e.strong(self.start, last)).any()), default=-np.inf)
 
     def levels(self, row: int):
         """Time [s] and the mean-square pressures [Pa²] of echo, reverberation and noise"""

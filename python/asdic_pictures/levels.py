@@ -33,33 +33,52 @@ def draw(data, ping):
     step = float(np.median(np.diff(time))) if time.size > 1 else data.samples / data.sample_rate
     t_total, total = measured(data, ping, step)
     b = data.envelope(ping)
-    in_band = signal.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), len(t_total))
-    t_band = b.start + (np.arange(len(in_band)) + 0.5) * b.values.shape[1] / b.rate / len(in_band)
+    edges = data.start + np.append(np.arange(len(t_total)) * max(int(round(step * data.sample_rate)),
+                                                                 1) / data.sample_rate, b.duration)
+    in_band = b.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), edges)
 
+    echoes = data.echoes(ping)
     fig, axes = style.figure(TITLE, 4.8)
     # level_time tells where a step starts
     starts = time.size and time[0] - data.start < 0.25 * step
     middle = time + 0.5 * step if starts else time
     axes.plot(t_total, signal.decibels(total), color=style.INK, lw=0.9,
               label="measured, all frequencies", zorder=3)
-    axes.plot(t_band, signal.decibels(in_band), color=style.INK, lw=0.9, ls=(0, (4, 1.5)),
+    axes.plot(t_total, signal.decibels(in_band), color=style.INK, lw=0.9, ls=(0, (4, 1.5)),
               label=f"measured, in {b.width:.0f} Hz", zorder=3)
     shown = [signal.decibels(total), signal.decibels(in_band)]
-    for key, colour in (("noise", style.GREY), ("reverberation", style.BLUE),
-                        ("echo", style.VERMILION)):
+    drawn = []
+    for key, colour in (("noise", style.GREY), ("reverberation", style.SLATE),
+                        ("echo", echo_colour(echoes))):
         db = signal.decibels(parts[key])
         if np.isfinite(db).any():
-            axes.plot(middle, db, color=colour, lw=1.9, label=key, zorder=4, alpha=0.9)
+            label = f"echo, all {len(echoes)} targets" if key == "echo" and len(echoes) > 1 else key
+            drawn.append(axes.plot(middle, db, color=colour, lw=1.9, label=label, zorder=4,
+                                   alpha=0.9)[0])
             shown.append(db)
     limits(axes, shown)
+    say_what_is_hidden(axes, drawn)
     style.time_axis(axes, data.start, max(t_total[-1] + 0.5 * step, data.start + step))
     axes.set_ylabel("level / dB re 1 µPa")
     axes.grid(True)
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
     style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, steps of {1e3 * step:.0f} ms")
-    marks = mark_echoes(axes, data.echoes(ping))
+    marks = mark_echoes(axes, echoes)
     style.legend_below(axes, axes.get_legend_handles_labels()[0] + marks)
     return fig
+
+
+def echo_colour(echoes):
+    """A target's own colour; one that belongs to none where the line is the sum over several."""
+    return style.colour(echoes[0].target) if len(echoes) == 1 else style.BROWN
+
+
+def say_what_is_hidden(axes, lines):
+    """A line below the axis is not missing: its name in the legend says so."""
+    for line in lines:
+        highest = np.nanmax(line.get_ydata())
+        if highest < axes.get_ylim()[0]:
+            line.set_label(f"{line.get_label()} (below the axis, at most {highest:.0f} dB)")
 
 
 def limits(axes, curves):

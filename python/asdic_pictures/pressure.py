@@ -61,11 +61,9 @@ def mark_echoes(axes, echoes):
         shown = echo.delay[echo.strong(*axes.get_xlim())]
         if shown.size:
             axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(),
-                      ls="none", marker="v", ms=7, mfc=style.colour(echo.target), mec="white",
-                      mew=0.8, clip_on=False, zorder=5)
-            handles.append(Line2D([], [], ls="none", marker="v", ms=7,
-                                  mfc=style.colour(echo.target), mec="white",
-                                  label=f"{style.name(echo.name)}: true echo times"))
+                      clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))
+            label = f"{style.name(echo.name)}: true echo times"
+            handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
     return handles[:6]
 
 

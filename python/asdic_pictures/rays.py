@@ -8,6 +8,8 @@ from . import style
 
 TITLE = "Rays of the transmitted beam and eigenrays to the targets"
 
+HALF_THE_EARTH = 2e7    # round its girth [m]
+
 
 def nothing_to_show(data, ping):
     if not data.has("rays") or data.read("rays/kind").size == 0:
@@ -22,6 +24,33 @@ def eigenray_target(r, z, places):
         return 0
     end = r[good[-1]], z[good[-1]]
     return min(places, key=lambda p: np.hypot(p[1] - end[0], p[2] - end[1]))[0]
+
+
+def largest_range(data, row, r, targets):
+    """The farthest range that makes sense [m]: what the record can hear, or a target.
+
+    Sound is back from there when the record ends; without that, the farthest ray.
+    """
+    c = data.profile[1]
+    duration = data.valid_samples[row] / data.sample_rate
+    heard = 0.5 * float(np.nanmax(c)) * duration
+    on_earth = [t for t in targets if t <= HALF_THE_EARTH]
+    return max([heard] + on_earth)
+
+
+def disc(target, there):
+    """A target: full, or hollow where it is not there in this ping."""
+    colour = style.colour(target)
+    return dict(marker="o", ms=9, mfc=colour if there else "white", mec="white" if there else colour,
+                mew=1.2 if there else 1.8)
+
+
+def in_one_plane(platform, targets):
+    """Says so where the targets' bearings differ: the picture has no room for bearings."""
+    east, north = np.array([p[:2] - platform[:2] for _, _, p, _ in targets]).reshape(-1, 2).T
+    bearing = np.degrees(np.arctan2(east, north))[np.hypot(east, north) > 1.0]
+    apart = np.abs((bearing[:, None] - bearing + 180.0) % 360.0 - 180.0).max(initial=0.0)
+    return f"; targets up to {apart:.0f}° apart in bearing, drawn in one plane" if apart > 5 else ""
 
 
 def draw_profile(axes, data):
@@ -44,32 +73,37 @@ def draw(data, ping):
     draw_profile(left, data)
 
     platform = data.platform(row)
-    places = [(i, float(np.hypot(*(p - platform)[:2])), float(p[2]))
-              for i, _, p in data.targets(row)]
-    names = {i: n for i, n, _ in data.targets(row)}
+    targets = data.targets(row)
+    names = {i: n for i, n, _, _ in targets}
+    there = {i: present for i, _, _, present in targets}
+    everywhere = [(i, float(np.hypot(*(p - platform)[:2])), float(p[2])) for i, _, p, _ in targets]
+    places = [p for p in everywhere if there[p[0]]]
+    reach = largest_range(data, row, r, [p[1] for p in everywhere])
+    r = np.where((r >= 0) & (r <= 1.1 * reach), r, np.nan)
+    hits = hits[(hits >= 0) & (hits <= 1.1 * reach)]
     fan = np.flatnonzero(kind == 0)
     for k in fan:
         right.plot(r[k] / 1e3, z[k], color=style.GREY, lw=0.6, alpha=0.55, zorder=2)
     for k in np.flatnonzero(kind == 1):
         right.plot(r[k] / 1e3, z[k], color=style.colour(eigenray_target(r[k], z[k], places)),
                    lw=1.5, alpha=0.9, zorder=3)
-    hits = hits[np.isfinite(hits)]
     if hits.size:
         right.plot(hits / 1e3, np.zeros(hits.size), ls="none", marker="|", ms=9, mew=1.1,
                    color=style.INK, clip_on=False, zorder=5)
-    for i, distance, depth in places:
-        right.plot(distance / 1e3, depth, marker="o", ms=9, mfc=style.colour(i), mec="white",
-                   mew=1.4, zorder=6, clip_on=False)
+    for i, distance, depth in everywhere:
+        if distance <= 1.1 * reach:
+            right.plot(distance / 1e3, depth, zorder=6, clip_on=False, **disc(i, there[i]))
     right.plot(0.0, platform[2], marker="D", ms=8, mfc=style.INK, mec="white", mew=1.2, zorder=6,
                clip_on=False)
 
-    reach = max([np.max(r, initial=0.0, where=np.isfinite(r)), hits.max(initial=0.0)]
-                + [p[1] for p in places])
-    right.set_xlim(0.0, max(reach, 1.0) / 1e3 * 1.02)
+    drawn = max([np.max(r, initial=0.0, where=np.isfinite(r)), hits.max(initial=0.0)]
+                + [p[1] for p in everywhere if p[1] <= 1.1 * reach])
+    right.set_xlim(0.0, max(drawn, 1.0) / 1e3 * 1.02)
     right.set_xlabel("range from the source / km")
     draw_boundaries(data, (left, right))
     style.subtitle(right,
-                   f"{data.title or data.path}  ·  beam {data.elevation_deg[row]:+g}°, first ping")
+                   f"{style.shorten(data.title or data.path, 70)}  ·  beam "
+                   f"{data.elevation_deg[row]:+g}°, first ping{in_one_plane(platform, targets)}")
     handles = [Line2D([], [], marker="D", ls="none", ms=7, mfc=style.INK, mec="white",
                       label="source")]
     if fan.size:
@@ -79,10 +113,12 @@ def draw(data, ping):
                               label="fan meets the surface"))
     count = {i: sum(eigenray_target(r[k], z[k], places) == i for k in np.flatnonzero(kind == 1))
              for i, _, _ in places}
-    for i, _, _ in places[:6]:
-        label = f"{style.name(names[i])}, {count[i]} eigenray{'s' * (count[i] != 1)}"
-        handles.append(Line2D([], [], marker="o", ms=7, color=style.colour(i), mec="white",
-                              label=label))
+    for i, _, _ in everywhere[:6]:
+        what = (f"{count[i]} eigenray{'s' * (count[i] != 1)}" if there[i]
+                else "not there in this ping")
+        handles.append(Line2D([], [], label=f"{style.name(names[i])}, {what}",
+                              color=style.colour(i), lw=1.4 if there[i] else 0.0,
+                              **disc(i, there[i])))
     style.legend_below(right, handles, ncol=min(len(handles), 5))
     return fig
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 REFERENCE = 1e-12  # (1 µPa)² [Pa²]
+FILTER_LENGTH = 60.0  # times 1/width: the band filter's answer has died by about 130 dB
 
 
 def decibels(mean_square):
@@ -23,40 +24,77 @@ class Baseband:
     carrier: float       # [Hz]
     start: float         # time of the first sample [s]
     width: float         # of the band that was kept [Hz]
+    duration: float      # of the record [s]; the last sample may reach past its end
+    least: int = 4       # samples that were asked for at least
 
     @property
     def times(self):
         return self.start + np.arange(self.values.shape[1]) / self.rate
 
+    @property
+    def end(self):
+        return self.start + self.duration
+
+    def edges(self, count: int):
+        """`count` equal columns that fill the record. → times [count + 1] [s]"""
+        return np.linspace(self.start, self.end, count + 1)
+
+    def average(self, power, times):
+        """Means of `power` [..., sample] between `times` [column + 1] [s]. → [..., column]"""
+        return average_between(power, (np.asarray(times) - self.start) * self.rate)
+
+
+def fast_length(least: int) -> int:
+    """The smallest 2^a·3^b·5^c that is not below `least`: an FFT of a prime length is slow."""
+    odd = [3**b * 5**c for b in range(4) for c in range(4)]
+    return min(k << max(int(np.ceil(np.log2(max(least, 1) / k))), 0) for k in odd)
+
+
+def band_filter(offset, width: float):
+    """Amplitude at `offset` [Hz] from the band's middle; half the power at ± width/2.
+
+    cos(π/2·sin²(π/2·x)), x = 0..1 over the last eighth of either half and as much beyond: flat
+    inside, the power that white noise has in `width` is kept exactly, and its answer to a click
+    dies like 1/t⁴ or faster, where a sharp edge's dies like 1/t and smears a loud start over the
+    whole record.
+    """
+    x = np.clip((np.abs(offset) / (0.5 * width) - 0.875) / 0.25, 0.0, 1.0)
+    return np.cos(0.5 * np.pi * np.sin(0.5 * np.pi * x) ** 2)
+
 
 def baseband(channels, sample_rate: float, carrier: float, width: float,
-             start: float = 0.0) -> Baseband:
+             start: float = 0.0, least: int = 4) -> Baseband:
     """Keeps `width` Hz around `carrier`: the analytic signal, shifted to frequency zero, decimated.
 
     One FFT a phone: the bins of the band are all that is kept (positive frequencies, doubled),
-    their inverse FFT is the envelope. The new rate is 1.25 × the width.
+    their inverse FFT is the envelope. The new rate is 1.25 × the width, or more if the record would
+    have fewer than `least` samples. Zeros as long as the filter follow the record, so that its
+    start cannot wrap round into its end.
     channels: iterable of [sample] arrays of equal length [Pa]
     """
     rows = []
     for p in channels:
         n = len(p)
-        spectrum = np.fft.rfft(p)
-        spacing = sample_rate / n
+        padded = fast_length(n + int(np.ceil(FILTER_LENGTH / width * sample_rate)))
+        spectrum = np.fft.rfft(p, padded)
+        spacing = sample_rate / padded
         centre = int(round(carrier / spacing))
-        half = max(int(round(0.5 * width / spacing)), 1)
-        low, high = max(centre - half, 0), min(centre + half, len(spectrum) - 1)
-        m = max(int(round(1.25 * 2 * half)), 4)
+        kept_bins = np.arange(max(int(np.floor((carrier - 0.6 * width) / spacing)), 0),
+                              min(int(np.ceil((carrier + 0.6 * width) / spacing)) + 1,
+                                  len(spectrum)))
+        m = fast_length(max(int(np.ceil(1.25 * width / spacing)) + 2, 4,
+                            min(int(np.ceil(least * padded / n)), padded)))
         kept = np.zeros(m, complex)
-        if high >= low:
-            # negative indices wrap, as FFT order wants
-            kept[np.arange(low, high + 1) - centre] = 2.0 * spectrum[low : high + 1] / n * m
-        rows.append(np.fft.ifft(kept))
+        # negative indices wrap, as FFT order wants
+        kept[kept_bins - centre] = (band_filter(kept_bins * spacing - carrier, width)
+                                    * spectrum[kept_bins] * 2.0 / padded * m)
+        rate = m * sample_rate / padded
+        rows.append(np.fft.ifft(kept)[: min(int(np.ceil(n / sample_rate * rate)), m)])
     carrier_bin = centre * spacing
     envelope = np.array(rows) if rows else np.zeros((0, 0), complex)
-    rate = m * sample_rate / n
     # rfft's phase counts from the first sample; the carrier's, from t = 0
     return Baseband(envelope * np.exp(-2j * np.pi * carrier_bin * start), rate, carrier_bin, start,
-                    2 * half * spacing)
+                    width, n / sample_rate, least)
 
 
 def band_width(bandwidth: float, carrier: float, doppler_span: float, duration: float) -> float:
@@ -67,10 +105,27 @@ def band_width(bandwidth: float, carrier: float, doppler_span: float, duration: 
 def average(power, count: int):
     """Means of `power` [..., sample] over `count` equal stretches of time. → [..., count]"""
     n = power.shape[-1]
-    count = max(min(count, n), 1)
-    edges = np.linspace(0, n, count + 1).astype(int)[:-1]
-    sums = np.add.reduceat(power, edges, axis=-1)
-    return sums / np.diff(np.append(edges, n))
+    return average_between(power, np.linspace(0.0, n, max(min(count, n), 1) + 1))
+
+
+def average_between(power, edges):
+    """Means of `power` [..., sample] between rising `edges` [column + 1], in samples. → [..., column]
+
+    Sample k stands for [k, k + 1); an edge may cut one: each part counts by its length. A column of
+    which no part lies inside the samples is NaN.
+    """
+    n = power.shape[-1]
+    edges = np.clip(np.asarray(edges, float), 0.0, n)
+    first, last = edges[0], edges[-1]
+    cuts = np.union1d(edges, np.arange(np.ceil(first), np.floor(last) + 1))
+    length = np.diff(cuts)
+    if length.size == 0:
+        return np.full(power.shape[:-1] + (len(edges) - 1,), np.nan)
+    sample = np.minimum((0.5 * (cuts[:-1] + cuts[1:])).astype(int), n - 1)
+    starts = np.minimum(np.searchsorted(cuts, edges[:-1]), len(length) - 1)
+    sums = np.add.reduceat(power[..., sample] * length, starts, axis=-1)
+    width = np.diff(edges)
+    return np.where(width > 0, sums / np.where(width > 0, width, 1.0), np.nan)
 
 
 # ---------------------------------------------------------------- beams
@@ -129,35 +184,42 @@ def apparent(where: Scan, travel):
     return np.degrees(np.arctan2(look[:, 0], look[:, 1])) % 360.0
 
 
-def beam_power(b: Baseband, phones, looks, speed: float, columns: int):
-    """Mean-square output of each beam in `columns` stretches of time. → [beam, column] [Pa²]
+def beam_power(b: Baseband, phones, looks, speed: float, times):
+    """Mean-square output of each beam between `times` [column + 1] [s]. → [beam, column] [Pa²]
 
     Conventional, equal weights. A plane wave along u reaches the phone at x with the delay u·x/c (x
     from the array's centre), so the beam is y(f) = 1/N Σ p(f)·exp(+i2πf u·x/c), u = −look. The
-    phase is taken at the middle of sub-bands so narrow that the delay across the array times their
-    width stays below 1/20: one for a tone, more for a wide sweep.
+    factor is taken at a few frequencies, and linearly between them (at 1/16 of a turn, 2 % off at
+    most): sharp steps would smear a loud start over the whole record.
     """
     x = phones - phones.mean(axis=0)
     delay = -(looks @ x.T) / speed                                           # [beam, phone] [s]
-    spectrum = np.fft.fft(b.values, axis=1)
-    m = spectrum.shape[1]
+    # zeros behind, so that a loud start does not wrap round into the end
+    m = fast_length(b.values.shape[1] + int(np.ceil(FILTER_LENGTH / b.width * b.rate)))
+    spectrum = np.fft.fft(b.values, m, axis=1)
     f = np.fft.fftfreq(m, 1.0 / b.rate)
-    pieces = int(np.clip(np.ceil(b.width * np.ptp(delay) * 20.0), 1, 256))
-    edges = np.linspace(-b.rate / 2, b.rate / 2, pieces + 1)
-    columns = min(columns, m)
-    out = np.empty((len(looks), columns))
+    nodes = phase_nodes(b, np.ptp(delay))
+    place = np.clip(np.interp(f, nodes, np.arange(len(nodes))), 0, len(nodes) - 1)
+    out = np.empty((len(looks), len(times) - 1))
     # 32 beams at a time keep memory small
     for first in range(0, len(looks), 32):
         mine = slice(first, first + 32)
         beam = np.zeros((len(delay[mine]), m), complex)
-        for low, high in zip(edges[:-1], edges[1:]):
-            bins = np.flatnonzero((f >= low) & ((f < high) | (high == edges[-1])))
-            if bins.size:
-                middle = b.carrier + 0.5 * (low + high)
-                weights = np.exp(2j * np.pi * middle * delay[mine]) / len(phones)
-                beam[:, bins] = weights @ spectrum[:, bins]
-        out[mine] = average(0.5 * np.abs(np.fft.ifft(beam, axis=1)) ** 2, columns)
+        for k, node in enumerate(nodes):
+            # 1 at the node, 0 at its neighbours
+            share = np.maximum(1.0 - np.abs(place - k), 0.0)
+            bins = np.flatnonzero(share)
+            weights = np.exp(2j * np.pi * (b.carrier + node) * delay[mine]) / len(phones)
+            beam[:, bins] += weights @ (share[bins] * spectrum[:, bins])
+        heard = np.fft.ifft(beam, axis=1)[:, : b.values.shape[1]]
+        out[mine] = b.average(0.5 * np.abs(heard) ** 2, times)
     return out
+
+
+def phase_nodes(b: Baseband, longest: float):
+    """Frequencies at most 1/16 of a turn apart over the delay `longest`, across the band. → [Hz]"""
+    pieces = int(np.clip(np.ceil(1.25 * b.width * longest * 16.0), 1, 400))
+    return np.linspace(-0.625, 0.625, pieces + 1) * b.width
 
 
 # ---------------------------------------------------------------- spectra

@@ -26,13 +26,13 @@ def draw(data, ping):
     frequency, db = frequency[inside], db[inside]
 
     fig, axes = style.figure(TITLE, 4.8)
-    low, high = style.colour_limits(db, 20.0)
-    mesh = axes.pcolormesh(style.cell_edges(time),
-                           style.cell_edges(frequency - data.centre_frequency), db, cmap=style.MAP,
-                           vmin=low, vmax=high,
-                           shading="flat", rasterized=True)
+    # an echo's energy lies in 1/T or, for a sweep, in its band: its density is that much lower
+    spread = 10.0 * np.log10(max(data.bandwidth, b.rate / window, 1e-3))
+    limits = style.colour_limits(db, data.loudest_echo(ping) - spread)
+    mesh = style.image(axes, style.cell_edges(time),
+                       style.cell_edges(frequency - data.centre_frequency), db, limits)
     style.image_frame(axes)
-    style.time_axis(axes, b.start, b.times[-1] + 1.0 / b.rate)
+    style.time_axis(axes, b.start, b.end)
     axes.set_ylim(frequency[0] - data.centre_frequency, frequency[-1] - data.centre_frequency)
     axes.set_ylabel(f"frequency above {data.centre_frequency:g} Hz / Hz")
     if data.pulse_kind == "cw":

@@ -10,11 +10,12 @@ from matplotlib import patheffects, ticker  # noqa: E402
 
 INK, GREY = "#222222", "#8a8a8a"
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
+SLATE, BROWN = "#6f7fa6", "#6b4423"     # of no target
 ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
 TARGETS = [VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY]
 MAP = "viridis"
-# keeps a light mark readable on any colour
-OVER_MAP = [patheffects.withStroke(linewidth=2.6, foreground=INK)]
+# keeps a mark readable on any colour of the map, and a cluster of marks apart
+OVER_MAP = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 plt.rcParams.update({
     "figure.dpi": 150, "savefig.dpi": 150, "figure.constrained_layout.use": True,
@@ -79,6 +80,12 @@ def legend_below(axes, handles=None, below: float = 0.13, **options) -> None:
                     borderaxespad=0.3, **options)
 
 
+def truth(target: int, marker: str, size: float, label: str = "_"):
+    """Look of a mark of the truth beside an image or a curve: the target's colour, a thin edge."""
+    return dict(ls="none", marker=marker, ms=size, mfc=colour(target), mec=INK, mew=0.35,
+                label=label)
+
+
 def image_frame(axes) -> None:
     """Axes around an image: all four sides, ticks outwards; grey where there are no data."""
     axes.set_facecolor("#ececec")
@@ -105,16 +112,29 @@ def colour_bar(fig, mesh, axes, label: str, extend: str = "both"):
     return bar
 
 
-def colour_limits(db, floor_percentile: float = 30.0, least: float = 20.0, most: float = 60.0):
-    """Limits in dB, multiples of 5: from just below the background to just below the peak, at least
-    20 and at most 60 dB apart.
+def colour_limits(db, echo_db: float = -np.inf, floor_percentile: float = 20.0,
+                  least: float = 20.0, most: float = 55.0):
+    """Limits in dB, multiples of 5, at least 20 and at most 55 dB apart.
+
+    The floor is a little below the background: the noise, where there is some. The top is where all
+    but a thousandth lies below, but at most 55 dB higher: a loud start is clipped, not the quiet
+    rest. Only an echo of `echo_db` that would be clipped lifts both.
     """
     good = db[np.isfinite(db)]
     if good.size == 0:
         return 0.0, least
-    top = 5.0 * np.ceil(np.percentile(good, 99.9) / 5.0)
     low = 5.0 * np.floor((np.percentile(good, floor_percentile) - 2.0) / 5.0)
-    return float(np.clip(low, top - most, top - least)), float(top)
+    top = 5.0 * np.ceil(np.percentile(good, 99.9) / 5.0)
+    top = np.clip(top, low + least, low + most)
+    # never above what is drawn
+    needed = 5.0 * np.ceil(min(echo_db, good.max()) / 5.0)
+    top = max(top, needed)
+    return float(max(low, top - most)), float(top)
+
+
+def image(axes, x_edges, y_edges, values, limits):
+    """An image of cells between edges, in the common map."""
+    return axes.pcolorfast(x_edges, y_edges, values, cmap=MAP, vmin=limits[0], vmax=limits[1])
 
 
 def cell_edges(centres):

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from . import signal, style
 
-TITLE = "History of the sweep"
+TITLE = "History of the pings"
 COLUMNS = 1000
 
 
@@ -21,15 +21,19 @@ def history(data):
     """
     rows = data.simulated
     longest = int(data.valid_samples[rows].max())
-    columns = min(COLUMNS, longest)
-    power = np.full((rows.size, columns), np.nan)
+    edges = data.start + np.linspace(0.0, longest, min(COLUMNS, longest) + 1) / data.sample_rate
+    power = np.empty((rows.size, len(edges) - 1))
     for k, row in enumerate(rows):
         b = data.envelope(int(row))
-        mine = max(int(round(columns * data.valid_samples[row] / longest)), 1)
-        values = signal.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), mine)
-        power[k, :mine] = np.repeat(values, -(-mine // len(values)))[:mine]
-    edges = data.start + np.linspace(0.0, longest / data.sample_rate, columns + 1)
+        mine = np.minimum(edges, b.end)     # a shorter record ends within a column
+        power[k] = b.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), mine)
     return edges, signal.decibels(power), b.width
+
+
+def row_edges(numbers):
+    """A row reaches half a ping to either side of its number, whatever pings are missing."""
+    return np.concatenate([[numbers[0] - 0.5], 0.5 * (numbers[1:] + numbers[:-1]),
+                           [numbers[-1] + 0.5]])
 
 
 def draw(data, ping):
@@ -37,37 +41,44 @@ def draw(data, ping):
     rows = data.simulated
     numbers = data.numbers[rows]
     height = float(np.clip(2.8 + 0.28 * rows.size, 4.4, 9.0))
-    fig, (left, right) = style.figure(TITLE, height, ncols=2, sharey=True,
-                                      gridspec_kw={"width_ratios": [1, 6.2]})
-    draw_elevations(left, data.elevation_deg[rows], numbers)
+    elevation = data.elevation_deg[rows]
+    if np.ptp(elevation) > 0:
+        fig, (left, right) = style.figure(TITLE, height, ncols=2, sharey=True,
+                                          gridspec_kw={"width_ratios": [1, 6.2]})
+        draw_elevations(left, elevation, numbers)
+        right.tick_params(labelleft=False)
+        beam = ""
+    else:
+        fig, right = style.figure(TITLE, height)
+        ping_axis(right)
+        beam = f"  ·  beam {elevation[0]:+g}°" if np.isfinite(elevation[0]) else ""
 
-    low, high = style.colour_limits(db)
-    mesh = right.pcolormesh(edges, np.append(numbers - 0.5, numbers[-1] + 0.5), db, cmap=style.MAP,
-                            vmin=low, vmax=high, shading="flat", rasterized=True)
+    loudest = max(data.loudest_echo(int(row)) for row in rows)
+    limits = style.colour_limits(db, loudest)
+    mesh = style.image(right, edges, row_edges(numbers), db, limits)
     right.set_ylim(numbers[-1] + 0.5, numbers[0] - 0.5)  # the first ping on top
-    right.tick_params(labelleft=False)
     style.image_frame(right)
     style.time_axis(right, edges[0], edges[-1])
     style.colour_bar(fig, mesh, right, f"level in {width:.0f} Hz / dB re 1 µPa")
     ending = "  ·  stopped early" if data.stopped else ""
-    style.subtitle(right, f"{data.title or data.path}  ·  {rows.size} pings{ending}")
-    marked = mark_true_echoes(right, data, edges)
-    if marked:
-        names = ", ".join(style.name(n) for n in marked)
-        label = "true time of the strongest echo: "
-        label += names if len(marked) < 4 else f"{len(marked)} targets"
-        stroke = Line2D([], [], marker="|", ls="none", ms=11, mew=1.5, color="white",
-                        path_effects=style.OVER_MAP, label=label)
-        style.legend_below(right, [stroke])
+    style.subtitle(right, f"{data.title or data.path}  ·  {rows.size} pings{beam}{ending}")
+    handles = [Line2D([], [], marker="|", ls="none", ms=11, mew=1.8, color=style.colour(target),
+                      label=f"{style.name(name)}: true time of its strongest echo")
+               for target, name in mark_true_echoes(right, data, edges).items()]
+    style.legend_below(right, handles[:6], ncol=2, below=min(0.13, 0.6 / height))
     return fig
 
 
-def draw_elevations(axes, elevation_deg, numbers):
-    axes.plot(elevation_deg, numbers, color=style.BLUE, marker="o", ms=4.5, lw=1.0)
-    axes.set_xlabel("beam elevation\ndegrees, up positive")
+def ping_axis(axes):
     axes.set_ylabel("ping")
-    axes.margins(x=0.15)
     axes.yaxis.set_major_locator(style.ticker.MaxNLocator(12, integer=True, steps=[1, 2, 5, 10]))
+
+
+def draw_elevations(axes, elevation_deg, numbers):
+    axes.plot(elevation_deg, numbers, color=style.INK, marker="o", ms=4.5, lw=1.0)
+    axes.set_xlabel("beam elevation\ndegrees, up positive")
+    axes.margins(x=0.15)
+    ping_axis(axes)
     axes.grid(True)
 
 
@@ -79,7 +90,7 @@ def mark_true_echoes(axes, data, edges):
             time = echo.delay[echo.strongest]
             if edges[0] <= time <= edges[-1]:
                 number = data.numbers[row]
-                axes.plot([time, time], [number - 0.38, number + 0.38], color="white", lw=1.5,
-                          path_effects=style.OVER_MAP, zorder=4)
+                axes.plot([time, time], [number - 0.38, number + 0.38], lw=1.6, zorder=4,
+                          color=style.colour(echo.target), path_effects=style.OVER_MAP)
                 marked[echo.target] = echo.name
-    return list(marked.values())
+    return marked

@@ -1,0 +1,133 @@
+"""The record correlated with the transmitted pulse: a sweep's echoes become narrow peaks."""
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from . import signal, style
+from .pressure import extremes, mark_echoes
+
+TITLE = "Matched filter"
+COLUMNS = 1400
+
+
+def nothing_to_show(data, ping):
+    if data.pulse_kind not in ("lfm", "hfm", "file"):
+        return "a tone has nothing to compress"
+    if data.valid_samples[ping] < data.read("replica").size:
+        return "the record is shorter than the pulse"
+    return None
+
+
+def compress(envelopes, replica, axis=-1):
+    """Correlates envelopes with the replica's, both at one rate. → same shape as envelopes
+
+    y(τ) = Σ p(t + τ)·s*(t) / Σ |s(t)|²: an echo A·s(t − τ) has its peak |A| at its leading edge τ.
+    """
+    n = envelopes.shape[axis]
+    length = signal.fast_length(n + len(replica))
+    weight = np.conj(np.fft.fft(replica, length)) / np.sum(np.abs(replica) ** 2)
+    return np.fft.ifft(np.fft.fft(envelopes, length, axis=axis) * weight, axis=axis)[..., :n]
+
+
+def replica_envelope(data, b):
+    """The stored pulse, in the band and at the rate of `b`. → [sample]"""
+    replica = np.nan_to_num(data.read("replica").astype(float))
+    padded = np.zeros(int(round(b.duration * data.sample_rate)))
+    padded[: len(replica)] = replica[: len(padded)]
+    # as long as the record, so that rate and carrier are the same
+    r = signal.baseband([padded], data.sample_rate, data.centre_frequency, b.width,
+                        least=b.least).values[0]
+    return r[: int(np.ceil(len(replica) / data.sample_rate * b.rate)) + 1]
+
+
+def towards(b, phones, travel, speed):
+    """Beam towards the sound that travels along `travel`: exact delays. → envelope [1, sample]"""
+    x = phones - phones.mean(axis=0)
+    delay = x @ travel / speed                                           # [phone] [s]
+    length = signal.fast_length(b.values.shape[1]
+                                + int(np.ceil(signal.FILTER_LENGTH / b.width * b.rate)))
+    f = b.carrier + np.fft.fftfreq(length, 1.0 / b.rate)
+    total = sum(np.fft.fft(values, length) * np.exp(2j * np.pi * f * t)
+                for values, t in zip(b.values, delay))
+    return np.fft.ifft(total / len(phones))[None, : b.values.shape[1]]
+
+
+def filtered(data, ping, echo):
+    """What the picture shows. → times [s], mean over the phones [dB], beam towards `echo` [dB]/None
+
+    dB re 1 µPa of the matched echo's level before its window, as `level_db` in the file.
+    """
+    b = data.envelope(ping)
+    replica = replica_envelope(data, b)
+    mean = np.mean([0.5 * np.abs(compress(p, replica)) ** 2 for p in b.values], axis=0)
+    beam = None
+    phones = data.phones(ping)
+    if echo is not None and data.channels > 1 and np.all(np.isfinite(phones)):
+        heard = towards(b, phones, echo.direction[echo.strongest],
+                        data.sound_speed(float(phones[:, 2].mean())))
+        beam = signal.decibels(0.5 * np.abs(compress(heard, replica)[0]) ** 2)
+    return b.times, signal.decibels(mean), beam
+
+
+def peaks(time, db):
+    """The largest value of each of at most COLUMNS stretches: a narrow peak is never lost."""
+    _, most, starts = extremes(np.nan_to_num(db, nan=-300.0), COLUMNS)
+    return time[starts], most
+
+
+def draw(data, ping):
+    last = data.start + data.valid_samples[ping] / data.sample_rate
+    echoes = [e for e in data.echoes(ping) if data.start <= e.delay[e.strongest] <= last]
+    best = max(echoes, key=lambda e: e.level_db[e.strongest], default=None)
+    time, mean, beam = filtered(data, ping, best)
+    name = style.name(best.name) if best else ""
+    fig, axes = style.figure(TITLE, 6.4 if best else 4.4, nrows=2 if best else 1, squeeze=False)
+
+    whole = axes[0, 0]
+    lines = [(mean, style.GREY, "1 phone" if data.channels == 1 else "mean over the phones")]
+    if beam is not None:
+        lines.append((beam, style.INK, f"beam towards {name}"))
+    for db, colour, label in lines:
+        whole.plot(*peaks(time, db), color=colour, lw=0.9, label=label)
+    everything = np.concatenate([peaks(time, db)[1] for db, _, _ in lines])
+    heard = everything[everything > -300.0]
+    top = heard.max(initial=0.0) + 5.0
+    low = np.percentile(peaks(time, lines[-1][0])[1], 5) - 10.0 if heard.size else top - 60.0
+    whole.set_ylim(max(low, top - 80.0), top)
+    style.time_axis(whole, data.start, last)
+    style.subtitle(whole, f"{data.heading(ping)}  ·  {data.pulse_kind} pulse of "
+                   f"{data.pulse_duration:g} s, {data.bandwidth:.0f} Hz")
+    handles = whole.get_legend_handles_labels()[0] + mark_echoes(whole, echoes)
+    if best:
+        near = axes[1, 0]
+        span = zoom(data, best, last)
+        for db, colour, _ in lines:
+            shown = (time >= span[0]) & (time <= span[1])
+            near.plot(time[shown], db[shown], color=colour, lw=1.1)
+        near.set_ylim(whole.get_ylim())
+        for echo in echoes:
+            mine = (echo.delay >= span[0]) & (echo.delay <= span[1])
+            near.plot(echo.delay[mine], echo.level_db[mine], ls="none", marker="o", ms=8, mew=1.5,
+                      mfc="none", mec=style.colour(echo.target), zorder=5,
+                      path_effects=style.OVER_MAP)
+        handles.append(Line2D([], [], ls="none", marker="o", ms=8, mew=1.5, mfc="none",
+                              mec=style.colour(best.target), label="true time and level"))
+        style.time_axis(near, *span)
+        style.subtitle(near, f"near the strongest path: {name}, "
+                       f"{best.delay[best.strongest]:.3f} s")
+    for panel in axes[:, 0]:
+        panel.set_ylabel("level / dB re 1 µPa")
+        panel.grid(True)
+    style.legend_below(axes[-1, 0], handles, ncol=4, below=0.22 if best else 0.13)
+    return fig
+
+
+def zoom(data, echo, last):
+    """The strong paths around the strongest one, at most a few pulses away. → first, last [s]"""
+    middle = echo.delay[echo.strongest]
+    close = echo.delay[echo.strong(data.start, last)]
+    close = close[np.abs(close - middle) <= 2.0 * data.pulse_duration]
+    resolution = 1.0 / max(data.bandwidth, 1.0 / data.pulse_duration)
+    room = max(20.0 * resolution, 0.3 * np.ptp(close))
+    return max(close.min() - room, data.start), min(close.max() + room, last)
