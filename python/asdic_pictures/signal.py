@@ -89,7 +89,8 @@ def baseband(channels, sample_rate: float, carrier: float, width: float,
         kept[kept_bins - centre] = (band_filter(kept_bins * spacing - carrier, width)
                                     * spectrum[kept_bins] * 2.0 / padded * m)
         rate = m * sample_rate / padded
-        rows.append(np.fft.ifft(kept)[: min(int(np.ceil(n / sample_rate * rate)), m)])
+        samples = max(int(np.ceil(n / sample_rate * rate)), 4)   # windows need a few
+        rows.append(np.fft.ifft(kept)[: min(samples, m)])
     carrier_bin = centre * spacing
     envelope = np.array(rows) if rows else np.zeros((0, 0), complex)
     # rfft's phase counts from the first sample; the carrier's, from t = 0
