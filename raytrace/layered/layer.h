@@ -31,8 +31,8 @@ struct Layer {
 [[nodiscard]] std::vector<Layer> make_layers(const SoundSpeedProfile& water, double top,
                                              double bottom);
 
-/// The layers with a further cut at `depth`. No change where there is a cut within `same_depth`: a layer thinner than rounding has no gradient.
-/// \return the depth of the cut
+/// The layers with a further cut at `depth`. No change where there is a cut within `same_depth`: a
+/// layer thinner than rounding has no gradient. \return the depth of the cut
 double cut_at(std::vector<Layer>& layers, double depth);
 
 inline constexpr double same_depth = 1e-7;  ///< [m]
