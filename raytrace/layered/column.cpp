@@ -70,7 +70,8 @@ ColumnSums Column::sums(const RayParameter& ray) const noexcept {
   ColumnSums sums;
   const auto into = [&ray](Pass& total) {
     return [&ray, &total](const Layer& layer, double top, double bottom) {
-      total += cross(layer, ray, top, bottom);
+      total += layer.law == Layer::Law::c_linear ? cross_c_linear(layer, ray, top, bottom)
+                                                 : cross(layer, ray, top, bottom);
     };
   };
   const auto turned = [&ray](Pass& total) {

@@ -105,10 +105,7 @@ double turning_depth(const Layer& layer, const RayParameter& ray) noexcept {
 Pass cross(const Layer& layer, const RayParameter& ray, double sine_top,
            double sine_bottom) noexcept {
   const double xi = ray.slowness, h = layer.thickness();
-  if (layer.law == Layer::Law::c_linear) {
-    const double per_xi = (layer.c_top + layer.c_bottom) * h / (sine_top + sine_bottom);
-    return {.range = xi * per_xi, .d_range = per_xi / (sine_top * sine_bottom)};
-  }
+  if (layer.law == Layer::Law::c_linear) return cross_c_linear(layer, ray, sine_top, sine_bottom);
   if (layer.law == Layer::Law::n2_linear) {
     const double w_a = sine_top / layer.c_top, w_b = sine_bottom / layer.c_bottom;
     const double per_xi = 2.0 * h / (w_a + w_b);

@@ -30,6 +30,16 @@ struct PassDetail {
   }
 };
 
+/// The same for c linear in depth: Δr = ξ(c_a + c_b)h/(s_a + s_b), ∂r/∂ξ = Δr/(ξ s_a s_b), with one
+/// division.
+[[nodiscard]] inline Pass cross_c_linear(const Layer& layer, const RayParameter& ray,
+                                         double sine_top, double sine_bottom) noexcept {
+  const double product = sine_top * sine_bottom;
+  const double d_range =
+      (layer.c_top + layer.c_bottom) * layer.thickness() / ((sine_top + sine_bottom) * product);
+  return {.range = ray.slowness * d_range * product, .d_range = d_range};
+}
+
 /// From top to bottom (or back) through a layer that the ray crosses. \param sine_top, sine_bottom
 /// sin θ > 0 at its edges c-linear: Δr = ξ(c_a + c_b)h/(s_a + s_b); n²-linear: Δr = 2ξh/(w_a +
 /// w_b), w = s/c; smooth laws by quadrature. docs/theory/layered-rays.md

@@ -13,16 +13,17 @@ struct RayParameter {
   double reference_speed;  ///< c_ref [m/s]
   double sigma;            ///< σ, 0..1
   double slowness;         ///< ξ [s/m]
+  double per_c2;           ///< 1/c_ref² [s²/m²]
 
   RayParameter(double c_ref, double sine)
       : reference_speed(c_ref),
         sigma(sine),
-        slowness(std::sqrt((1.0 - sine) * (1.0 + sine)) / c_ref) {}
+        slowness(std::sqrt((1.0 - sine) * (1.0 + sine)) / c_ref),
+        per_c2(1.0 / (c_ref * c_ref)) {}
 
   /// sin²θ where the speed is c; negative where the ray does not come.
   [[nodiscard]] double sine2(double c) const noexcept {
-    return ((reference_speed - c) * (reference_speed + c) + sigma * sigma * c * c) /
-           (reference_speed * reference_speed);
+    return ((reference_speed - c) * (reference_speed + c) + sigma * sigma * c * c) * per_c2;
   }
   /// The speed at which the ray turns, 1/ξ [m/s].
   [[nodiscard]] double turning_speed() const noexcept { return 1.0 / slowness; }
