@@ -33,7 +33,9 @@ std::vector<double> elevations(const Options& options) {
       all.push_back(options.count == 1
                         ? options.from
                         : std::lerp(options.from, options.to, double(i) / (options.count - 1)));
-  for (const double elevation : all)
+  std::vector<double> given = all;
+  given.insert(given.end(), {options.from, options.to});  // std::lerp makes a number of NaN
+  for (const double elevation : given)
     if (!(std::abs(elevation) < 90.0))
       throw InputError({.where = "--elevations, --from, --to",
                         .got = fmt::format("{} degrees", elevation),
