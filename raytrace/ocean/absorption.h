@@ -24,9 +24,22 @@ struct FrancoisGarrison {
   double depth = 0.0;  ///< the one depth at which the law is evaluated [m]
 };
 
+/// Fish with swim bladders: between two depths they take a₀ / ((1 − f₀²/f²)² + 1/Q²) dB/km out of the
+/// wave. Weston, in Proc. Acoustic Interactions with the Underwater Environment (1967); Diachok, JASA
+/// 105, 2107 (1999).
+struct BiologicalLayer {
+  double top = 0.0, bottom = 0.0;  ///< [m]
+  double resonance = 1000.0;       ///< f₀ [Hz]
+  double quality = 5.0;            ///< Q
+  double strength = 0.0;           ///< a₀ [dB/km]
+};
+
 using Absorption = std::variant<NoAbsorption, Thorp, FrancoisGarrison>;
 
 /// Absorption at one frequency [dB/km]. \param frequency [Hz]
 [[nodiscard]] double absorption_db_per_km(const Absorption& absorption, double frequency) noexcept;
+
+/// What a layer adds inside its depths [dB/km].
+[[nodiscard]] double absorption_db_per_km(const BiologicalLayer& layer, double frequency) noexcept;
 
 }  // namespace asdic

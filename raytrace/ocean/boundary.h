@@ -2,6 +2,7 @@
 #include <complex>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace asdic {
 
@@ -23,7 +24,34 @@ struct FluidHalfSpace {
   double attenuation_db_per_wavelength = 0.8;  ///< [dB/λ]
 };
 
-using BoundaryMaterial = std::variant<Vacuum, Rigid, FluidHalfSpace>;
+/// An elastic solid: compressional and shear waves. Defaults: chalk.
+struct ElasticHalfSpace {
+  static constexpr std::string_view name = "elastic";
+  double speed = 2400.0;                             ///< compressional [m/s]
+  double shear_speed = 1000.0;                       ///< [m/s]
+  double density = 2200.0;                           ///< [kg/m³]
+  double attenuation_db_per_wavelength = 0.2;        ///< compressional [dB/λ]
+  double shear_attenuation_db_per_wavelength = 0.5;  ///< [dB/λ]
+};
+
+/// A measured or computed reflection coefficient over grazing angle: magnitude and phase linear
+/// between rows, none beyond the table.
+struct ReflectionTable {
+  static constexpr std::string_view name = "table";
+  std::vector<double> grazing;    ///< [n] increasing, 0..π/2 [rad]
+  std::vector<double> magnitude;  ///< [n] |R|
+  std::vector<double> phase;      ///< [n] [rad]
+};
+
+using BoundaryMaterial =
+    std::variant<Vacuum, Rigid, FluidHalfSpace, ElasticHalfSpace, ReflectionTable>;
+
+/// The fluid that a sediment of mean grain size Mz (φ units, −1 coarse sand … 9 clay) is, by the
+/// regressions of the APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook, APL-UW TR
+/// 9407 (1994), ch. IV. \param water_speed  that the sediment's speed ratio refers to [m/s]
+/// \throws InputError unless −1 ≤ Mz ≤ 9
+[[nodiscard]] FluidHalfSpace sediment_of_grain_size(double grain_size_phi, double water_speed = 1500.0,
+                                                    double water_density = 1000.0);
 
 /// The water beside a boundary.
 struct WaterAtBoundary {

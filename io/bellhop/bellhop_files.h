@@ -1,0 +1,70 @@
+#pragma once
+#include <complex>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// The files that BELLHOP writes, as plain data. Layouts: docs/formats/bellhop.md. In these structs
+/// as in the files: metres, seconds, Hz, degrees, angles positive down (declination).
+namespace asdic::bellhop {
+
+/// Which numbers of a header are float64: Fortran BELLHOP writes float32, the toolbox since 2024 and
+/// its C++ port float64.
+enum class Dialect { fortran, wide };
+
+/// A pressure field, `.shd`.
+struct ShadeFile {
+  std::string title;
+  bool irregular = false;
+  double frequency = 0.0;
+  std::vector<double> source_depths, receiver_depths, receiver_ranges;  ///< [m]
+  std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges]; rows: 1 if irregular
+  Dialect dialect = Dialect::fortran;
+  [[nodiscard]] std::size_t rows() const noexcept { return irregular ? 1 : receiver_depths.size(); }
+};
+
+/// One row of an arrivals file.
+struct ArrivalRow {
+  double amplitude = 0.0;      ///< without absorption
+  double phase_deg = 0.0;
+  double delay = 0.0;          ///< [s]
+  double delay_imaginary = 0.0;  ///< ≤ 0; amplitude × exp(2πf·delay_imaginary) has the absorption
+  double launch_angle_deg = 0.0, arrival_angle_deg = 0.0;
+  int surface_bounces = 0, bottom_bounces = 0;
+};
+
+/// Arrivals, `.arr`, ASCII or binary.
+struct ArrivalsFile {
+  bool binary = false;
+  double frequency = 0.0;
+  std::vector<double> source_depths, receiver_depths, receiver_ranges;  ///< [m]
+  bool irregular = false;
+  std::vector<std::vector<ArrivalRow>> arrivals;  ///< [sources × rows × ranges], range fastest
+  Dialect dialect = Dialect::fortran;
+};
+
+/// Rays or eigenrays, `.ray`.
+struct RayFile {
+  struct Ray {
+    double launch_angle_deg = 0.0;
+    int surface_bounces = 0, bottom_bounces = 0;
+    std::vector<double> range, depth;  ///< [n] [m]
+  };
+  std::string title;
+  double frequency = 0.0;
+  int sources_x = 1, sources_y = 1, sources_z = 1, angles = 0;
+  double surface_depth = 0.0, bottom_depth = 0.0;  ///< [m]
+  std::vector<Ray> rays;
+};
+
+/// Readers. \throws InputError that says file, line or byte, found and expected
+[[nodiscard]] ShadeFile read_shade_file(const std::filesystem::path& path);
+[[nodiscard]] ArrivalsFile read_arrivals_file(const std::filesystem::path& path);
+[[nodiscard]] RayFile read_ray_file(const std::filesystem::path& path);
+
+/// Writers: under a temporary name first, so that a file is never half-written.
+void write_shade_file(const std::filesystem::path& path, const ShadeFile& file);
+void write_arrivals_file(const std::filesystem::path& path, const ArrivalsFile& file);
+void write_ray_file(const std::filesystem::path& path, const RayFile& file);
+
+}  // namespace asdic::bellhop
