@@ -27,7 +27,7 @@ std::string decimal_read_as(double wanted, double guess, Read read) {
     double written = 0.0;
     std::from_chars(digits, end, written);
     const double error = std::abs(read(written) - wanted);
-    if (error < miss || error == 0.0) nearest = std::string(digits, end);
+    if (error < miss || error == 0.0) nearest = decimal(written);
     miss = std::min(miss, error);
     return error == 0.0;
   };
