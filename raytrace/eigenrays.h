@@ -6,10 +6,11 @@
 #include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
-#include "raytrace/tracing/ray_tracer.h"
 #include "raytrace/tracing/receiver_columns.h"
 
 namespace asdic {
+
+class RayTracer;
 
 /// Finds every eigenray of an ocean, by whichever of two solvers applies. Built once per
 /// environment; then const and shared by threads.

@@ -24,11 +24,23 @@ constexpr double same_root = 1e-9;
 constexpr int first_intervals = 256;
 constexpr int deepest_split = 60;
 
-/// Tracing goes on behind the last column until the next boundary is met, mostly.
+/// Tracing goes on behind the last column until the next boundary is met, mostly; and as far as
+/// there are slopes that can send a ray back.
 double beyond_last_column(const Environment& ocean, double last) {
   const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
   const double top = ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
-  return last + 2.0 * (bottom - top);
+  double end = last + 2.0 * (bottom - top);
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
+    if (boundary->shape) end = std::max(end, boundary->shape->ranges().back());
+  return end;
+}
+
+/// And before the first.
+double before_first_column(const Environment& ocean, double first) {
+  double end = first;
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
+    if (boundary->shape) end = std::min(end, boundary->shape->ranges().front());
+  return end - 1.0;
 }
 
 /// Launch angles of the first rays: three times denser about the horizontal, where rays are bent
@@ -71,7 +83,14 @@ class FanSearch {
                      .max_surface_bounces = limits.max_surface_bounces,
                      .max_bottom_bounces = limits.max_bottom_bounces,
                      .faintest = limits.faintest};
-    trace_limits_.max_range = beyond_last_column(tracer.environment(), columns.back().range);
+    const Environment& ocean = tracer.environment();
+    trace_limits_.max_range =
+        std::min(limits.max_range, beyond_last_column(ocean, columns.back().range));
+    // Receivers at the edge of the box are in it.
+    trace_limits_.max_range = std::max(trace_limits_.max_range, columns.back().range + 1.0);
+    trace_limits_.min_range =
+        std::max(limits.min_range,
+                 before_first_column(ocean, std::min(source_range, columns.front().range)));
   }
 
   std::vector<Hit> run() const {

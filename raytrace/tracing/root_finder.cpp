@@ -20,14 +20,23 @@ constexpr double close_to_caustic = 0.25;
 /// How much further than the column a ray is traced, to know the boundary behind it [m].
 constexpr double beyond_column = 20.0;
 
+/// How far apart two rays begin the same leg [m].
+double spread_of(const RayLeg& a, const RayLeg& b) {
+  return std::abs(a.begin.range - b.begin.range);
+}
+
 }  // namespace
 
 void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const Found& found) {
   found_ = &found;
   max_turns_ = max_turns;
+  farthest_ = source_range_;
   const std::size_t legs = std::min(a.legs.size(), b.legs.size());
   for (std::size_t i = 0; i < legs && a.legs[i].history == b.legs[i].history; ++i) {
     const auto [first, last] = columns_of(a.legs[i], b.legs[i]);
+    for (const RayLeg* leg : {&a.legs[i], &b.legs[i]})
+      farthest_ =
+          std::max({farthest_, leg->begin.range, std::min(leg->begin.range, leg->end.range)});
     for (std::uint32_t k = first; k < last; ++k) search_column(a, b, i, k);
   }
 }
@@ -38,6 +47,8 @@ void RootFinder::search_column(const FanRay& a, const FanRay& b, std::size_t leg
   const auto zb = b.crossing_or_continued(b.legs[leg], k, column_->range);
   if (!za || !zb || std::min(za->turns, zb->turns) > max_turns_) return;
   leg_ = leg;
+  reach_ =
+      std::max(farthest_ + spread_of(a.legs[leg], b.legs[leg]), column_->range) + beyond_column;
   history_ = a.legs[leg].history;
   cosine_ = std::min(za->cosine, zb->cosine);
   const HermiteNode na{a.angle, za->depth, za->slope}, nb{b.angle, zb->depth, zb->slope};
@@ -76,7 +87,7 @@ void RootFinder::search_stretch(const HermiteNode& a, const HermiteNode& b, cons
 
 std::optional<ExactCrossing> RootFinder::exact(double angle) {
   TraceLimits limits = limits_;
-  limits.max_range = std::min(limits.max_range, column_->range + beyond_column);
+  limits.max_range = std::min(limits.max_range, reach_);
   tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
   return cross_column(ray_, tracer_.environment(), leg_, history_, column_->range);
 }

@@ -44,6 +44,8 @@ class RootFinder {
   std::size_t leg_ = 0;
   std::uint64_t history_ = 0;
   double cosine_ = 1.0;
+  double farthest_ = 0.0;  // where legs up to this one began at most [m]
+  double reach_ = 0.0;     // how far rays have to be traced [m]
   int max_turns_ = 0;
 };
 
