@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "io/scenario_reader.h"
+#include "io/text/material_text.h"
 #include "sonar/geometry.h"
 #include "sonar/ping.h"
 
@@ -33,13 +34,6 @@ std::pair<double, double> speeds(const Environment& ocean) {
   return {low, high};
 }
 
-std::string material(const BoundaryMaterial& boundary) {
-  if (const auto* fluid = std::get_if<FluidHalfSpace>(&boundary))
-    return fmt::format("fluid, {:g} m/s, {:g} kg/m3, {:g} dB per wavelength", fluid->speed,
-                       fluid->density, fluid->attenuation_db_per_wavelength);
-  return std::string(std::visit([](const auto& m) { return m.name; }, boundary));
-}
-
 std::string environment_text(const PingSimulator& simulator) {
   const Environment& ocean = simulator.scenario().environment;
   const auto [low, high] = speeds(ocean);
@@ -48,9 +42,9 @@ std::string environment_text(const PingSimulator& simulator) {
       "water      {:g} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
       ocean.bottom.depth - ocean.surface.depth, low, high,
       absorption_db_per_km(ocean.absorption, f), f);
-  text += fmt::format("surface    {}, wind {:g} m/s\n", material(ocean.surface.material),
+  text += fmt::format("surface    {}, wind {:g} m/s\n", material_text(ocean.surface.material),
                       simulator.scenario().wind_speed);
-  text += fmt::format("bottom     {}\n", material(ocean.bottom.material));
+  text += fmt::format("bottom     {}\n", material_text(ocean.bottom.material));
   return text;
 }
 

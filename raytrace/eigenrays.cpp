@@ -83,7 +83,10 @@ Arrival horizontal_ray(const Environment& ocean, double depth, double range, dou
   path.delay = range / water.c;
   path.path_length = range;
   path.horizontal_slowness = 1.0 / water.c;
-  path.absorption_db = 1e-3 * absorption_db_per_km(ocean.absorption, frequency) * range;
+  path.absorption_db =
+      1e-3 *
+      (absorption_db_per_km(ocean.absorption, frequency) + ocean.attenuation_db_per_km.at(0.0)) *
+      range;
   path.amplitude =
       path.spreading * amplitude_from_db(-path.absorption_db) * caustic_phase(path.caustics);
   return path;

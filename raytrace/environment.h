@@ -13,7 +13,8 @@ namespace asdic {
 
 /// A boundary of the water: where it is and what is behind it.
 struct Boundary {
-  double depth = 0.0;  ///< of a flat boundary [m], positive down; with a shape: its depth at range 0
+  double depth =
+      0.0;  ///< of a flat boundary [m], positive down; with a shape: its depth at range 0
   BoundaryMaterial material = Vacuum{};
   std::optional<BoundaryShape> shape;  ///< where the boundary is not flat
 
@@ -24,9 +25,10 @@ struct Boundary {
   [[nodiscard]] const BoundaryMaterial& material_at(double range) const noexcept;
 };
 
-/// The vertical plane that sound crosses, as sound sees it: speed, boundaries and losses as functions
-/// of range and depth. Immutable while anything is traced through it. Range 0 is where the transect
-/// begins (the source, unless a run says otherwise); ranges below zero are the water behind it.
+/// The vertical plane that sound crosses, as sound sees it: speed, boundaries and losses as
+/// functions of range and depth. Immutable while anything is traced through it. Range 0 is where
+/// the transect begins (the source, unless a run says otherwise); ranges below zero are the water
+/// behind it.
 struct Environment {
   SoundSpeedProfile water = SoundSpeedProfile::isovelocity(1500.0);
   std::optional<SoundSpeedSection> section;  ///< range-dependent water: rules instead of `water`,
@@ -34,19 +36,20 @@ struct Environment {
   DepthFunction water_density = 1027.0;      ///< [kg/m³]
   Boundary surface = {.depth = 0.0, .material = Vacuum{}};
   Boundary bottom = {.depth = 5000.0, .material = Rigid{}};
-  Absorption absorption = NoAbsorption{};   ///< a law of frequency, the same at every depth
-  std::vector<BiologicalLayer> biology;     ///< resonant absorption of layers of fish, added to it
+  Absorption absorption = NoAbsorption{};  ///< a law of frequency, the same at every depth
+  std::vector<BiologicalLayer> biology;    ///< resonant absorption of layers of fish, added to it
   DepthFunction attenuation_db_per_km = 0.0;  ///< added to both: at the one frequency of interest
 };
 
 /// Speed and its derivatives anywhere.
-[[nodiscard]] SoundSpeed2D sound_speed(const Environment& environment, double range, double depth) noexcept;
+[[nodiscard]] SoundSpeed2D sound_speed(const Environment& environment, double range,
+                                       double depth) noexcept;
 
 /// All that the water takes out of a wave: absorption, biology and attenuation [Np/m] over depth.
 [[nodiscard]] DepthFunction attenuation_np_per_m(const Environment& environment, double frequency);
 
-/// Whether the layered solver applies: speed a function of depth, flat boundaries, losses the same at
-/// every depth. Otherwise rays are marched.
+/// Whether the layered solver applies: speed a function of depth, flat boundaries, losses the same
+/// at every depth. Otherwise rays are marched.
 [[nodiscard]] bool is_layered(const Environment& environment) noexcept;
 
 }  // namespace asdic

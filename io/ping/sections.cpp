@@ -6,19 +6,12 @@
 #include <numeric>
 
 #include "io/ping/growing_table.h"
+#include "io/text/material_text.h"
 #include "io/text/toml_value.h"
 #include "sonar/transmitter.h"
 
 namespace asdic::ping_file {
 namespace {
-
-std::string text_of(const BoundaryMaterial& material) {
-  std::string text(std::visit([](const auto& m) { return m.name; }, material));
-  if (const auto* fluid = std::get_if<FluidHalfSpace>(&material))
-    text += ", " + to_text(fluid->speed) + " m/s, " + to_text(fluid->density) + " kg/m3, " +
-            to_text(fluid->attenuation_db_per_wavelength) + " dB per wavelength";
-  return text;
-}
 
 std::string text_of(const Absorption& absorption) {
   std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
@@ -125,8 +118,8 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
   file.attach_scales("environment/sound_speed", {"environment/depth"});
 
   const std::string group = "environment";
-  file.set_attribute(group, "surface", text_of(ocean.surface.material));
-  file.set_attribute(group, "bottom", text_of(ocean.bottom.material));
+  file.set_attribute(group, "surface", material_text(ocean.surface.material));
+  file.set_attribute(group, "bottom", material_text(ocean.bottom.material));
   file.set_attribute(group, "bottom_depth_m", ocean.bottom.depth);
   file.set_attribute(group, "wind_speed_mps", scenario.wind_speed);
   file.set_attribute(group, "absorption", text_of(ocean.absorption));

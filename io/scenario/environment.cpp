@@ -74,7 +74,7 @@ void read_environment(TomlTable table, const std::filesystem::path& folder, Scen
                    scenario.wind_speed);
   ocean.water_density = table.number(
       "water_density", {.noun = "density", .unit = "kg/m3", .low = 500.0, .high = 2000.0},
-      ocean.water_density);
+      ocean.water_density.at(0.0));
 
   TomlTable bottom = table.table("bottom");
   ocean.bottom.depth = read_bottom_depth(bottom, scenario);

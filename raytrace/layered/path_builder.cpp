@@ -23,7 +23,8 @@ double grazing_at(const RayParameter& ray, double speed) {
 PathBuilder::PathBuilder(const Environment& environment, const Column& column, double frequency)
     : environment_(environment),
       column_(column),
-      absorption_db_per_metre_(1e-3 * absorption_db_per_km(environment.absorption, frequency)) {}
+      absorption_db_per_metre_(1e-3 * (absorption_db_per_km(environment.absorption, frequency) +
+                                       environment.attenuation_db_per_km.at(0.0))) {}
 
 double PathBuilder::sine_at_source(const RayParameter& ray) const noexcept {
   return std::sqrt(std::max(ray.sine2(column_.source_speed()), 1e-300));
@@ -46,17 +47,19 @@ std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surfa
   std::complex<double> product = 1.0;
   if (surface_bounces > 0) {
     const double c = column_.surface_speed();
-    product *=
-        integer_power(reflection_coefficient(environment_.surface.material, grazing_at(ray, c),
-                                             {.speed = c, .density = environment_.water_density}),
-                      surface_bounces);
+    product *= integer_power(
+        reflection_coefficient(
+            environment_.surface.material, grazing_at(ray, c),
+            {.speed = c, .density = environment_.water_density.at(environment_.surface.depth)}),
+        surface_bounces);
   }
   if (bottom_bounces > 0) {
     const double c = column_.bottom_speed();
-    product *=
-        integer_power(reflection_coefficient(environment_.bottom.material, grazing_at(ray, c),
-                                             {.speed = c, .density = environment_.water_density}),
-                      bottom_bounces);
+    product *= integer_power(
+        reflection_coefficient(
+            environment_.bottom.material, grazing_at(ray, c),
+            {.speed = c, .density = environment_.water_density.at(environment_.bottom.depth)}),
+        bottom_bounces);
   }
   return product;
 }

@@ -49,4 +49,11 @@ double absorption_db_per_km(const Absorption& absorption, double frequency) noex
   return std::visit([&](const auto& model) { return law(model, std::abs(frequency)); }, absorption);
 }
 
+double absorption_db_per_km(const BiologicalLayer& layer, double frequency) noexcept {
+  if (frequency == 0.0) return 0.0;
+  const double ratio = layer.resonance / frequency;
+  const double detuning = 1.0 - ratio * ratio;
+  return layer.strength / (detuning * detuning + 1.0 / (layer.quality * layer.quality));
+}
+
 }  // namespace asdic

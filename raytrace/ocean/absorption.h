@@ -24,9 +24,9 @@ struct FrancoisGarrison {
   double depth = 0.0;  ///< the one depth at which the law is evaluated [m]
 };
 
-/// Fish with swim bladders: between two depths they take a₀ / ((1 − f₀²/f²)² + 1/Q²) dB/km out of the
-/// wave. Weston, in Proc. Acoustic Interactions with the Underwater Environment (1967); Diachok, JASA
-/// 105, 2107 (1999).
+/// Fish with swim bladders: between two depths they take a₀ / ((1 − f₀²/f²)² + 1/Q²) dB/km out of
+/// the wave. Weston, in Proc. Acoustic Interactions with the Underwater Environment (1967);
+/// Diachok, JASA 105, 2107 (1999).
 struct BiologicalLayer {
   double top = 0.0, bottom = 0.0;  ///< [m]
   double resonance = 1000.0;       ///< f₀ [Hz]

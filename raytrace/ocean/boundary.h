@@ -50,7 +50,8 @@ using BoundaryMaterial =
 /// regressions of the APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook, APL-UW TR
 /// 9407 (1994), ch. IV. \param water_speed  that the sediment's speed ratio refers to [m/s]
 /// \throws InputError unless −1 ≤ Mz ≤ 9
-[[nodiscard]] FluidHalfSpace sediment_of_grain_size(double grain_size_phi, double water_speed = 1500.0,
+[[nodiscard]] FluidHalfSpace sediment_of_grain_size(double grain_size_phi,
+                                                    double water_speed = 1500.0,
                                                     double water_density = 1000.0);
 
 /// The water beside a boundary.
@@ -64,8 +65,13 @@ struct WaterAtBoundary {
 ///   R = (m·sin θ − s)/(m·sin θ + s),  m = ρ₂/ρ₁,  n = (c₁/c₂)(1 − iα/54.575),
 ///   s = √(n² − cos²θ), Im s ≤ 0 (decaying away from the boundary)
 ///
-/// α in dB per wavelength, 54.575 = 40π·log₁₀e. Never above 1 in magnitude. Jensen et al.,
-/// Computational Ocean Acoustics (2011), §1.6; docs/theory/boundaries.md. \param grazing  angle
+/// α in dB per wavelength, 54.575 = 40π·log₁₀e. Over a solid m·sin θ is multiplied by
+///
+///   G = (1 − 2cos²θ/n_s²)² + 4cos²θ·s·s_s/n_s⁴,
+///
+/// n_s and s_s those of its shear wave. Never above 1 in magnitude, provided that the solid itself
+/// gives no energy: α_p·c_p² ≥ (4/3)·α_s·c_s². Jensen et al., Computational Ocean Acoustics (2011),
+/// §1.6; docs/theory/boundaries.md. \param grazing  angle
 /// between ray and boundary [rad], 0..π/2
 [[nodiscard]] std::complex<double> reflection_coefficient(const BoundaryMaterial& material,
                                                           double grazing,

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/units.h"
 #include "raytrace/ocean/boundary.h"
 
 namespace asdic {
@@ -11,8 +12,8 @@ namespace asdic {
 /// How a boundary runs between its nodes.
 enum class ShapeInterpolation {
   piecewise_linear,  ///< straight facets: the tangent jumps at a node
-  smooth,       ///< a cubic through the nodes with continuous slope (mean of the neighbouring facets'
-                ///< slopes at a node): position, tangent and curvature are those of one curve
+  smooth,  ///< a cubic through the nodes with continuous slope (mean of the neighbouring facets'
+           ///< slopes at a node): position, tangent and curvature are those of one curve
   curvilinear,  ///< BELLHOP's: straight facets for the position; tangent and normal turn linearly
                 ///< from node to node, and a curvature goes with them
 };
@@ -32,7 +33,8 @@ struct BoundaryPoint {
 class BoundaryShape {
  public:
   /// \param range  [n] strictly increasing, n ≥ 1   \param depth  [n]
-  /// \param material  empty, or [n]: what lies behind the facet from node i to node i + 1 (the last:
+  /// \param material  empty, or [n]: what lies behind the facet from node i to node i + 1 (the
+  /// last:
   ///                  beyond the last node; before the first node: material[0])
   /// \throws InputError naming the first value at fault ("range[3]", "depth[0]", "material")
   BoundaryShape(std::span<const double> range, std::span<const double> depth,
@@ -55,7 +57,9 @@ class BoundaryShape {
   [[nodiscard]] double depth_at(double range, std::size_t facet) const noexcept;
   /// Depth, reflecting tangent and curvature by the law of one facet.
   [[nodiscard]] BoundaryPoint at(double range, std::size_t facet) const noexcept;
-  [[nodiscard]] double depth_at(double range) const noexcept { return depth_at(range, facet(range)); }
+  [[nodiscard]] double depth_at(double range) const noexcept {
+    return depth_at(range, facet(range));
+  }
   [[nodiscard]] BoundaryPoint at(double range) const noexcept { return at(range, facet(range)); }
 
   [[nodiscard]] double shallowest() const noexcept;  ///< least depth reached anywhere [m]
@@ -63,7 +67,8 @@ class BoundaryShape {
 
  private:
   std::vector<double> range_, depth_;       // [n]
-  std::vector<double> slope_;               // [n] at the nodes (smooth, curvilinear)
+  std::vector<double> slope_;               // [n] at the nodes (smooth)
+  std::vector<Vec2> tangent_;               // [n] at the nodes, about unit length (curvilinear)
   std::vector<double> curvature_;           // [n + 1] per facet (curvilinear)
   std::vector<BoundaryMaterial> material_;  // [n] or empty
   ShapeInterpolation interpolation_;

@@ -21,8 +21,8 @@ enum class Interpolation {
   n2_linear,  ///< 1/c² linear in depth: rays are parabolas
   spline,     ///< cubic spline, not-a-knot at both ends: c, dc/dz and d²c/dz² continuous
   pchip,      ///< monotone cubic Hermite, Fritsch & Butland: no overshoot, c and dc/dz continuous
-  pchip_spline_slopes,  ///< monotone cubic Hermite whose slopes are a clamped spline's, limited: the
-                        ///< "PCHIP" of BELLHOP's input files (docs/theory/sound-speed.md)
+  pchip_spline_slopes,  ///< monotone cubic Hermite whose slopes are a clamped spline's, limited:
+                        ///< the "PCHIP" of BELLHOP's input files (docs/theory/sound-speed.md)
 };
 
 [[nodiscard]] std::string_view name(Interpolation interpolation) noexcept;

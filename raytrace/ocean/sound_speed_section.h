@@ -17,14 +17,15 @@ struct SoundSpeed2D {
 
 /// Range-dependent water: the speed on a grid of ranges and depths, bilinear in every cell, so that
 /// c is continuous and its gradient jumps across grid lines. Beyond the first and last range the
-/// outer profile goes on unchanged; above and below the grid the first and last depth interval go on.
-/// A cell index names the law, whether the point lies inside the cell or not, so that the gradient on
-/// either side of a grid line can be had.
+/// outer profile goes on unchanged; above and below the grid the first and last depth interval go
+/// on. A cell index names the law, whether the point lies inside the cell or not, so that the
+/// gradient on either side of a grid line can be had.
 class SoundSpeedSection {
  public:
-  /// \param range  [m] strictly increasing, m ≥ 1 [m]   \param depth  [n] strictly increasing, n ≥ 2 [m]
-  /// \param speed  [m × n] row by row: speed[i·n + j] at range i, depth j [m/s], each above zero
-  /// \throws InputError naming the first number at fault ("range[3]", "depth[1]", "speed[2][7]")
+  /// \param range  [m] strictly increasing, m ≥ 1 [m]   \param depth  [n] strictly increasing, n ≥
+  /// 2 [m] \param speed  [m × n] row by row: speed[i·n + j] at range i, depth j [m/s], each above
+  /// zero \throws InputError naming the first number at fault ("range[3]", "depth[1]",
+  /// "speed[2][7]")
   SoundSpeedSection(std::span<const double> range, std::span<const double> depth,
                     std::span<const double> speed);
 

@@ -1,0 +1,201 @@
+#include "raytrace/ocean/boundary_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/error.h"
+#include "raytrace/ocean/number_text.h"
+
+namespace asdic {
+namespace {
+
+void check_nodes(std::span<const double> range, std::span<const double> depth,
+                 std::size_t materials) {
+  const auto n = std::to_string(range.size());
+  if (range.empty())
+    throw InputError({.where = "range", .got = "no nodes", .expected = "at least one"});
+  if (depth.size() != range.size())
+    throw InputError({.where = "depth",
+                      .got = std::to_string(depth.size()) + " values",
+                      .expected = "as many as ranges: " + n});
+  if (materials != 0 && materials != range.size())
+    throw InputError({.where = "material",
+                      .got = std::to_string(materials) + " materials",
+                      .expected = "none, or as many as ranges: " + n});
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    if (!std::isfinite(range[i]))
+      throw InputError({.where = element("range", i),
+                        .got = with_unit(range[i], "m"),
+                        .expected = "a finite range"});
+    if (i > 0 && range[i] <= range[i - 1])
+      throw InputError(
+          {.where = element("range", i),
+           .got = with_unit(range[i], "m"),
+           .expected = "a range beyond the one before, " + with_unit(range[i - 1], "m")});
+    if (!std::isfinite(depth[i]))
+      throw InputError({.where = element("depth", i),
+                        .got = with_unit(depth[i], "m"),
+                        .expected = "a finite depth"});
+  }
+}
+
+/// The cubic of a smooth facet in t = (r − r_a)/h: depth = z_a + t(m_a·h + t(b + t·d)).
+struct Cubic {
+  double z, m, b, d, h;
+
+  Cubic(double width, double z_a, double z_b, double slope_a, double slope_b)
+      : z(z_a),
+        m(slope_a * width),
+        b(3.0 * (z_b - z_a) - (2.0 * slope_a + slope_b) * width),
+        d((slope_a + slope_b) * width - 2.0 * (z_b - z_a)),
+        h(width) {}
+
+  [[nodiscard]] double depth(double t) const noexcept { return z + t * (m + t * (b + t * d)); }
+  [[nodiscard]] double slope(double t) const noexcept {
+    return (m + t * (2.0 * b + t * 3.0 * d)) / h;
+  }
+  [[nodiscard]] double second(double t) const noexcept { return (2.0 * b + 6.0 * d * t) / (h * h); }
+};
+
+/// dφ/ds of a curve with these derivatives: z″·cos³φ.
+double curvature_of(double slope, double second) noexcept {
+  const double stretch = 1.0 + slope * slope;
+  return second / (stretch * std::sqrt(stretch));
+}
+
+/// Depths at which a cubic turns inside its facet; the ends again where it does not.
+std::array<double, 2> turns(const Cubic& cubic) noexcept {
+  const double a = 3.0 * cubic.d, b = 2.0 * cubic.b, c = cubic.m;  // a·t² + b·t + c = 0
+  const double discriminant = b * b - 4.0 * a * c;
+  std::array<double, 2> found = {cubic.depth(0.0), cubic.depth(1.0)};
+  if (discriminant < 0.0) return found;
+  const double w = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+  const double first = a != 0.0 ? w / a : 0.0, second = w != 0.0 ? c / w : 0.0;
+  if (first > 0.0 && first < 1.0) found[0] = cubic.depth(first);
+  if (second > 0.0 && second < 1.0) found[1] = cubic.depth(second);
+  return found;
+}
+
+}  // namespace
+
+std::string_view name(ShapeInterpolation interpolation) noexcept {
+  switch (interpolation) {
+    case ShapeInterpolation::piecewise_linear:
+      return "piecewise-linear";
+    case ShapeInterpolation::smooth:
+      return "smooth";
+    case ShapeInterpolation::curvilinear:
+      return "curvilinear";
+  }
+  return "";
+}
+
+BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const double> depth,
+                             ShapeInterpolation interpolation,
+                             std::vector<BoundaryMaterial> material)
+    : range_(range.begin(), range.end()),
+      depth_(depth.begin(), depth.end()),
+      material_(std::move(material)),
+      interpolation_(interpolation) {
+  check_nodes(range, depth, material_.size());
+  const std::size_t n = range_.size();
+
+  // The facets, as unit vectors; node tangents are the mean of both sides'. The first and the last
+  // node are flat, as the boundary goes on beyond them.
+  std::vector<Vec2> facet_tangent;
+  for (std::size_t i = 1; i < n; ++i) {
+    const Vec2 along(range_[i] - range_[i - 1], depth_[i] - depth_[i - 1]);
+    facet_tangent.push_back(along.normalized());
+  }
+  slope_.assign(n, 0.0);
+  tangent_.assign(n, Vec2(1.0, 0.0));
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const Vec2 &before = facet_tangent[i - 1], &after = facet_tangent[i];
+    tangent_[i] = 0.5 * (before + after);
+    slope_[i] = 0.5 * (before.y() / before.x() + after.y() / after.x());
+  }
+  // Curvilinear: κ of a facet = (change of the node tangents' slope)/(its horizontal length)·cos³.
+  curvature_.assign(n + 1, 0.0);
+  for (std::size_t i = 1; i < n; ++i) {
+    const Vec2 &a = tangent_[i - 1], &b = tangent_[i];
+    const double cosine = facet_tangent[i - 1].x();
+    curvature_[i] =
+        (b.y() / b.x() - a.y() / a.x()) / (range_[i] - range_[i - 1]) * cosine * cosine * cosine;
+  }
+}
+
+std::size_t BoundaryShape::facet(double range) const noexcept {
+  return static_cast<std::size_t>(std::upper_bound(range_.begin(), range_.end(), range) -
+                                  range_.begin());
+}
+
+double BoundaryShape::facet_begin(std::size_t facet) const noexcept {
+  return facet == 0 ? -infinity : range_[facet - 1];
+}
+
+double BoundaryShape::facet_end(std::size_t facet) const noexcept {
+  return facet >= range_.size() ? infinity : range_[facet];
+}
+
+double BoundaryShape::depth_at(double range, std::size_t facet) const noexcept {
+  if (facet == 0) return depth_.front();
+  if (facet >= range_.size()) return depth_.back();
+  const double begin = range_[facet - 1], end = range_[facet], width = end - begin;
+  const double above = depth_[facet - 1], below = depth_[facet];
+  if (interpolation_ == ShapeInterpolation::smooth)
+    return Cubic(width, above, below, slope_[facet - 1], slope_[facet])
+        .depth((range - begin) / width);
+  // Measured from the nearer node, so that it is met exactly from both sides.
+  const double slope = (below - above) / width;
+  return range - begin < end - range ? above + slope * (range - begin)
+                                     : below + slope * (range - end);
+}
+
+BoundaryPoint BoundaryShape::at(double range, std::size_t facet) const noexcept {
+  if (facet == 0 || facet >= range_.size()) return {.depth = depth_at(range, facet)};
+  const double width = range_[facet] - range_[facet - 1];
+  const double share = (range - range_[facet - 1]) / width;
+  switch (interpolation_) {
+    case ShapeInterpolation::smooth: {
+      const Cubic cubic(width, depth_[facet - 1], depth_[facet], slope_[facet - 1], slope_[facet]);
+      const double slope = cubic.slope(share);
+      return {.depth = cubic.depth(share),
+              .slope = slope,
+              .curvature = curvature_of(slope, cubic.second(share))};
+    }
+    case ShapeInterpolation::curvilinear: {
+      const Vec2 tangent = (1.0 - share) * tangent_[facet - 1] + share * tangent_[facet];
+      return {.depth = depth_at(range, facet),
+              .slope = tangent.y() / tangent.x(),
+              .curvature = curvature_[facet]};
+    }
+    case ShapeInterpolation::piecewise_linear:
+      break;
+  }
+  return {.depth = depth_at(range, facet), .slope = (depth_[facet] - depth_[facet - 1]) / width};
+}
+
+double BoundaryShape::shallowest() const noexcept {
+  double least = *std::min_element(depth_.begin(), depth_.end());
+  if (interpolation_ == ShapeInterpolation::smooth)
+    for (std::size_t i = 1; i < range_.size(); ++i)
+      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
+                                            slope_[i - 1], slope_[i])))
+        least = std::min(least, depth);
+  return least;
+}
+
+double BoundaryShape::deepest() const noexcept {
+  double most = *std::max_element(depth_.begin(), depth_.end());
+  if (interpolation_ == ShapeInterpolation::smooth)
+    for (std::size_t i = 1; i < range_.size(); ++i)
+      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
+                                            slope_[i - 1], slope_[i])))
+        most = std::max(most, depth);
+  return most;
+}
+
+}  // namespace asdic
