@@ -13,6 +13,7 @@ struct Beam {
   double source_speed = 0.0;   ///< c₀ [m/s]
   double spacing = 0.0;        ///< dα, mean spacing of the fan [rad]
   double step = 0.0;           ///< STEP [m]
+  double surface_depth = 0.0, bottom_depth = 0.0;  ///< over which images are mirrored [m]
   SourceKind source = SourceKind::point;
 
   [[nodiscard]] double omega() const noexcept { return 2.0 * pi * frequency; }
@@ -51,6 +52,8 @@ class BeamSink {
  public:
   virtual ~BeamSink() = default;
   virtual void take(const Contribution& c) = 0;
+  /// Of a beam that is no ray tube: a pressure, spreading by range left out.
+  virtual void take_pressure(std::size_t row, std::size_t column, std::complex<double> p) = 0;
 };
 
 /// The phase that caustics have added up to the beginning of a segment, and what a receiver gets.
@@ -81,6 +84,10 @@ void lay_cartesian_gaussian(const Beam& beam, const ReceiverBlock& block, BeamSi
 void lay_ray_centred_hat(const Beam& beam, const ReceiverBlock& block, BeamSink& sink);
 void lay_ray_centred_gaussian(const Beam& beam, const ReceiverBlock& block, BeamSink& sink);
 void lay_simple_gaussian(const Beam& beam, const ReceiverBlock& block, BeamSink& sink);
+void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const ReceiverBlock& block,
+                           BeamSink& sink);
+void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const ReceiverBlock& block,
+                             BeamSink& sink);
 
 /// The first receiver at or beyond a range.
 [[nodiscard]] std::size_t first_at_or_beyond(const ReceiverGrid& grid, double range) noexcept;

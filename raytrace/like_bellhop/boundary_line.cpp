@@ -1,6 +1,7 @@
 #include "raytrace/like_bellhop/boundary_line.h"
 
 #include <cmath>
+#include <span>
 
 namespace asdic::like_bellhop {
 namespace {
@@ -8,26 +9,24 @@ constexpr double far_away = 1e30;  // where the flat ends of a boundary stop [m]
 }
 
 BoundaryLine::BoundaryLine(const Boundary& boundary, BoundaryKind kind) : kind_(kind) {
-  if (boundary.shape) {
-    const auto r = boundary.shape->ranges();
-    const auto z = boundary.shape->depths();
-    range_.assign(r.begin(), r.end());
-    depth_.assign(z.begin(), z.end());
-    curvilinear_ = boundary.shape->interpolation() != ShapeInterpolation::piecewise_linear;
-    const auto m = boundary.shape->materials();
-    if (!m.empty()) {
-      material_.push_back(m.front());
-      material_.insert(material_.end(), m.begin(), m.end());
-    }
-    range_.insert(range_.begin(), -far_away);
-    depth_.insert(depth_.begin(), depth_.front());
-    range_.push_back(far_away);
-    depth_.push_back(depth_.back());
-  } else {
-    range_ = {-far_away, far_away};
-    depth_ = {boundary.depth, boundary.depth};
+  const bool flat = !boundary.shape;
+  const std::vector<double> flat_depth = {boundary.depth};
+  const auto r = flat ? std::span<const double>{} : boundary.shape->ranges();
+  const auto z = flat ? std::span<const double>(flat_depth) : boundary.shape->depths();
+  curvilinear_ =
+      !flat && boundary.shape->interpolation() != ShapeInterpolation::piecewise_linear;
+  const auto add = [this](double range, double depth) {
+    range_.push_back(range);
+    depth_.push_back(depth);
+  };
+  add(-far_away, z.front());
+  for (std::size_t i = 0; i < r.size(); ++i) add(r[i], z[i]);
+  add(far_away, z.back());
+  for (std::size_t i = 0; i + 1 < range_.size(); ++i) {
+    // the material of a facet is that of its first node; before the first node, that node's
+    const auto m = flat ? std::span<const BoundaryMaterial>{} : boundary.shape->materials();
+    material_.push_back(m.empty() ? boundary.material : m[i == 0 ? 0 : i - 1]);
   }
-  if (material_.empty()) material_.push_back(boundary.material);
 
   for (std::size_t i = 0; i + 1 < range_.size(); ++i) {
     const Vec2 t = Vec2(range_[i + 1] - range_[i], depth_[i + 1] - depth_[i]).normalized();

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 
 namespace asdic::like_bellhop {
@@ -35,7 +36,7 @@ class BoundaryLine {
   }
   [[nodiscard]] Facet facet(const Vec2& x, std::size_t segment) const noexcept;
   [[nodiscard]] const BoundaryMaterial& material(std::size_t segment) const noexcept {
-    return material_.size() == 1 ? material_[0] : material_[segment];
+    return material_[segment];
   }
 
  private:
@@ -50,7 +51,7 @@ class BoundaryLine {
   std::vector<Vec2> tangent_, normal_;        // [n + 1] of the segments
   std::vector<Vec2> node_tangent_;            // [n + 2], plain means
   std::vector<double> curvature_;             // [n + 1]
-  std::vector<BoundaryMaterial> material_;    // [n + 1], or one for all
+  std::vector<BoundaryMaterial> material_;    // [n + 1]
 };
 
 }  // namespace asdic::like_bellhop

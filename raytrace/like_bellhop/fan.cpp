@@ -4,20 +4,6 @@
 #include <cmath>
 
 namespace asdic::like_bellhop {
-namespace {
-
-/// Linear amplitude between rows and beyond them.
-double pattern_at(const SourcePattern& pattern, double elevation) {
-  const auto& a = pattern.elevation;
-  if (a.size() < 2) return a.empty() ? 1.0 : pattern.amplitude[0];
-  const auto above = std::upper_bound(a.begin(), a.end(), elevation) - a.begin();
-  const std::size_t i = std::clamp<std::size_t>(static_cast<std::size_t>(above), 1, a.size() - 1);
-  const double w = (elevation - a[i - 1]) / (a[i] - a[i - 1]);
-  return (1.0 - w) * pattern.amplitude[i - 1] + w * pattern.amplitude[i];
-}
-
-}  // namespace
-
 int automatic_beams(const PropagationCase& run_case, double depth) {
   if (run_case.task == Task::rays) return 50;
   const double range = run_case.receivers.ranges.back();
@@ -45,9 +31,7 @@ LiteralFan make_fan(const PropagationCase& run_case, const LikeBellhopOptions& o
     for (int i = 0; i < n; ++i)
       fan.declinations.push_back(n == 1 ? first : first + i * ((last - first) / (n - 1)));
   }
-  // A full circle: the last ray would be the first again.
-  std::vector<double>& a = fan.declinations;
-  if (a.size() > 1 && std::abs(std::abs(a.back() - a.front()) - 2.0 * pi) < 1e-12) a.pop_back();
+  const std::vector<double>& a = fan.declinations;
   fan.spacing = a.size() > 1 ? (a.back() - a.front()) / static_cast<double>(a.size() - 1) : 0.0;
   fan.last = a.size();
   if (run_case.literal.single_beam && *run_case.literal.single_beam >= 1) {
@@ -59,7 +43,7 @@ LiteralFan make_fan(const PropagationCase& run_case, const LikeBellhopOptions& o
 
 double launch_amplitude(const PropagationCase& run_case, double source_depth, double source_speed,
                         double declination) {
-  double amplitude = run_case.beams.pattern ? pattern_at(*run_case.beams.pattern, -declination) : 1.0;
+  double amplitude = run_case.beams.pattern ? run_case.beams.pattern->at(-declination) : 1.0;
   if (run_case.task == Task::field && run_case.field == FieldKind::semi_coherent) {
     const double omega = 2.0 * pi * run_case.frequency;
     amplitude *= std::sqrt(2.0) *

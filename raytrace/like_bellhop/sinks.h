@@ -1,4 +1,5 @@
 #pragma once
+#include <compare>
 #include <vector>
 
 #include "raytrace/arrivals.h"
@@ -55,7 +56,8 @@ class ArrivalStore {
 
 /// A beam that passes over a receiver: the eigenray is the ray up to the segment's end.
 struct EigenrayHit {
-  std::size_t beam = 0, segment = 0, row = 0, column = 0;
+  std::size_t beam = 0, segment = 0, column = 0, row = 0;
+  [[nodiscard]] auto operator<=>(const EigenrayHit&) const noexcept = default;
 };
 
 }  // namespace asdic::like_bellhop

@@ -36,9 +36,9 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
   if (end.y() > lower) horizontal(lower, Cut::By::row);
   const auto boundary = [&](const BoundaryLine& line, std::size_t segment, Cut::By by) {
     if (line.outside(end, segment) <= 0.0) return;
-    const double rate = u.dot(line.normal(segment));
-    consider(-line.outside(x, segment) / rate, by,
-             line.is_flat(segment) ? line.node(segment).y() : 0.0);
+    const double h = -line.outside(x, segment) / u.dot(line.normal(segment));
+    // before a node at the same place
+    if (h <= cut.length) cut = {h, by, line.is_flat(segment) ? line.node(segment).y() : 0.0};
   };
   boundary(ocean.surface, place.surface, Cut::By::surface);
   boundary(ocean.bottom, place.bottom, Cut::By::bottom);
