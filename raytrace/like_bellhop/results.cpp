@@ -11,6 +11,23 @@ double range_factor(SourceKind source, double range, double at_source) noexcept 
   return range == 0.0 ? at_source : 1.0 / std::sqrt(std::abs(range));
 }
 
+template <class Real>
+Arrival arrival_of(const StoredArrival<Real>& a, double range_factor, double omega) {
+  const double tube = static_cast<double>(a.amplitude) * range_factor;
+  const double absorption = std::exp(omega * static_cast<double>(a.tau.imag()));
+  Arrival out;
+  out.launch_elevation = -static_cast<double>(a.launch_declination);
+  out.arrival_elevation = -static_cast<double>(a.arrival_declination);
+  out.delay = static_cast<double>(a.tau.real());
+  out.amplitude = std::polar(tube * absorption, static_cast<double>(a.phase));
+  out.spreading = tube;  // the magnitudes of the reflections are in it
+  out.reflection = std::polar(1.0, static_cast<double>(a.phase));
+  out.absorption_db = -db_from_amplitude(absorption);
+  out.surface_bounces = a.surface_bounces;
+  out.bottom_bounces = a.bottom_bounces;
+  return out;
+}
+
 }  // namespace
 
 SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOptions& options)
@@ -22,8 +39,13 @@ SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOpti
     else
       field64 = std::make_unique<FieldSums<double>>(given.field, columns, size);
   }
-  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals)
-    arrivals = std::make_unique<ArrivalStore>(size, options.merge, options.single_precision);
+  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals) 
+  {
+    if (options.single_precision)
+      arrivals32 = std::make_unique<ArrivalStore<float>>(size, options.merge);
+    else
+      arrivals64 = std::make_unique<ArrivalStore<double>>(size, options.merge);
+  }
   eigenrays = given.task == Task::eigenrays || given.task == Task::eigenrays_and_arrivals;
 }
 
@@ -43,21 +65,17 @@ void SourceResults::append_field(const FieldSums<Real>& sums, PropagationResult&
   }
 }
 
-Arrival SourceResults::arrival(const StoredArrival& a, double range) const {
+template <class Real>
+void SourceResults::append_arrivals(const ArrivalStore<Real>& store,
+                                    PropagationResult& result) const {
   const double omega = 2.0 * pi * run_case.frequency;
-  const double tube = a.amplitude * range_factor(run_case.beams.source, range, 1e5);
-  const double absorption = std::exp(omega * a.tau.imag());
-  Arrival out;
-  out.launch_elevation = -a.launch_declination;
-  out.arrival_elevation = -a.arrival_declination;
-  out.delay = a.tau.real();
-  out.amplitude = std::polar(tube * absorption, a.phase);
-  out.spreading = tube;  // the magnitudes of the reflections are in it
-  out.reflection = std::polar(1.0, a.phase);
-  out.absorption_db = -db_from_amplitude(absorption);
-  out.surface_bounces = a.surface_bounces;
-  out.bottom_bounces = a.bottom_bounces;
-  return out;
+  for (std::size_t i = 0; i < rows * columns; ++i) {
+    const double factor =
+        range_factor(run_case.beams.source, run_case.receivers.ranges[i % columns], 1e5);
+    Arrivals list;
+    for (const auto& a : store.at(i)) list.push_back(arrival_of(a, factor, omega));
+    result.arrivals.push_back(std::move(list));
+  }
 }
 
 void SourceResults::append_to(PropagationResult& result, double source_speed, double spacing) {
@@ -68,13 +86,8 @@ void SourceResults::append_to(PropagationResult& result, double source_speed, do
       cerveny ? spacing * std::sqrt(run_case.frequency) / source_speed : 1.0;
   if (field32) append_field(*field32, result, beam_factor);
   if (field64) append_field(*field64, result, beam_factor);
-  if (arrivals)
-    for (std::size_t i = 0; i < rows * columns; ++i) {
-      Arrivals list;
-      for (const StoredArrival& a : arrivals->at(i))
-        list.push_back(arrival(a, run_case.receivers.ranges[i % columns]));
-      result.arrivals.push_back(std::move(list));
-    }
+  if (arrivals32) append_arrivals(*arrivals32, result);
+  if (arrivals64) append_arrivals(*arrivals64, result);
   if (eigenrays || run_case.task == Task::rays) result.rays.push_back(std::move(rays));
 }
 

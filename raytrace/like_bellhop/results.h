@@ -17,14 +17,16 @@ struct SourceResults {
   std::size_t rows = 0, columns = 0;
   std::unique_ptr<FieldSums<float>> field32;   ///< one of the two, for a field
   std::unique_ptr<FieldSums<double>> field64;
-  std::unique_ptr<ArrivalStore> arrivals;
+  std::unique_ptr<ArrivalStore<float>> arrivals32;  ///< one of the two, for arrivals
+  std::unique_ptr<ArrivalStore<double>> arrivals64;
   bool eigenrays = false;
   std::vector<RayPath> rays;
 
  private:
   template <class Real>
   void append_field(const FieldSums<Real>& sums, PropagationResult& result, double beam_factor) const;
-  [[nodiscard]] Arrival arrival(const StoredArrival& a, double range) const;
+  template <class Real>
+  void append_arrivals(const ArrivalStore<Real>& store, PropagationResult& result) const;
 };
 
 /// The first `count` points of a ray as a path.

@@ -52,16 +52,9 @@ class TaskSink final : public BeamSink {
   void take(const Contribution& c) override {
     if (results_.field32) results_.field32->add(c, omega_);
     if (results_.field64) results_.field64->add(c, omega_);
-    if (results_.arrivals)
-      results_.arrivals->add(c.row * results_.columns + c.column,
-                             {.amplitude = c.amplitude * c.weight,
-                              .phase = c.phase,
-                              .tau = c.tau,
-                              .launch_declination = declination_,
-                              .arrival_declination = c.arrival_declination,
-                              .surface_bounces = c.end->surface_bounces,
-                              .bottom_bounces = c.end->bottom_bounces},
-                             omega_);
+    const std::size_t receiver = c.row * results_.columns + c.column;
+    if (results_.arrivals32) results_.arrivals32->add(receiver, c, declination_, omega_);
+    if (results_.arrivals64) results_.arrivals64->add(receiver, c, declination_, omega_);
     if (results_.eigenrays) hits.push_back({beam_, c.segment, c.column, c.row});
   }
   void take_pressure(std::size_t row, std::size_t column, std::complex<double> p) override {

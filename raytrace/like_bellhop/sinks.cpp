@@ -9,8 +9,6 @@ namespace {
 constexpr double same_phase = 0.05;         // arrivals nearer than this in ωτ and in phase are one [rad]
 constexpr std::size_t storage = 20'000'000;  // arrivals in all
 
-double to_float(double x) noexcept { return static_cast<double>(static_cast<float>(x)); }
-
 }  // namespace
 
 template <class Real>
@@ -40,48 +38,50 @@ void FieldSums<Real>::add(std::size_t row, std::size_t column,
 template class FieldSums<float>;
 template class FieldSums<double>;
 
-ArrivalStore::ArrivalStore(std::size_t receivers, bool merge, bool single_precision)
+template <class Real>
+ArrivalStore<Real>::ArrivalStore(std::size_t receivers, bool merge)
     : stored_(receivers),
       most_(std::max<std::size_t>(storage / std::max<std::size_t>(receivers, 1), 10)),
-      merge_(merge),
-      single_precision_(single_precision) {}
+      merge_(merge) {}
 
-StoredArrival ArrivalStore::rounded(StoredArrival a) const noexcept {
-  if (!single_precision_) return a;
-  a.amplitude = to_float(a.amplitude);
-  a.phase = to_float(a.phase);
-  a.tau = {to_float(a.tau.real()), to_float(a.tau.imag())};
-  a.launch_declination = to_float(a.launch_declination);
-  a.arrival_declination = to_float(a.arrival_declination);
-  return a;
-}
-
-void ArrivalStore::add(std::size_t receiver, const StoredArrival& arrival, double omega) {
-  std::vector<StoredArrival>& list = stored_[receiver];
+template <class Real>
+void ArrivalStore<Real>::add(std::size_t receiver, const Contribution& c, double launch_declination,
+                             double omega) {
+  const StoredArrival<Real> arrival{
+      .amplitude = static_cast<Real>(c.amplitude * c.weight),
+      .phase = static_cast<Real>(c.phase),
+      .tau = {static_cast<Real>(c.tau.real()), static_cast<Real>(c.tau.imag())},
+      .launch_declination = static_cast<Real>(launch_declination),
+      .arrival_declination = static_cast<Real>(c.arrival_declination),
+      .surface_bounces = c.end->surface_bounces,
+      .bottom_bounces = c.end->bottom_bounces};
+  std::vector<StoredArrival<Real>>& list = stored_[receiver];
   if (merge_ && !list.empty()) {
-    StoredArrival& last = list.back();
-    if (omega * std::abs(arrival.tau - last.tau) < same_phase &&
-        std::abs(last.phase - arrival.phase) < same_phase) {
-      const double total = last.amplitude + arrival.amplitude;
-      const double w0 = last.amplitude / total, w1 = arrival.amplitude / total;
-      last.tau = w0 * last.tau + w1 * arrival.tau;
-      last.launch_declination =
-          w0 * last.launch_declination + w1 * arrival.launch_declination;
-      last.arrival_declination =
-          w0 * last.arrival_declination + w1 * arrival.arrival_declination;
+    StoredArrival<Real>& last = list.back();
+    if (omega * std::abs(c.tau - std::complex<double>(last.tau)) < same_phase &&
+        std::abs(static_cast<double>(last.phase) - c.phase) < same_phase) {
+      const Real total = last.amplitude + arrival.amplitude;
+      const Real w0 = last.amplitude / total, w1 = arrival.amplitude / total;
+      const auto mean = [&](Real a, Real b) { return w0 * a + w1 * b; };
+      last.tau = {mean(last.tau.real(), arrival.tau.real()),
+                  mean(last.tau.imag(), arrival.tau.imag())};
+      last.launch_declination = mean(last.launch_declination, arrival.launch_declination);
+      last.arrival_declination = mean(last.arrival_declination, arrival.arrival_declination);
       last.amplitude = total;
-      last = rounded(last);
       return;
     }
   }
   if (list.size() < most_) {
-    list.push_back(rounded(arrival));
+    list.push_back(arrival);
     return;
   }
   const auto weakest = std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
     return a.amplitude < b.amplitude;
   });
-  if (arrival.amplitude > weakest->amplitude) *weakest = rounded(arrival);
+  if (arrival.amplitude > weakest->amplitude) *weakest = arrival;
 }
+
+template class ArrivalStore<float>;
+template class ArrivalStore<double>;
 
 }  // namespace asdic::like_bellhop

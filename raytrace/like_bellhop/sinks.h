@@ -28,30 +28,31 @@ class FieldSums {
   std::vector<std::complex<Real>> sum_;  // [rows × columns]
 };
 
-/// One arrival as BELLHOP stores it.
+/// One arrival as BELLHOP stores it, in float32 (or float64).
+template <class Real>
 struct StoredArrival {
-  double amplitude = 0.0;  ///< spreading by range left out
-  double phase = 0.0;      ///< not wrapped [rad]
-  std::complex<double> tau;
-  double launch_declination = 0.0, arrival_declination = 0.0;  ///< [rad]
+  Real amplitude = 0;  ///< spreading by range left out
+  Real phase = 0;      ///< not wrapped [rad]
+  std::complex<Real> tau;
+  Real launch_declination = 0, arrival_declination = 0;  ///< [rad]
   int surface_bounces = 0, bottom_bounces = 0;
 };
 
-/// Arrivals of all receivers, with BELLHOP's merging (only with the last one stored at the receiver),
-/// its limit of storage and its float32.
+/// Arrivals of all receivers, with BELLHOP's merging (only with the last one stored at the receiver)
+/// and its limit of storage.
+template <class Real>
 class ArrivalStore {
  public:
-  ArrivalStore(std::size_t receivers, bool merge, bool single_precision);
-  void add(std::size_t receiver, const StoredArrival& arrival, double omega);
-  [[nodiscard]] const std::vector<StoredArrival>& at(std::size_t receiver) const noexcept {
+  ArrivalStore(std::size_t receivers, bool merge);
+  void add(std::size_t receiver, const Contribution& c, double launch_declination, double omega);
+  [[nodiscard]] const std::vector<StoredArrival<Real>>& at(std::size_t receiver) const noexcept {
     return stored_[receiver];
   }
 
  private:
-  [[nodiscard]] StoredArrival rounded(StoredArrival a) const noexcept;
-  std::vector<std::vector<StoredArrival>> stored_;
+  std::vector<std::vector<StoredArrival<Real>>> stored_;
   std::size_t most_;  // per receiver
-  bool merge_, single_precision_;
+  bool merge_;
 };
 
 /// A beam that passes over a receiver: the eigenray is the ray up to the segment's end.
