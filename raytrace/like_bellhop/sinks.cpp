@@ -62,7 +62,8 @@ void ArrivalStore<Real>::add(std::size_t receiver, const Contribution& c, double
         std::abs(static_cast<double>(last.phase) - c.phase) < same_phase) {
       const Real total = last.amplitude + arrival.amplitude;
       const Real w0 = last.amplitude / total, w1 = arrival.amplitude / total;
-      const auto mean = [&](Real a, Real b) { return w0 * a + w1 * b; };
+      // the second product rounded, the first not: as the reference outputs were computed
+      const auto mean = [&](Real a, Real b) { return std::fma(w0, a, w1 * b); };
       last.tau = {mean(last.tau.real(), arrival.tau.real()),
                   mean(last.tau.imag(), arrival.tau.imag())};
       last.launch_declination = mean(last.launch_declination, arrival.launch_declination);
