@@ -148,8 +148,6 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       if (!(phi >= -1.0 && phi < 9.5))
         reading.note(field + ": a grain size of " + shown(phi) +
                      " phi is outside the handbook's -1 to 9");
-      fluid.attenuation_db_per_wavelength +=
-          per_wavelength(reading.volume_loss, fluid.speed, reading.input.run_case.frequency);
       env.end();
       return fluid;
     }

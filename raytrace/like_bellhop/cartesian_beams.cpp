@@ -25,6 +25,7 @@ struct Chord {
 };
 
 struct Hat {
+  static constexpr bool slanted = true;
   static constexpr double steep = 0.5;  // |cos| of a chord above which depths are preselected
   double factor, q0;
 
@@ -43,6 +44,7 @@ struct Hat {
 };
 
 struct Gaussian {
+  static constexpr bool slanted = false;
   static constexpr double steep = 0.50001;
   double factor, q0, frequency;
 
@@ -84,7 +86,7 @@ void lay(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamS
     const Chord chord(a, b);
     double top = -infinity, bottom = infinity;
     if (const double cosine = std::abs(chord.tangent.x()); cosine > Shape::steep) {
-      const double reach = shape.half_width(chord) / cosine;
+      const double reach = shape.half_width(chord) / (Shape::slanted ? cosine : 1.0);
       top = std::min(a.x.y(), b.x.y()) - reach;
       bottom = std::max(a.x.y(), b.x.y()) + reach;
     }
