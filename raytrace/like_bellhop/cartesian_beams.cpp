@@ -25,12 +25,11 @@ struct Chord {
 };
 
 struct Hat {
-  static constexpr bool slanted = true;
   static constexpr double steep = 0.5;  // |cos| of a chord above which depths are preselected
   double factor, q0;
 
-  double half_width(const Chord& k) const noexcept {
-    return std::max(std::abs(k.a.q1), std::abs(k.b.q1)) / q0;
+  double reach(const Chord& k, double cosine) const noexcept {
+    return std::max(std::abs(k.a.q1), std::abs(k.b.q1)) / q0 / cosine;
   }
   /// \return whether the receiver, n off the axis where q is as given, is inside
   bool weigh(const Chord& k, double q, double n, Contribution& out) const noexcept {
@@ -44,7 +43,6 @@ struct Hat {
 };
 
 struct Gaussian {
-  static constexpr bool slanted = false;
   static constexpr double steep = 0.50001;
   double factor, q0, frequency;
 
@@ -53,9 +51,9 @@ struct Gaussian {
     const double wavelength = k.a.c / frequency;
     return std::min(0.2 * frequency * k.b.tau.real(), pi * wavelength);
   }
-  double half_width(const Chord& k) const noexcept {
+  double reach(const Chord& k, double cosine) const noexcept {  // the least width is not slanted
     return cut_in_widths *
-           std::max(std::max(std::abs(k.a.q1), std::abs(k.b.q1)) / q0, least(k));
+           std::max(std::max(std::abs(k.a.q1), std::abs(k.b.q1)) / q0 / cosine, least(k));
   }
   bool weigh(const Chord& k, double q, double n, Contribution& out) const noexcept {
     const double spacing = std::abs(q) / q0;
@@ -86,7 +84,7 @@ void lay(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamS
     const Chord chord(a, b);
     double top = -infinity, bottom = infinity;
     if (const double cosine = std::abs(chord.tangent.x()); cosine > Shape::steep) {
-      const double reach = shape.half_width(chord) / (Shape::slanted ? cosine : 1.0);
+      const double reach = shape.reach(chord, cosine);
       top = std::min(a.x.y(), b.x.y()) - reach;
       bottom = std::max(a.x.y(), b.x.y()) + reach;
     }
