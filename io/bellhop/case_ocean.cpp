@@ -108,6 +108,7 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       double ignored = 0.0;
       env.real(ignored, "depth");
       const double phi = env.need_real("grain size");
+<<<<<<< HEAD
       if (!(phi >= -1.0 && phi <= 9.0))
         env.fail("grain size", shown(phi),
                  "a mean grain size from -1 (coarse sand) to 9 phi (clay)");
@@ -115,6 +116,14 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       FluidHalfSpace fluid = sediment_of_grain_size(phi, 1500.0, 1000.0);
       fluid.attenuation_db_per_wavelength +=
           per_wavelength(reading.volume_loss, fluid.speed, reading.input.run_case.frequency);
+=======
+      FluidHalfSpace fluid = sediment(phi);
+      if (!(fluid.speed > 0.0 && fluid.density > 0.0))
+        env.fail("grain size", shown(phi), "a mean grain size from -1 to 9 phi");
+      if (!(phi >= -1.0 && phi < 9.5))
+        reading.note(field + ": a grain size of " + shown(phi) +
+                     " phi is outside the handbook's -1 to 9");
+>>>>>>> like
       env.end();
       return fluid;
     }
