@@ -48,6 +48,14 @@ double per_wavelength(double nepers_per_m, double speed, double frequency) noexc
   return nepers_per_m * db_per_neper * speed / frequency;
 }
 
+/// The speed of a wave, given BELLHOP's. It gives the speed an imaginary part, ω/k = c·(1 + iδ)
+/// with δ the nepers in a radian, where ours goes into the wave number, k = (ω/c)·(1 − iδ): the
+/// same k belongs to c·(1 + δ²) and the same loss per wavelength.
+double true_speed(double speed, double db_per_wavelength) noexcept {
+  const double delta = db_per_wavelength / (2.0 * pi * db_per_neper);
+  return speed * (1.0 + delta * delta);
+}
+
 /// The attenuation of the water at a node [dB/km]: its own and that of the layers of fish there.
 double attenuation_at_node(const CaseReading& reading) {
   const MaterialRow& row = reading.row;
@@ -110,15 +118,15 @@ BoundaryMaterial half_space(const CaseReading& reading, const ListReader& from,
     from.fail("density", shown(row.density) + " g/cm^3", "a density above 0 g/cm^3");
   const double compressional = attenuation(row.attenuation, row.speed, "attenuation");
   if (row.shear_speed == 0.0)
-    return FluidHalfSpace{.speed = row.speed,
+    return FluidHalfSpace{.speed = true_speed(row.speed, compressional),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional};
-  return ElasticHalfSpace{.speed = row.speed,
-                          .shear_speed = row.shear_speed,
+  const double shear = attenuation(row.shear_attenuation, row.shear_speed, "shear attenuation");
+  return ElasticHalfSpace{.speed = true_speed(row.speed, compressional),
+                          .shear_speed = true_speed(row.shear_speed, shear),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional,
-                          .shear_attenuation_db_per_wavelength = attenuation(
-                              row.shear_attenuation, row.shear_speed, "shear attenuation")};
+                          .shear_attenuation_db_per_wavelength = shear};
 }
 
 BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) {
@@ -150,6 +158,7 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
                      " phi is outside the handbook's -1 to 9");
       fluid.attenuation_db_per_wavelength +=
           per_wavelength(reading.volume_loss, fluid.speed, reading.input.run_case.frequency);
+      fluid.speed = true_speed(fluid.speed, fluid.attenuation_db_per_wavelength);
       env.end();
       return fluid;
     }
