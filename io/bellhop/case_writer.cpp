@@ -143,8 +143,10 @@ std::string boundary_text(CaseWriting& writing, const Boundary& boundary, bool s
     write_reflection_table(writing, *table, surface);
   if (boundary.shape) write_shape(writing, boundary, surface);
   if (letter_of(boundary) != 'A') return {};
+  // materials per facet take its place, and have no volume loss added
+  const bool overruled = boundary.shape && !boundary.shape->materials().empty();
   return decimal(boundary.depth) + ' ' +
-         half_space_text(writing, boundary.material, writing.volume_loss,
+         half_space_text(writing, boundary.material, overruled ? 0.0 : writing.volume_loss,
                          surface ? "surface" : "bottom") +
          " /\n";
 }

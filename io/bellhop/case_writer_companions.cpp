@@ -6,6 +6,7 @@
 #include "io/bellhop/attenuation.h"
 #include "io/bellhop/case_writer_parts.h"
 #include "io/bellhop/decimal.h"
+#include "io/bellhop/list_reader.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -36,14 +37,25 @@ std::string half_space_text(CaseWriting& writing, const BoundaryMaterial& materi
     }
     return decimal_read_as(value, value - added, [&](double x) { return x + added; });
   };
-  if (const auto* fluid = std::get_if<FluidHalfSpace>(&material))
-    return decimal(fluid->speed) + " 0 " + thousands(fluid->density) + ' ' +
-           attenuation(fluid->attenuation_db_per_wavelength, fluid->speed) + " 0";
-  if (const auto* solid = std::get_if<ElasticHalfSpace>(&material))
-    return decimal(solid->speed) + ' ' + decimal(solid->shear_speed) + ' ' +
-           thousands(solid->density) + ' ' +
-           attenuation(solid->attenuation_db_per_wavelength, solid->speed) + ' ' +
-           attenuation(solid->shear_attenuation_db_per_wavelength, solid->shear_speed);
+  // BELLHOP's speed, of which the reader makes ours
+  const auto speed_text = [](double speed, double loss) {
+    return decimal_read_as(speed, speed / true_speed(1.0, loss),
+                           [&](double x) { return true_speed(x, loss); });
+  };
+  const auto wave = [&](double speed, double loss) {
+    const std::string text = speed_text(speed, loss);
+    return std::pair(text, attenuation(loss, *fortran_number(text)));
+  };
+  if (const auto* fluid = std::get_if<FluidHalfSpace>(&material)) {
+    const auto [speed, loss] = wave(fluid->speed, fluid->attenuation_db_per_wavelength);
+    return speed + " 0 " + thousands(fluid->density) + ' ' + loss + " 0";
+  }
+  if (const auto* solid = std::get_if<ElasticHalfSpace>(&material)) {
+    const auto [speed, loss] = wave(solid->speed, solid->attenuation_db_per_wavelength);
+    const auto [shear, shear_loss] =
+        wave(solid->shear_speed, solid->shear_attenuation_db_per_wavelength);
+    return speed + ' ' + shear + ' ' + thousands(solid->density) + ' ' + loss + ' ' + shear_loss;
+  }
   const std::string name = std::visit([](const auto& m) { return std::string(m.name); }, material);
   throw InputError({.where = where,
                     .got = name,

@@ -125,11 +125,12 @@ class RandomCase {
       const double a = decimal_between(0.0, 2.0, 3);
       return volume_loss == 0.0 ? a : a + volume_loss * db_per_neper * speed / run_.frequency;
     };
-    const double speed = decimal_between(1480.0, 5000.0, 1);
+    const double speed = decimal_between(1480.0, 5000.0, 1), loss = attenuation(speed);
     const double density = 1000.0 * decimal_between(0.9, 3.0, 2);
-    if (coin()) return FluidHalfSpace{speed, density, attenuation(speed)};
-    const double shear = decimal_between(100.0, 1400.0, 1);
-    return ElasticHalfSpace{speed, shear, density, attenuation(speed), attenuation(shear)};
+    if (coin()) return FluidHalfSpace{true_speed(speed, loss), density, loss};
+    const double shear = decimal_between(100.0, 1400.0, 1), shear_loss = attenuation(shear);
+    return ElasticHalfSpace{true_speed(speed, loss), true_speed(shear, shear_loss), density, loss,
+                            shear_loss};
   }
 
   static ReflectionTable reflection_table() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "io/bellhop/attenuation.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/case_writer.h"
@@ -280,15 +281,26 @@ TEST(BellhopCase, CervenysLines) {
 
 TEST(BellhopCase, LongBathymetryHasMaterialsPerFacet) {
   Texts texts = small_case(9, "'A~' 0");
-  texts.companions.emplace_back(".bty",
-                                "'LL'\n2\n0 90 1600 0 1.5 0.2 0\n1 80 2000 800 2.0 0.1 0.3\n");
+  texts.companions.emplace_back(".bty", "'LL'\n2\n0 90 1600 0 1.5 0.2 0\n1 80 2000 800 2.0 0 0\n");
   const PropagationCase run_case = read_case(texts, "case").run_case;
   const BoundaryShape& shape = *run_case.environment.bottom.shape;
   EXPECT_EQ(run_case.environment.bottom.depth, 90.0);
   EXPECT_EQ(shape.ranges()[1], 1000.0);
-  EXPECT_EQ(std::get<FluidHalfSpace>(shape.materials()[0]).speed, 1600.0);
+  EXPECT_EQ(std::get<FluidHalfSpace>(shape.materials()[0]).speed, true_speed(1600.0, 0.2));
   EXPECT_EQ(std::get<ElasticHalfSpace>(shape.materials()[1]).shear_speed, 800.0);
-  EXPECT_EQ(std::get<FluidHalfSpace>(run_case.environment.bottom.material).speed, 1600.0);
+  EXPECT_EQ(std::get<FluidHalfSpace>(run_case.environment.bottom.material).speed,
+            true_speed(1600.0, 0.2));
+}
+
+// BELLHOP's wave number is ω/(c + iαc²/ω); ours (ω/c′)(1 − iδ), δ the nepers in a radian: the same.
+TEST(BellhopCase, TheWaveNumberOfALossyBottomIsBellhops) {
+  const double omega = 2000.0 * pi, c = 1700.0, alpha = 0.5 * 1000.0 / (8.6858896 * c);
+  const std::complex<double> theirs = omega / std::complex<double>(c, alpha * c * c / omega);
+  const PropagationCase run_case = read_small().run_case;
+  const auto& fluid = std::get<FluidHalfSpace>(run_case.environment.bottom.material);
+  const double delta = fluid.attenuation_db_per_wavelength / (2.0 * pi * 8.6858896);
+  const std::complex<double> ours = omega / fluid.speed * std::complex<double>(1.0, -delta);
+  EXPECT_LT(std::abs(ours - theirs), 1e-15 * std::abs(theirs) * 4);  // a few roundings
 }
 
 TEST(BellhopCase, MunksProfileHasNoRows) {
