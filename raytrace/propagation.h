@@ -12,20 +12,21 @@ namespace asdic {
 
 /// The answer of a run; what was not asked for is empty.
 ///
-/// Pressure is relative to 1 m from the source, time dependence e^{+iωt}, TL = −20·log₁₀|p|, and the
-/// coherent field is the sum of the arrivals. Incoherent and semi-coherent fields hold the root of
-/// the intensity, as a real number.
+/// Pressure is relative to 1 m from the source, time dependence e^{+iωt}, TL = −20·log₁₀|p|, and
+/// the coherent field is the sum of the arrivals. Incoherent and semi-coherent fields hold the root
+/// of the intensity, as a real number.
 struct PropagationResult {
   std::vector<std::complex<float>> field;  ///< [sources × rows × ranges], range fastest
   std::vector<Arrivals> arrivals;          ///< [sources × rows × ranges], range fastest
   std::vector<std::vector<RayPath>> rays;  ///< [sources] rays, or eigenrays to all receivers
   std::size_t beams = 0;                   ///< rays traced per source
-  double beam_error_db = 0.0;  ///< field: estimate of what more beams would change (95 % of receivers)
+  double beam_error_db =
+      0.0;  ///< field: estimate of what more beams would change (95 % of receivers)
   std::vector<std::string> notes;  ///< what the user should know
 };
 
-/// Called now and then with the share that is done (0..1) from any thread; returning false stops the
-/// run (Interrupted is thrown).
+/// Called now and then with the share that is done (0..1) from any thread; returning false stops
+/// the run (Interrupted is thrown).
 using Progress = std::function<bool(double)>;
 
 /// Runs a case with asdic's own tracer. Results do not depend on the number of threads.

@@ -15,17 +15,18 @@ enum class Task { rays, eigenrays, arrivals, eigenrays_and_arrivals, field };
 enum class FieldKind {
   coherent,       ///< pressures
   incoherent,     ///< intensities
-  semi_coherent,  ///< intensities, each launched with the Lloyd-mirror pattern of a surface at z = 0
+  semi_coherent,  ///< intensities, each launched with the Lloyd-mirror pattern of a surface at z =
+                  ///< 0
 };
 
 /// Shape of a beam across its ray. docs/theory/beams.md
 enum class BeamKind {
-  hat,                   ///< geometric, triangular, in Cartesian coordinates
-  gaussian,              ///< geometric, Gaussian, in Cartesian coordinates
-  ray_centred_hat,       ///< along the normals of the ray
+  hat,              ///< geometric, triangular, in Cartesian coordinates
+  gaussian,         ///< geometric, Gaussian, in Cartesian coordinates
+  ray_centred_hat,  ///< along the normals of the ray
   ray_centred_gaussian,
   simple_gaussian,
-  cerveny_cartesian,     ///< paraxial beams of complex curvature
+  cerveny_cartesian,  ///< paraxial beams of complex curvature
   cerveny_ray_centred,
 };
 
@@ -56,7 +57,8 @@ struct SourcePattern {
 struct ReceiverGrid {
   std::vector<double> depths;  ///< [n] increasing [m]
   std::vector<double> ranges;  ///< [m] increasing [m]
-  bool irregular = false;      ///< receiver i is at (ranges[i], depths[i]), n = m; else the grid of both
+  bool irregular =
+      false;  ///< receiver i is at (ranges[i], depths[i]), n = m; else the grid of both
   [[nodiscard]] std::size_t rows() const noexcept { return irregular ? 1 : depths.size(); }
   [[nodiscard]] std::size_t size() const noexcept { return rows() * ranges.size(); }
 };
@@ -68,16 +70,18 @@ struct BeamSettings {
   std::optional<SourcePattern> pattern;
   std::optional<CervenyBeams> cerveny;
   bool displacement = false;  ///< beams are displaced along the boundary at reflection
-  double lowest = -0.5 * pi;  ///< launch elevations between which the source shines [rad], positive up
+  double lowest =
+      -0.5 * pi;  ///< launch elevations between which the source shines [rad], positive up
   double highest = 0.5 * pi;
-  std::vector<double> elevations;  ///< exactly these rays [rad]; empty: evenly from lowest to highest
-  int count = 0;                   ///< rays of a ray run; least number of beams otherwise; 0: by our own rule
+  std::vector<double>
+      elevations;  ///< exactly these rays [rad]; empty: evenly from lowest to highest
+  int count = 0;   ///< rays of a ray run; least number of beams otherwise; 0: by our own rule
 };
 
 /// What an input file of BELLHOP says and only a literal run obeys (docs/guide/from-bellhop.md).
 struct LiteralSettings {
-  double step = 0.0;  ///< [m]; 0: a tenth of the depth
-  int beams = 0;      ///< as written; 0: by BELLHOP's rule
+  double step = 0.0;               ///< [m]; 0: a tenth of the depth
+  int beams = 0;                   ///< as written; 0: by BELLHOP's rule
   std::optional<int> single_beam;  ///< trace this one only, counted from 1
 };
 

@@ -8,8 +8,8 @@
 /// as in the files: metres, seconds, Hz, degrees, angles positive down (declination).
 namespace asdic::bellhop {
 
-/// Which numbers of a header are float64: Fortran BELLHOP writes float32, the toolbox since 2024 and
-/// its C++ port float64.
+/// Which numbers of a header are float64: Fortran BELLHOP writes float32, the toolbox since 2024
+/// and its C++ port float64.
 enum class Dialect { fortran, wide };
 
 /// A pressure field, `.shd`.
@@ -25,9 +25,9 @@ struct ShadeFile {
 
 /// One row of an arrivals file.
 struct ArrivalRow {
-  double amplitude = 0.0;      ///< without absorption
+  double amplitude = 0.0;  ///< without absorption
   double phase_deg = 0.0;
-  double delay = 0.0;          ///< [s]
+  double delay = 0.0;            ///< [s]
   double delay_imaginary = 0.0;  ///< ≤ 0; amplitude × exp(2πf·delay_imaginary) has the absorption
   double launch_angle_deg = 0.0, arrival_angle_deg = 0.0;
   int surface_bounces = 0, bottom_bounces = 0;

@@ -7,8 +7,8 @@
 
 namespace asdic::bellhop {
 
-/// A case as read, and what the reader did that the user should know (a source moved into the water, a
-/// value left out and taken from the row before, letters that mean nothing …).
+/// A case as read, and what the reader did that the user should know (a source moved into the
+/// water, a value left out and taken from the row before, letters that mean nothing …).
 struct Input {
   PropagationCase run_case;
   bool binary_arrivals = false;

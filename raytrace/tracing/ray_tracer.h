@@ -11,15 +11,16 @@ struct TraceLimits {
   double min_range = -1e300, max_range = 1e5;  ///< [m]
   double max_depth = 1e300;                    ///< [m]
   int max_surface_bounces = 1 << 20, max_bottom_bounces = 1 << 20;
-  double faintest = 0.0;         ///< product of reflection magnitudes below which a ray is dropped
+  double faintest = 0.0;  ///< product of reflection magnitudes below which a ray is dropped
   int max_segments = 1'000'000;
 };
 
-/// Marches rays through any ocean: closed forms in cells where they exist (c linear: arcs of circles;
-/// 1/c² linear: parabolas), a high-order step with error control elsewhere, and events (grid lines of
-/// the water, nodes and facets of the boundaries, turning points) located to rounding. p jumps where
-/// the gradient of c or the boundary's tangent does. Built once per environment and frequency; const
-/// and shared by threads after that. docs/theory/rays.md, docs/theory/reflections.md
+/// Marches rays through any ocean: closed forms in cells where they exist (c linear: arcs of
+/// circles; 1/c² linear: parabolas), a high-order step with error control elsewhere, and events
+/// (grid lines of the water, nodes and facets of the boundaries, turning points) located to
+/// rounding. p jumps where the gradient of c or the boundary's tangent does. Built once per
+/// environment and frequency; const and shared by threads after that. docs/theory/rays.md,
+/// docs/theory/reflections.md
 class RayTracer {
  public:
   /// \param frequency  sets attenuation and reflection [Hz]
@@ -35,8 +36,9 @@ class RayTracer {
   void trace(double source_range, double source_depth, double launch_elevation,
              const TraceLimits& limits, RayTrajectory& out) const;
 
+  struct Ocean;  ///< what is prepared once (ocean.h)
+
  private:
-  struct Ocean;
   std::unique_ptr<const Ocean> ocean_;
 };
 

@@ -10,14 +10,14 @@ namespace asdic {
 /// A point on a ray in the (range, depth) plane, and the beam it carries. Slowness is tangent/c;
 /// depth and ζ are positive down.
 struct RayState {
-  double range = 0.0;   ///< r [m]
-  double depth = 0.0;   ///< z [m]
-  double xi = 0.0;      ///< ξ, range component of slowness [s/m]
-  double zeta = 0.0;    ///< ζ, depth component [s/m]
-  double time = 0.0;    ///< τ [s]
-  double q = 0.0;       ///< ∂n/∂(launch angle) of a point source: q(0) = 0, p(0) = 1/c₀ [m/rad]
-  double p = 0.0;       ///< dq/ds = c·p
-  double q_plane = 1.0; ///< the second solution: q(0) = 1, p(0) = 0 (plane wave)
+  double range = 0.0;  ///< r [m]
+  double depth = 0.0;  ///< z [m]
+  double xi = 0.0;     ///< ξ, range component of slowness [s/m]
+  double zeta = 0.0;   ///< ζ, depth component [s/m]
+  double time = 0.0;   ///< τ [s]
+  double q = 0.0;  ///< ∂n/∂(launch angle) of a point source: q(0) = 0, p(0) = 1/c₀ [m/rad]
+  double p = 0.0;  ///< dq/ds = c·p
+  double q_plane = 1.0;  ///< the second solution: q(0) = 1, p(0) = 0 (plane wave)
   double p_plane = 0.0;
   double nepers = 0.0;  ///< ∫α ds
   double length = 0.0;  ///< s [m]
@@ -36,19 +36,19 @@ struct RayHistory {
 /// before, the next segment's `begin` the state after the jump of p (and direction) between them.
 struct RaySegment {
   RayState begin, end;
-  RayHistory history;      ///< up to `begin`
-  double c_begin = 0.0, c_end = 0.0;    ///< speed by the cell's law [m/s]
+  RayHistory history;                 ///< up to `begin`
+  double c_begin = 0.0, c_end = 0.0;  ///< speed by the cell's law [m/s]
   double c_r_begin = 0.0, c_z_begin = 0.0, c_r_end = 0.0, c_z_end = 0.0;  ///< its gradient [1/s]
-  double c_nn_begin = 0.0, c_nn_end = 0.0;  ///< ∂²c/∂n² across the ray [1/(m·s)]
+  double c_nn_begin = 0.0, c_nn_end = 0.0;    ///< ∂²c/∂n² across the ray [1/(m·s)]
   double alpha_begin = 0.0, alpha_end = 0.0;  ///< attenuation [Np/m]
 };
 
 enum class RayEnd : std::uint8_t {
-  box,        ///< the limit of range or depth
-  bounces,    ///< as many bounces as allowed
-  faint,      ///< amplitude below what is wanted
-  absorbed,   ///< a boundary that reflects nothing
-  trapped,    ///< too many segments
+  box,       ///< the limit of range or depth
+  bounces,   ///< as many bounces as allowed
+  faint,     ///< amplitude below what is wanted
+  absorbed,  ///< a boundary that reflects nothing
+  trapped,   ///< too many segments
 };
 
 /// One ray, segment by segment. Memory is reused from ray to ray.
@@ -61,12 +61,13 @@ struct RayTrajectory {
 };
 
 /// The state inside a segment at arc length `s` from its begin, by quintic Hermite interpolation:
-/// value, slope and second derivative of every quantity agree at both ends, so the error is of sixth
-/// order in the segment's length. `caustics` of a receiver there: history.caustics plus one if q has
-/// changed sign on the way.
+/// value, slope and second derivative of every quantity agree at both ends, so the error is of
+/// sixth order in the segment's length. `caustics` of a receiver there: history.caustics plus one
+/// if q has changed sign on the way.
 [[nodiscard]] RayState state_at(const RaySegment& segment, double s) noexcept;
 
-/// Arc length from the segment's begin at which the ray is at a range between the ranges of its ends.
+/// Arc length from the segment's begin at which the ray is at a range between the ranges of its
+/// ends.
 [[nodiscard]] double arc_at_range(const RaySegment& segment, double range) noexcept;
 
 }  // namespace asdic

@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include "raytrace/tracing/cell.h"
+#include "raytrace/tracing/ray_tracer.h"
+
+namespace asdic {
+
+/// The environment prepared for marching: rows, columns and losses looked up once.
+struct RayTracer::Ocean {
+  Ocean(const Environment& environment, double frequency);
+
+  /// The cell of a row and a column. Valid as long as the ocean.
+  [[nodiscard]] tracing::Cell cell(std::size_t row, std::size_t column) const noexcept;
+  /// The row that holds a depth; on a line between two rows the lower one.
+  [[nodiscard]] std::size_t row(double depth) const noexcept;
+  [[nodiscard]] std::size_t column(double range) const noexcept;
+  /// Where a column of the section begins and ends; ∓1e300 without a section.
+  [[nodiscard]] double column_begin(std::size_t column) const noexcept;
+  [[nodiscard]] double column_end(std::size_t column) const noexcept;
+
+  [[nodiscard]] bool near_surface(std::size_t row) const noexcept {
+    return environment.surface.shape && rows[row].top < environment.surface.shape->deepest();
+  }
+  [[nodiscard]] bool near_bottom(std::size_t row) const noexcept {
+    return environment.bottom.shape && rows[row].bottom > environment.bottom.shape->shallowest();
+  }
+
+  Environment environment;
+  std::vector<tracing::Row> rows;  ///< from top to bottom, without gaps
+};
+
+}  // namespace asdic

@@ -1,0 +1,111 @@
+#include "raytrace/tracing/ray_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+/// Value and slope of the quintic that has value, slope and second derivative f, f', f'' at both
+/// ends of an interval of length h; u = s/h.
+struct ValueSlope {
+  double value, slope;
+};
+
+struct Jet {
+  double f, d, dd;
+};
+
+ValueSlope quintic(const Jet& a, const Jet& b, double h, double u) noexcept {
+  // p(u) = a.f + a1 u + a2 u² + a3 u³ + a4 u⁴ + a5 u⁵ in units of h
+  const double a1 = a.d * h, a2 = 0.5 * a.dd * h * h;
+  const double rise = b.f - a.f - a1 - a2;
+  const double slope = b.d * h - a1 - 2.0 * a2;
+  const double bend = b.dd * h * h - 2.0 * a2;
+  const double a3 = 10.0 * rise - 4.0 * slope + 0.5 * bend;
+  const double a4 = -15.0 * rise + 7.0 * slope - bend;
+  const double a5 = 6.0 * rise - 3.0 * slope + 0.5 * bend;
+  return {a.f + u * (a1 + u * (a2 + u * (a3 + u * (a4 + u * a5)))),
+          (a1 + u * (2.0 * a2 + u * (3.0 * a3 + u * (4.0 * a4 + u * 5.0 * a5)))) / h};
+}
+
+double cubic(double f0, double d0, double f1, double d1, double h, double u) noexcept {
+  const double rise = f1 - f0;
+  const double a1 = d0 * h, b1 = d1 * h;
+  return f0 + u * (a1 + u * ((3.0 * rise - 2.0 * a1 - b1) + u * (a1 + b1 - 2.0 * rise)));
+}
+
+/// One end of a segment with what the equations of motion say about slopes and bends there.
+struct SegmentEnd {
+  SegmentEnd(const RayState& y, double c, double c_r, double c_z, double c_nn) noexcept
+      : tr(c * y.xi), tz(c * y.zeta), c_s(c_r * tr + c_z * tz) {
+    const double c_n = -c_r * tz + c_z * tr;  // n = (−t_z, t_r)
+    range = {y.range, tr, c_n / c * tz};      // d²x/ds² = −(c_n/c) n
+    depth = {y.depth, tz, -c_n / c * tr};
+    time = {y.time, 1.0 / c, -c_s / (c * c)};
+    q = {y.q, c * y.p, c_s * y.p - c_nn / c * y.q};  // dq/ds = c p, dp/ds = −(c_nn/c²) q
+    q_plane = {y.q_plane, c * y.p_plane, c_s * y.p_plane - c_nn / c * y.q_plane};
+  }
+  double tr, tz, c_s;
+  Jet range{}, depth{}, time{}, q{}, q_plane{};
+};
+
+}  // namespace
+
+RayState state_at(const RaySegment& segment, double s) noexcept {
+  const double h = segment.end.length - segment.begin.length;
+  if (h <= 0.0) return segment.begin;
+  const double u = s / h;
+  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
+                     segment.c_nn_begin);
+  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
+                     segment.c_nn_end);
+  RayState y;
+  const ValueSlope range = quintic(a.range, b.range, h, u);
+  const ValueSlope depth = quintic(a.depth, b.depth, h, u);
+  const ValueSlope time = quintic(a.time, b.time, h, u);
+  const ValueSlope q = quintic(a.q, b.q, h, u);
+  const ValueSlope q_plane = quintic(a.q_plane, b.q_plane, h, u);
+  const double c = cubic(segment.c_begin, a.c_s, segment.c_end, b.c_s, h, u);
+  y.range = range.value;
+  y.depth = depth.value;
+  const double unit = 1.0 / (c * std::hypot(range.slope, depth.slope));
+  y.xi = range.slope * unit;
+  y.zeta = depth.slope * unit;
+  y.time = time.value;
+  y.q = q.value;
+  y.p = q.slope / c;
+  y.q_plane = q_plane.value;
+  y.p_plane = q_plane.slope / c;
+  y.nepers =
+      cubic(segment.begin.nepers, segment.alpha_begin, segment.end.nepers, segment.alpha_end, h, u);
+  y.length = segment.begin.length + s;
+  return y;
+}
+
+double arc_at_range(const RaySegment& segment, double range) noexcept {
+  const double h = segment.end.length - segment.begin.length;
+  const double begin = segment.begin.range, end = segment.end.range;
+  if (h <= 0.0 || begin == end || range == begin) return 0.0;
+  if (range == end) return h;
+  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
+                     segment.c_nn_begin);
+  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
+                     segment.c_nn_end);
+  const double sense = end > begin ? 1.0 : -1.0;
+  double low = 0.0, high = 1.0, u = (range - begin) / (end - begin);
+  for (int i = 0; i < 60; ++i) {  // Newton's method, bracketed
+    const ValueSlope r = quintic(a.range, b.range, h, u);
+    const double miss = sense * (r.value - range);
+    (miss > 0.0 ? high : low) = u;
+    const double step = miss / (sense * r.slope * h);
+    double next = u - step;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const bool done = std::abs(next - u) * h < 1e-11 * (1.0 + h);
+    u = next;
+    if (done) break;
+  }
+  return u * h;
+}
+
+}  // namespace asdic
