@@ -82,6 +82,7 @@ std::string_view name(BeamKind kind) noexcept {
 void write_field(Hdf5File& file, const FieldData& field) {
   file.set_attribute("", "frequency_hz", field.frequency);
   file.set_attribute("", "field", name(field.kind));
+  file.set_attribute("", "source", field.source == SourceKind::line ? "line" : "point");
   if (!field.beam_kind.empty()) file.set_attribute("", "beam_kind", field.beam_kind);
   if (field.beams > 0) {
     file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
@@ -130,6 +131,7 @@ FieldData read_field(const Hdf5File& file) {
   if (known == std::end(field_kinds))
     throw wrong(file, "field", '"' + kind + '"', "coherent, incoherent or semi-coherent");
   field.kind = *known;
+  if (text_or(file, "", "source", "point") == "line") field.source = SourceKind::line;
   if (file.has_attribute("", "beams"))
     field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
   if (file.has_attribute("", "beam_error_db"))
@@ -163,7 +165,8 @@ bellhop::ShadeFile to_shade_file(const FieldData& field) {
                           .receiver_depths = field.receivers.depths,
                           .receiver_ranges = field.receivers.ranges,
                           .pressure = field.pressure};
-  for (std::complex<float>& p : file.pressure) p = -p;
+  if (field.source == SourceKind::point)
+    for (std::complex<float>& p : file.pressure) p = -p;
   return file;
 }
 
