@@ -41,7 +41,7 @@ def level_axis(axes, floor: float, top: float, mirrored: bool = False) -> None:
     """Levels on an axis of heights above the floor."""
     span = 1.06 * (top - floor)
     axes.set_ylim(-span if mirrored else 0.0, span)
-    ticks = np.arange(0.0, top - floor + 1e-9, 20.0)
+    ticks = np.arange(0.0, top - floor + 1e-9, 20.0 if top - floor > 35.0 else 10.0)
     both = np.concatenate([-ticks[:0:-1], ticks]) if mirrored else ticks
     axes.set_yticks(both)
     axes.set_yticklabels([f"{floor + abs(t):g}".replace("-", "−") for t in both])
@@ -77,8 +77,8 @@ def draw(arrivals):
         style.subtitle(axes, f"{receiver.label}: {receiver.delay.size} arrivals")
     rows[-1, 0].set_xlabel("delay / s")
     more = len(arrivals.receivers) - len(panels)
-    fig.suptitle(f"{TITLE}: {style.shorten(arrivals.title, 60) or 'level over delay'}, "
-                 f"{arrivals.frequency:g} Hz" + (f"; {more} more receivers" if more > 0 else ""),
+    fig.suptitle(f"{TITLE}: {style.shorten(arrivals.title, 60)}, {arrivals.frequency:g} Hz"
+                 + (f"; {more} more receivers" if more > 0 else ""),
                  x=0.012, ha="left", fontsize=13, fontweight="bold")
     style.legend_below(rows[-1, 0], history_handles(*[arrivals.receivers[i] for i in panels]),
                        below=0.26)

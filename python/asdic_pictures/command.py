@@ -70,7 +70,7 @@ def draw_result(options) -> None:
     from . import arrival_stems, ray_paths, results, style, transmission_loss
 
     result = results.read(options.file)
-    result.title = result.title or (options.names or [Path(options.file).name])[0]
+    result.title = result.title or short_name((options.names or [options.file])[0])
     folder = Path(options.output) if options.output else default_folder(options.file)
     folder.mkdir(parents=True, exist_ok=True)
     name, module = {results.Field: ("transmission_loss", transmission_loss),
