@@ -20,7 +20,7 @@ struct FieldData {
   std::vector<double> source_depths;  ///< [m]
   ReceiverGrid receivers;
   std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges], range fastest
-  std::string beam_kind;                      ///< "hat", "Gaussian" …; empty: not known
+  std::string beam_kind;                      ///< "hat", "gaussian" …; empty: not known
   std::size_t beams = 0;                      ///< rays traced per source; 0: not known
   double beam_error_db = 0.0;  ///< what more beams would change, at 95 % of receivers
 };
@@ -38,8 +38,5 @@ void write_field(Hdf5File& file, const FieldData& field);
 /// Nothing in the file says how it was added: without an imaginary part it was not coherently. Nor
 /// does it tell a line source from a point source, which is assumed.
 [[nodiscard]] FieldData from_shade_file(const bellhop::ShadeFile& file);
-
-[[nodiscard]] std::string_view name(FieldKind kind) noexcept;  ///< "coherent", "incoherent" …
-[[nodiscard]] std::string_view name(BeamKind kind) noexcept;   ///< "hat", "Gaussian" …
 
 }  // namespace asdic
