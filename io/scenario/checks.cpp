@@ -6,13 +6,19 @@
 namespace asdic::scenario {
 namespace {
 
+/// Over a bottom that is not flat a straight track is looked at this often besides its ends.
+int looks_between(const Environment& ocean) {
+  return ocean.surface.shape || ocean.bottom.shape ? 200 : 0;
+}
+
 /// One moment of a track that could be its worst: tracks are straight between these.
 struct Moment {
   double time;
   std::string key;  // of the scenario that places it there
 };
 
-std::vector<Moment> moments(const Track& track, TomlTable& table, double from, double to) {
+std::vector<Moment> moments(const Track& track, TomlTable& table, double from, double to,
+                            int between = 0) {
   const std::string start = !track.waypoints.empty() ? "waypoints"
                             : table.has("position")  ? "position"
                                                      : "depth";
@@ -21,6 +27,8 @@ std::vector<Moment> moments(const Track& track, TomlTable& table, double from, d
   for (std::size_t i = 0; i < track.waypoints.size(); ++i)
     if (track.waypoints[i].time > from && track.waypoints[i].time < to)
       result.push_back({track.waypoints[i].time, "waypoints[" + std::to_string(i) + "]"});
+  for (int i = 1; i <= between; ++i)
+    result.push_back({from + (to - from) * i / (between + 1.0), end});
   std::sort(result.begin(), result.end(),
             [](const Moment& a, const Moment& b) { return a.time < b.time; });
   return result;
@@ -36,10 +44,15 @@ double fastest(const Track& track) {
   return speed;
 }
 
+/// The water above and below a place of the map.
 class WaterColumn {
  public:
-  explicit WaterColumn(const Environment& ocean)
-      : top_(ocean.surface.depth), bottom_(ocean.bottom.depth) {}
+  WaterColumn(const Scenario& scenario, const Vec3& place) {
+    const Environment& ocean = scenario.environment;
+    const double range = scenario.transect.range_of(place.x(), place.y());
+    top_ = ocean.surface.depth_at(range);
+    bottom_ = ocean.bottom.depth_at(range);
+  }
 
   [[nodiscard]] bool holds(double depth) const { return depth > top_ && depth < bottom_; }
   [[nodiscard]] std::string expected() const {
@@ -48,7 +61,7 @@ class WaterColumn {
   }
 
  private:
-  double top_, bottom_;
+  double top_ = 0.0, bottom_ = 0.0;
 };
 
 std::string at_time(double time) { return " at " + to_text(time) + " s"; }
@@ -59,11 +72,13 @@ double end_of(const PingSchedule& pings, int last_ping) {
 }
 
 void check_platform(TomlTable& root, const Scenario& scenario) {
-  const WaterColumn water(scenario.environment);
   TomlTable platform = root.table("platform"), array = root.table("array");
   for (const Moment& moment :
-       moments(scenario.platform, platform, 0.0, end_of(scenario.pings, scenario.pings.count))) {
-    const double depth = scenario.platform.at(moment.time).position.z();
+       moments(scenario.platform, platform, 0.0, end_of(scenario.pings, scenario.pings.count),
+               looks_between(scenario.environment))) {
+    const Vec3 place = scenario.platform.at(moment.time).position;
+    const double depth = place.z();
+    const WaterColumn water(scenario, place);
     if (!water.holds(depth))
       throw platform.fault(moment.key, water.expected(),
                            "depth " + to_text(depth) + " m" + at_time(moment.time));
@@ -78,16 +93,17 @@ void check_platform(TomlTable& root, const Scenario& scenario) {
 }
 
 void check_targets(TomlTable& root, const Scenario& scenario) {
-  const WaterColumn water(scenario.environment);
   auto tables = root.tables("target");
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const Target& target = scenario.targets[i];
     if (target.first_ping > scenario.pings.count) continue;
     const int last = std::min(target.last_ping, scenario.pings.count);
     const double from = (target.first_ping - 1) * scenario.pings.interval;
-    for (const Moment& moment :
-         moments(target.track, tables[i], from, end_of(scenario.pings, last))) {
-      const double depth = target.track.at(moment.time).position.z();
+    for (const Moment& moment : moments(target.track, tables[i], from, end_of(scenario.pings, last),
+                                        looks_between(scenario.environment))) {
+      const Vec3 place = target.track.at(moment.time).position;
+      const double depth = place.z();
+      const WaterColumn water(scenario, place);
       if (!water.holds(depth))
         throw tables[i].fault(moment.key, water.expected(),
                               "depth " + to_text(depth) + " m" + at_time(moment.time));
@@ -102,6 +118,15 @@ void check_targets(TomlTable& root, const Scenario& scenario) {
                               to_text(distance) + " m" + at_time(time));
     }
   }
+}
+
+double slowest(const Environment& ocean) {
+  if (ocean.section)
+    return *std::min_element(ocean.section->speeds().begin(), ocean.section->speeds().end());
+  double least = infinity;
+  for (int i = 0; i <= 100; ++i)
+    least = std::min(least, ocean.water.at(ocean.bottom.depth * i / 100).c);
+  return least;
 }
 
 /// fs > 2·(f_c + B/2)·η_max, B the width outside which the pulse's spectrum is 40 dB down: what the
@@ -119,11 +144,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario) {
   double target_speed = 0.0;
   for (const Target& target : scenario.targets)
     target_speed = std::max(target_speed, fastest(target.track));
-  double slowest_sound = infinity;
-  for (int i = 0; i <= 100; ++i)
-    slowest_sound =
-        std::min(slowest_sound,
-                 scenario.environment.water.at(scenario.environment.bottom.depth * i / 100).c);
+  const double slowest_sound = slowest(scenario.environment);
   // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
   const double doppler = 1.0 + 2.0 * (target_speed + fastest(scenario.platform)) / slowest_sound;
   const double needed = 2.0 * highest * doppler;

@@ -1,0 +1,23 @@
+#pragma once
+#include "raytrace/environment.h"
+
+namespace asdic {
+
+/// Where on the map the ocean's range axis lies: from an origin along a bearing. The ocean is the
+/// same everywhere across it, so that range is the distance along it.
+struct Transect {
+  double x = 0.0, y = 0.0;  ///< of range 0 [m] east, north
+  double bearing = 0.0;     ///< of growing range, clockwise from north [rad]
+
+  /// Range of a place on the map [m].
+  [[nodiscard]] double range_of(double east, double north) const noexcept;
+};
+
+/// The ocean in the vertical plane that leaves a place on the map along a bearing [rad]: its range
+/// 0 is that place. Sections and shapes are stretched by 1/cos of the angle to the transect, or
+/// turned round; across it the ocean depends on depth alone. Sound is taken to stay in its plane:
+/// slopes bend it out of it, which is not followed.
+[[nodiscard]] Environment ocean_along(const Environment& ocean, const Transect& transect,
+                                      double east, double north, double bearing);
+
+}  // namespace asdic
