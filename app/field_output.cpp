@@ -11,6 +11,7 @@
 #include "io/compare/statistics.h"
 #include "io/environment_group.h"
 #include "io/scenario/propagation.h"
+#include "io/text/csv_table.h"
 
 namespace asdic::app {
 namespace {
@@ -58,7 +59,7 @@ void write_field_file(const FieldResult& result) {
   Hdf5File& file = output.file();
   write_root(file, "asdic field",
              {.title = result.run_case.title,
-              .text = read_whole_file(result.scenario),
+              .text = read_text_file(result.scenario, "a scenario file"),
               .overrides = result.overrides});
   write_field(file, result.data);
   const auto& ranges = result.run_case.receivers.ranges;

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "app/provenance.h"
 #include "core/error.h"
@@ -72,13 +71,6 @@ void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin&
   if (!origin.overrides.empty()) file.set_attribute("", "overrides", origin.overrides);
   file.write_text("scenario", origin.text);
   describe(file, "scenario", "the scenario file, verbatim");
-}
-
-std::string read_whole_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw RunError(path.string() + ": it cannot be read");
-  return text;
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {

@@ -38,9 +38,6 @@ struct ResultOrigin {
 /// What every file of results tells of itself: filetype, version, title, program, and the scenario.
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin);
 
-/// \throws RunError if it cannot be read
-[[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
-
 /// A whole text file at once: under its name it is complete. \throws RunError
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
