@@ -38,88 +38,111 @@ void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
   for (auto* array :
        {&amplitude_, &phase_, &wave_number_, &cosine_, &sine_, &q_, &growth_, &least_, &offset_})
     array->resize(n);
-  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n), way_.resize(n);
+  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n);
   const double f = setting_.frequency, spacing = setting_.spacing;
   launched_ = beams::launch_factor(setting_, launch);
-  const double launched2 = launched_ * launched_ / x.source_speed;
   const bool coherent = setting_.coherent;
   // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
   const bool is_hat = setting_.kind == BeamKind::hat;
   const double times = is_hat ? 1.0 : 4.0, least_factor = is_hat ? 0.0 : 1.0;
+  const double widening_scale = times * spacing;
+  const double *speeds = x.speed.data(), *qs = x.q.data(), *levels = x.level.data(),
+               *times_of = x.time.data(), *phases = x.phase.data(), *sines = x.sine.data(),
+               *cosines = x.cosine.data(), *dq_ds = x.dq_ds.data();
+  float *amplitude = amplitude_.data(), *phase = phase_.data(), *wave_number = wave_number_.data(),
+        *cosine_out = cosine_.data(), *sine_out = sine_.data(), *q_out = q_.data(),
+        *growth_out = growth_.data(), *least_out = least_.data();
+  double *above = above_.data(), *below = below_.data();
+  const double launched2 = launched_ * launched_ / x.source_speed;
+  const double k_unit = -2.0 * pi * f;
   ASDIC_INDEPENDENT
   for (std::size_t i = 0; i < n; ++i) {
-    const double c = x.speed[i], q = x.q[i];
-    const double intensity = launched2 * x.level[i] * x.level[i] * c;
-    amplitude_[i] = static_cast<float>(coherent ? std::sqrt(intensity) : intensity);
-    const double cycles = f * x.time[i];
-    phase_[i] = static_cast<float>(x.phase[i] - 2.0 * pi * (cycles - std::floor(cycles)));
-    wave_number_[i] = static_cast<float>(-2.0 * pi * f * x.sine[i] / c);
-    const double cosine = std::abs(x.cosine[i]);
-    const double growth = x.dq_ds[i] * x.sine[i];
-    cosine_[i] = static_cast<float>(cosine);
-    sine_[i] = static_cast<float>(x.sine[i]);
-    q_[i] = static_cast<float>(q);
-    growth_[i] = static_cast<float>(growth);
-    const double a = 0.2 * f * x.time[i], b = pi * c / f;
+    const double c = speeds[i], q = qs[i];
+    const double intensity = launched2 * levels[i] * levels[i] * c;
+    amplitude[i] = static_cast<float>(intensity);
+    const double cycles = f * times_of[i];
+    phase[i] = static_cast<float>(phases[i] - 2.0 * pi * (cycles - std::floor(cycles)));
+    wave_number[i] = static_cast<float>(k_unit * sines[i] / c);
+    const double cosine = std::abs(cosines[i]);
+    const double growth = dq_ds[i] * sines[i];
+    cosine_out[i] = static_cast<float>(cosine);
+    sine_out[i] = static_cast<float>(sines[i]);
+    q_out[i] = static_cast<float>(q);
+    growth_out[i] = static_cast<float>(growth);
+    const double a = 0.2 * f * times_of[i], b = pi * c / f;
     const double least = least_factor * (a < b ? a : b);
-    least_[i] = static_cast<float>(least);
-    const double widening = times * spacing * std::copysign(growth, growth * q);
+    least_out[i] = static_cast<float>(least);
+    const double widening = widening_scale * (q < 0.0 ? -growth : growth);
     const double narrow = std::abs(q) * spacing;
     const double width = times * (narrow > least ? narrow : least);
-    above_[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
-    below_[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
+    above[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
+    below[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
   }
+  if (coherent)
+    for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
   find_rows(x);
+  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
 }
 
 void ColumnSum::find_rows(const Crossings& x) {
   const std::size_t n = x.size();
-  const bool is_hat = setting_.kind == BeamKind::hat;
-  const double times = is_hat ? 1.0 : 4.0;
   const double top = first_depth_, per = per_spacing_, step = spacing_;
   const auto rows = static_cast<double>(depths_.size());
+  const double *depth = x.depth.data(), *above = above_.data(), *below = below_.data();
+  std::int32_t *first_out = first_.data(), *last_out = last_.data();
+  float* offset = offset_.data();
   if (step > 0.0) {
     ASDIC_INDEPENDENT
     for (std::size_t i = 0; i < n; ++i) {
-      const double z = x.depth[i];
-      double first = std::ceil((z - above_[i] - top) * per),
-             last = std::floor((z + below_[i] - top) * per) + 1.0;
+      const double z = depth[i];
+      double first = std::ceil((z - above[i] - top) * per);
+      double last = std::floor((z + below[i] - top) * per) + 1.0;
       first = first < 0.0 ? 0.0 : first;
       last = last > rows ? rows : last;
       first = first > rows ? rows : first;
       last = last < first ? first : last;
-      first_[i] = static_cast<std::int32_t>(first);
-      last_[i] = static_cast<std::int32_t>(last);
-      offset_[i] = static_cast<float>(top + first * step - z);
+      first_out[i] = static_cast<std::int32_t>(first);
+      last_out[i] = static_cast<std::int32_t>(last);
+      offset[i] = static_cast<float>(top + first * step - z);
     }
   } else {
     for (std::size_t i = 0; i < n; ++i) {
-      const auto row = [&](double depth) {
-        return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), depth) -
+      const auto row = [&](double z) {
+        return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
                                          depths_.begin());
       };
       first_[i] = row(x.depth[i] - above_[i]);
       last_[i] = row(x.depth[i] + below_[i]);
     }
   }
-  const bool recurring = !is_hat && setting_.coherent && step > 0.0;
-  const auto spacing = static_cast<float>(setting_.spacing * times);
-  for (std::size_t i = 0; i < n; ++i) {
-    const float growth = std::abs(growth_[i]), q = std::abs(q_[i]);
-    if (q == 0.0F)
-      way_[i] = Way::none;
-    else if (cosine_[i] < 2.0F * spacing * growth)
-      way_[i] = Way::plain;
-    else if (last_[i] <= first_[i])
-      way_[i] = Way::none;
-    else
-      way_[i] = Way::lanes;
-    if (recurring && way_[i] == Way::lanes) {
-      const auto reach = static_cast<float>(std::max(above_[i], below_[i]));
-      const auto width = static_cast<float>(setting_.spacing);
-      if (q > growth * reach && (q + growth * reach) * width < least_[i]) way_[i] = Way::even;
-    }
+}
+
+/// What add_evenly needs of each crossing from one group of rows to the next.
+void ColumnSum::prepare_recurrences(std::size_t n) {
+  const float step = static_cast<float>(lanes) * static_cast<float>(spacing_);
+  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_}) array->resize(n + lanes);
+  for (auto* array : {&wave_number_, &cosine_, &least_}) array->resize(n + lanes);
+  for (std::size_t i = 0; i < n; i += lanes) {
+    Lanes c, s;
+    cos_sin(load(&wave_number_[i]) * step, c, s);
+    store(c, &turn_cosine_[i]);
+    store(s, &turn_sine_[i]);
+    const Lanes u = load(&cosine_[i]) / load(&least_[i]) * step;
+    store(exponential(-u * u), &ratio_of_ratio_[i]);  // exp(−2aD²)
   }
+}
+
+ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
+  const float growth = std::abs(growth_[i]), q = std::abs(q_[i]);
+  const auto spacing = static_cast<float>(setting_.spacing);
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  if (q == 0.0F) return Way::none;
+  if (cosine_[i] < (is_hat ? 2.0F : 8.0F) * spacing * growth) return Way::plain;
+  if (last_[i] <= first_[i]) return Way::none;
+  if (is_hat || !setting_.coherent || !(spacing_ > 0.0)) return Way::lanes;
+  const auto reach = static_cast<float>(std::max(above_[i], below_[i]));
+  const bool constant = q > growth * reach && (q + growth * reach) * spacing < least_[i];
+  return constant ? Way::even : Way::lanes;
 }
 
 template <bool coherent, bool is_hat>
@@ -127,16 +150,17 @@ void ColumnSum::add_rows(const Crossings& x) {
   const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
   const float share_scale = spacing / root_of_two_pi;
   const auto row_spacing = static_cast<float>(spacing_);
-  const Lanes count = ramp(), depth_ramp = count * row_spacing;
+  const Lanes depth_ramp = ramp() * row_spacing;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (way_[i] == Way::none) continue;
-    if (way_[i] == Way::plain) {
+    const Way how = way(i);
+    if (how == Way::none) continue;
+    if (how == Way::plain) {
       add_plainly(x, i);
       continue;
     }
     float* real = real_.data() + x.column[i] * stride_;
     float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
-    if (way_[i] == Way::even) {
+    if (how == Way::even) {
       add_evenly(i, real, imaginary);
       continue;
     }
@@ -165,8 +189,6 @@ void ColumnSum::add_rows(const Crossings& x) {
         if constexpr (coherent) weight *= sqrt(q);
         where(u >= 4.0F, weight) = 0.0F;
       }
-      // rows beyond the last are none of this beam's: what is left of the padding takes them
-      where(count >= static_cast<float>(last - k), weight) = 0.0F;
       if constexpr (coherent) {
         Lanes angle = phase_[i] + wave_number_[i] * dz;
         if constexpr (!is_hat) {  // a caustic lies between the ray and the foot
@@ -197,11 +219,10 @@ void ColumnSum::add_evenly(std::size_t i, float* real, float* imaginary) const {
   Lanes dz = offset_[i] + row_spacing * ramp();
   Lanes bell = amplitude * exponential(-a * dz * dz);
   Lanes ratio = exponential(-a * step * (2.0F * dz + step));
-  const float ratio_of_ratio = std::exp(-2.0F * a * step * step);
+  const float ratio_of_ratio = ratio_of_ratio_[i];
   Lanes c, s;
   cos_sin(phase_[i] + wave_number_[i] * dz, c, s);
-  const float turn = wave_number_[i] * step;
-  const float turn_c = std::cos(turn), turn_s = std::sin(turn);
+  const float turn_c = turn_cosine_[i], turn_s = turn_sine_[i];
   Lanes q = abs(q_[i] + growth_[i] * dz);
   const float growth = std::copysign(growth_[i], growth_[i] * q_[i]) * step;
   const auto last = static_cast<std::size_t>(last_[i]);

@@ -197,7 +197,7 @@ std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
   const std::size_t cells = run_case.receivers.size();
   const bool fast = method == FieldMethod::fast && !run_case.receivers.irregular &&
                     (work.setting.kind == BeamKind::hat || work.setting.kind == BeamKind::gaussian);
-  const std::size_t few = std::clamp<std::size_t>(fan.elevation.size() / 512, 1, most_parts);
+  const std::size_t few = std::clamp<std::size_t>(fan.elevation.size() / 1024, 1, most_parts);
   const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
   if (!fast) {
     std::vector<PlainPart> parts;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/beams/lanes.h"
+
 namespace asdic {
 
 namespace {
@@ -85,17 +87,19 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
   double* s_at = work.sine.data();
   for (std::size_t i = 0; i < nodes; ++i)
     s_at[i] = std::sqrt(std::max(0.0, 1.0 - xi2 * speed_[i] * speed_[i]));
-  bool steep = false;
+  double *layer_reach = work.reach.data(), *layer_time_at = work.time.data();
+  const double *c_at = speed_.data(), *z_at = depth_.data(), *g_at = gradient_.data();
+  std::int64_t steep = 0;
+  ASDIC_INDEPENDENT
   for (std::size_t i = 0; i < layers; ++i) {
     const double a = s_at[i], b = s_at[i + 1];
-    const double reach =
-        xi * (speed_[i] + speed_[i + 1]) * (depth_[i + 1] - depth_[i]) / std::max(a + b, 1e-300);
-    const double w_over_g = xi * reach / (1.0 - a * b), w = w_over_g * gradient_[i];
-    work.reach[i] = reach;
-    work.time[i] = w_over_g * atanh_over_w(w * w);
-    steep |= w * w >= series_limit;
+    const double reach = xi * (c_at[i] + c_at[i + 1]) * (z_at[i + 1] - z_at[i]) / (a + b + 1e-300);
+    const double w_over_g = xi * reach / (1.0 - a * b), w = w_over_g * g_at[i];
+    layer_reach[i] = reach;
+    layer_time_at[i] = w_over_g * atanh_over_w(w * w);
+    steep += w * w >= series_limit ? 1 : 0;
   }
-  if (steep)
+  if (steep > 0)
     for (std::size_t i = 0; i < layers; ++i)
       work.time[i] = layer_time(xi * work.reach[i] / (1.0 - s_at[i] * s_at[i + 1]), gradient_[i]);
 
@@ -207,12 +211,14 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
          *speed = out.speed.data(), *time = out.time.data(), *q_out = out.q.data(),
          *dq = out.dq_ds.data(), *phase_out = out.phase.data();
   const double slow = 1.0 / xi;
+  ASDIC_INDEPENDENT
   for (std::size_t j = 0; j < n; ++j) {
     const double d = ranges[j] - r_a[j], bend = xi * g_a[j];
     const double s_j = s_a[j] - bend * d;
     const double cos_j = std::sqrt(1.0 - s_j * s_j);
-    depth[j] = z_a[j] + d * (s_a[j] + s_j) / (c_a[j] + cos_j);
-    const double w_over_g = xi * d / (1.0 - s_a[j] * s_j), w = w_over_g * g_a[j];
+    const double chord = c_a[j] + cos_j, arc = 1.0 - s_a[j] * s_j, both = d / (chord * arc);
+    depth[j] = z_a[j] + (s_a[j] + s_j) * arc * both;  // Δ(sin θ_a + sin θ)/(cos θ_a + cos θ)
+    const double w_over_g = xi * chord * both, w = w_over_g * g_a[j];
     time[j] = t_a[j] + w_over_g * atanh_over_w(w * w);
     q_out[j] = q_a[j] + p_a[j] * d * slow;
     cos_out[j] = cos_j;
