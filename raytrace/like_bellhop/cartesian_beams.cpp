@@ -79,6 +79,8 @@ void lay(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamS
     if (a.x.x() == b.x.x()) continue;  // a reflection, or a vertical piece: no range is inside
     const double low = std::min(a.x.x(), b.x.x()), high = std::max(a.x.x(), b.x.x());
     std::size_t column = std::max(first_at_or_beyond(block.grid, low), block.column_begin);
+    // Forwards the segment's beginning belongs to it; backwards neither of its ends does.
+    if (b.x.x() < a.x.x() && column < block.column_end && ranges[column] == low) ++column;
     if (column >= block.column_end || ranges[column] >= high) continue;
 
     const Chord chord(a, b);

@@ -54,7 +54,8 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
     vertical(std::copysign(ocean.box_range, end.x()), Cut::By::box_range);
   if (std::abs(end.y()) > ocean.box_depth)
     horizontal(std::copysign(ocean.box_depth, end.y()), Cut::By::box_depth);
-  cut.length = std::max(cut.length, shortest_share * ocean.step);
+  // A step that would be shorter goes past what cut it.
+  if (const double least = shortest_share * ocean.step; cut.length < least) cut = {.length = least};
   return cut;
 }
 
