@@ -68,50 +68,83 @@ struct Gaussian {
   double reflections(const Chord& k) const noexcept { return k.b.phase; }
 };
 
+/// A beam's way over the receivers.
 template <class Shape>
-void lay(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  const auto& points = beam.ray.points;
-  const auto& ranges = block.grid.ranges;
-  CausticPhase caustics;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const LiteralPoint &a = points[i - 1], &b = points[i];
-    caustics.pass(a.q1);
-    if (a.x.x() == b.x.x()) continue;  // a reflection, or a vertical piece: no range is inside
-    const double low = std::min(a.x.x(), b.x.x()), high = std::max(a.x.x(), b.x.x());
-    std::size_t column = std::max(first_at_or_beyond(block.grid, low), block.column_begin);
-    // Forwards the segment's beginning belongs to it; backwards neither of its ends does.
-    if (b.x.x() < a.x.x() && column < block.column_end && ranges[column] == low) ++column;
-    if (column >= block.column_end || ranges[column] >= high) continue;
+class CartesianLayer {
+ public:
+  CartesianLayer(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamSink& sink)
+      : shape_(shape), points_(beam.ray.points), block_(block), sink_(sink) {}
 
+  void operator()() {
+    column_ = std::min(first_at_or_beyond(block_.grid, points_.front().x.x()),
+                       block_.grid.ranges.size() - 1);
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      caustics_.pass(points_[i - 1].q1);
+      // not a reflection, or a vertical piece
+      if (points_[i - 1].x.x() != points_[i].x.x()) walk(i);
+    }
+  }
+
+ private:
+  /// Takes the receivers between the segment's ends. A column moves along with the ray and stops short
+  /// of the segment's end, so that a range at a joint belongs to the segment that begins there if the
+  /// ray goes forwards, to none if it goes backwards, and to the first backward one where it turns.
+  void walk(std::size_t i) {
+    const std::vector<double>& range = block_.grid.ranges;
+    const double begin = points_[i - 1].x.x(), end = points_[i].x.x();
+    const double low = std::min(begin, end), high = std::max(begin, end);
+    for (;;) {
+      const double here = range[column_];
+      if (here >= low && here < high && column_ >= block_.column_begin &&
+          column_ < block_.column_end)
+        lay(i);
+      if (here < end) {
+        if (column_ + 1 >= range.size() || range[column_ + 1] >= end) return;
+        ++column_;
+      } else {
+        if (column_ == 0 || range[column_ - 1] <= end) return;
+        --column_;
+      }
+    }
+  }
+
+  /// The segment's contributions to the receivers of the present column.
+  void lay(std::size_t i) {
+    const LiteralPoint &a = points_[i - 1], &b = points_[i];
     const Chord chord(a, b);
     double top = -infinity, bottom = infinity;
     if (const double cosine = std::abs(chord.tangent.x()); cosine > Shape::steep) {
-      const double reach = shape.reach(chord, cosine);
+      const double reach = shape_.reach(chord, cosine);
       top = std::min(a.x.y(), b.x.y()) - reach;
       bottom = std::max(a.x.y(), b.x.y()) + reach;
     }
     Contribution c;
     c.segment = i;
     c.end = &b;
+    c.column = column_;
     c.arrival_declination = std::atan2(chord.tangent.y(), chord.tangent.x());
-    for (; column < block.column_end && ranges[column] < high; ++column) {
-      for (std::size_t row = block.row_begin; row < block.row_end; ++row) {
-        const double depth = block.depth(row, column);
-        if (depth < top || depth > bottom) continue;
-        const Vec2 off = Vec2(ranges[column], depth) - a.x;
-        const double s = off.dot(chord.tangent) / chord.length;  // may lie outside 0..1
-        const double n = std::abs(off.dot(chord.normal));
-        const double q = a.q1 + s * chord.dq;
-        if (!shape.weigh(chord, q, n, c)) continue;
-        c.row = row;
-        c.column = column;
-        c.tau = a.tau + s * chord.dtau;
-        c.phase = caustics.at(q, shape.reflections(chord));
-        sink.take(c);
-      }
+    for (std::size_t row = block_.row_begin; row < block_.row_end; ++row) {
+      const double depth = block_.depth(row, column_);
+      if (depth < top || depth > bottom) continue;
+      const Vec2 off = Vec2(block_.grid.ranges[column_], depth) - a.x;
+      const double s = off.dot(chord.tangent) / chord.length;  // may lie outside 0..1
+      const double n = std::abs(off.dot(chord.normal));
+      const double q = a.q1 + s * chord.dq;
+      if (!shape_.weigh(chord, q, n, c)) continue;
+      c.row = row;
+      c.tau = a.tau + s * chord.dtau;
+      c.phase = caustics_.at(q, shape_.reflections(chord));
+      sink_.take(c);
     }
   }
-}
+
+  Shape shape_;
+  const std::vector<LiteralPoint>& points_;
+  const ReceiverBlock& block_;
+  BeamSink& sink_;
+  CausticPhase caustics_;
+  std::size_t column_ = 0;
+};
 
 }  // namespace
 
@@ -125,11 +158,11 @@ std::size_t first_at_or_beyond(const ReceiverGrid& grid, double range) noexcept 
 }
 
 void lay_cartesian_hat(const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  lay(Hat{beam.launch_factor(), beam.q0()}, beam, block, sink);
+  CartesianLayer(Hat{beam.launch_factor(), beam.q0()}, beam, block, sink)();
 }
 
 void lay_cartesian_gaussian(const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  lay(Gaussian{beam.launch_factor(), beam.q0(), beam.frequency}, beam, block, sink);
+  CartesianLayer(Gaussian{beam.launch_factor(), beam.q0(), beam.frequency}, beam, block, sink)();
 }
 
 }  // namespace asdic::like_bellhop

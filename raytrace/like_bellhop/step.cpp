@@ -15,6 +15,7 @@ struct Cut {
   double length;
   By by = By::nothing;
   double coordinate = 0.0;  // where a row, column, node or side of the box is [m]
+  bool exact = true;        // the step ends on it
 };
 
 /// The largest part of a step of `length` along the unit vector u that crosses nothing.
@@ -54,8 +55,11 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
     vertical(std::copysign(ocean.box_range, end.x()), Cut::By::box_range);
   if (std::abs(end.y()) > ocean.box_depth)
     horizontal(std::copysign(ocean.box_depth, end.y()), Cut::By::box_depth);
-  // A step that would be shorter goes past what cut it.
-  if (const double least = shortest_share * ocean.step; cut.length < least) cut = {.length = least};
+  // A step that would be shorter goes past what cut it; what it was is still known.
+  if (const double least = shortest_share * ocean.step; cut.length < least) {
+    cut.length = least;
+    cut.exact = false;
+  }
   return cut;
 }
 
@@ -63,6 +67,7 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
 Vec2 land(const Vec2& x, const Vec2& u, const Cut& cut, const LiteralOcean& ocean,
           const RayPlace& place) noexcept {
   Vec2 end = x + cut.length * u;
+  if (!cut.exact) return end;
   switch (cut.by) {
     case Cut::By::row:
     case Cut::By::box_depth:
