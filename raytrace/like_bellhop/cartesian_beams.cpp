@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/like_bellhop/beam.h"
+#include "raytrace/like_bellhop/column_walk.h"
 
 namespace asdic::like_bellhop {
 namespace {
@@ -76,40 +76,18 @@ class CartesianLayer {
       : shape_(shape), points_(beam.ray.points), block_(block), sink_(sink) {}
 
   void operator()() {
-    column_ = std::min(first_at_or_beyond(block_.grid, points_.front().x.x()),
-                       block_.grid.ranges.size() - 1);
+    ColumnWalk columns(block_, points_.front().x.x());
     for (std::size_t i = 1; i < points_.size(); ++i) {
-      caustics_.pass(points_[i - 1].q1);
-      // not a reflection, or a vertical piece
-      if (points_[i - 1].x.x() != points_[i].x.x()) walk(i);
+      const LiteralPoint &a = points_[i - 1], &b = points_[i];
+      caustics_.pass(a.q1);
+      if (a.x.x() == b.x.x()) continue;  // a reflection, or a vertical piece
+      columns.over(a.x.x(), b.x.x(), [&](std::size_t column) { lay(i, column); });
     }
   }
 
  private:
-  /// Takes the receivers between the segment's ends. A column moves along with the ray and stops short
-  /// of the segment's end, so that a range at a joint belongs to the segment that begins there if the
-  /// ray goes forwards, to none if it goes backwards, and to the first backward one where it turns.
-  void walk(std::size_t i) {
-    const std::vector<double>& range = block_.grid.ranges;
-    const double begin = points_[i - 1].x.x(), end = points_[i].x.x();
-    const double low = std::min(begin, end), high = std::max(begin, end);
-    for (;;) {
-      const double here = range[column_];
-      if (here >= low && here < high && column_ >= block_.column_begin &&
-          column_ < block_.column_end)
-        lay(i);
-      if (here < end) {
-        if (column_ + 1 >= range.size() || range[column_ + 1] >= end) return;
-        ++column_;
-      } else {
-        if (column_ == 0 || range[column_ - 1] <= end) return;
-        --column_;
-      }
-    }
-  }
-
-  /// The segment's contributions to the receivers of the present column.
-  void lay(std::size_t i) {
+  /// The segment's contributions to the receivers of a column.
+  void lay(std::size_t i, std::size_t column) {
     const LiteralPoint &a = points_[i - 1], &b = points_[i];
     const Chord chord(a, b);
     double top = -infinity, bottom = infinity;
@@ -121,12 +99,12 @@ class CartesianLayer {
     Contribution c;
     c.segment = i;
     c.end = &b;
-    c.column = column_;
+    c.column = column;
     c.arrival_declination = std::atan2(chord.tangent.y(), chord.tangent.x());
     for (std::size_t row = block_.row_begin; row < block_.row_end; ++row) {
-      const double depth = block_.depth(row, column_);
+      const double depth = block_.depth(row, column);
       if (depth < top || depth > bottom) continue;
-      const Vec2 off = Vec2(block_.grid.ranges[column_], depth) - a.x;
+      const Vec2 off = Vec2(block_.grid.ranges[column], depth) - a.x;
       const double s = off.dot(chord.tangent) / chord.length;  // may lie outside 0..1
       const double n = std::abs(off.dot(chord.normal));
       const double q = a.q1 + s * chord.dq;
@@ -143,18 +121,12 @@ class CartesianLayer {
   const ReceiverBlock& block_;
   BeamSink& sink_;
   CausticPhase caustics_;
-  std::size_t column_ = 0;
 };
 
 }  // namespace
 
 double Beam::launch_factor() const noexcept {
   return source == SourceKind::point ? std::sqrt(std::abs(std::cos(ray.declination))) : 1.0;
-}
-
-std::size_t first_at_or_beyond(const ReceiverGrid& grid, double range) noexcept {
-  return static_cast<std::size_t>(
-      std::lower_bound(grid.ranges.begin(), grid.ranges.end(), range) - grid.ranges.begin());
 }
 
 void lay_cartesian_hat(const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {

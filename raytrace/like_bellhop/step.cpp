@@ -153,6 +153,7 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
   ocean.water.locate(y.x, y.t, place.cell);
   const WaterPoint w2 = ocean.water.at(y.x, place.cell);
   y.c = w2.c;
+  y.gradient = w2.gradient();
   if (!(place.cell == begin_cell))
     cross(w2.gradient() - w0.gradient(), place.cell.row == begin_cell.row, y);
   return y;
