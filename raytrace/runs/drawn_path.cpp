@@ -35,6 +35,13 @@ RayPath drawn_path(const RayTrajectory& ray, double length, double sagitta) {
     path.bottom_bounces = s.history.bottom_bounces;
     path.turns = s.history.upper_turns + s.history.lower_turns;
   }
+  const bool whole = ray.segments.empty() || ray.segments.back().end.length <= length;
+  if (whole && static_cast<std::size_t>(path.surface_bounces + path.bottom_bounces) <
+                   ray.bounces.size()) {  // it ended at a boundary: that bounce counts
+    path.surface_bounces = path.bottom_bounces = 0;
+    for (const Bounce& bounce : ray.bounces)
+      ++(bounce.boundary == BoundaryKind::surface ? path.surface_bounces : path.bottom_bounces);
+  }
   const auto bounces = std::min(
       ray.bounces.size(), static_cast<std::size_t>(path.surface_bounces + path.bottom_bounces));
   for (std::size_t i = 0; i < bounces; ++i)
