@@ -18,6 +18,25 @@ struct ColumnCrossing {
   int turns = 0;        ///< turning points passed
 };
 
+/// A leg of a trajectory: its segments [first, last), and a number that rays share which have hit
+/// the same boundaries, and facets of them where the tangent jumps, in the same order before.
+struct LegOfRay {
+  std::uint64_t history = 0;
+  std::size_t first = 0, last = 0;
+};
+
+/// The history after one more bounce.
+[[nodiscard]] std::uint64_t history_after(std::uint64_t history, const Boundary& boundary,
+                                          BoundaryKind kind, double range) noexcept;
+
+/// \param out  its memory is reused
+void split_into_legs(const RayTrajectory& ray, const Environment& environment,
+                     std::vector<LegOfRay>& out);
+
+/// (−1)^(bounces): after an odd number of bounces the beam is seen in a mirror, and the ray
+/// launched a little higher is on the other side.
+[[nodiscard]] double mirror_sign(const RayHistory& history) noexcept;
+
 /// The state of a ray at one end of a leg, with the water's gradient: enough to go a little further
 /// along the leg's own curve, as if the boundary were not there.
 struct LegEnd {
@@ -54,7 +73,8 @@ struct RayLeg {
 
 /// One ray of a fan, boiled down to what neighbours are compared by.
 struct FanRay {
-  double angle = 0.0;  ///< launch elevation [rad]
+  double angle = 0.0;           ///< launch elevation [rad]
+  std::vector<LegOfRay> parts;  ///< of the trajectory, one for each leg
   std::vector<RayLeg> legs;
   std::vector<ColumnCrossing> crossings;
   RayEnd ended = RayEnd::box;
