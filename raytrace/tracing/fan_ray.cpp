@@ -122,6 +122,23 @@ std::optional<ColumnCrossing> FanRay::crossing_or_continued(const RayLeg& leg, s
   return there;
 }
 
+double position_slope(const Boundary& boundary, double range) noexcept {
+  if (!boundary.shape) return 0.0;
+  if (boundary.shape->interpolation() == ShapeInterpolation::smooth)
+    return boundary.shape->at(range).slope;
+  const std::size_t facet = boundary.shape->facet(range);  // straight, whatever reflects
+  return boundary.shape->depth_at(range + 0.5, facet) -
+         boundary.shape->depth_at(range - 0.5, facet);
+}
+
+double range_per_angle(const LegEnd& end, const Boundary& boundary, double sign) noexcept {
+  // With u the boundary's tangent and n = c(ζ, −ξ) the beam's normal, u·dℓ = n·(∓q dα) + t·ds, so
+  // dℓ = ∓q dα/(u·n) and dr = u_r dℓ.
+  const double slope = position_slope(boundary, end.range);  // u_z/u_r
+  const double across = end.c * (end.zeta - slope * end.xi);
+  return across != 0.0 ? -sign * end.q / across : 0.0;
+}
+
 void digest(const RayTrajectory& ray, const Environment& environment,
             std::span<const ReceiverColumn> columns, FanRay& out) {
   out.angle = ray.launch_elevation;
@@ -140,6 +157,15 @@ void digest(const RayTrajectory& ray, const Environment& environment,
         bounces(head) > 0 && (first == 0 || bounces(segments[first - 1]) < bounces(head));
     leg.to_boundary =
         last < segments.size() ? bounces(segments[last]) > bounces(tail) : at_boundary;
+    if (leg.from_boundary && !out.legs.empty()) leg.d_begin = out.legs.back().d_end;
+    if (leg.to_boundary) {
+      const auto bounce = static_cast<std::size_t>(bounces(head));
+      const bool surface = bounce < ray.bounces.size()
+                               ? ray.bounces[bounce].boundary == BoundaryKind::surface
+                               : tail.end.zeta < 0.0;
+      leg.d_end =
+          range_per_angle(leg.end, surface ? environment.surface : environment.bottom, leg.sign);
+    }
     leg.turns_begin = head.history.upper_turns + head.history.lower_turns;
     leg.turns_end = tail.history.upper_turns + tail.history.lower_turns;
     leg.first_crossing = static_cast<std::uint32_t>(out.crossings.size());

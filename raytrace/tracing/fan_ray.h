@@ -53,6 +53,8 @@ struct LegEnd {
 struct RayLeg {
   std::uint64_t history = 0;
   LegEnd begin, end;
+  double d_begin = 0.0, d_end = 0.0;  ///< how the ranges of its ends move along the boundaries when
+                                      ///< the ray is launched a little higher, dr/dα [m/rad]
   double sign = -1.0;  ///< of the ray's normal: (−1)^(bounces + 1), so that ∂z/∂α = sign·q/(c·ξ)
   double strength = 1.0;               ///< product of the reflections' magnitudes before it
   bool from_boundary = false;          ///< begins there, rather than at the source
@@ -89,6 +91,14 @@ struct FanRay {
                                                                     std::uint32_t column,
                                                                     double range) const noexcept;
 };
+
+/// dr/dα of the place where a ray strikes a boundary: the beam's displacement q·dα across the ray,
+/// seen along the boundary. \param end  of the leg \param sign  RayLeg::sign
+[[nodiscard]] double range_per_angle(const LegEnd& end, const Boundary& boundary,
+                                     double sign) noexcept;
+
+/// Of the boundary as a place; for a curvilinear shape not the slope that reflects.
+[[nodiscard]] double position_slope(const Boundary& boundary, double range) noexcept;
 
 /// \param out  its memory is reused
 void digest(const RayTrajectory& ray, const Environment& environment,
