@@ -15,7 +15,7 @@ double curvature(const RaySegment& s) noexcept {
 
 }  // namespace
 
-RayPath drawn_path(const RayTrajectory& ray, double length, double sagitta) {
+RayPath drawn_path(const RayTrajectory& ray, double length, double sagitta, double depth_step) {
   RayPath path;
   path.launch_elevation = path.final_elevation = ray.launch_elevation;
   const auto add = [&](const RayState& y) { path.points.push_back({y.range, y.depth, y.time}); };
@@ -24,7 +24,8 @@ RayPath drawn_path(const RayTrajectory& ray, double length, double sagitta) {
     if (s.begin.length >= length) break;
     const double arc = std::min(s.end.length, length) - s.begin.length;
     // a chord of length L on a curve of curvature κ is L²κ/8 off
-    const double parts = std::ceil(arc * std::sqrt(curvature(s) / (8.0 * sagitta)));
+    const double parts = std::ceil(std::max(arc * std::sqrt(curvature(s) / (8.0 * sagitta)),
+                                            std::abs(s.end.depth - s.begin.depth) / depth_step));
     const int n = static_cast<int>(std::clamp(parts, 1.0, 1e4));
     for (int i = 1; i < n; ++i) add(state_at(s, arc * i / n));
     const RayState last = s.end.length <= length ? s.end : state_at(s, arc);

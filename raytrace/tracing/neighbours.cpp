@@ -129,7 +129,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
                                     std::size_t i) const {
   if (finest_apart(a.angle, b.angle)) return false;
   double nearest = 1e300, farthest = -1e300, widest = 0.0;
-  bool same_boundary = true;
+  bool same_boundary = true, turned_back = false;
   for (const FanRay* ray : {&a, &m, &b}) {
     if (i >= ray->legs.size()) {
       if (stopped_by_limits(*ray)) return false;  // no more of the two than this one has
@@ -141,12 +141,14 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
       nearest = std::min({nearest, leg.begin.range, leg.end.range});
       farthest = std::max({farthest, leg.begin.range, leg.end.range});
       widest = std::max({widest, std::abs(leg.begin.q), std::abs(leg.end.q)});
+      turned_back |= leg.end.range < leg.begin.range;
     }
   }
   const auto beyond =
       std::partition_point(columns_.begin(), columns_.end(),
                            [&](const ReceiverColumn& column) { return column.range < nearest; });
-  if (beyond == columns_.end() || beyond->range > farthest) return false;
+  // Rays between may reach further than the three, though not far beyond them.
+  if (beyond == columns_.end() || beyond->range > 2.0 * farthest - nearest) return false;
   if (!same_boundary) return true;
   const RayLeg &la = a.legs[i], &lb = b.legs[i];
   const bool at_a_node = la.from_boundary && lb.from_boundary &&
