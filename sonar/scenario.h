@@ -14,6 +14,13 @@
 
 namespace asdic {
 
+/// Where the ocean's range axis lies on the map: the ocean varies along this line and is uniform
+/// across it.
+struct TransectPlace {
+  Vec2 origin = Vec2::Zero();  ///< of range 0 (x east, y north) [m]
+  double bearing = 0.0;        ///< of growing range, clockwise from north [rad]
+};
+
 struct Target {
   std::string name = "target";
   Track track;
@@ -58,6 +65,7 @@ struct Scenario {
   std::string title;
   std::uint64_t seed = 1;
   Environment environment;
+  TransectPlace transect;
   double wind_speed = 10.0;  ///< at 10 m [m/s]
   Track platform;            ///< carries transmitter and array
   Transmitter transmitter;
