@@ -20,15 +20,11 @@ PathLimits limits_of(const PropagationSettings& settings) noexcept {
           .max_launch_angle = settings.max_launch_angle};
 }
 
-PropagationPaths::PropagationPaths(const Environment& ocean, const TransectPlace& transect)
-    : along_(ocean),
-      origin_(transect.origin),
-      direction_(std::sin(transect.bearing), std::cos(transect.bearing)),
-      layered_(is_layered(ocean)) {}
+PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect)
+    : along_(ocean), transect_(transect), layered_(is_layered(ocean)) {}
 
 Plane PropagationPaths::plane(const Vec3& from, double bearing) const noexcept {
-  const Vec2 towards(std::sin(bearing), std::cos(bearing));
-  return {.origin = along(from), .cos_beta = std::clamp(towards.dot(direction_), -1.0, 1.0)};
+  return {.origin = along(from), .cos_beta = std::cos(bearing - transect_.bearing)};
 }
 
 Plane PropagationPaths::plane(const Vec3& from, const Vec3& to) const noexcept {

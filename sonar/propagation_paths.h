@@ -23,7 +23,7 @@ struct Plane {
 /// depend on what is kept. docs/theory/transect.md
 class PropagationPaths {
  public:
-  PropagationPaths(const Environment& ocean, const TransectPlace& transect);
+  PropagationPaths(const Environment& ocean, const Transect& transect);
 
   /// Of the ocean as it is given: from the transect's origin along it.
   [[nodiscard]] const EigenraySolver& along_transect() const noexcept { return along_; }
@@ -36,7 +36,7 @@ class PropagationPaths {
 
   /// How far along the transect a place is [m].
   [[nodiscard]] double along(const Vec3& place) const noexcept {
-    return (place.head<2>() - origin_).dot(direction_);
+    return transect_.range_of(place.x(), place.y());
   }
   /// Depth of surface and bottom at a place [m].
   [[nodiscard]] double surface_depth(const Vec3& place) const noexcept;
@@ -57,7 +57,7 @@ class PropagationPaths {
   [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
 
   EigenraySolver along_;
-  Vec2 origin_, direction_;  // of the transect, on the map
+  Transect transect_;
   bool layered_;
   mutable std::mutex lock_;
   mutable std::map<std::pair<double, double>, std::shared_ptr<const EigenraySolver>> slices_;

@@ -10,16 +10,10 @@
 #include "sonar/array.h"
 #include "sonar/pulse.h"
 #include "sonar/track.h"
+#include "sonar/transect.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
-
-/// Where the ocean's range axis lies on the map: the ocean varies along this line and is uniform
-/// across it.
-struct TransectPlace {
-  Vec2 origin = Vec2::Zero();  ///< of range 0 (x east, y north) [m]
-  double bearing = 0.0;        ///< of growing range, clockwise from north [rad]
-};
 
 struct Target {
   std::string name = "target";
@@ -65,7 +59,7 @@ struct Scenario {
   std::string title;
   std::uint64_t seed = 1;
   Environment environment;
-  TransectPlace transect;
+  Transect transect;         ///< where its range axis lies on the map
   double wind_speed = 10.0;  ///< at 10 m [m/s]
   Track platform;            ///< carries transmitter and array
   Transmitter transmitter;
