@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct PropagationResult {
   double beam_error_db =
       0.0;  ///< field: estimate of what more beams would change (95 % of receivers)
   std::vector<std::string> notes;  ///< what the user should know
+};
+
+/// A run that was told to stop.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
 };
 
 /// Called now and then with the share that is done (0..1) from any thread; returning false stops

@@ -1,0 +1,156 @@
+#include <cstdarg>
+#include <cstdio>
+
+#include "core/units.h"
+#include "io/bellhop/case_parts.h"
+
+namespace asdic::bellhop {
+namespace {
+
+/// Lines of text, each as printf makes it.
+class Lines {
+ public:
+  [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
+    char line[256];
+    std::va_list values;
+    va_start(values, format);
+    std::vsnprintf(line, sizeof line, format, values);
+    va_end(values);
+    text_.append(line).append("\n");
+  }
+  [[nodiscard]] std::string text() && { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+const char* words(FieldKind field) noexcept {
+  switch (field) {
+    case FieldKind::coherent:
+      return "coherent field";
+    case FieldKind::incoherent:
+      return "incoherent field";
+    case FieldKind::semi_coherent:
+      return "semi-coherent field";
+  }
+  return "";
+}
+
+const char* words(const PropagationCase& run_case) noexcept {
+  switch (run_case.task) {
+    case Task::rays:
+      return "rays";
+    case Task::eigenrays:
+      return "eigenrays";
+    case Task::arrivals:
+      return "arrivals";
+    case Task::eigenrays_and_arrivals:
+      return "eigenrays and arrivals";
+    case Task::field:
+      return words(run_case.field);
+  }
+  return "";
+}
+
+const char* words(BeamKind kind) noexcept {
+  switch (kind) {
+    case BeamKind::hat:
+      return "geometric hat beams, Cartesian";
+    case BeamKind::gaussian:
+      return "geometric Gaussian beams, Cartesian";
+    case BeamKind::ray_centred_hat:
+      return "geometric hat beams, ray-centred";
+    case BeamKind::ray_centred_gaussian:
+      return "geometric Gaussian beams, ray-centred";
+    case BeamKind::simple_gaussian:
+      return "simple Gaussian beams";
+    case BeamKind::cerveny_cartesian:
+      return "Cerveny beams, Cartesian";
+    case BeamKind::cerveny_ray_centred:
+      return "Cerveny beams, ray-centred";
+  }
+  return "";
+}
+
+const char* profile_words(char letter) noexcept {
+  switch (letter) {
+    case 'C':
+      return "c linear in depth";
+    case 'N':
+      return "1/c^2 linear in depth";
+    case 'S':
+      return "cubic spline";
+    case 'P':
+      return "monotone cubic";
+    case 'Q':
+      return "range-dependent, bilinear";
+    default:
+      return "Munk's profile";
+  }
+}
+
+void echo_boundary(Lines& lines, const char* who, const Boundary& boundary) {
+  const BoundaryMaterial& material = boundary.material;
+  if (const auto* fluid = std::get_if<FluidHalfSpace>(&material))
+    lines.add("%-10s fluid: %g m/s, %g kg/m3, %g dB/wavelength", who, fluid->speed, fluid->density,
+              fluid->attenuation_db_per_wavelength);
+  else if (const auto* solid = std::get_if<ElasticHalfSpace>(&material))
+    lines.add("%-10s elastic: %g and %g m/s, %g kg/m3, %g and %g dB/wavelength", who, solid->speed,
+              solid->shear_speed, solid->density, solid->attenuation_db_per_wavelength,
+              solid->shear_attenuation_db_per_wavelength);
+  else if (const auto* table = std::get_if<ReflectionTable>(&material))
+    lines.add("%-10s reflection table of %zu rows", who, table->grazing.size());
+  else
+    lines.add("%-10s %s", who, std::holds_alternative<Rigid>(material) ? "rigid" : "vacuum");
+  if (boundary.shape)
+    lines.add("%-10s %zu nodes from %g to %g km, %s%s, %g to %g m deep", "",
+              boundary.shape->ranges().size(), boundary.shape->ranges().front() / 1000.0,
+              boundary.shape->ranges().back() / 1000.0,
+              boundary.shape->interpolation() == ShapeInterpolation::piecewise_linear
+                  ? "piecewise linear"
+                  : "curvilinear",
+              boundary.shape->materials().empty() ? "" : ", with materials",
+              boundary.shape->shallowest(), boundary.shape->deepest());
+}
+
+void echo_vector(Lines& lines, const char* who, const std::vector<double>& x, double unit,
+                 const char* name) {
+  if (x.size() == 1)
+    lines.add("%-10s %g %s", who, x.front() / unit, name);
+  else
+    lines.add("%-10s %zu from %g to %g %s", who, x.size(), x.front() / unit, x.back() / unit, name);
+}
+
+}  // namespace
+
+std::string echo(const CaseReading& reading) {
+  const PropagationCase& run_case = reading.input.run_case;
+  const Environment& ocean = run_case.environment;
+  Lines lines;
+  lines.add("%-10s %s", "title", run_case.title.c_str());
+  lines.add("%-10s %s, %s, %s source%s", "run", words(run_case), words(run_case.beams.kind),
+            run_case.beams.source == SourceKind::line ? "line" : "point",
+            run_case.beams.pattern ? " with a pattern" : "");
+  lines.add("%-10s %g Hz", "frequency", run_case.frequency);
+  lines.add("%-10s %g to %g m, %s, %zu points", "water", reading.surface_depth,
+            reading.bottom_depth, profile_words(reading.options.profile),
+            ocean.water.depths().size());
+  if (ocean.section)
+    lines.add("%-10s %zu profiles from %g to %g km", "", ocean.section->ranges().size(),
+              ocean.section->ranges().front() / 1000.0, ocean.section->ranges().back() / 1000.0);
+  lines.add("%-10s %g dB/km", "absorption",
+            absorption_db_per_km(ocean.absorption, run_case.frequency));
+  echo_boundary(lines, "surface", ocean.surface);
+  echo_boundary(lines, "bottom", ocean.bottom);
+  echo_vector(lines, "sources", run_case.source_depths, 1.0, "m");
+  echo_vector(lines, "receivers", run_case.receivers.depths, 1.0, "m");
+  echo_vector(lines, run_case.receivers.irregular ? "irregular" : "", run_case.receivers.ranges,
+              1000.0, "km");
+  lines.add("%-10s %d beams from %g to %g degrees (positive down), step %g m", "fan",
+            run_case.literal.beams, -degrees(run_case.beams.highest),
+            -degrees(run_case.beams.lowest), run_case.literal.step);
+  lines.add("%-10s %g m, %g km", "box", run_case.box_depth, run_case.box_range / 1000.0);
+  return std::move(lines).text();
+}
+
+}  // namespace asdic::bellhop

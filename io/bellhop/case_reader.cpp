@@ -1,0 +1,65 @@
+#include "io/bellhop/case_reader.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "io/bellhop/case_parts.h"
+
+namespace asdic::bellhop {
+namespace {
+
+constexpr const char* companion_kinds[] = {".bty", ".ati", ".ssp", ".brc", ".trc", ".sbp"};
+
+std::optional<std::string> text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad()) return std::nullopt;
+  return std::move(text).str();
+}
+
+void shape_of(CaseReading& reading, Boundary& boundary, bool surface) {
+  boundary.shape = read_shape(reading, surface);
+  boundary.depth = boundary.shape->depth_at(0.0);
+  // behind the first facet, where there is only the long form
+  if (!boundary.shape->materials().empty()) boundary.material = boundary.shape->materials().front();
+}
+
+}  // namespace
+
+Input read_case(const Texts& texts, const std::string& root_name) {
+  CaseReading reading{
+      .env = ListReader(texts.env, root_name + ".env"), .root = root_name, .texts = texts};
+  read_head(reading);
+  read_profile(reading);
+  if (reading.options.altimetry) shape_of(reading, reading.ocean().surface, true);
+  read_bottom_options(reading);
+  if (reading.options.bathymetry) shape_of(reading, reading.ocean().bottom, false);
+  read_receivers(reading);
+  read_run(reading);
+  reading.input.echo = echo(reading);
+  return std::move(reading.input);
+}
+
+Input read_case(const std::filesystem::path& root) {
+  std::filesystem::path stem = root;
+  if (stem.extension() == ".env") stem.replace_extension();
+  const std::string env = stem.string() + ".env";
+  errno = 0;
+  auto text = text_of(env);
+  if (!text)
+    throw InputError({.where = env,
+                      .got = errno != 0 ? std::strerror(errno) : "a file that cannot be read",
+                      .expected = "the input of a BELLHOP case"});
+  Texts texts{.env = std::move(*text), .companions = {}};
+  for (const char* kind : companion_kinds)
+    if (auto companion = text_of(stem.string() + kind))
+      texts.companions.emplace_back(kind, std::move(*companion));
+  return read_case(texts, stem.string());
+}
+
+}  // namespace asdic::bellhop

@@ -1,0 +1,316 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "io/bellhop/case_parts.h"
+
+namespace asdic::bellhop {
+namespace {
+
+constexpr std::int64_t most_values = 1'000'000, most_beams = 10'000'000;
+constexpr double most_receivers = 2e9;
+
+std::vector<double> read_depths(CaseReading& reading, const std::string& who) {
+  ListReader& env = reading.env;
+  env.begin("number of " + who + " depths");
+  const std::int64_t n = env.need_integer("", 1, most_values);
+  env.end();
+  std::vector<double> depths = single_precision(read_vector(env, n, who + " depths"), 1.0F);
+  std::size_t above = 0, below = 0;
+  for (double& z : depths) {
+    above += z < reading.surface_depth ? 1 : 0;
+    below += z > reading.bottom_depth ? 1 : 0;
+    z = std::clamp(z, reading.surface_depth, reading.bottom_depth);
+  }
+  const auto tell = [&](std::size_t n_moved, const char* where, double to) {
+    if (n_moved > 0)
+      reading.note(std::to_string(n_moved) + " of " + std::to_string(depths.size()) + ' ' + who +
+                   " depths were " + where + " and moved to " + shown(to) + " m");
+  };
+  tell(above, "above the surface", reading.surface_depth);
+  tell(below, "below the bottom", reading.bottom_depth);
+  return depths;
+}
+
+BeamKind beam_kind(CaseReading& reading, char letter) {
+  switch (letter) {
+    case 'g':
+      return BeamKind::ray_centred_hat;
+    case 'B':
+      return BeamKind::gaussian;
+    case 'b':
+      return BeamKind::ray_centred_gaussian;
+    case 'S':
+      return BeamKind::simple_gaussian;
+    case 'C':
+      return BeamKind::cerveny_cartesian;
+    case 'R':
+      return BeamKind::cerveny_ray_centred;
+    case 'G':
+    case '^':
+    case ' ':
+      return BeamKind::hat;
+    default:
+      reading.note("run type, letter 2: " + shown(std::string(1, letter)) +
+                   " is no kind of beam; geometric hat beams, as BELLHOP does");
+      return BeamKind::hat;
+  }
+}
+
+void read_run_type(CaseReading& reading) {
+  ListReader& env = reading.env;
+  PropagationCase& run_case = reading.run_case();
+  env.begin("run type");
+  std::string letters;
+  if (!env.text(letters, "")) env.fail("", "no value", "up to seven letters in quotes");
+  letters.resize(std::max<std::size_t>(letters.size(), 7), ' ');
+  env.end();
+  switch (letters[0]) {
+    case 'R':
+      run_case.task = Task::rays;
+      break;
+    case 'E':
+      run_case.task = Task::eigenrays;
+      break;
+    case 'A':
+    case 'a':
+      run_case.task = Task::arrivals;
+      break;
+    case 'V':
+    case 'v':
+      run_case.task = Task::eigenrays_and_arrivals;
+      break;
+    case 'C':
+      run_case.field = FieldKind::coherent;
+      break;
+    case 'I':
+      run_case.field = FieldKind::incoherent;
+      break;
+    case 'S':
+      run_case.field = FieldKind::semi_coherent;
+      break;
+    default:
+      env.fail("letter 1", shown(letters.substr(0, 1)),
+               "R (rays), E (eigenrays), A or a (arrivals), V or v (both), C, I or S (field)");
+  }
+  reading.input.binary_arrivals = letters[0] == 'a' || letters[0] == 'v';
+  run_case.beams.kind = beam_kind(reading, letters[1]);
+  run_case.beams.source = letters[3] == 'X' ? SourceKind::line : SourceKind::point;
+  run_case.receivers.irregular = letters[4] == 'I';
+  run_case.beams.displacement = letters[6] == 'S';
+  if (letters[5] == '3') reading.note("run type, letter 6: a 2-D run although the file says 3-D");
+  const ReceiverGrid& grid = run_case.receivers;
+  if (grid.irregular && grid.depths.size() != grid.ranges.size())
+    env.fail("letter 5",
+             std::to_string(grid.depths.size()) + " receiver depths and " +
+                 std::to_string(grid.ranges.size()) + " ranges",
+             "as many depths as ranges on an irregular grid (I)");
+  if (double(run_case.source_depths.size()) * double(grid.size()) > most_receivers)
+    env.fail("", shown(double(run_case.source_depths.size()) * double(grid.size())) + " receivers",
+             "at most " + shown(most_receivers));
+  if (letters[2] == '*') run_case.beams.pattern = read_source_pattern(reading);
+}
+
+/// BELLHOP's number of beams where the file says 0.
+std::int64_t automatic_beams(const CaseReading& reading) {
+  const PropagationCase& run_case = reading.input.run_case;
+  if (run_case.task == Task::rays) return 50;
+  const double range = run_case.receivers.ranges.back();
+  const double depth = reading.bottom_depth - reading.surface_depth;
+  const double by_wavelength = std::min(0.3 * range * run_case.frequency / 1500.0, 1e7);
+  const double by_depth = range > 0.0 ? std::min(pi / std::atan(depth / (10.0 * range)), 1e7) : 2.0;
+  return std::min<std::int64_t>(most_beams, std::max({std::int64_t(by_wavelength),
+                                                      std::int64_t(300), std::int64_t(by_depth)}));
+}
+
+/// The fan, out of declinations in degrees.
+void take_fan(CaseReading& reading, GivenVector given) {
+  PropagationCase& run_case = reading.run_case();
+  BeamSettings& beams = run_case.beams;
+  std::sort(given.values.begin(), given.values.end());
+  std::int64_t n = given.count;
+  double last = given.values.back();
+  const bool full_turn = n > 1 && given.values.size() > 1 &&
+                         std::abs(std::remainder(last - given.values.front(), 360.0)) < 1e-10 &&
+                         last != given.values.front();
+  if (full_turn) {  // the last beam is the first once more
+    reading.note("the last of the " + std::to_string(n) +
+                 " launch angles is the first, a full turn on: left out, as BELLHOP does");
+    if (given.are_ends())
+      last -= (last - given.values.front()) / double(n - 1);
+    else
+      given.values.pop_back();
+    --n;
+  }
+  if (given.values.size() == 2 && n >= 2) {
+    beams.lowest = radians(-last);
+    beams.highest = radians(-given.values.front());
+  } else {
+    for (std::size_t i = given.values.size(); i-- > 0;)
+      beams.elevations.push_back(radians(-given.values[i]));
+    beams.lowest = beams.elevations.front();
+    beams.highest = beams.elevations.back();
+  }
+  run_case.literal.beams = int(n);
+}
+
+void read_fan(CaseReading& reading) {
+  ListReader& env = reading.env;
+  PropagationCase& run_case = reading.run_case();
+  env.begin("number of beams");
+  const std::int64_t written = env.need_integer("", 0, most_beams);
+  if (reading.options.single_beam)
+    run_case.literal.single_beam = int(env.need_integer("the one beam wanted", 0, most_beams));
+  env.end();
+  const std::int64_t n = written == 0 ? automatic_beams(reading) : written;
+  if (written == 0)
+    reading.note("number of beams 0: by asdic's own rule; BELLHOP's gives " + std::to_string(n));
+
+  const GivenVector given = read_vector(env, n, "launch angles");
+  for (const double angle : given.values)
+    if (!(std::abs(angle) <= 360.0))
+      env.fail("angle", shown(angle) + " degrees", "an angle from -360 to 360 degrees");
+  take_fan(reading, given);
+  // as written: exact for a ray run, a floor for the rest
+  const bool free = written == 0 && run_case.task != Task::rays;
+  run_case.beams.count = free ? 0 : run_case.literal.beams;
+  if (run_case.literal.single_beam && (*run_case.literal.single_beam < 1 ||
+                                       *run_case.literal.single_beam > run_case.literal.beams)) {
+    reading.note("the one beam wanted, " + std::to_string(*run_case.literal.single_beam) +
+                 ", is not one of the " + std::to_string(run_case.literal.beams) +
+                 "; all are traced");
+    run_case.literal.single_beam.reset();
+  }
+}
+
+void read_step_and_box(CaseReading& reading) {
+  ListReader& env = reading.env;
+  PropagationCase& run_case = reading.run_case();
+  env.begin("STEP ZBOX RBOX");
+  run_case.literal.step = env.need_real("step");
+  if (run_case.literal.step < 0.0)
+    env.fail("step", shown(run_case.literal.step) + " m", "a step of at least 0 m (0: automatic)");
+  run_case.box_depth = env.need_real("box depth");
+  if (!(run_case.box_depth > 0.0))
+    env.fail("box depth", shown(run_case.box_depth) + " m", "a depth above 0 m");
+  const double box_km = env.need_real("box range");
+  if (!(box_km > 0.0)) env.fail("box range", shown(box_km) + " km", "a range above 0 km");
+  run_case.box_range = 1000.0 * box_km;
+  env.end();
+  if (run_case.literal.step == 0.0) {
+    run_case.literal.step = (reading.bottom_depth - reading.surface_depth) / 10.0;
+    reading.note("step 0: asdic chooses its own; BELLHOP's rule gives " +
+                 shown(run_case.literal.step) + " m");
+  }
+}
+
+template <class Value>
+Value choice(const ListReader& env, const char* item, char letter,
+             std::initializer_list<std::pair<char, Value>> all, const char* expected) {
+  for (const auto& [name, value] : all)
+    if (name == letter) return value;
+  env.fail(item, shown(std::string(1, letter)), expected);
+}
+
+CervenyBeams read_cerveny(ListReader& env) {
+  using Width = CervenyBeams::Width;
+  using Curvature = CervenyBeams::Curvature;
+  using Component = CervenyBeams::Component;
+  CervenyBeams beams;
+  env.begin("Cerveny beams: width and curvature, EPSMULT, RLOOP");
+  std::string letters;
+  if (!env.text(letters, "letters")) env.fail("letters", "no value", "two letters in quotes");
+  letters.resize(std::max<std::size_t>(letters.size(), 2), ' ');
+  beams.width = choice<Width>(env, "letter 1", letters[0],
+                              {{'F', Width::space_filling},
+                               {'M', Width::minimum},
+                               {'W', Width::wkb},
+                               {'C', Width::cerveny}},
+                              "F (space-filling), M (minimum), W (WKB) or C (Cerveny)");
+  beams.curvature = choice<Curvature>(env, "letter 2", letters[1],
+                                      {{'D', Curvature::doubled},
+                                       {'S', Curvature::standard},
+                                       {' ', Curvature::standard},
+                                       {'Z', Curvature::zero}},
+                                      "D (doubled), S (standard) or Z (zero)");
+  env.real(beams.width_multiplier, "width multiplier");
+  double loop_km = 0.0;
+  env.real(loop_km, "loop range");
+  beams.loop_range = 1000.0 * loop_km;
+  env.end();
+
+  env.begin("Cerveny beams: NIMAGE IBWIN COMPONENT");
+  std::int64_t images = beams.images, window = beams.window;
+  env.integer(images, "number of images");
+  if (images < 1 || images > 3) env.fail("number of images", std::to_string(images), "1, 2 or 3");
+  env.integer(window, "window");
+  if (window < 1 || window > 1'000'000)
+    env.fail("window", std::to_string(window), "a whole number above 0");
+  std::string component = "P";
+  env.text(component, "component");
+  beams.component = choice<Component>(
+      env, "component", component.empty() ? ' ' : component[0],
+      {{'P', Component::pressure}, {'V', Component::vertical}, {'H', Component::horizontal}},
+      "P (pressure), V (vertical) or H (horizontal)");
+  env.end();
+  beams.images = int(images);
+  beams.window = int(window);
+  return beams;
+}
+
+}  // namespace
+
+GivenVector read_vector(ListReader& from, std::int64_t count, const std::string& field) {
+  GivenVector given{.values = {}, .count = count};
+  from.begin(field);
+  double value = 0.0;
+  while (std::int64_t(given.values.size()) < count &&
+         from.real(value, "value " + std::to_string(given.values.size() + 1))) {
+    if (!(std::abs(value) < 1e30)) from.fail("", shown(value), "a number below 1e30");
+    given.values.push_back(value);
+  }
+  const std::size_t n = given.values.size();
+  if (n == 0 || (n != std::size_t(count) && n > 2))
+    from.fail("", std::to_string(n) + " values",
+              std::to_string(count) + ", or the two ends of a vector evenly spaced, or one");
+  from.end();
+  return given;
+}
+
+std::vector<double> single_precision(const GivenVector& given, float factor) {
+  std::vector<float> x(given.values.begin(), given.values.end());
+  const auto n = std::size_t(given.count);
+  if (given.are_ends()) {
+    const float first = x[0], spacing = (x[1] - x[0]) / float(n - 1);
+    x.resize(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = std::fma(float(i), spacing, first);
+  }
+  x.resize(n, x.front());
+  std::sort(x.begin(), x.end());
+  std::vector<double> result;
+  result.reserve(n);
+  for (const float value : x) result.push_back(double(value * factor));
+  return result;
+}
+
+void read_receivers(CaseReading& reading) {
+  ListReader& env = reading.env;
+  PropagationCase& run_case = reading.run_case();
+  run_case.source_depths = read_depths(reading, "source");
+  run_case.receivers.depths = read_depths(reading, "receiver");
+  env.begin("number of receiver ranges");
+  const std::int64_t n = env.need_integer("", 1, most_values);
+  env.end();
+  run_case.receivers.ranges = single_precision(read_vector(env, n, "receiver ranges"), 1000.0F);
+}
+
+void read_run(CaseReading& reading) {
+  read_run_type(reading);
+  read_fan(reading);
+  read_step_and_box(reading);
+  const BeamKind kind = reading.run_case().beams.kind;
+  if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred)
+    reading.run_case().beams.cerveny = read_cerveny(reading.env);
+}
+
+}  // namespace asdic::bellhop
