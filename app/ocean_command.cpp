@@ -29,7 +29,7 @@ int ocean(const Options& options) {
       options.data.empty() ? default_ocean_sources() : default_ocean_sources(options.data);
   const OceanSample sample =
       sample_ocean(sources, options.latitude, options.longitude, options.month);
-  std::optional<Transect> transect;
+  std::optional<OceanSection> transect;
   if (options.bearing)
     transect = sample_transect(sources, options.latitude, options.longitude, *options.bearing,
                                *options.range);

@@ -225,15 +225,15 @@ OceanSample sample_ocean(const OceanSources& sources, double latitude, double lo
   return ocean;
 }
 
-Transect sample_transect(const OceanSources& sources, double latitude, double longitude,
-                         double bearing_deg, double range) {
+OceanSection sample_transect(const OceanSources& sources, double latitude, double longitude,
+                             double bearing_deg, double range) {
   check_place(latitude, longitude);
   if (!(range > 0.0 && range <= pi * earth_radius))
     throw InputError({.where = "range",
                       .got = to_text(range) + " m",
                       .expected = "a range above 0 and at most half way round the Earth"});
   const Bathymetry bathymetry(sources.bathymetry);
-  Transect transect{.bearing_deg = bearing_deg};
+  OceanSection transect{.bearing_deg = bearing_deg};
   const int steps = std::max(1, static_cast<int>(std::ceil(range / 5000.0)));
   const double phi = radians(latitude), theta = radians(bearing_deg);
   for (int i = 0; i <= steps; ++i) {
@@ -261,7 +261,7 @@ Transect sample_transect(const OceanSources& sources, double latitude, double lo
 }
 
 std::string write_scenario_fragment(const OceanSample& ocean,
-                                    const std::optional<Transect>& transect) {
+                                    const std::optional<OceanSection>& transect) {
   std::string text = "# The ocean at " + place(ocean.latitude, ocean.longitude) + ", " +
                      (ocean.month ? "month " + std::to_string(*ocean.month) : "mean of the year") +
                      ". Written by asdic ocean.\n";

@@ -36,7 +36,7 @@ struct OceanSample {
                                        double longitude, std::optional<int> month = std::nullopt);
 
 /// Depth of the sea along a great circle.
-struct Transect {
+struct OceanSection {
   double bearing_deg = 0.0;              ///< at its start, clockwise from north
   std::vector<double> range{}, depth{};  ///< [points] [m]
   std::vector<std::string> notes{};
@@ -44,12 +44,12 @@ struct Transect {
 
 /// Every 5 km or nearer, from the nearest grid points; ends at the coast. The Earth is a sphere of
 /// 6371 km. \param range  [m], above 0
-[[nodiscard]] Transect sample_transect(const OceanSources& sources, double latitude,
-                                       double longitude, double bearing_deg, double range);
+[[nodiscard]] OceanSection sample_transect(const OceanSources& sources, double latitude,
+                                           double longitude, double bearing_deg, double range);
 
 /// An [environment] for a scenario (docs/formats/scenario.md), as TOML text with its origins and
 /// notes in comments.
 [[nodiscard]] std::string write_scenario_fragment(const OceanSample& ocean,
-                                                  const std::optional<Transect>& transect = {});
+                                                  const std::optional<OceanSection>& transect = {});
 
 }  // namespace asdic

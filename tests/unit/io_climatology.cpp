@@ -159,12 +159,12 @@ TEST_F(RealOcean, SargassoSea) {
 // Westward from 30.5 N 60.5 W the abyssal plain goes on for 100 km; a transect to Africa ends at
 // its coast.
 TEST_F(RealOcean, Transects) {
-  const Transect west = sample_transect(sources_, 30.5, -60.5, 270.0, 1e5);
+  const OceanSection west = sample_transect(sources_, 30.5, -60.5, 270.0, 1e5);
   ASSERT_EQ(west.range.size(), 21U);
   EXPECT_EQ(west.depth.front(), 5395.0);
   EXPECT_EQ(west.range.back(), 1e5);
   for (const double depth : west.depth) EXPECT_GT(depth, 4000.0);
-  const Transect east = sample_transect(sources_, 30.5, -60.5, 80.0, 8e6);
+  const OceanSection east = sample_transect(sources_, 30.5, -60.5, 80.0, 8e6);
   EXPECT_LT(east.range.back(), 6e6);
   EXPECT_THAT(east.notes, testing::Contains(HasSubstr("ends at the coast")));
 }
