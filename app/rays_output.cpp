@@ -133,7 +133,8 @@ void write_rays_file(const std::filesystem::path& path, const RaysResult& result
   if (path.extension() == ".ray") {
     PropagationCase run_case = result.run_case;
     run_case.task = Task::rays;
-    bellhop::write_ray_file(path, bellhop::ray_file(run_case, {.rays = {result.rays}}));
+    bellhop::write_ray_file(
+        path, bellhop::ray_file(run_case, {.rays = {result.rays}, .beams = result.rays.size()}));
     return;
   }
   double least_range = 0.0, greatest_range = 0.0;
