@@ -89,7 +89,4 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
 void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const ReceiverBlock& block,
                              BeamSink& sink);
 
-/// The first receiver at or beyond a range.
-[[nodiscard]] std::size_t first_at_or_beyond(const ReceiverGrid& grid, double range) noexcept;
-
 }  // namespace asdic::like_bellhop

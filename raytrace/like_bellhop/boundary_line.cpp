@@ -38,11 +38,13 @@ BoundaryLine::BoundaryLine(const Boundary& boundary, BoundaryKind kind) : kind_(
   for (std::size_t i = 1; i + 1 < range_.size(); ++i)
     node_tangent_.push_back(0.5 * (tangent_[i - 1] + tangent_[i]));  // not made a unit vector
   node_tangent_.push_back({1.0, 0.0});
-  for (std::size_t i = 0; i + 1 < range_.size(); ++i) {
-    const Vec2 &a = node_tangent_[i], &b = node_tangent_[i + 1];
+  // A segment's curvature is that of the corner at its end: it lags half a segment behind.
+  const auto slope = [this](std::size_t i) { return tangent_[i].y() / tangent_[i].x(); };
+  for (std::size_t i = 0; i < tangent_.size(); ++i) {
+    const double next = i + 1 < tangent_.size() ? slope(i + 1) : slope(i);
     const double cosine = tangent_[i].x();
-    curvature_.push_back((b.y() / b.x() - a.y() / a.x()) / (range_[i + 1] - range_[i]) * cosine *
-                         cosine * cosine);
+    curvature_.push_back((next - slope(i)) / (range_[i + 1] - range_[i]) * cosine * cosine *
+                         cosine);
   }
 }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/like_bellhop/beam.h"
+#include "raytrace/like_bellhop/column_walk.h"
 
 namespace asdic::like_bellhop {
 namespace {
@@ -68,48 +68,60 @@ struct Gaussian {
   double reflections(const Chord& k) const noexcept { return k.b.phase; }
 };
 
+/// A beam's way over the receivers.
 template <class Shape>
-void lay(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  const auto& points = beam.ray.points;
-  const auto& ranges = block.grid.ranges;
-  CausticPhase caustics;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const LiteralPoint &a = points[i - 1], &b = points[i];
-    caustics.pass(a.q1);
-    if (a.x.x() == b.x.x()) continue;  // a reflection, or a vertical piece: no range is inside
-    const double low = std::min(a.x.x(), b.x.x()), high = std::max(a.x.x(), b.x.x());
-    std::size_t column = std::max(first_at_or_beyond(block.grid, low), block.column_begin);
-    if (column >= block.column_end || ranges[column] >= high) continue;
+class CartesianLayer {
+ public:
+  CartesianLayer(const Shape& shape, const Beam& beam, const ReceiverBlock& block, BeamSink& sink)
+      : shape_(shape), points_(beam.ray.points), block_(block), sink_(sink) {}
 
+  void operator()() {
+    ColumnWalk columns(block_, points_.front().x.x());
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const LiteralPoint &a = points_[i - 1], &b = points_[i];
+      caustics_.pass(a.q1);
+      if (a.x.x() == b.x.x()) continue;  // a reflection, or a vertical piece
+      columns.over(a.x.x(), b.x.x(), [&](std::size_t column) { lay(i, column); });
+    }
+  }
+
+ private:
+  /// The segment's contributions to the receivers of a column.
+  void lay(std::size_t i, std::size_t column) {
+    const LiteralPoint &a = points_[i - 1], &b = points_[i];
     const Chord chord(a, b);
     double top = -infinity, bottom = infinity;
     if (const double cosine = std::abs(chord.tangent.x()); cosine > Shape::steep) {
-      const double reach = shape.reach(chord, cosine);
+      const double reach = shape_.reach(chord, cosine);
       top = std::min(a.x.y(), b.x.y()) - reach;
       bottom = std::max(a.x.y(), b.x.y()) + reach;
     }
     Contribution c;
     c.segment = i;
     c.end = &b;
+    c.column = column;
     c.arrival_declination = std::atan2(chord.tangent.y(), chord.tangent.x());
-    for (; column < block.column_end && ranges[column] < high; ++column) {
-      for (std::size_t row = block.row_begin; row < block.row_end; ++row) {
-        const double depth = block.depth(row, column);
-        if (depth < top || depth > bottom) continue;
-        const Vec2 off = Vec2(ranges[column], depth) - a.x;
-        const double s = off.dot(chord.tangent) / chord.length;  // may lie outside 0..1
-        const double n = std::abs(off.dot(chord.normal));
-        const double q = a.q1 + s * chord.dq;
-        if (!shape.weigh(chord, q, n, c)) continue;
-        c.row = row;
-        c.column = column;
-        c.tau = a.tau + s * chord.dtau;
-        c.phase = caustics.at(q, shape.reflections(chord));
-        sink.take(c);
-      }
+    for (std::size_t row = block_.row_begin; row < block_.row_end; ++row) {
+      const double depth = block_.depth(row, column);
+      if (depth < top || depth > bottom) continue;
+      const Vec2 off = Vec2(block_.grid.ranges[column], depth) - a.x;
+      const double s = off.dot(chord.tangent) / chord.length;  // may lie outside 0..1
+      const double n = std::abs(off.dot(chord.normal));
+      const double q = a.q1 + s * chord.dq;
+      if (!shape_.weigh(chord, q, n, c)) continue;
+      c.row = row;
+      c.tau = a.tau + s * chord.dtau;
+      c.phase = caustics_.at(q, shape_.reflections(chord));
+      sink_.take(c);
     }
   }
-}
+
+  Shape shape_;
+  const std::vector<LiteralPoint>& points_;
+  const ReceiverBlock& block_;
+  BeamSink& sink_;
+  CausticPhase caustics_;
+};
 
 }  // namespace
 
@@ -117,17 +129,12 @@ double Beam::launch_factor() const noexcept {
   return source == SourceKind::point ? std::sqrt(std::abs(std::cos(ray.declination))) : 1.0;
 }
 
-std::size_t first_at_or_beyond(const ReceiverGrid& grid, double range) noexcept {
-  return static_cast<std::size_t>(
-      std::lower_bound(grid.ranges.begin(), grid.ranges.end(), range) - grid.ranges.begin());
-}
-
 void lay_cartesian_hat(const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  lay(Hat{beam.launch_factor(), beam.q0()}, beam, block, sink);
+  CartesianLayer(Hat{beam.launch_factor(), beam.q0()}, beam, block, sink)();
 }
 
 void lay_cartesian_gaussian(const Beam& beam, const ReceiverBlock& block, BeamSink& sink) {
-  lay(Gaussian{beam.launch_factor(), beam.q0(), beam.frequency}, beam, block, sink);
+  CartesianLayer(Gaussian{beam.launch_factor(), beam.q0(), beam.frequency}, beam, block, sink)();
 }
 
 }  // namespace asdic::like_bellhop

@@ -13,6 +13,7 @@ struct LiteralPoint {
   Vec2 x = Vec2::Zero();  ///< (range, depth) [m]
   Vec2 t = Vec2::Zero();  ///< [s/m]
   double c = 0.0;         ///< [m/s]
+  Vec2 gradient = Vec2::Zero();  ///< of c, by the cell that the ray goes into [1/s]
   double p1 = 1.0, q1 = 0.0;
   double p2 = 0.0, q2 = 1.0;
   std::complex<double> tau = 0.0;  ///< delay; its imaginary part, ≤ 0, is the absorption/ω [s]

@@ -111,6 +111,7 @@ LiteralPoint reflect(const LiteralOcean& ocean, const LiteralPoint& in, Boundary
   ocean.water.locate(in.x, in.t, place.cell);
   const WaterPoint w = ocean.water.at(in.x, place.cell);
   y.c = w.c;
+  y.gradient = w.gradient();
   // The normal of the reflected ray is the mirror image of the incident one's.
   const Vec2 tangent_in = w.c * in.t, tangent_out = w.c * y.t;
   const Vec2 normal_in(-tangent_in.y(), tangent_in.x()), normal_out(tangent_out.y(), -tangent_out.x());

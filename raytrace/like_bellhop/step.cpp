@@ -15,6 +15,7 @@ struct Cut {
   double length;
   By by = By::nothing;
   double coordinate = 0.0;  // where a row, column, node or side of the box is [m]
+  bool exact = true;        // the step ends on it
 };
 
 /// The largest part of a step of `length` along the unit vector u that crosses nothing.
@@ -54,7 +55,11 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
     vertical(std::copysign(ocean.box_range, end.x()), Cut::By::box_range);
   if (std::abs(end.y()) > ocean.box_depth)
     horizontal(std::copysign(ocean.box_depth, end.y()), Cut::By::box_depth);
-  cut.length = std::max(cut.length, shortest_share * ocean.step);
+  // A step that would be shorter goes past what cut it; what it was is still known.
+  if (const double least = shortest_share * ocean.step; cut.length < least) {
+    cut.length = least;
+    cut.exact = false;
+  }
   return cut;
 }
 
@@ -62,6 +67,7 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
 Vec2 land(const Vec2& x, const Vec2& u, const Cut& cut, const LiteralOcean& ocean,
           const RayPlace& place) noexcept {
   Vec2 end = x + cut.length * u;
+  if (!cut.exact) return end;
   switch (cut.by) {
     case Cut::By::row:
     case Cut::By::box_depth:
@@ -147,6 +153,7 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
   ocean.water.locate(y.x, y.t, place.cell);
   const WaterPoint w2 = ocean.water.at(y.x, place.cell);
   y.c = w2.c;
+  y.gradient = w2.gradient();
   if (!(place.cell == begin_cell))
     cross(w2.gradient() - w0.gradient(), place.cell.row == begin_cell.row, y);
   return y;

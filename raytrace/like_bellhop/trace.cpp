@@ -16,7 +16,9 @@ void trace(const LiteralOcean& ocean, double source_depth, double declination, d
   const Vec2 direction(std::cos(declination), std::sin(declination));
   LiteralPoint y{.x = {0.0, source_depth}, .amplitude = amplitude};
   ocean.water.locate(y.x, direction, place.cell);
-  y.c = ocean.water.at(y.x, place.cell).c;
+  const WaterPoint source = ocean.water.at(y.x, place.cell);
+  y.c = source.c;
+  y.gradient = source.gradient();
   y.t = direction / y.c;
   const auto settle = [&] {
     ocean.surface.locate(y.x.x(), y.t.x(), place.surface);
