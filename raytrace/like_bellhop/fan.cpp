@@ -28,8 +28,9 @@ LiteralFan make_fan(const PropagationCase& run_case, const LikeBellhopOptions& o
     int n = options.beams.value_or(run_case.literal.beams);
     if (n <= 0) n = automatic_beams(run_case, depth);
     const double first = -beams.highest, last = -beams.lowest;
-    for (int i = 0; i < n; ++i)
-      fan.declinations.push_back(n == 1 ? first : first + i * ((last - first) / (n - 1)));
+    const double middle = 0.5 * (first + last), half = 0.5 * (last - first);
+    for (int i = 0; i < n; ++i)  // a fan that is even about 0 has an exact 0
+      fan.declinations.push_back(n == 1 ? first : middle + half * ((2.0 * i - (n - 1)) / (n - 1)));
   }
   const std::vector<double>& a = fan.declinations;
   fan.spacing = a.size() > 1 ? (a.back() - a.front()) / static_cast<double>(a.size() - 1) : 0.0;

@@ -10,7 +10,7 @@ std::size_t locate_on(const std::vector<double>& node, double x, double directio
   const std::size_t last = node.size() - 2;
   i = std::min(i, last);
   while (i > 0 && (x < node[i] || (x == node[i] && direction < 0.0))) --i;
-  while (i < last && (x > node[i + 1] || (x == node[i + 1] && direction > 0.0))) ++i;
+  while (i < last && (x > node[i + 1] || (x == node[i + 1] && direction >= 0.0))) ++i;
   return i;
 }
 
