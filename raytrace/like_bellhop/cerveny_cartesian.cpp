@@ -68,6 +68,8 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
     if (a.x.x() == b.x.x()) continue;
     const Complex ha = vertical_curvature(a, epsilon), hb = vertical_curvature(b, epsilon);
     columns.over(a.x.x(), b.x.x(), [&](std::size_t column) {
+      // BELLHOP leaves out the last of several ranges (all but a few beams there).
+      if (column > 0 && column + 1 == block.grid.ranges.size()) return;
       const double w = (block.grid.ranges[column] - a.x.x()) / (b.x.x() - a.x.x());
       const double z = a.x.y() + w * (b.x.y() - a.x.y());
       const double t_z = a.t.y() + w * (b.t.y() - a.t.y());
