@@ -77,8 +77,8 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
       const Complex q = qa + w * (qb - qa), tau = a.tau + w * (b.tau - a.tau);
       const Complex h = ha + w * (hb - ha);
       if (h.imag() > 0.0) return;  // it would grow away from the ray
-      const Complex amplitude = factor * b.amplitude * next_branch(branch, qa, q) *
-                                std::sqrt(c * std::abs(epsilon) / q);
+      const Complex amplitude =
+          factor * b.amplitude * next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q);
       for (std::size_t row = block.row_begin; row < block.row_end; ++row) {
         Complex sum = 0.0;
         for (int k = 0; k < kind.images; ++k) {

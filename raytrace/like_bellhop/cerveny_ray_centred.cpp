@@ -27,13 +27,12 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
         s.over_columns([&](std::size_t column, double w) {
           const Complex q = qa + w * (qb - qa), m = ma + w * (mb - ma);
           const Complex tau = s.a.tau + w * (s.b.tau - s.a.tau);
-          const double n = s.na + w * (s.nb - s.na), c = s.b.c;
+          const double n = s.na + w * (s.nb - s.na), c = s.a.c;
           if (m.imag() > 0.0 || -0.5 * omega * m.imag() * n * n >= window) return;
           const Complex phase = omega * (tau + 0.5 * m * n * n) - s.a.phase;
           sink.take_pressure(row, column,
                              image.sign * factor * s.b.amplitude * taper(std::abs(n), wavelength) *
-                                 next_branch(branch, qa, q) *
-                                 std::sqrt(c * std::abs(epsilon) / q) *
+                                 next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q) *
                                  std::exp(Complex(0.0, -1.0) * phase));
         });
         branch = next_branch(branch, qa, qb);

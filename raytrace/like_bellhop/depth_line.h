@@ -6,8 +6,8 @@
 
 namespace asdic::like_bellhop {
 
-/// A segment of a ray as a line of receivers at one depth sees it: where the normals at its ends meet
-/// the line, and how far along the normal.
+/// A segment of a ray as a line of receivers at one depth sees it: where the normals at its ends
+/// meet the line, and how far along the normal.
 struct LineSegment {
   std::size_t index;  ///< from point index − 1 to point index
   const LiteralPoint &a, &b;
@@ -15,8 +15,8 @@ struct LineSegment {
   double na, nb;  ///< lengths of the normals [m], signed
   const ReceiverBlock& block;
 
-  /// Calls visit(column, share of the way from a to b) for the receivers between the normals. Ranges
-  /// are taken as equally spaced: index = (r − r₁)/Δr.
+  /// Calls visit(column, share of the way from a to b) for the receivers between the normals.
+  /// Ranges are taken as equally spaced: index = (r − r₁)/Δr.
   void over_columns(auto&& visit) const {
     if (!std::isfinite(ra) || !std::isfinite(rb) || ra == rb) return;
     const long from = index_of(ra), to = index_of(rb);
@@ -41,8 +41,8 @@ struct LineSegment {
   }
 };
 
-/// Calls visit(LineSegment) for the segments of a ray in turn, the reflections left out. Where a ray is
-/// almost vertical its normals run along the line and do not meet it.
+/// Calls visit(LineSegment) for the segments of a ray in turn, the reflections left out. Where a
+/// ray is almost vertical its normals run along the line and do not meet it.
 void follow_depth_line(const LiteralRay& ray, double depth, const ReceiverBlock& block,
                        auto&& visit) {
   const auto& points = ray.points;
