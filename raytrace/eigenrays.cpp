@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numeric>
+
+#include <tbb/parallel_for.h>
 
 #include "core/error.h"
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
+#include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
 namespace {
@@ -92,6 +97,15 @@ Arrival horizontal_ray(const Environment& ocean, double depth, double range, dou
   return path;
 }
 
+FanLimits fan_of(const PathLimits& limits) {
+  return {.lowest = -limits.max_launch_angle,
+          .highest = limits.max_launch_angle,
+          .max_surface_bounces = limits.max_surface_bounces,
+          .max_bottom_bounces = limits.max_bottom_bounces,
+          .max_turns = limits.max_vertices,
+          .faintest = limits.faintest};
+}
+
 void sort_and_drop_doubles(Arrivals& arrivals) {
   std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
     return a.delay != b.delay ? a.delay < b.delay : a.launch_elevation < b.launch_elevation;
@@ -107,13 +121,59 @@ void sort_and_drop_doubles(Arrivals& arrivals) {
 
 }  // namespace
 
-EigenraySolver::EigenraySolver(const Environment& environment) : environment_(environment) {
-  if (!(environment.bottom.depth > environment.surface.depth))
-    throw InputError({.where = "bottom.depth",
-                      .got = std::to_string(environment.bottom.depth) + " m",
-                      .expected = "a depth below the surface at " +
-                                  std::to_string(environment.surface.depth) + " m"});
-  layers_ = make_layers(environment.water, environment.surface.depth, environment.bottom.depth);
+/// The tracers of an environment by frequency: a sonar works at a few.
+struct EigenraySolver::Tracers {
+  std::mutex mutex;
+  std::map<double, std::shared_ptr<const RayTracer>> of;
+};
+
+EigenraySolver::EigenraySolver(const Environment& environment)
+    : environment_(environment),
+      layered_(is_layered(environment)),
+      tracers_(std::make_shared<Tracers>()) {
+  std::vector<double> ranges = {0.0};  // where the boundaries are nearest to each other
+  for (const Boundary* boundary : {&environment.surface, &environment.bottom})
+    if (boundary->shape)
+      ranges.insert(ranges.end(), boundary->shape->ranges().begin(),
+                    boundary->shape->ranges().end());
+  for (const double range : ranges) {
+    const double top = environment.surface.depth_at(range),
+                 bottom = environment.bottom.depth_at(range);
+    if (!(bottom > top))
+      throw InputError(
+          {.where = "bottom.depth",
+           .got = std::to_string(bottom) + " m" +
+                  (ranges.size() > 1 ? " at a range of " + std::to_string(range) + " m" : ""),
+           .expected = "a depth below the surface at " + std::to_string(top) + " m"});
+  }
+  if (layered_)
+    layers_ = make_layers(environment.water, environment.surface.depth, environment.bottom.depth);
+}
+
+std::shared_ptr<const RayTracer> EigenraySolver::tracer(double frequency) const {
+  const std::lock_guard lock(tracers_->mutex);
+  auto& tracer = tracers_->of[frequency];
+  if (!tracer) tracer = std::make_shared<const RayTracer>(environment_, frequency);
+  return tracer;
+}
+
+std::vector<Arrivals> EigenraySolver::find(double source_depth,
+                                           std::span<const ReceiverPoint> receivers,
+                                           double frequency, const PathLimits& limits) const {
+  if (!layered_)
+    return marching_eigenrays(*tracer(frequency), 0.0, source_depth, receivers, fan_of(limits));
+  // one fan for each depth
+  std::map<double, std::vector<std::size_t>> rows;
+  for (std::size_t i = 0; i < receivers.size(); ++i) rows[receivers[i].depth].push_back(i);
+  const std::vector<std::pair<double, std::vector<std::size_t>>> work(rows.begin(), rows.end());
+  std::vector<Arrivals> found(receivers.size());
+  tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t row) {
+    std::vector<double> ranges;
+    for (const std::size_t i : work[row].second) ranges.push_back(receivers[i].range);
+    std::vector<Arrivals> here = find(source_depth, work[row].first, ranges, frequency, limits);
+    for (std::size_t i = 0; i < here.size(); ++i) found[work[row].second[i]] = std::move(here[i]);
+  });
+  return found;
 }
 
 BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
@@ -122,7 +182,7 @@ BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return {Column(layers_, source_depth, receiver_depth), limits};
+  return {Column(layers_, source_depth, receiver_depth), limits, &environment_};
 }
 
 Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,
@@ -134,6 +194,11 @@ Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double
 std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_depth,
                                            std::span<const double> ranges, double frequency,
                                            const PathLimits& limits) const {
+  if (!layered_) {
+    std::vector<ReceiverPoint> points;
+    for (const double range : ranges) points.push_back({range, receiver_depth});
+    return marching_eigenrays(*tracer(frequency), 0.0, source_depth, points, fan_of(limits));
+  }
   std::vector<Arrivals> found(ranges.size());
   if (ranges.empty()) return found;
   std::vector<std::size_t> order(ranges.size());
@@ -159,7 +224,8 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
           Arrival path =
               builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range);
           if (ranges[*it] < least_range) raise(path, ranges[*it] / least_range, fan.column());
-          if (std::isfinite(path.delay) && std::isfinite(path.spreading))
+          if (std::isfinite(path.delay) && std::isfinite(path.spreading) &&
+              std::abs(path.reflection) >= limits.faintest)
             found[*it].push_back(std::move(path));
         }
       });

@@ -30,6 +30,7 @@ struct PropagationResult {
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  Interrupted() : std::runtime_error("interrupted") {}
 };
 
 /// Called now and then with the share that is done (0..1) from any thread; returning false stops

@@ -5,7 +5,7 @@ namespace asdic {
 
 /// One end of a ray: how the thing there moves, and the ray's slowness vector there, its direction
 /// of travel over the local speed of sound. Same frame for both (x east, y north, z down).
-struct RayEnd {
+struct MovingEnd {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 slowness = Vec3::Zero();  ///< [s/m]
 };
@@ -13,12 +13,12 @@ struct RayEnd {
 /// Frequency heard over frequency sent on one leg, (1 − v_R·s_R)/(1 − v_S·s_S): exact for constant
 /// velocities, with the speed of sound where it happens. In a stratified sea the horizontal part of
 /// s is the ray's Snell invariant. Source: docs/theory/doppler.md, eq. (1)
-[[nodiscard]] double leg_doppler(const RayEnd& sender, const RayEnd& receiver) noexcept;
+[[nodiscard]] double leg_doppler(const MovingEnd& sender, const MovingEnd& receiver) noexcept;
 
 /// The factor η of an echo: out to the target and back, s(η(t − τ)).
 /// \param target_in, target_out  the target where the outgoing ray ends and the returning one
 /// starts
-[[nodiscard]] double echo_doppler(const RayEnd& source, const RayEnd& target_in,
-                                  const RayEnd& target_out, const RayEnd& receiver) noexcept;
+[[nodiscard]] double echo_doppler(const MovingEnd& source, const MovingEnd& target_in,
+                                  const MovingEnd& target_out, const MovingEnd& receiver) noexcept;
 
 }  // namespace asdic

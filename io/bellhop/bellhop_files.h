@@ -2,6 +2,7 @@
 #include <complex>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The files that BELLHOP writes, as plain data. Layouts: docs/formats/bellhop.md. In these structs
@@ -56,6 +57,14 @@ struct RayFile {
   double surface_depth = 0.0, bottom_depth = 0.0;  ///< [m]
   std::vector<Ray> rays;
 };
+
+/// The same files in memory, for tests and fuzzing. \param name  of the file, for messages
+[[nodiscard]] ShadeFile parse_shade_file(std::string_view bytes, const std::string& name);
+[[nodiscard]] ArrivalsFile parse_arrivals_file(std::string_view bytes, const std::string& name);
+[[nodiscard]] RayFile parse_ray_file(std::string_view bytes, const std::string& name);
+[[nodiscard]] std::string shade_file_bytes(const ShadeFile& file);
+[[nodiscard]] std::string arrivals_file_bytes(const ArrivalsFile& file);
+[[nodiscard]] std::string ray_file_bytes(const RayFile& file);
 
 /// Readers. \throws InputError that says file, line or byte, found and expected
 [[nodiscard]] ShadeFile read_shade_file(const std::filesystem::path& path);

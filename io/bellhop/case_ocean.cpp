@@ -9,40 +9,6 @@ namespace {
 
 constexpr std::size_t most_rows = 100'001;
 
-/// A fluid as BELLHOP makes it of a mean grain size Mz [φ]: the regressions of the APL-UW
-/// High-Frequency Ocean Environmental Acoustic Models Handbook (1994), ch. IV, always beside water
-/// of 1500 m/s and 1 g/cm³; outside −1 ≤ Mz < 9.5 their last pieces go on.
-FluidHalfSpace sediment(double m) noexcept {
-  double speed_ratio = 0.0, density_ratio = 0.0, loss = 0.0;
-  if (m >= -1.0 && m < 1.0) {
-    speed_ratio = 0.002709 * m * m - 0.056452 * m + 1.2778;
-    density_ratio = 0.007797 * m * m - 0.17057 * m + 2.3139;
-  } else if (m >= 1.0 && m < 5.3) {
-    speed_ratio = -0.0014881 * m * m * m + 0.0213937 * m * m - 0.1382798 * m + 1.3425;
-    density_ratio = -0.0165406 * m * m * m + 0.2290201 * m * m - 1.1069031 * m + 3.0455;
-  } else {
-    speed_ratio = -0.0024324 * m + 1.0019;
-    density_ratio = -0.0012973 * m + 1.1565;
-  }
-  if (m >= -1.0 && m < 0.0)
-    loss = 0.4556;
-  else if (m >= 0.0 && m < 2.6)
-    loss = 0.4556 + 0.0245 * m;
-  else if (m >= 2.6 && m < 4.5)
-    loss = 0.1978 + 0.1245 * m;
-  else if (m >= 4.5 && m < 6.0)
-    loss = 8.0399 - 2.5228 * m + 0.20098 * m * m;
-  else if (m >= 6.0 && m < 9.5)
-    loss = 0.9431 - 0.2041 * m + 0.0117 * m * m;
-  else
-    loss = 0.0601;
-  // loss [dB/(m·kHz)] as a loss parameter, in dB per wavelength: 1.5 is the water's speed in m/ms.
-  const double parameter = loss * speed_ratio * 1.5 * std::log(10.0) / (40.0 * pi);
-  return {.speed = 1500.0 * speed_ratio,
-          .density = 1000.0 * density_ratio,
-          .attenuation_db_per_wavelength = 2.0 * pi * db_per_neper * parameter};
-}
-
 /// α [Np/m] that the case's volume loss adds to a wave of a speed, in dB per wavelength.
 double per_wavelength(double nepers_per_m, double speed, double frequency) noexcept {
   return nepers_per_m * db_per_neper * speed / frequency;
@@ -110,15 +76,15 @@ BoundaryMaterial half_space(const CaseReading& reading, const ListReader& from,
     from.fail("density", shown(row.density) + " g/cm^3", "a density above 0 g/cm^3");
   const double compressional = attenuation(row.attenuation, row.speed, "attenuation");
   if (row.shear_speed == 0.0)
-    return FluidHalfSpace{.speed = row.speed,
+    return FluidHalfSpace{.speed = true_speed(row.speed, compressional),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional};
-  return ElasticHalfSpace{.speed = row.speed,
-                          .shear_speed = row.shear_speed,
+  const double shear = attenuation(row.shear_attenuation, row.shear_speed, "shear attenuation");
+  return ElasticHalfSpace{.speed = true_speed(row.speed, compressional),
+                          .shear_speed = true_speed(row.shear_speed, shear),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional,
-                          .shear_attenuation_db_per_wavelength = attenuation(
-                              row.shear_attenuation, row.shear_speed, "shear attenuation")};
+                          .shear_attenuation_db_per_wavelength = shear};
 }
 
 BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) {
@@ -142,12 +108,12 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       double ignored = 0.0;
       env.real(ignored, "depth");
       const double phi = env.need_real("grain size");
-      FluidHalfSpace fluid = sediment(phi);
-      if (!(fluid.speed > 0.0 && fluid.density > 0.0))
-        env.fail("grain size", shown(phi), "a mean grain size from -1 to 9 phi");
-      if (!(phi >= -1.0 && phi < 9.5))
-        reading.note(field + ": a grain size of " + shown(phi) +
-                     " phi is outside the handbook's -1 to 9");
+      if (!(phi >= -1.0 && phi <= 9.0))
+        env.fail("grain size", shown(phi),
+                 "a mean grain size from -1 (coarse sand) to 9 phi (clay)");
+      // beside water of 1500 m/s and 1 g/cm³, whatever the profile says; no volume loss is added
+      FluidHalfSpace fluid = sediment_of_grain_size(phi, 1500.0, 1000.0);
+      fluid.speed = true_speed(fluid.speed, fluid.attenuation_db_per_wavelength);
       env.end();
       return fluid;
     }

@@ -67,8 +67,8 @@ std::vector<double> node_sigmas(double sigma_end, int count, bool log_begin, boo
 
 }  // namespace
 
-BranchTable::BranchTable(Column column, const PathLimits& limits)
-    : column_(std::move(column)), limits_(limits) {
+BranchTable::BranchTable(Column column, const PathLimits& limits, const Environment* boundaries)
+    : column_(std::move(column)), limits_(limits), boundaries_(boundaries) {
   const double slowest = column_.barrier_speed();
   const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * 3.14159265358979));
   const double fastest = column_.source_speed() / std::max(steepest, 1e-9);
@@ -93,7 +93,6 @@ void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
   for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
                        &interval.d_up, &interval.d_middle, &interval.d_down})
     values->reserve(nodes.size());
-  interval.shortest_cycle = 1e300;
   for (const double sigma : nodes) {
     const RayParameter ray(c_slow, sigma);
     const ColumnSums sums = column_.sums(ray);
@@ -112,10 +111,54 @@ void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
     interval.d_down.push_back(sums.down.d_range * chain);
     interval.turns_above = sums.turns_above;
     interval.turns_below = sums.turns_below;
-    interval.shortest_cycle = std::min(interval.shortest_cycle, cycle);
   }
   if (interval.sigma.size() < 2) return;
+  limit_by_loss(interval);
   intervals_.push_back(std::move(interval));
+}
+
+void BranchTable::limit_by_loss(FanInterval& interval) const {
+  const std::size_t n = interval.sigma.size();
+  interval.loudest_vertices.assign(n - 1, limits_.max_vertices);
+  if (!(limits_.faintest > 0.0) || boundaries_ == nullptr) return;
+  const auto lossless = [](const BoundaryMaterial& material) {
+    return std::holds_alternative<Vacuum>(material) || std::holds_alternative<Rigid>(material);
+  };
+  struct Met {
+    const Boundary* boundary;
+    WaterAtBoundary water;
+  };
+  std::vector<Met> met;
+  for (const Boundary* b : {&boundaries_->surface, &boundaries_->bottom}) {
+    const bool top = b == &boundaries_->surface;
+    if ((top ? interval.turns_above : interval.turns_below) || lossless(b->material)) continue;
+    met.push_back({b,
+                   {.speed = top ? column_.surface_speed() : column_.bottom_speed(),
+                    .density = boundaries_->water_density.at(b->depth)}});
+  }
+  if (met.empty()) return;
+  const auto per_cycle = [&](double sigma) {  // what a bounce off each leaves
+    const RayParameter ray(interval.reference_speed, sigma);
+    double product = 1.0;
+    for (const auto& [boundary, water] : met) {
+      const double sine = std::sqrt(std::max(0.0, ray.sine2(water.speed)));
+      product *= std::abs(reflection_coefficient(
+          boundary->material, std::atan2(sine, ray.slowness * water.speed), water));
+    }
+    return product;
+  };
+  double left = per_cycle(interval.sigma[0]);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const double middle = per_cycle(0.5 * (interval.sigma[i] + interval.sigma[i + 1]));
+    const double right = per_cycle(interval.sigma[i + 1]);
+    // the loudest of three rays, and a little more for those between
+    const double loudest = 1.02 * std::max({left, middle, right});
+    left = right;
+    if (loudest >= 1.0) continue;
+    const double cycles = std::log(limits_.faintest) / std::log(std::max(loudest, 1e-300));
+    interval.loudest_vertices[i] =
+        static_cast<int>(std::min<double>(limits_.max_vertices, 2.0 * cycles + 2.0));
+  }
 }
 
 BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const Branch& branch,
@@ -210,12 +253,22 @@ void BranchTable::for_each_stretch(double low, double high,
   const bool upper = column_.source_is_upper();
   for (const FanInterval& interval : intervals_) {
     const std::size_t n = interval.sigma.size();
+    // Between two nodes there is nothing to find after so many vertices: too far, or too faint.
+    std::vector<int> most(n - 1);
+    const auto cycle = [&](std::size_t i) {
+      return interval.up[i] + interval.middle[i] + interval.down[i];
+    };
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      const double cycles = high / std::max(std::min(cycle(i), cycle(i + 1)), 1e-9);
+      most[i] = static_cast<int>(std::min<double>(interval.loudest_vertices[i], cycles + 2.0));
+    }
+    int last = 0;
+    for (const int vertices : most) last = std::max(last, vertices);
     for (const bool starts_up : {true, false}) {
-      for (int k = 0; k <= limits_.max_vertices; ++k) {
+      for (int k = 0; k <= last; ++k) {
         const Branch branch{.starts_up = starts_up, .vertices = k};
         if (!interval.turns_above && branch.top_vertices() > limits_.max_surface_bounces) break;
         if (!interval.turns_below && branch.bottom_vertices() > limits_.max_bottom_bounces) break;
-        if (k > 1 && (k - 1) * interval.shortest_cycle > high) break;
         if (k == 0 && starts_up == upper) continue;  // the receiver lies the other way
         const BranchWeights w = weights(branch, upper);
         const auto node = [&](std::size_t i) {
@@ -226,6 +279,10 @@ void BranchTable::for_each_stretch(double low, double high,
         StretchSplitter splitter(*this, interval, branch, visit);
         HermiteNode a = node(0);
         for (std::size_t i = 1; i < n; ++i) {
+          if (k > most[i - 1]) {
+            if (i < n - 1 && k <= most[i]) a = node(i);
+            continue;
+          }
           const HermiteNode b = node(i);
           // A cubic stays within its ends widened by a quarter of what its slopes could add.
           const double margin = 0.25 * (b.x - a.x) * (std::abs(a.slope) + std::abs(b.slope)) + 1e-3;

@@ -16,6 +16,7 @@ struct PathLimits {
   double max_launch_angle = 1.5707963267948966;  ///< from the horizontal [rad]
   int max_vertices = 256;  ///< turning points and bounces together: at a kink of the profile ever
                            ///< smaller cycles have no end
+  double faintest = 0.0;   ///< product of reflection magnitudes below which a path is dropped
 };
 
 /// Rays between two depths as functions of their parameter: what a fan of rays would find,
@@ -30,7 +31,8 @@ struct FanInterval {
   std::vector<double> sigma;                   ///< [n] increasing nodes
   std::vector<double> up, middle, down;        ///< [n] ranges of the three pieces [m]
   std::vector<double> d_up, d_middle, d_down;  ///< [n] their derivatives with respect to σ [m]
-  double shortest_cycle = 0.0;  ///< least range from vertex to vertex over the nodes [m]
+  std::vector<int> loudest_vertices;  ///< [n − 1] vertices after which bounces have left less than
+                                      ///< PathLimits::faintest of a ray between two nodes
 };
 
 /// A stretch of an interval over which a branch's range is monotone in σ.
@@ -45,7 +47,8 @@ struct MonotoneStretch {
 
 class BranchTable {
  public:
-  BranchTable(Column column, const PathLimits& limits);
+  /// \param boundaries  whose losses make paths too faint; needed if limits.faintest > 0
+  BranchTable(Column column, const PathLimits& limits, const Environment* boundaries = nullptr);
 
   [[nodiscard]] const Column& column() const noexcept { return column_; }
   [[nodiscard]] const PathLimits& limits() const noexcept { return limits_; }
@@ -64,9 +67,11 @@ class BranchTable {
 
  private:
   void add_interval(double c_slow, double c_fast, bool singular_slow, bool singular_fast);
+  void limit_by_loss(FanInterval& interval) const;
 
   Column column_;
   PathLimits limits_;
+  const Environment* boundaries_;
   std::vector<FanInterval> intervals_;
 };
 

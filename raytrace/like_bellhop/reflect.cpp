@@ -18,10 +18,10 @@ struct Wave {
   double frequency;  // [Hz]
 };
 
-/// c + i·α·c²/ω with α = (dB/λ)·f/(8.6858896 c).
-Complex complex_speed(double c, double db_per_wavelength, const Wave& k) noexcept {
-  const double alpha = db_per_wavelength * k.frequency / (neper_db * c);
-  return {c, alpha * c * c / k.omega};
+/// BELLHOP's c + i·α·c²/ω = c·(1 + iδ), of the speed c·(1 + δ²) that has the same wave number.
+Complex complex_speed(double speed, double db_per_wavelength) noexcept {
+  const double delta = db_per_wavelength / (2.0 * pi * neper_db);
+  return speed / Complex(1.0, -delta);
 }
 
 /// √(k_x² − (ω/c)²), decaying away from the boundary.
@@ -38,13 +38,13 @@ Complex from_impedance(Complex f, Complex g, const Wave& k) noexcept {
 }
 
 Complex half_space(const FluidHalfSpace& m, const Wave& k) noexcept {
-  const Complex c = complex_speed(m.speed, m.attenuation_db_per_wavelength, k);
+  const Complex c = complex_speed(m.speed, m.attenuation_db_per_wavelength);
   return from_impedance(vertical(k.kx, k.omega, c), m.density, k);
 }
 
 Complex half_space(const ElasticHalfSpace& m, const Wave& k) noexcept {
-  const Complex c_p = complex_speed(m.speed, m.attenuation_db_per_wavelength, k);
-  const Complex c_s = complex_speed(m.shear_speed, m.shear_attenuation_db_per_wavelength, k);
+  const Complex c_p = complex_speed(m.speed, m.attenuation_db_per_wavelength);
+  const Complex c_s = complex_speed(m.shear_speed, m.shear_attenuation_db_per_wavelength);
   const Complex g_p = vertical(k.kx, k.omega, c_p), g_s = vertical(k.kx, k.omega, c_s);
   const double kx2 = k.kx * k.kx;
   const Complex mu = m.density * c_s * c_s, g_s2 = g_s * g_s;

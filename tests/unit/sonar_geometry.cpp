@@ -84,20 +84,20 @@ TEST(Doppler, MatchesTheExactReference) {
   for (const auto& r : reference_rows("doppler.csv")) {
     const auto vector = [&](std::size_t i) { return Vec3(r[i], r[i + 1], -r[i + 2]); };
     const double c_source = r[21], c_target = r[22], c_receiver = r[23];
-    const RayEnd source = {.velocity = vector(0), .slowness = vector(9) / c_source};
-    const RayEnd in = {.velocity = vector(3), .slowness = vector(12) / c_target};
-    const RayEnd out = {.velocity = vector(3), .slowness = vector(15) / c_target};
-    const RayEnd receiver = {.velocity = vector(6), .slowness = vector(18) / c_receiver};
+    const MovingEnd source = {.velocity = vector(0), .slowness = vector(9) / c_source};
+    const MovingEnd in = {.velocity = vector(3), .slowness = vector(12) / c_target};
+    const MovingEnd out = {.velocity = vector(3), .slowness = vector(15) / c_target};
+    const MovingEnd receiver = {.velocity = vector(6), .slowness = vector(18) / c_receiver};
     EXPECT_NEAR(echo_doppler(source, in, out, receiver), r[24], 1e-12);
   }
 }
 
 // A target that comes at v towards a sonar at rest: (1 + v/c)/(1 − v/c), Rayleigh.
 TEST(Doppler, ClosingTarget) {
-  const RayEnd rest_out = {.slowness = Vec3(1, 0, 0) / 1500.0},
-               rest_back = {.slowness = Vec3(-1, 0, 0) / 1500.0};
-  const RayEnd in = {.velocity = Vec3(-7, 0, 0), .slowness = rest_out.slowness};
-  const RayEnd out = {.velocity = Vec3(-7, 0, 0), .slowness = rest_back.slowness};
+  const MovingEnd rest_out = {.slowness = Vec3(1, 0, 0) / 1500.0},
+                  rest_back = {.slowness = Vec3(-1, 0, 0) / 1500.0};
+  const MovingEnd in = {.velocity = Vec3(-7, 0, 0), .slowness = rest_out.slowness};
+  const MovingEnd out = {.velocity = Vec3(-7, 0, 0), .slowness = rest_back.slowness};
   const double b = 7.0 / 1500.0;
   EXPECT_NEAR(echo_doppler(rest_out, in, out, rest_back), (1 + b) / (1 - b), 1e-15);
 }

@@ -1,0 +1,154 @@
+#include "io/field_file.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+#include "io/ping/growing_table.h"
+
+namespace asdic {
+namespace {
+
+template <class T>
+void scale(Hdf5File& file, const std::string& name, const std::vector<T>& values,
+           const std::string& long_name, const std::string& units = "") {
+  file.write<T>(name, values, {values.size()});
+  describe(file, name, long_name, units);
+  file.make_scale(name, name);
+}
+
+void coordinate(Hdf5File& file, const std::string& name, const std::vector<double>& values,
+                const std::string& long_name) {
+  file.write<double>(name, values, {values.size()});
+  describe(file, name, long_name, "m");
+  file.attach_scales(name, {"receiver"});
+}
+
+InputError wrong(const Hdf5File& file, const std::string& where, const std::string& got,
+                 const std::string& expected) {
+  return InputError(
+      {.where = file.path().string() + ": " + where, .got = got, .expected = expected});
+}
+
+std::vector<double> axis(const Hdf5File& file, const std::string& name) {
+  if (!file.has(name)) throw wrong(file, name, "nothing", "a dataset (docs/formats/field.md)");
+  std::vector<double> values = file.read<double>(name);
+  if (values.empty()) throw wrong(file, name, "no values", "one or more");
+  return values;
+}
+
+std::string text_or(const Hdf5File& file, const std::string& object, const std::string& key,
+                    const std::string& otherwise) {
+  return file.has_attribute(object, key) ? file.attribute_text(object, key) : otherwise;
+}
+
+constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-coherent"};
+
+}  // namespace
+
+void write_field(Hdf5File& file, const FieldData& field) {
+  file.set_attribute("", "frequency_hz", field.frequency);
+  file.set_attribute("", "field", field_kinds[static_cast<int>(field.kind)]);
+  file.set_attribute("", "source", field.source == SourceKind::line ? "line" : "point");
+  if (!field.beam_kind.empty()) file.set_attribute("", "beam_kind", field.beam_kind);
+  if (field.beams > 0) {
+    file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
+    file.set_attribute("", "beam_error_db", field.beam_error_db);
+  }
+  scale(file, "source_depth", field.source_depths, "depth of the source, positive down", "m");
+  scale<std::int8_t>(file, "re_im", {0, 1}, "0 real part, 1 imaginary part");
+  const ReceiverGrid& grid = field.receivers;
+  const std::size_t sources = field.source_depths.size();
+  Shape shape = {sources, grid.depths.size(), grid.ranges.size(), 2};
+  std::vector<std::string> scales = {"source_depth", "depth", "range", "re_im"};
+  if (grid.irregular) {
+    std::vector<std::int32_t> numbers(grid.ranges.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    scale(file, "receiver", numbers, "number of the receiver, from 0");
+    coordinate(file, "receiver_depth", grid.depths, "depth of the receiver, positive down");
+    coordinate(file, "receiver_range", grid.ranges, "horizontal distance from the source");
+    shape = {sources, grid.ranges.size(), 2};
+    scales = {"source_depth", "receiver", "re_im"};
+  } else {
+    scale(file, "depth", grid.depths, "depth of the receiver, positive down", "m");
+    scale(file, "range", grid.ranges, "horizontal distance from the source", "m");
+  }
+  std::vector<float> parts;
+  parts.reserve(2 * field.pressure.size());
+  for (const std::complex<float> p : field.pressure)
+    parts.insert(parts.end(), {p.real(), p.imag()});
+  file.write<float>("pressure", parts, shape);
+  describe(file, "pressure",
+           "pressure relative to 1 m from the source; transmission loss = -20 log10 |pressure|",
+           "1");
+  file.attach_scales("pressure", scales);
+}
+
+FieldData read_field(const Hdf5File& file) {
+  if (const std::string type = text_or(file, "", "filetype", ""); type != "asdic field")
+    throw wrong(file, "filetype", type.empty() ? "none" : '"' + type + '"', "\"asdic field\"");
+  FieldData field{.title = text_or(file, "", "title", ""),
+                  .source_depths = axis(file, "source_depth"),
+                  .beam_kind = text_or(file, "", "beam_kind", "")};
+  if (file.has_attribute("", "frequency_hz"))
+    field.frequency = file.attribute_number("", "frequency_hz");
+  const std::string kind = text_or(file, "", "field", "coherent");
+  const auto known = std::find(std::begin(field_kinds), std::end(field_kinds), kind);
+  if (known == std::end(field_kinds))
+    throw wrong(file, "field", '"' + kind + '"', "coherent, incoherent or semi-coherent");
+  field.kind = static_cast<FieldKind>(known - std::begin(field_kinds));
+  if (text_or(file, "", "source", "point") == "line") field.source = SourceKind::line;
+  if (file.has_attribute("", "beams"))
+    field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
+  if (file.has_attribute("", "beam_error_db"))
+    field.beam_error_db = file.attribute_number("", "beam_error_db");
+
+  ReceiverGrid& grid = field.receivers;
+  grid.irregular = file.has("receiver");
+  grid.depths = axis(file, grid.irregular ? "receiver_depth" : "depth");
+  grid.ranges = axis(file, grid.irregular ? "receiver_range" : "range");
+  if (!file.has("pressure")) throw wrong(file, "pressure", "nothing", "a dataset");
+  const Shape shape = file.info("pressure").shape;
+  const Shape expected =
+      grid.irregular ? Shape{field.source_depths.size(), grid.ranges.size(), 2}
+                     : Shape{field.source_depths.size(), grid.depths.size(), grid.ranges.size(), 2};
+  if (shape != expected || (grid.irregular && grid.depths.size() != grid.ranges.size()))
+    throw wrong(file, "pressure", "a shape that does not fit its axes",
+                "(source_depth, depth, range, re_im)");
+  const std::vector<float> parts = file.read<float>("pressure");
+  for (std::size_t i = 0; i + 1 < parts.size(); i += 2)
+    field.pressure.emplace_back(parts[i], parts[i + 1]);
+  return field;
+}
+
+FieldData read_field(const std::filesystem::path& path) { return read_field(Hdf5File::open(path)); }
+
+bellhop::ShadeFile to_shade_file(const FieldData& field) {
+  bellhop::ShadeFile file{.title = field.title,
+                          .irregular = field.receivers.irregular,
+                          .frequency = field.frequency,
+                          .source_depths = field.source_depths,
+                          .receiver_depths = field.receivers.depths,
+                          .receiver_ranges = field.receivers.ranges,
+                          .pressure = field.pressure};
+  if (field.source == SourceKind::point)
+    for (std::complex<float>& p : file.pressure) p = -p;
+  return file;
+}
+
+FieldData from_shade_file(const bellhop::ShadeFile& file) {
+  FieldData field{.title = file.title,
+                  .frequency = file.frequency,
+                  .source_depths = file.source_depths,
+                  .receivers = {.depths = file.receiver_depths,
+                                .ranges = file.receiver_ranges,
+                                .irregular = file.irregular},
+                  .pressure = file.pressure};
+  for (std::complex<float>& p : field.pressure) p = -p;
+  if (std::all_of(field.pressure.begin(), field.pressure.end(),
+                  [](std::complex<float> p) { return p.imag() == 0.0f; }))
+    field.kind = FieldKind::incoherent;
+  return field;
+}
+
+}  // namespace asdic

@@ -1,0 +1,84 @@
+#include "io/result_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+
+#include "core/error.h"
+#include "io/bellhop/bellhop_files.h"
+#include "io/field_file.h"
+#include "io/result/tables.h"
+
+namespace asdic {
+namespace {
+
+std::string ending(const std::filesystem::path& path) {
+  std::string text = path.extension().string();
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+constexpr const char* known_files =
+    "a result of the propagation model: .shd, .arr, .ray, or HDF5 of asdic field, arrivals or rays";
+
+}  // namespace
+
+std::string_view kind_of(const PropagationFile& file) noexcept {
+  constexpr std::array<std::string_view, 3> kinds = {"field", "arrivals", "rays"};
+  return kinds[file.index()];
+}
+
+bool is_hdf5(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path, ignored))
+    throw InputError({.where = path.string(),
+                      .got = std::filesystem::exists(path, ignored) ? "no file that can be read"
+                                                                    : "no such file",
+                      .expected = known_files});
+  constexpr std::array<char, 8> signature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, 8> begin{};
+  file.read(begin.data(), begin.size());
+  return file && begin == signature;
+}
+
+PropagationFile read_result(const std::filesystem::path& path) {
+  if (is_hdf5(path)) return read_hdf5_result(Hdf5File::open(path));
+  const std::string type = ending(path);
+  if (type == ".shd") return bellhop::read_shade_file(path);
+  if (type == ".arr") return bellhop::read_arrivals_file(path);
+  if (type == ".ray") return bellhop::read_ray_file(path);
+  throw InputError({.where = path.string(),
+                    .got = "a file that is not HDF5 and whose name ends in \"" + type + '"',
+                    .expected = known_files});
+}
+
+PropagationFile read_hdf5_result(const Hdf5File& file) {
+  const std::string type =
+      file.has_attribute("", "filetype") ? file.attribute_text("", "filetype") : "none";
+  if (type == "asdic field") return to_shade_file(read_field(file));
+  if (type == "asdic arrivals") return result_tables::read_arrivals(file);
+  if (type == "asdic rays") return result_tables::read_rays(file);
+  throw InputError({.where = file.path().string() + ": filetype",
+                    .got = '"' + type + '"',
+                    .expected = "\"asdic field\", \"asdic arrivals\" or \"asdic rays\""});
+}
+
+void write_hdf5_result(Hdf5File& file, const PropagationFile& result) {
+  file.set_attribute("", "filetype", "asdic " + std::string(kind_of(result)));
+  file.set_attribute("", "version", "1.0");
+  if (const auto* field = std::get_if<bellhop::ShadeFile>(&result)) {
+    file.set_attribute("", "title", field->title);
+    write_field(file, from_shade_file(*field));
+  } else if (const auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result)) {
+    file.set_attribute("", "title", "");
+    result_tables::write_arrivals(file, *arrivals);
+  } else {
+    const auto& rays = std::get<bellhop::RayFile>(result);
+    file.set_attribute("", "title", rays.title);
+    result_tables::write_rays(file, rays);
+  }
+}
+
+}  // namespace asdic

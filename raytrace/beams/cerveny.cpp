@@ -1,0 +1,219 @@
+#include "raytrace/beams/cerveny.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "raytrace/beams/crossing.h"
+#include "raytrace/beams/foot.h"
+#include "raytrace/beams/geometric.h"
+
+namespace asdic::beams {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Beams are cut off smoothly between 50 and 100 wavelengths: 1, then a cubic down to 0.
+double taper(double n, double wavelength) noexcept {
+  const double x = std::clamp((std::abs(n) / wavelength - 50.0) / 50.0, 0.0, 1.0);
+  return 1.0 - x * x * (3.0 - 2.0 * x);
+}
+
+/// What is added for pressure p of a wave that travels along (cosine, sine).
+double component(const CervenyBeams& beam, double cosine, double sine) noexcept {
+  switch (beam.component) {
+    case CervenyBeams::Component::pressure:
+      return 1.0;
+    case CervenyBeams::Component::vertical:
+      return sine;
+    case CervenyBeams::Component::horizontal:
+      return cosine;
+  }
+  return 1.0;
+}
+
+void add(const BeamSetting& setting, Complex contribution, Complex& sum) noexcept {
+  if (setting.coherent)
+    sum += contribution;
+  else
+    sum += std::norm(contribution);
+}
+
+/// Φ·√c/√ε·Δα of the sum of beams: e^{−iπ/4}·√(f·cos α)·Δα·√c/c₀, which makes their integral by
+/// stationary phase the ray's own pressure.
+Complex beam_constant(const BeamSetting& setting, const BeamLaunch& launch,
+                      const RayTrajectory& ray) {
+  return std::polar(launch_factor(setting, launch) * std::sqrt(setting.frequency) *
+                        setting.spacing / ray.source_speed,
+                    -0.25 * pi);
+}
+
+/// What the images over the surface and under the bottom are multiplied with.
+struct Image {
+  bool mirrored = false;
+  double depth = 0.0;  ///< of the mirror [m]
+  double sign = 1.0;
+  [[nodiscard]] double of(double z) const noexcept { return mirrored ? 2.0 * depth - z : z; }
+};
+
+/// The ray itself, its image in a pressure-release surface, its image in a rigid bottom.
+Image image(const BeamSetting& setting, int index, double range) noexcept {
+  if (index == 0) return {};
+  const Environment& ocean = *setting.environment;
+  if (index == 1) return {true, ocean.surface.depth_at(range), -1.0};
+  return {true, ocean.bottom.depth_at(range), 1.0};
+}
+
+}  // namespace
+
+Complex initial_ratio(const BeamSetting& setting, const RayTrajectory& ray, double last_range) {
+  const CervenyBeams& beam = setting.cerveny;
+  const double omega = 2.0 * pi * setting.frequency, c = ray.source_speed;
+  const auto of_width_squared = [&](double w2) {
+    return beam.width_multiplier * Complex{0.0, 0.5 * omega * w2};
+  };
+  switch (beam.width) {
+    case CervenyBeams::Width::space_filling: {
+      const double w = 2.0 * c / (omega * setting.spacing);
+      return of_width_squared(w * w);
+    }
+    case CervenyBeams::Width::minimum:
+      return of_width_squared(2.0 * c * beam.loop_range / omega);
+    case CervenyBeams::Width::cerveny:
+      return of_width_squared(2.0 * c * last_range / omega);
+    case CervenyBeams::Width::wkb:
+      break;
+  }
+  // P/Q = cos²θ·dζ/dz with ζ² = 1/c² − ξ²: the fronts of one horizontal slowness in a layered
+  // ocean.
+  const double cosine = std::cos(ray.launch_elevation), sine = -std::sin(ray.launch_elevation);
+  const double gradient = ray.segments.empty() ? 0.0 : ray.segments.front().c_z_begin;
+  const double curvature = -cosine * cosine * gradient / (c * c);  // P/Q·sin θ
+  constexpr double flattest = 1e10;
+  const double ratio =
+      std::abs(curvature) * flattest < std::abs(sine) ? flattest : sine / curvature;
+  // A trace of an imaginary part tells on which side √Q passes a zero of Q.
+  return beam.width_multiplier * Complex{ratio, 1e-6 * std::max(std::abs(ratio), 1.0)};
+}
+
+ComplexBeam::ComplexBeam(CervenyBeams::Curvature curvature, double source_speed, Complex epsilon)
+    : point_(source_speed), plane_(epsilon), last_(epsilon) {
+  if (curvature == CervenyBeams::Curvature::doubled) jump_factor_ = 2.0;
+  if (curvature == CervenyBeams::Curvature::zero) jump_factor_ = 0.0;
+}
+
+Complex ComplexBeam::spread(const RayState& state) const noexcept {
+  return spread_ / std::sqrt(q(state) / last_);
+}
+
+void ComplexBeam::follow(const RayState& state) noexcept {
+  spread_ = spread(state);
+  last_ = q(state);
+}
+
+void ComplexBeam::pass(const RaySegment& before, const RaySegment& after) noexcept {
+  follow(before.end);
+  const bool reflected = after.history.surface_bounces != before.history.surface_bounces ||
+                         after.history.bottom_bounces != before.history.bottom_bounces;
+  if (!reflected || jump_factor_ == 1.0) return;
+  const RayState &a = before.end, &b = after.begin;
+  // Δp = k·q for either solution, weighted by its q (in one unit: times c₀).
+  const double unit = std::norm(1.0 / b.xi);
+  const double k = ((b.p - a.p) * a.q * unit + (b.p_plane - a.p_plane) * a.q_plane) /
+                   (a.q * a.q * unit + a.q_plane * a.q_plane);
+  const Complex q_now = q(a), p_now = p(a) + jump_factor_ * k * q_now;
+  // (Q, P) = point·(q, p) + plane·(q_plane, p_plane) behind the jump.
+  const double wronskian = b.q * b.p_plane - b.q_plane * b.p;
+  point_ = (q_now * b.p_plane - p_now * b.q_plane) / wronskian;
+  plane_ = (p_now * b.q - q_now * b.p) / wronskian;
+}
+
+void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
+                           const RayTrajectory& ray, FieldSum& field) {
+  const double omega = 2.0 * pi * setting.frequency;
+  const double window = setting.cerveny.window;
+  const Complex constant = beam_constant(setting, launch, ray);
+  ComplexBeam beam(setting.cerveny.curvature, ray.source_speed,
+                   initial_ratio(setting, ray, field.ranges.back()));
+  for (std::size_t i = 0; i < ray.segments.size(); ++i) {
+    const RaySegment& segment = ray.segments[i];
+    if (i > 0) beam.pass(ray.segments[i - 1], segment);
+    for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
+      const double c = 1.0 / std::hypot(state.xi, state.zeta);
+      const double cosine = c * state.xi, sine = c * state.zeta;
+      const double share =
+          std::clamp((state.length - segment.begin.length) /
+                         std::max(segment.end.length - segment.begin.length, 1e-300),
+                     0.0, 1.0);
+      const double c_r = segment.c_r_begin + share * (segment.c_r_end - segment.c_r_begin);
+      const double c_z = segment.c_z_begin + share * (segment.c_z_end - segment.c_z_begin);
+      const double c_s = c_r * cosine + c_z * sine, c_n = -c_r * sine + c_z * cosine;
+      // ∂²τ/∂z² of the beam's front: (P/Q)cos² − 2(c_n/c²)sin·cos − (c_s/c²)sin²
+      const Complex gamma = beam.p(state) / beam.q(state) * (cosine * cosine) -
+                            (2.0 * c_n * sine * cosine + c_s * sine * sine) / (c * c);
+      const double decay = 0.5 * omega * std::abs(gamma.imag());
+      const double widest = std::min(window / std::sqrt(decay), 100.0 * c / setting.frequency);
+      const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
+                                segment.history.reflection * std::exp(-state.nepers);
+      const std::span<const double> depths = field.column_depths(column);
+      Complex* sum = field.column(column);
+      for (int m = 0; m < setting.cerveny.images; ++m) {
+        const Image mirror = image(setting, m, field.ranges[column]);
+        const double a = mirror.of(state.depth - widest), b = mirror.of(state.depth + widest);
+        auto k = static_cast<std::size_t>(
+            std::upper_bound(depths.begin(), depths.end(), std::min(a, b)) - depths.begin());
+        for (; k < depths.size() && depths[k] < std::max(a, b); ++k) {
+          const double dz = mirror.of(depths[k]) - state.depth;
+          const double weight = mirror.sign * taper(dz, c / setting.frequency) *
+                                component(setting.cerveny, cosine, mirror.mirrored ? -sine : sine);
+          const Complex delay = state.time + state.zeta * dz + 0.5 * gamma * dz * dz;
+          add(setting, weight * amplitude * std::exp(Complex{0.0, -omega} * delay), sum[k]);
+        }
+      }
+    });
+  }
+}
+
+void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launch,
+                             const RayTrajectory& ray, FieldSum& field) {
+  const double omega = 2.0 * pi * setting.frequency;
+  const double window = setting.cerveny.window;
+  const Complex constant = beam_constant(setting, launch, ray);
+  const Complex epsilon = initial_ratio(setting, ray, field.ranges.back());
+  for (int m = 0; m < setting.cerveny.images; ++m) {
+    ComplexBeam beam(setting.cerveny.curvature, ray.source_speed, epsilon);
+    const RaySegment* before = nullptr;
+    Image mirror;
+    const auto reach = [&](const RaySegment& segment) {
+      if (before != nullptr) beam.pass(*before, segment);
+      before = &segment;
+      mirror = image(setting, m, segment.begin.range);
+      double widest = 0.0;  // n with n²·ω·|Im(P/Q)|/2 = window², at the wider end
+      for (const RayState& state : {segment.begin, segment.end})
+        widest = std::max(
+            widest,
+            std::sqrt(2.0 / (omega * std::abs(Complex(beam.p(state) / beam.q(state)).imag()))));
+      return std::min(1.1 * window * widest, 100.0 * segment.c_begin / setting.frequency);
+    };
+    for_each_foot(
+        ray, field, reach, [&](double z) { return mirror.of(z); },
+        [&](const Foot& foot) {
+          const RayState& state = foot.state;
+          const double c = 1.0 / std::hypot(state.xi, state.zeta);
+          const Complex gamma = beam.p(state) / beam.q(state);
+          const double n2 = foot.n * foot.n;
+          if (0.5 * omega * std::abs(gamma.imag()) * n2 >= window * window) return;
+          const double weight =
+              mirror.sign * taper(foot.n, c / setting.frequency) *
+              component(setting.cerveny, c * state.xi, (mirror.mirrored ? -c : c) * state.zeta);
+          const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
+                                    foot.segment->history.reflection * std::exp(-state.nepers);
+          add(setting,
+              weight * amplitude * std::exp(Complex{0.0, -omega} * (state.time + 0.5 * gamma * n2)),
+              *foot.sum);
+        });
+  }
+}
+
+}  // namespace asdic::beams

@@ -1,0 +1,26 @@
+#pragma once
+#include <vector>
+
+#include "raytrace/propagation_case.h"
+
+namespace asdic {
+
+/// The launch elevations of the beams of one source and the angle that each of them stands for.
+struct BeamFan {
+  std::vector<double> elevation;  ///< [n] increasing [rad], positive up
+  double spacing = 0.0;           ///< Δα, mean angle from beam to beam [rad]
+};
+
+/// Evenly from the lowest to the highest elevation, both included; of a full circle the last beam,
+/// which is the first, is left out. \param count  ≥ 2
+[[nodiscard]] BeamFan even_fan(double lowest, double highest, int count);
+
+/// Exactly the elevations asked for (two or more). They are taken as evenly spaced.
+[[nodiscard]] BeamFan given_fan(const std::vector<double>& elevations);
+
+/// Amplitude with which the source launches a beam: its pattern and, for a semi-coherent field, the
+/// Lloyd mirror √2·|sin(ω z_s sin α / c₀)| of a surface at z = 0.
+[[nodiscard]] double launch_amplitude(const PropagationCase& run_case, double source_depth,
+                                      double source_speed, double elevation) noexcept;
+
+}  // namespace asdic

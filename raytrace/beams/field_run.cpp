@@ -1,0 +1,235 @@
+#include "raytrace/beams/field_run.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/error.h"
+#include "raytrace/beams/beam.h"
+#include "raytrace/beams/column_sum.h"
+#include "raytrace/beams/convergence.h"
+#include "raytrace/beams/layered_crossings.h"
+
+namespace asdic {
+
+namespace {
+
+/// Rays are dealt to this many partial sums, whatever the number of threads, and these are added in
+/// order: so the same bits come out.
+constexpr std::size_t most_parts = 16;
+constexpr std::size_t most_partial_cells = 32'000'000;  // 0.5 GB
+
+BeamSetting beam_setting(const PropagationCase& run_case, const BeamFan& fan) {
+  return {.kind = run_case.beams.kind,
+          .coherent = run_case.field == FieldKind::coherent,
+          .point_source = run_case.beams.source == SourceKind::point,
+          .frequency = run_case.frequency,
+          .spacing = fan.spacing,
+          .cerveny = run_case.beams.cerveny.value_or(CervenyBeams{}),
+          .environment = &run_case.environment};
+}
+
+FieldSum empty_field(const PropagationCase& run_case) {
+  const ReceiverGrid& grid = run_case.receivers;
+  return {.ranges = grid.ranges,
+          .depths = grid.depths,
+          .irregular = grid.irregular,
+          .sum = std::vector<std::complex<double>>(grid.size())};
+}
+
+void check(const PropagationCase& run_case) {
+  const ReceiverGrid& grid = run_case.receivers;
+  if (grid.size() == 0) throw InputError({"receivers", "none", "at least one depth and one range"});
+  if (grid.irregular && grid.depths.size() != grid.ranges.size())
+    throw InputError({"receivers.depths", std::to_string(grid.depths.size()) + " depths",
+                      "one for each of the " + std::to_string(grid.ranges.size()) + " ranges"});
+  if (!(run_case.frequency > 0.0))
+    throw InputError({"frequency", std::to_string(run_case.frequency) + " Hz", "above 0 Hz"});
+  const BeamSettings& beams = run_case.beams;
+  if (!beams.elevations.empty() && beams.elevations.size() < 2)
+    throw InputError({"beams.elevations", "one elevation",
+                      "two or more: a beam is as wide as the fan is dense"});
+  if (beams.elevations.empty() && !(beams.highest > beams.lowest))
+    throw InputError({"beams.highest", std::to_string(degrees(beams.highest)) + " deg",
+                      "above the lowest, " + std::to_string(degrees(beams.lowest)) + " deg"});
+  const Environment& ocean = run_case.environment;
+  for (const double depth : run_case.source_depths)
+    if (!(depth >= ocean.surface.depth_at(0.0) && depth <= ocean.bottom.depth_at(0.0)))
+      throw InputError(
+          {"source_depths", std::to_string(depth) + " m", "a depth between surface and bottom"});
+}
+
+}  // namespace
+
+TraceLimits field_limits(const PropagationCase& run_case) {
+  const ReceiverGrid& grid = run_case.receivers;
+  const Environment& ocean = run_case.environment;
+  const double nearest = grid.ranges.front(), farthest = grid.ranges.back();
+  // Beams reach ahead of their ray and behind it: a ray goes on a little beyond the last receiver.
+  const double margin = 1e-3 * std::abs(farthest) + 100.0 * 1500.0 / run_case.frequency;
+  TraceLimits limits{.min_range = std::min(nearest, 0.0) - margin,
+                     .max_range = std::max(farthest, 0.0) + margin,
+                     .faintest = 1e-4};
+  if (run_case.box_range > 0.0) {
+    limits.max_range = std::min(limits.max_range, run_case.box_range);
+    limits.min_range = std::max(limits.min_range, -run_case.box_range);
+    // Where boundaries slope or the water changes with range, rays may come back.
+    if (ocean.surface.shape || ocean.bottom.shape || ocean.section) {
+      limits.max_range = run_case.box_range;
+      limits.min_range = -run_case.box_range;
+    }
+  }
+  if (run_case.box_depth > 0.0) limits.max_depth = run_case.box_depth;
+  return limits;
+}
+
+namespace {
+
+/// One source and one fan, ready to be summed.
+struct Work {
+  const PropagationCase& run_case;
+  const RayTracer& tracer;
+  double source_depth;
+  const BeamFan& fan;
+  const Progress& progress;
+  BeamSetting setting;
+  TraceLimits limits;
+
+  [[nodiscard]] BeamLaunch launch(double elevation, double source_speed) const {
+    return {elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
+  }
+};
+
+/// Sums the fan in `parts` (each has add(i) for ray i and at(column, row)), which take turns at
+/// packets of neighbouring rays.
+template <class Part>
+std::vector<std::complex<double>> sum_parts(const Work& work, std::vector<Part>& parts) {
+  constexpr std::size_t packet = 16;
+  const std::size_t beams = work.fan.elevation.size();
+  std::atomic<std::size_t> done = 0;
+  std::atomic<bool> stopped = false;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    for (std::size_t first = p * packet; first < beams && !stopped;
+         first += parts.size() * packet) {
+      const std::size_t last = std::min(first + packet, beams);
+      for (std::size_t i = first; i < last; ++i) parts[p].add(i);
+      const std::size_t n = done += last - first;
+      if (work.progress && !work.progress(double(n) / double(beams))) stopped = true;
+    }
+  });
+  if (stopped) throw Interrupted();
+  const ReceiverGrid& grid = work.run_case.receivers;
+  const std::size_t rows = grid.rows(), columns = grid.ranges.size();
+  std::vector<std::complex<double>> field(grid.size());
+  tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
+    const double scale = field_scale(work.setting, grid.ranges[j]);
+    for (std::size_t k = 0; k < rows; ++k) {
+      std::complex<double> sum = 0.0;
+      for (const Part& part : parts) sum += part.at(j, k);
+      field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
+    }
+  });
+  return field;
+}
+
+/// Every kind of beam, receiver by receiver.
+class PlainPart {
+ public:
+  explicit PlainPart(const Work& work) : work_(work), field_(empty_field(work.run_case)) {}
+  void add(std::size_t i) {
+    const double elevation = work_.fan.elevation[i];
+    work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
+    add_beam(work_.setting, work_.launch(elevation, ray_.source_speed), ray_, field_);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
+    return field_.sum[column * field_.rows() + row];
+  }
+
+ private:
+  const Work& work_;
+  RayTrajectory ray_;
+  FieldSum field_;
+};
+
+/// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
+class FastPart {
+ public:
+  FastPart(const Work& work, const LayeredCrossings* layered)
+      : work_(work),
+        layered_(layered),
+        sum_(work.setting, work.run_case.receivers.depths, work.run_case.receivers.ranges.size()) {}
+  void add(std::size_t i) {
+    const double elevation = work_.fan.elevation[i];
+    if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
+      work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
+      find_crossings(ray_, work_.run_case.receivers.ranges, crossings_);
+    }
+    sum_.add(work_.launch(elevation, crossings_.source_speed), crossings_);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
+    return sum_.at(column, row);
+  }
+
+ private:
+  const Work& work_;
+  const LayeredCrossings* layered_;
+  LayeredCrossings::Workspace workspace_;
+  Crossings crossings_;
+  RayTrajectory ray_;
+  ColumnSum sum_;
+};
+
+}  // namespace
+
+std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
+                                               const RayTracer& tracer, double source_depth,
+                                               const BeamFan& fan, const Progress& progress,
+                                               FieldMethod method) {
+  const Work work{run_case,
+                  tracer,
+                  source_depth,
+                  fan,
+                  progress,
+                  beam_setting(run_case, fan),
+                  field_limits(run_case)};
+  const std::size_t cells = run_case.receivers.size();
+  const bool fast = method == FieldMethod::fast && !run_case.receivers.irregular &&
+                    (work.setting.kind == BeamKind::hat || work.setting.kind == BeamKind::gaussian);
+  const std::size_t few = std::clamp<std::size_t>(fan.elevation.size() / 1024, 1, most_parts);
+  const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
+  if (!fast) {
+    std::vector<PlainPart> parts;
+    for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
+    return sum_parts(work, parts);
+  }
+  const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
+                                              source_depth, run_case.receivers.ranges, work.limits);
+  std::vector<FastPart> parts;
+  for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
+  return sum_parts(work, parts);
+}
+
+PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
+  check(run_case);
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  PropagationResult result;
+  result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
+  for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
+    const double depth = run_case.source_depths[i];
+    const auto field_of = [&](const BeamFan& fan) {
+      return field_of_fan(run_case, tracer, depth, fan, progress);
+    };
+    const ConvergedField answer = run_case.beams.elevations.empty()
+                                      ? converged_field(run_case, depth, field_of)
+                                      : fixed_field(given_fan(run_case.beams.elevations), field_of);
+    for (const std::complex<double>& p : answer.field) result.field.emplace_back(p);
+    result.beams = std::max(result.beams, answer.beams);
+    result.beam_error_db = std::max(result.beam_error_db, answer.error_db);
+    if (!answer.note.empty()) result.notes.push_back(answer.note);
+  }
+  return result;
+}
+
+}  // namespace asdic

@@ -1,0 +1,169 @@
+#include "raytrace/runs/arrivals_run.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "raytrace/runs/checks.h"
+#include "raytrace/runs/drawn_path.h"
+#include "raytrace/runs/rays_run.h"
+#include "raytrace/tracing/marching_eigenrays.h"
+
+namespace asdic {
+namespace {
+
+/// A waveguide without loss has no end of paths; these are very many.
+constexpr int most_bounces = 2048;
+
+/// Launch elevations at the edge of the fan belong to it.
+constexpr double edge_of_fan = 1e-12;
+
+/// The layered solver knows no box: it serves where all of the water is within it.
+bool within_box(const PropagationCase& run_case) {
+  return !(run_case.box_depth > 0.0) || run_case.box_depth >= run_case.environment.bottom.depth;
+}
+
+bool forward_only(const BeamSettings& beams) {
+  return std::max(std::abs(beams.lowest), std::abs(beams.highest)) <= 0.5 * pi + edge_of_fan;
+}
+
+class ArrivalSearch {
+ public:
+  ArrivalSearch(const PropagationCase& run_case, const PathSelection& selection)
+      : case_(run_case),
+        selection_(selection),
+        solver_(run_case.environment),
+        receivers_(points_of(run_case.receivers)) {}
+
+  [[nodiscard]] const EigenraySolver& solver() const noexcept { return solver_; }
+
+  /// [receivers] arrivals of one source, finished.
+  std::vector<Arrivals> from(double source_depth) const {
+    const BeamSettings& beams = case_.beams;
+    std::vector<Arrivals> found;
+    if (solver_.layered() && within_box(case_) && forward_only(beams)) {
+      const PathLimits limits{
+          .max_surface_bounces = most_bounces,
+          .max_bottom_bounces = most_bounces,
+          .max_launch_angle = std::max(std::abs(beams.lowest), std::abs(beams.highest)),
+          .max_vertices = 2 * most_bounces,
+          .faintest = selection_.faintest_reflection};
+      found = solver_.find(source_depth, receivers_, case_.frequency, limits);
+    } else {
+      const TraceLimits box = box_of(case_);
+      const FanLimits limits{.lowest = beams.lowest,
+                             .highest = beams.highest,
+                             .max_surface_bounces = most_bounces,
+                             .max_bottom_bounces = most_bounces,
+                             .max_turns = 2 * most_bounces,
+                             .faintest = selection_.faintest_reflection,
+                             .max_depth = box.max_depth,
+                             .min_range = box.min_range,
+                             .max_range = box.max_range};
+      found = marching_eigenrays(*solver_.tracer(case_.frequency), 0.0, source_depth, receivers_,
+                                 limits);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
+    return found;
+  }
+
+ private:
+  /// Leaves out what the source does not shine at and what is too weak, and gives the source's kind
+  /// and pattern to the rest.
+  void finish(Arrivals& arrivals, double range) const {
+    const BeamSettings& beams = case_.beams;
+    std::erase_if(arrivals, [&](const Arrival& a) {
+      return a.launch_elevation < beams.lowest - edge_of_fan ||
+             a.launch_elevation > beams.highest + edge_of_fan;
+    });
+    double strongest = 0.0;
+    for (Arrival& a : arrivals) {
+      double factor = beams.pattern ? beams.pattern->at(a.launch_elevation) : 1.0;
+      if (beams.source == SourceKind::line) {
+        // 4√π·√(c/(c₀|q|)) instead of √(c cos θ₀/(c₀ r |q|)): BELLHOP's convention
+        const double line = 4.0 * std::sqrt(pi * std::max(std::abs(range), 0.1) /
+                                            std::abs(std::cos(a.launch_elevation)));
+        a.spreading *= line;
+        factor *= line;
+      }
+      a.amplitude *= factor;
+      strongest = std::max(strongest, std::abs(a.amplitude));
+    }
+    const double weakest = strongest * amplitude_from_db(-selection_.weakest_db);
+    std::erase_if(arrivals, [&](const Arrival& a) { return !(std::abs(a.amplitude) >= weakest); });
+  }
+
+  const PropagationCase& case_;
+  PathSelection selection_;
+  EigenraySolver solver_;
+  std::vector<ReceiverPoint> receivers_;
+};
+
+/// The eigenrays of one source, traced once more to be drawn.
+std::vector<RayPath> drawn(const PropagationCase& run_case, const RayTracer& tracer,
+                           double source_depth, const std::vector<Arrivals>& arrivals) {
+  std::vector<const Arrival*> all;
+  for (const Arrivals& here : arrivals)
+    for (const Arrival& a : here) all.push_back(&a);
+  std::vector<RayPath> paths(all.size());
+  TraceLimits limits = box_of(run_case);
+  for (const double range : run_case.receivers.ranges)  // with a little room for rounding
+    limits.max_range = std::max(limits.max_range, range + 1.0);
+  tbb::enumerable_thread_specific<RayTrajectory> trajectories;
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    RayTrajectory& ray = trajectories.local();
+    TraceLimits this_one = limits;  // up to the bounce after the last
+    this_one.max_surface_bounces = all[i]->surface_bounces + 1;
+    this_one.max_bottom_bounces = all[i]->bottom_bounces + 1;
+    tracer.trace(0.0, source_depth, all[i]->launch_elevation, this_one, ray);
+    paths[i] = drawn_path(ray, all[i]->path_length);
+  });
+  return paths;
+}
+
+PropagationResult search(const PropagationCase& run_case, const Progress& progress,
+                         const PathSelection& selection, bool with_rays, bool with_arrivals) {
+  check_sources(run_case);
+  check_receivers(run_case);
+  const ArrivalSearch paths(run_case, selection);
+  PropagationResult result;
+  const std::size_t sources = run_case.source_depths.size();
+  for (std::size_t i = 0; i < sources; ++i) {
+    const double depth = run_case.source_depths[i];
+    std::vector<Arrivals> found = paths.from(depth);
+    if (with_rays)
+      result.rays.push_back(
+          drawn(run_case, *paths.solver().tracer(run_case.frequency), depth, found));
+    if (with_arrivals)
+      result.arrivals.insert(result.arrivals.end(), std::make_move_iterator(found.begin()),
+                             std::make_move_iterator(found.end()));
+    if (progress && !progress(double(i + 1) / double(sources))) throw Interrupted();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<ReceiverPoint> points_of(const ReceiverGrid& grid) {
+  std::vector<ReceiverPoint> points;
+  points.reserve(grid.size());
+  for (std::size_t row = 0; row < grid.rows(); ++row)
+    for (std::size_t i = 0; i < grid.ranges.size(); ++i)
+      points.push_back({grid.ranges[i], grid.depths[grid.irregular ? i : row]});
+  return points;
+}
+
+PropagationResult run_arrivals(const PropagationCase& run_case, const Progress& progress,
+                               const PathSelection& selection) {
+  return search(run_case, progress, selection, false, true);
+}
+
+PropagationResult run_eigenrays(const PropagationCase& run_case, const Progress& progress,
+                                const PathSelection& selection) {
+  return search(run_case, progress, selection, true, run_case.task == Task::eigenrays_and_arrivals);
+}
+
+}  // namespace asdic

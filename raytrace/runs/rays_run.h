@@ -1,0 +1,16 @@
+#pragma once
+#include "raytrace/propagation.h"
+#include "raytrace/tracing/ray_tracer.h"
+
+namespace asdic {
+
+/// The rays of a case (Task::rays), for each of its sources: exactly as many as it says (0: 50),
+/// out to its box or until reflections have left 0.005 of them. Straight lines between their points
+/// are within 5 cm of the ray. \throws InputError \throws Interrupted
+[[nodiscard]] PropagationResult run_rays(const PropagationCase& run_case,
+                                         const Progress& progress = {});
+
+/// Where the rays of a case end.
+[[nodiscard]] TraceLimits box_of(const PropagationCase& run_case);
+
+}  // namespace asdic

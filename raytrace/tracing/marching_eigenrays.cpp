@@ -1,0 +1,146 @@
+#include "raytrace/tracing/marching_eigenrays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "raytrace/tracing/fan_splitting.h"
+#include "raytrace/tracing/neighbours.h"
+#include "raytrace/tracing/root_finder.h"
+
+namespace asdic {
+namespace {
+
+/// A receiver (almost) straight above or below is met by (almost) vertical rays; they are found at
+/// this range and then put upright, as in the layered solver (eigenrays.cpp) [m].
+constexpr double least_range = 0.1;
+
+/// Roots closer than this are one [rad, s].
+constexpr double same_root = 1e-9;
+
+/// Tracing goes on behind the last column until the next boundary is met, mostly; and as far as
+/// there are slopes that can send a ray back.
+double beyond_last_column(const Environment& ocean, double last) {
+  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+  const double top = ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
+  double end = last + 2.0 * (bottom - top);
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
+    if (boundary->shape) end = std::max(end, boundary->shape->ranges().back());
+  return end;
+}
+
+/// And before the first.
+double before_first_column(const Environment& ocean, double first) {
+  double end = first;
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
+    if (boundary->shape) end = std::min(end, boundary->shape->ranges().front());
+  return end - 1.0;
+}
+
+struct Hit {
+  std::uint32_t receiver;
+  Arrival path;
+};
+
+TraceLimits trace_limits(const Environment& ocean, double source_range,
+                         std::span<const ReceiverColumn> columns, const FanLimits& limits) {
+  const double first = columns.front().range, last = columns.back().range;
+  TraceLimits trace{.max_depth = limits.max_depth,
+                    .max_surface_bounces = limits.max_surface_bounces,
+                    .max_bottom_bounces = limits.max_bottom_bounces,
+                    .faintest = limits.faintest};
+  trace.max_range = std::min(limits.max_range, beyond_last_column(ocean, last));
+  trace.max_range = std::max(trace.max_range, last + 1.0);  // the edge of the box is in it
+  trace.min_range =
+      std::max(limits.min_range, before_first_column(ocean, std::min(source_range, first)));
+  return trace;
+}
+
+/// What FanSplitting asks for, for receivers in columns.
+struct ColumnSearch {
+  using Ray = FanRay;
+  using Result = Hit;
+
+  ColumnSearch(const RayTracer& tracer, double source_range, double source_depth,
+               const TraceLimits& limits, std::span<const ReceiverColumn> columns, int max_turns)
+      : tracer_(tracer),
+        source_range_(source_range),
+        source_depth_(source_depth),
+        limits_(limits),
+        columns_(columns),
+        max_turns_(max_turns),
+        test_(columns),
+        roots_(tracer, source_range, source_depth, limits, columns) {}
+
+  void trace(double angle, FanRay& out) {
+    tracer_.trace(source_range_, source_depth_, angle, limits_, trajectory_);
+    digest(trajectory_, tracer_.environment(), columns_, out);
+  }
+  [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
+    return test_.holds(a, m, b);
+  }
+  void search(const FanRay& a, const FanRay& b, std::vector<Hit>& out) {
+    roots_.search(a, b, max_turns_, [&](std::uint32_t receiver, Arrival&& path) {
+      out.push_back({receiver, std::move(path)});
+    });
+  }
+
+ private:
+  const RayTracer& tracer_;
+  double source_range_, source_depth_;
+  TraceLimits limits_;
+  std::span<const ReceiverColumn> columns_;
+  int max_turns_;
+  NeighbourTest test_;
+  RootFinder roots_;
+  RayTrajectory trajectory_;
+};
+
+void sort_and_drop_doubles(Arrivals& arrivals) {
+  std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
+    return a.delay != b.delay ? a.delay < b.delay : a.launch_elevation < b.launch_elevation;
+  });
+  const auto same = [](const Arrival& a, const Arrival& b) {
+    return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
+           std::abs(a.launch_elevation - b.launch_elevation) < same_root &&
+           std::abs(a.delay - b.delay) < same_root;
+  };
+  arrivals.erase(std::unique(arrivals.begin(), arrivals.end(), same), arrivals.end());
+}
+
+/// A path found at the least range, for a receiver closer to the vertical: every horizontal step
+/// shrinks in proportion.
+void raise(Arrival& path, double share) {
+  path.horizontal_slowness *= share;
+  for (double* angle : {&path.launch_elevation, &path.arrival_elevation})
+    *angle = std::copysign(std::acos(share * std::cos(*angle)), *angle);
+  for (Bounce& bounce : path.bounces) bounce.range *= share;
+}
+
+}  // namespace
+
+std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_range,
+                                         double source_depth,
+                                         std::span<const ReceiverPoint> receivers,
+                                         const FanLimits& limits) {
+  std::vector<Arrivals> found(receivers.size());
+  if (receivers.empty()) return found;
+  std::vector<ReceiverPoint> points(receivers.begin(), receivers.end());
+  for (ReceiverPoint& point : points)
+    if (std::abs(point.range - source_range) < least_range)
+      point.range = source_range + least_range;
+  const std::vector<ReceiverColumn> columns = make_columns(points);
+  const TraceLimits trace = trace_limits(tracer.environment(), source_range, columns, limits);
+  const FanSplitting<ColumnSearch> fan(limits.lowest, limits.highest);
+  for (Hit& hit : fan.run([&] {
+         return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);
+       })) {
+    const double offset = std::abs(receivers[hit.receiver].range - source_range);
+    if (offset < least_range) raise(hit.path, offset / least_range);
+    found[hit.receiver].push_back(std::move(hit.path));
+  }
+  for (Arrivals& arrivals : found) sort_and_drop_doubles(arrivals);
+  return found;
+}
+
+}  // namespace asdic

@@ -1,0 +1,194 @@
+#include "raytrace/tracing/root_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "raytrace/layered/path_builder.h"
+#include "raytrace/tracing/neighbours.h"
+
+namespace asdic {
+namespace {
+
+constexpr double miss_wanted = 1e-6;    ///< distance of ray and receiver [m]
+constexpr double miss_accepted = 1e-4;  ///< where rounding allows no better [m]
+
+/// A receiver this close to an extremum of the cubic asks for the exact extremum [m]; the cubics
+/// are right to 0.03 m (neighbours.cpp).
+constexpr double close_to_caustic = 0.25;
+
+/// How much further than the column a ray is traced, to know the boundary behind it [m].
+constexpr double beyond_column = 20.0;
+
+/// How far apart two rays begin the same leg [m].
+double spread_of(const RayLeg& a, const RayLeg& b) {
+  return std::abs(a.begin.range - b.begin.range);
+}
+
+}  // namespace
+
+void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const Found& found) {
+  found_ = &found;
+  max_turns_ = max_turns;
+  farthest_ = source_range_;
+  const std::size_t legs = std::min(a.legs.size(), b.legs.size());
+  for (std::size_t i = 0; i < legs && a.legs[i].history == b.legs[i].history; ++i) {
+    const auto [first, last] = columns_between(a, b, i, columns_);
+    for (const RayLeg* leg : {&a.legs[i], &b.legs[i]})
+      farthest_ =
+          std::max({farthest_, leg->begin.range, std::min(leg->begin.range, leg->end.range)});
+    for (std::uint32_t k = first; k < last; ++k) search_column(a, b, i, k);
+  }
+}
+
+void RootFinder::search_column(const FanRay& a, const FanRay& b, std::size_t leg, std::uint32_t k) {
+  column_ = &columns_[k];
+  const auto za = a.crossing_or_continued(a.legs[leg], k, column_->range);
+  const auto zb = b.crossing_or_continued(b.legs[leg], k, column_->range);
+  if (!za || !zb || std::min(za->turns, zb->turns) > max_turns_) return;
+  leg_ = leg;
+  reach_ =
+      std::max(farthest_ + spread_of(a.legs[leg], b.legs[leg]), column_->range) + beyond_column;
+  history_ = a.legs[leg].history;
+  cosine_ = std::min(za->cosine, zb->cosine);
+  const HermiteNode na{a.angle, za->depth, za->slope}, nb{b.angle, zb->depth, zb->slope};
+  const Hermite cubic(na, nb);
+  const auto turns = cubic.extrema();
+  double low = std::min(na.value, nb.value), high = std::max(na.value, nb.value);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    low = std::min(low, cubic.value(turns.x[i]));
+    high = std::max(high, cubic.value(turns.x[i]));
+  }
+  const double margin = close_to_caustic / std::max(cosine_, 1e-3);
+  const auto wanted = column_->between(low - margin, high + margin);
+  if (wanted.empty()) return;
+  // Stretches over which the depth is monotone: between the extrema, exact where a receiver is
+  // near.
+  HermiteNode from = na;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    HermiteNode caustic{turns.x[i], cubic.value(turns.x[i]), 0.0};
+    if (!column_->between(caustic.value - margin, caustic.value + margin).empty()) {
+      const HermiteNode to =
+          i + 1 < turns.size() ? HermiteNode{turns.x[1], cubic.value(turns.x[1]), 0.0} : nb;
+      caustic = extremum(from, to, caustic.x);
+    }
+    search_stretch(from, caustic, cubic);
+    from = caustic;
+  }
+  search_stretch(from, nb, cubic);
+}
+
+void RootFinder::search_stretch(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic) {
+  if (!(b.x >= a.x)) return;
+  const auto wanted = column_->between(std::min(a.value, b.value), std::max(a.value, b.value));
+  for (std::size_t i = wanted.first; i < wanted.last; ++i)
+    refine(a, b, cubic, column_->depths[i], column_->indices[i]);
+}
+
+std::optional<ExactCrossing> RootFinder::exact(double angle) {
+  TraceLimits limits = limits_;
+  limits.max_range = std::min(limits.max_range, reach_);
+  tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
+  return cross_column(ray_, tracer_.environment(), leg_, history_, column_->range);
+}
+
+/// The zero of the exact slope between two nodes: secant steps inside a shrinking bracket.
+HermiteNode RootFinder::extremum(HermiteNode a, HermiteNode b, double guess) {
+  HermiteNode best{guess, 0.0, 0.0};
+  double low = a.x, high = b.x, slope_low = a.slope, slope_high = b.slope;
+  double x = guess;
+  bool any = false;
+  for (int i = 0; i < 40; ++i) {
+    const auto there = exact(x);
+    if (!there) break;
+    any = true;
+    best = {x, there->crossing.depth, 0.0};
+    const double slope = there->crossing.slope;
+    const bool like_low =
+        slope_low != 0.0 ? (slope > 0.0) == (slope_low > 0.0) : (slope > 0.0) != (slope_high > 0.0);
+    (like_low ? low : high) = x;
+    (like_low ? slope_low : slope_high) = slope;
+    const double curvature = (slope_high - slope_low) / (high - low);
+    // with curvature z″ the depth differs from the extremum's by slope²/(2z″)
+    if (slope * slope < 1e-6 * std::abs(curvature) || high - low < 1e-15) break;
+    double next = x - slope / curvature;
+    if (i % 3 == 2 || !(next > low && next < high)) next = 0.5 * (low + high);
+    x = next;
+  }
+  if (!any) best.value = guess;
+  return best;
+}
+
+/// The root of z(α) = depth inside a stretch that has it between its ends.
+void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic,
+                        double depth, std::uint32_t receiver) {
+  const bool rising = b.value > a.value;
+  double low = a.x, high = b.x;
+  double x =
+      b.value != a.value
+          ? low + (high - low) * std::clamp((depth - a.value) / (b.value - a.value), 0.0, 1.0)
+          : low;
+  for (int i = 0; i < 4; ++i) {  // the cubic costs nothing: start from its root
+    const double slope = cubic.slope(x);
+    const double next = slope != 0.0 ? x - (cubic.value(x) - depth) / slope : x;
+    if (!(next >= low && next <= high)) break;
+    x = next;
+  }
+  std::optional<ExactCrossing> there;
+  double miss = 1e300;
+  for (int i = 0; i < 80; ++i) {
+    there = exact(x);
+    if (!there) {  // a ray of another history in between: towards the nearer end
+      const double next = 0.5 * (x + (x - low < high - x ? low : high));
+      if (next == x) return;
+      x = next;
+      continue;
+    }
+    const double off = there->crossing.depth - depth;
+    miss = std::abs(off) * there->crossing.cosine;
+    if (miss < miss_wanted) break;
+    ((off < 0.0) == rising ? low : high) = x;
+    const double slope = there->crossing.slope;
+    double next = slope != 0.0 ? x - off / slope : low;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (next == x || high - low < 2e-16 * (1.0 + std::abs(x))) break;
+    x = next;
+  }
+  if (!there || !there->real || miss > miss_accepted) return;
+  const RayHistory& h = there->history;
+  if (h.upper_turns + h.lower_turns > max_turns_) return;
+  Arrival path = arrival(*there, depth);
+  if (std::isfinite(path.delay) && std::isfinite(path.spreading))
+    (*found_)(receiver, std::move(path));
+}
+
+Arrival RootFinder::arrival(const ExactCrossing& there, double depth) const {
+  const RayState& y = there.state;
+  const RayHistory& h = there.history;
+  Arrival path;
+  path.launch_elevation = ray_.launch_elevation;
+  path.arrival_elevation = std::atan2(-y.zeta, y.xi);
+  path.delay = y.time + y.zeta * (depth - y.depth);  // ∇τ is the slowness
+  path.q = y.q;
+  path.caustics = h.caustics;
+  const double range = std::abs(column_->range - source_range_);
+  path.spreading = std::sqrt(there.c * std::abs(std::cos(path.launch_elevation)) /
+                             (ray_.source_speed * range * std::abs(y.q)));
+  path.reflection = h.reflection;
+  path.absorption_db = y.nepers * db_from_amplitude(std::exp(1.0));
+  path.amplitude =
+      path.spreading * std::exp(-y.nepers) * path.reflection * caustic_phase(path.caustics);
+  path.path_length = y.length;
+  path.horizontal_slowness = std::abs(y.xi);
+  path.surface_bounces = h.surface_bounces;
+  path.bottom_bounces = h.bottom_bounces;
+  path.upper_turns = h.upper_turns;
+  path.lower_turns = h.lower_turns;
+  const auto bounces =
+      std::min(ray_.bounces.size(), static_cast<std::size_t>(h.surface_bounces + h.bottom_bounces));
+  path.bounces.assign(ray_.bounces.begin(),
+                      ray_.bounces.begin() + static_cast<std::ptrdiff_t>(bounces));
+  return path;
+}
+
+}  // namespace asdic

@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+
+#include "raytrace/arrivals.h"
+#include "raytrace/layered/hermite.h"
+#include "raytrace/tracing/fan_ray.h"
+#include "raytrace/tracing/marching_eigenrays.h"
+
+namespace asdic {
+
+/// Finds the eigenrays between two neighbours of a fan by re-tracing single rays.
+class RootFinder {
+ public:
+  using Found = std::function<void(std::uint32_t receiver, Arrival&&)>;
+
+  RootFinder(const RayTracer& tracer, double source_range, double source_depth,
+             const TraceLimits& limits, std::span<const ReceiverColumn> columns)
+      : tracer_(tracer),
+        source_range_(source_range),
+        source_depth_(source_depth),
+        limits_(limits),
+        columns_(columns) {}
+
+  /// Every path between two neighbours to every receiver, on the legs whose history they share.
+  void search(const FanRay& a, const FanRay& b, int max_turns, const Found& found);
+
+ private:
+  void search_column(const FanRay& a, const FanRay& b, std::size_t leg, std::uint32_t column);
+  void search_stretch(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic);
+  void refine(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic, double depth,
+              std::uint32_t receiver);
+  [[nodiscard]] HermiteNode extremum(HermiteNode a, HermiteNode b, double guess);
+  [[nodiscard]] std::optional<ExactCrossing> exact(double angle);
+  [[nodiscard]] Arrival arrival(const ExactCrossing& there, double depth) const;
+
+  const RayTracer& tracer_;
+  double source_range_, source_depth_;
+  TraceLimits limits_;
+  std::span<const ReceiverColumn> columns_;
+  RayTrajectory ray_;
+  // of the search under way
+  const ReceiverColumn* column_ = nullptr;
+  const Found* found_ = nullptr;
+  std::size_t leg_ = 0;
+  std::uint64_t history_ = 0;
+  double cosine_ = 1.0;
+  double farthest_ = 0.0;  // where legs up to this one began at most [m]
+  double reach_ = 0.0;     // how far rays have to be traced [m]
+  int max_turns_ = 0;
+};
+
+}  // namespace asdic
