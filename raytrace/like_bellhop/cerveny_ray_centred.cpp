@@ -17,11 +17,11 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
   const auto curvature_of = [&](const LiteralPoint& y) {  // M = p/q of the front
     return (y.p1 + epsilon * y.p2) / q_of(y);
   };
-  for (std::size_t row = block.row_begin; row < block.row_end; ++row) {
+  for_each_depth_line(block, [&](double depth, std::size_t row, const ReceiverBlock& line) {
     for (int k = 0; k < kind.images; ++k) {
-      const Image image = image_of(beam, block.grid.depths[row], k);
+      const Image image = image_of(beam, depth, k);
       double branch = 1.0;
-      follow_depth_line(beam.ray, image.depth, block, [&](const LineSegment& s) {
+      follow_depth_line(beam.ray, image.depth, line, [&](const LineSegment& s) {
         const Complex qa = q_of(s.a), qb = q_of(s.b);
         const Complex ma = curvature_of(s.a), mb = curvature_of(s.b);
         s.over_columns([&](std::size_t column, double w) {
@@ -38,7 +38,7 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
         branch = next_branch(branch, qa, qb);
       });
     }
-  }
+  });
 }
 
 }  // namespace asdic::like_bellhop

@@ -33,13 +33,24 @@ struct LineSegment {
   /// The last receiver at or before a range; −1 if all lie beyond.
   [[nodiscard]] long index_of(double range) const noexcept {
     const std::vector<double>& r = block.grid.ranges;
-    const double spacing =
-        r.size() > 1 ? (r.back() - r.front()) / static_cast<double>(r.size() - 1) : 1.0;
-    double x = (range - r.front()) / spacing;
-    if (std::abs(x - std::round(x)) < 1e-6) x = std::round(x);  // on a receiver but for rounding
-    return static_cast<long>(std::floor(std::clamp(x, -1.0, static_cast<double>(r.size() - 1))));
+    const double spacing = (r.back() - r.front()) / static_cast<double>(r.size());
+    const double nearly = range + 1e-6 * spacing;  // on a receiver but for rounding
+    return static_cast<long>(std::upper_bound(r.begin(), r.end(), nearly) - r.begin()) - 1;
   }
 };
+
+/// Calls visit(depth, row, block) for every line of receivers at one depth; on an irregular grid
+/// each receiver is a line of its own.
+void for_each_depth_line(const ReceiverBlock& block, auto&& visit) {
+  if (!block.grid.irregular) {
+    for (std::size_t row = block.row_begin; row < block.row_end; ++row)
+      visit(block.grid.depths[row], row, block);
+    return;
+  }
+  for (std::size_t column = block.column_begin; column < block.column_end; ++column)
+    visit(block.grid.depths[column], std::size_t{0},
+          ReceiverBlock{block.grid, column, column + 1, 0, 1});
+}
 
 /// Calls visit(LineSegment) for the segments of a ray in turn, the reflections left out. Where a
 /// ray is almost vertical its normals run along the line and do not meet it.

@@ -1,6 +1,0 @@
-#include "raytrace/like_bellhop/beam.h"
-namespace asdic::like_bellhop {
-void lay_ray_centred_hat(const Beam&, const ReceiverBlock&, BeamSink&) {}
-void lay_ray_centred_gaussian(const Beam&, const ReceiverBlock&, BeamSink&) {}
-void lay_simple_gaussian(const Beam&, const ReceiverBlock&, BeamSink&) {}
-}  // namespace asdic::like_bellhop
