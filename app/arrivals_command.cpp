@@ -67,9 +67,9 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
   const double time = (options.ping - 1) * scenario.pings.interval;
   const Transmitter transmitter = simulator.transmitter(options.ping);
   const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
-  const double c = scenario.environment.water.at(scenario.platform.at(time).position.z()).c;
+  const double c = simulator.paths().speed_at(scenario.platform.at(time).position);
   const BeamPattern pattern(transmitter, c / frequency);
-  const EchoContext context{.ocean = simulator.ocean(),
+  const EchoContext context{.paths = simulator.paths(),
                             .scenario = scenario,
                             .pattern = pattern,
                             .frequency = frequency,

@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raytrace/ground_paths.h"
@@ -25,12 +26,21 @@ struct Patch {
   double outgoing_slowness = 0.0, returning_slowness = 0.0;  ///< Snell invariants [s/m]
 };
 
+/// How a cell of a surface that is not level answers, against the same cell seen in the plane of
+/// the rays alone.
+struct CellTilt {
+  double grazing = 1.0;  ///< sin of the angle to the surface over sin of the angle to its line in
+                         ///< the plane (GroundPath::grazing): √(1 + h′²cos²β)/√(1 + h′²)
+  double area = 1.0;  ///< of the sloping facet over its horizontal projection: √(1 + h′²)
+};
+
 /// All pairs of paths to every ground cell and back to the source (monostatic), cell by cell.
 /// Within a cell, pairs more than 80 dB below its strongest are dropped. The pairs of one cell
 /// share one random weight and add coherently, so that (a, b) and (b, a) enhance as reciprocity
-/// demands.
+/// demands. \param tilt  of every cell; empty where the surface is level
 [[nodiscard]] std::vector<Patch> patches(const GroundPaths& ground,
-                                         const AnySurfaceScattering& scattering, double frequency);
+                                         const AnySurfaceScattering& scattering, double frequency,
+                                         std::span<const CellTilt> tilt = {});
 
 /// Spacing of the ground grid [m]: the two-way delay from cell to cell is 1/(2B), B the full −40 dB
 /// bandwidth of the pulse. The mean intensity is the pulse's |s|² sampled at the cells' delays; its

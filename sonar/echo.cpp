@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "sonar/doppler.h"
 #include "sonar/geometry.h"
@@ -23,12 +24,6 @@ struct Mover {
 
 Vec3 slowness_vector(double bearing, double elevation, double sound_speed) {
   return direction(bearing, elevation) / sound_speed;
-}
-
-PathLimits limits_of(const PropagationSettings& settings) {
-  return {.max_surface_bounces = settings.max_surface_bounces,
-          .max_bottom_bounces = settings.max_bottom_bounces,
-          .max_launch_angle = settings.max_launch_angle};
 }
 
 /// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
@@ -81,11 +76,10 @@ class EchoFinder {
   }
 
  private:
-  double speed_at(double depth) const { return context_.ocean.environment().water.at(depth).c; }
-
-  /// Eigenrays from a point to where a track is at a time since the ping's start.
-  Way way_at(const Vec3& from, const Track& track, const Vec3& offset, Leg::Kind kind,
-             double time) const {
+  /// Eigenrays from a point to where a track is at a time since the ping's start. \param known  the
+  /// same paths when something was metres away; none: they are searched for
+  Way way_at(const Vec3& from, const Track& track, const Vec3& offset, Leg::Kind kind, double time,
+             std::span<const Arrival> known) const {
     Way way;
     way.end = Mover::on(track, offset, context_.ping_time, time);
     const Vec3& to = way.end.at_reference.position;
@@ -94,15 +88,17 @@ class EchoFinder {
     way.leg.target = index_;
     way.leg.bearing = s.bearing;
     way.leg.range = s.range;
-    way.leg.arrivals = context_.ocean.find(from.z(), to.z(), s.range, context_.frequency,
-                                           limits_of(scenario_.propagation));
+    const PathLimits limits = limits_of(scenario_.propagation);
+    way.leg.arrivals = known.empty()
+                           ? context_.paths.find(from, to, context_.frequency, limits)
+                           : context_.paths.follow(known, from, to, context_.frequency, limits);
     return way;
   }
 
   /// The same to where the track is when the first of them comes.
-  Way way(const Vec3& from, double start, const Track& track, const Vec3& offset,
-          Leg::Kind kind) const {
-    Way way = way_at(from, track, offset, kind, start);
+  Way way(const Vec3& from, double start, const Track& track, const Vec3& offset, Leg::Kind kind,
+          std::span<const Arrival> known = {}) const {
+    Way way = way_at(from, track, offset, kind, start, known);
     for (int i = 0; i < 4 && !way.leg.arrivals.empty(); ++i) {  // each round gains a factor v/c
       const double time = start + way.leg.arrivals.front().delay;
       if (std::abs(time - way.end.reference_time) < 1e-9) break;
@@ -111,7 +107,9 @@ class EchoFinder {
         way.end = then;
         break;
       }
-      way = way_at(from, track, offset, kind, time);
+      // The first step is the long one, all that the end does during a one-way travel time.
+      const Arrivals before = i == 0 && known.empty() ? Arrivals{} : std::move(way.leg.arrivals);
+      way = way_at(from, track, offset, kind, time, before);
     }
     return way;
   }
@@ -124,9 +122,16 @@ class EchoFinder {
     return (start + path.delay - along * way.end.reference_time) / (1.0 - along);
   }
 
-  /// One path to where the track is when *that path* arrives. The linear step alone neglects the
-  /// curvature of τ, d²/(2rc) for a displacement d; where that is above 0.1 µs the path is found
-  /// again there.
+  /// The linear step neglects the curvature of τ, d²/(2rc) for a displacement d: less than 0.1 µs?
+  /// Over slopes it also neglects that the plane turns with the end, a slowness across the plane of
+  /// the order of the slope times sin θ/c: a millimetre of displacement is less than 0.1 µs.
+  [[nodiscard]] bool settled_enough(double moved, double c, double range) const {
+    if (!context_.paths.layered()) return moved <= 1e-3;
+    return moved * moved <= 1e-7 * 2.0 * c * range;
+  }
+
+  /// One path to where the track is when *that path* arrives: found again there until the linear
+  /// step is enough.
   struct Settled {
     Way way;
     Arrival path;
@@ -136,15 +141,16 @@ class EchoFinder {
                  const Way& reference, const Arrival& path) const {
     Settled settled{reference, path, 0.0};
     for (int i = 0; i < 4; ++i) {
-      const double c = speed_at(settled.way.end.at_reference.position.z());
+      const double c = context_.paths.speed_at(settled.way.end.at_reference.position);
       settled.time =
           arrival_time(settled.way, start, settled.path,
                        slowness_vector(settled.way.leg.bearing, settled.path.arrival_elevation, c));
       const Mover then = Mover::on(track, offset, context_.ping_time, settled.time);
       const double moved =
           (then.at_reference.position - settled.way.end.at_reference.position).norm();
-      if (moved * moved <= 1e-7 * 2.0 * c * std::max(settled.way.leg.range, moved)) break;
-      Way again = way_at(from, track, offset, reference.leg.kind, settled.time);
+      if (settled_enough(moved, c, std::max(settled.way.leg.range, moved))) break;
+      Way again = way_at(from, track, offset, reference.leg.kind, settled.time,
+                         std::span(&settled.path, 1));
       const Arrival* same = same_path(again.leg.arrivals, settled.path);
       if (same == nullptr) break;
       settled.path = *same;
@@ -166,7 +172,7 @@ class EchoFinder {
       const Kinematics struck = target_.track.at(context_.ping_time + there.time);
       const bool moved = struck.position != out.end.at_reference.position;
       const Way home = moved ? way(struck.position, there.time, scenario_.platform, offset,
-                                   Leg::Kind::target_to_array)
+                                   Leg::Kind::target_to_array, back.leg.arrivals)
                              : back;
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
         const Arrival* path =
@@ -187,8 +193,9 @@ class EchoFinder {
   EchoPath pair(const Kinematics& source, const Settled& there, const Kinematics& target,
                 const Settled& home) const {
     const Kinematics& phone = home.way.end.at_reference;
-    const double c_source = speed_at(source.position.z()), c_target = speed_at(target.position.z()),
-                 c_phone = speed_at(phone.position.z());
+    const double c_source = context_.paths.speed_at(source.position),
+                 c_target = context_.paths.speed_at(target.position),
+                 c_phone = context_.paths.speed_at(phone.position);
     const Vec3 at_source =
         slowness_vector(there.way.leg.bearing, there.path.launch_elevation, c_source);
     const Vec3 into_target =

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "raytrace/eigenrays.h"
 #include "sonar/ping_record.h"
+#include "sonar/propagation_paths.h"
 #include "sonar/scenario.h"
 #include "sonar/transmitter.h"
 
@@ -10,7 +10,7 @@ namespace asdic {
 
 /// What the echoes of one ping need to know. Times count from the start of the ping.
 struct EchoContext {
-  const EigenraySolver& ocean;
+  const PropagationPaths& paths;
   const Scenario& scenario;
   const BeamPattern& pattern;
   double frequency;  ///< centre of the pulse [Hz]

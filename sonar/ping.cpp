@@ -1,5 +1,6 @@
 #include "sonar/ping.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -21,6 +22,7 @@ namespace asdic {
 namespace {
 
 constexpr std::size_t most_patch_rows = 2000;
+constexpr double finest_ground = 1.0;  // [m]
 
 /// Wall time since it was made or last read [s].
 class Stopwatch {
@@ -53,11 +55,45 @@ double doppler_bound(const Scenario& scenario) {
   return 2.2 * (platform + target) / slowest_sea;
 }
 
-AnySurfaceScattering under_sea(const Scenario& scenario) {
-  AnySurfaceScattering model = scenario.reverberation.surface;
-  const Environment& ocean = scenario.environment;
-  set_sea(model, scenario.wind_speed, ocean.water.at(ocean.surface.depth).c);
-  return model;
+/// At the surface over the platform's first place [m/s].
+double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {
+  Vec3 place = scenario.platform.at(0.0).position;
+  place.z() = paths.surface_depth(place);
+  return paths.speed_at(place);
+}
+
+double fastest_water(const Environment& ocean) {
+  double fastest = 0.0;
+  if (ocean.section) {
+    for (const double c : ocean.section->speeds()) fastest = std::max(fastest, c);
+    return fastest;
+  }
+  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+  for (double z = 0.0; z <= bottom; z += 50.0) fastest = std::max(fastest, ocean.water.at(z).c);
+  return fastest;
+}
+
+/// By default from the pulse's bandwidth; a surface with a shape is sampled facet by facet.
+double ground_grid(const Scenario& scenario, const Pulse& pulse, const PropagationPaths& paths) {
+  if (scenario.reverberation.ground_spacing) return *scenario.reverberation.ground_spacing;
+  const double by_pulse =
+      asdic::ground_spacing(pulse.bandwidth_40db(), speed_at_surface(scenario, paths));
+  const auto& shape = scenario.environment.surface.shape;
+  if (!shape || shape->ranges().size() < 2) return by_pulse;
+  const double facet = (shape->ranges().back() - shape->ranges().front()) /
+                       static_cast<double>(shape->ranges().size() - 1);
+  return std::min(by_pulse, std::max(facet, finest_ground));
+}
+
+SurfaceGround::Settings ground_settings(const Scenario& scenario, const Pulse& pulse,
+                                        const PropagationPaths& paths) {
+  const PingSchedule& pings = scenario.pings;
+  return {.azimuths = scenario.reverberation.azimuths,
+          .spacing = ground_grid(scenario, pulse, paths),
+          .max_range = 0.5 * fastest_water(scenario.environment) *
+                       (pings.recording_start + pings.recording_duration),
+          .frequency = pulse.centre_frequency(),
+          .limits = limits_of(scenario.propagation)};
 }
 
 }  // namespace
@@ -65,9 +101,11 @@ AnySurfaceScattering under_sea(const Scenario& scenario) {
 PingSimulator::PingSimulator(Scenario scenario)
     : scenario_(std::move(scenario)),
       pulse_(scenario_.pulse),
-      ocean_(scenario_.environment),
+      paths_(scenario_.environment, scenario_.transect),
+      ground_(paths_, ground_settings(scenario_, pulse_, paths_)),
       max_doppler_(doppler_bound(scenario_)) {
-  scenario_.reverberation.surface = under_sea(scenario_);
+  set_sea(scenario_.reverberation.surface, scenario_.wind_speed,
+          speed_at_surface(scenario_, paths_));
 }
 
 Transmitter PingSimulator::transmitter(int ping) const {
@@ -78,33 +116,21 @@ Transmitter PingSimulator::transmitter(int ping) const {
   return transmitter;
 }
 
-double PingSimulator::ground_spacing() const {
-  const Environment& ocean = scenario_.environment;
-  return scenario_.reverberation.ground_spacing.value_or(
-      asdic::ground_spacing(pulse_.bandwidth_40db(), ocean.water.at(ocean.surface.depth).c));
-}
+double PingSimulator::ground_spacing() const { return ground_.settings().spacing; }
 
-std::shared_ptr<const GroundPaths> PingSimulator::ground(double platform_depth) const {
-  const std::scoped_lock lock(ground_lock_);
-  auto& cached = ground_[platform_depth];
-  if (!cached) {
-    if (ground_.size() > 8) {  // a platform that changes depth all the time: keep the newest only
-      std::erase_if(ground_, [&](const auto& entry) { return entry.first != platform_depth; });
-    }
-    const PingSchedule& pings = scenario_.pings;
-    double fastest_water = 0.0;
-    for (double z = 0.0; z <= scenario_.environment.bottom.depth; z += 50.0)
-      fastest_water = std::max(fastest_water, scenario_.environment.water.at(z).c);
-    const double max_range =
-        0.5 * fastest_water * (pings.recording_start + pings.recording_duration);
-    const PathLimits limits{.max_surface_bounces = scenario_.propagation.max_surface_bounces,
-                            .max_bottom_bounces = scenario_.propagation.max_bottom_bounces,
-                            .max_launch_angle = scenario_.propagation.max_launch_angle};
-    ground_[platform_depth] = std::make_shared<const GroundPaths>(
-        ground_paths(ocean_, platform_depth, BoundaryKind::surface, ground_spacing(), max_range,
-                     pulse_.centre_frequency(), limits));
-  }
-  return ground_[platform_depth];
+std::vector<SectorPatches> PingSimulator::surface_patches(const Vec3& platform,
+                                                          Timings& timings) const {
+  Stopwatch watch;
+  const auto planes = ground_.around(platform);
+  timings.rays = watch.lap();
+  std::vector<SectorPatches> found(planes->size());
+  tbb::parallel_for(std::size_t{0}, planes->size(), [&](std::size_t i) {
+    const GroundSectors& plane = (*planes)[i];
+    found[i] = {.patches = patches(*plane.paths, scenario_.reverberation.surface,
+                                   pulse_.centre_frequency(), plane.tilt),
+                .sectors = plane.sectors};
+  });
+  return found;
 }
 
 PingRecord PingSimulator::simulate(int ping) const {
@@ -127,12 +153,12 @@ PingRecord PingSimulator::simulate(int ping) const {
                       .samples = static_cast<std::size_t>(
                           std::llround(schedule.recording_duration * schedule.sample_rate))};
 
-  const double local_speed = scenario_.environment.water.at(record.platform.position.z()).c;
+  const double local_speed = paths_.speed_at(record.platform.position);
   const BeamPattern pattern(projector, local_speed / pulse_.centre_frequency());
 
   // Echoes: source → target × target → array.
   Returns echo_returns;
-  const EchoContext echo_context{.ocean = ocean_,
+  const EchoContext echo_context{.paths = paths_,
                                  .scenario = scenario_,
                                  .pattern = pattern,
                                  .frequency = pulse_.centre_frequency(),
@@ -150,21 +176,21 @@ PingRecord PingSimulator::simulate(int ping) const {
   record.timings.eigenrays = watch.lap();
 
   // Reverberation: source → patch → array.
-  const ReverberationContext reverberation{.scenario = scenario_,
-                                           .pattern = pattern,
-                                           .platform = record.platform,
-                                           .sound_speed = local_speed,
-                                           .ping = static_cast<std::uint32_t>(ping)};
-  std::vector<Patch> rings;
+  const ReverberationContext reverberation{
+      .scenario = scenario_,
+      .pattern = pattern,
+      .platform = record.platform,
+      .sound_speed = local_speed,
+      .ping = static_cast<std::uint32_t>(ping),
+      .first_bearing = paths_.layered() ? 0.0 : scenario_.transect.bearing};
+  std::vector<SectorPatches> rings;
   Returns patch_returns;
   if (scenario_.reverberation.enabled) {
-    const auto paths = ground(record.platform.position.z());
-    record.timings.rays = watch.lap();
-    rings = patches(*paths, scenario_.reverberation.surface, pulse_.centre_frequency());
+    rings = surface_patches(record.platform.position, record.timings);
     patch_returns = reverberation_returns(reverberation, rings);
     record.patches = patch_rows(reverberation, rings, most_patch_rows).rows;
   }
-  record.timings.patches = watch.lap();
+  record.timings.patches = watch.lap() - record.timings.rays;
 
   // Time series.
   const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *

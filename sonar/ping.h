@@ -1,15 +1,14 @@
 #pragma once
 #include <functional>
-#include <map>
-#include <memory>
-#include <mutex>
 #include <stop_token>
 
 #include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
 #include "sonar/ping_record.h"
+#include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
+#include "sonar/reverberation.h"
 #include "sonar/scenario.h"
+#include "sonar/surface_ground.h"
 
 namespace asdic {
 
@@ -25,22 +24,22 @@ class PingSimulator {
   [[nodiscard]] PingRecord simulate(int ping) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
-  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return ocean_; }
+  /// Of the ocean as the scenario gives it, along its transect where it has one.
+  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_.along_transect(); }
+  [[nodiscard]] const PropagationPaths& paths() const noexcept { return paths_; }
   [[nodiscard]] const Pulse& pulse() const noexcept { return pulse_; }
   [[nodiscard]] Transmitter transmitter(int ping) const;  ///< with the elevation of that ping
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
 
  private:
-  [[nodiscard]] std::shared_ptr<const GroundPaths> ground(double platform_depth) const;
+  [[nodiscard]] std::vector<SectorPatches> surface_patches(const Vec3& platform,
+                                                           Timings& timings) const;
 
   Scenario scenario_;
   Pulse pulse_;
-  EigenraySolver ocean_;
+  PropagationPaths paths_;
+  SurfaceGround ground_;
   double max_doppler_ = 0.0;
-  // Paths to the surface depend on the platform's depth alone; a platform that keeps its depth has
-  // them traced once.
-  mutable std::mutex ground_lock_;
-  mutable std::map<double, std::shared_ptr<const GroundPaths>> ground_;
 };
 
 struct PingOptions {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "core/random.h"
@@ -46,18 +47,20 @@ std::vector<std::uint32_t> audible(std::span<const Patch> patches, const BeamPat
   return kept;
 }
 
-}  // namespace
-
-Returns reverberation_returns(const ReverberationContext& context, std::span<const Patch> patches) {
+/// The returns of the patches that some sectors share.
+void add_returns(const ReverberationContext& context, std::span<const Patch> patches,
+                 std::span<const int> sectors, Returns& returns) {
   const int azimuths = context.scenario.reverberation.azimuths;
   const std::vector<std::uint32_t> kept =
       audible(patches, context.pattern, context.scenario.pulse.duration);
-  Returns returns;
-  returns.reserve(kept.size() * static_cast<std::size_t>(azimuths));
-  std::vector<std::complex<double>> weights(static_cast<std::size_t>(azimuths));
+  returns.reserve(returns.size() + kept.size() * sectors.size());
+  std::vector<std::complex<double>> weights(sectors.size());
+  std::vector<double> bearings;
   std::vector<Vec3> towards;  // of every sector, from the platform, horizontal
-  for (int k = 0; k < azimuths; ++k)
-    towards.push_back(direction(2.0 * pi * (k + 0.5) / azimuths, 0.0));
+  for (const int k : sectors) {
+    bearings.push_back(context.first_bearing + 2.0 * pi * (k + 0.5) / azimuths);
+    towards.push_back(direction(bearings.back(), 0.0));
+  }
   const double share =
       1.0 / std::sqrt(double(azimuths));  // of the ring's amplitude in a sector of its area
   const bool moving = !context.platform.velocity.isZero();
@@ -66,10 +69,10 @@ Returns reverberation_returns(const ReverberationContext& context, std::span<con
   for (const std::uint32_t index : kept) {
     const Patch& patch = patches[index];
     if (!has_weights || patch.cell != weighted_cell) {
-      for (int k = 0; k < azimuths; ++k) {
+      for (std::size_t i = 0; i < sectors.size(); ++i) {
         const std::uint64_t sector =
-            std::uint64_t{patch.cell} << 20 | static_cast<std::uint64_t>(k);
-        weights[static_cast<std::size_t>(k)] =
+            std::uint64_t{patch.cell} << 20 | static_cast<std::uint64_t>(sectors[i]);
+        weights[i] =
             share * RandomStream(context.scenario.seed, Draw::surface_weight, context.ping, sector)
                         .complex_normal();
       }
@@ -82,13 +85,12 @@ Returns reverberation_returns(const ReverberationContext& context, std::span<con
                          context.sound_speed;  // horizontal and vertical slowness of the
     const double down =
         std::sin(patch.return_elevation) / context.sound_speed;  // sound that comes back
-    for (int k = 0; k < azimuths; ++k) {
-      const auto sector = static_cast<std::size_t>(k);
+    for (std::size_t sector = 0; sector < sectors.size(); ++sector) {
       const Vec3 arriving(-level * towards[sector].x(), -level * towards[sector].y(), down);
       double doppler = 1.0;
       if (moving) {  // the scatterer stands still
-        const Vec3 leaving = direction(2.0 * pi * (k + 0.5) / azimuths, patch.launch_elevation) /
-                             context.sound_speed;
+        const Vec3 leaving =
+            direction(bearings[sector], patch.launch_elevation) / context.sound_speed;
         doppler = leg_doppler({context.platform.velocity, leaving}, {}) *
                   leg_doppler({}, {context.platform.velocity, arriving});
       }
@@ -98,11 +100,11 @@ Returns reverberation_returns(const ReverberationContext& context, std::span<con
                          .slowness = arriving});
     }
   }
-  return returns;
 }
 
-double expected_reverberation_db(const ReverberationContext& context,
-                                 std::span<const Patch> patches, const Pulse& pulse, double t) {
+/// The power of the whole ring heard at a time, were it all like these patches.
+double expected_power(const ReverberationContext& context, std::span<const Patch> patches,
+                      const Pulse& pulse, double t) {
   double power = 0.0;
   std::complex<double> cell_sum = 0.0;
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -115,28 +117,70 @@ double expected_reverberation_db(const ReverberationContext& context,
       cell_sum = 0.0;
     }
   }
+  return power;
+}
+
+/// The part of every ring that a piece stands for.
+double share_of(const ReverberationContext& context, const SectorPatches& piece) {
+  return double(piece.sectors.size()) / context.scenario.reverberation.azimuths;
+}
+
+}  // namespace
+
+Returns reverberation_returns(const ReverberationContext& context,
+                              std::span<const SectorPatches> pieces) {
+  Returns returns;
+  for (const SectorPatches& piece : pieces)
+    add_returns(context, piece.patches, piece.sectors, returns);
+  return returns;
+}
+
+Returns reverberation_returns(const ReverberationContext& context, std::span<const Patch> patches) {
+  std::vector<int> sectors(static_cast<std::size_t>(context.scenario.reverberation.azimuths));
+  std::iota(sectors.begin(), sectors.end(), 0);
+  Returns returns;
+  add_returns(context, patches, sectors, returns);
+  return returns;
+}
+
+double expected_reverberation_db(const ReverberationContext& context,
+                                 std::span<const SectorPatches> pieces, const Pulse& pulse,
+                                 double t) {
+  double power = 0.0;
+  for (const SectorPatches& piece : pieces)
+    power += share_of(context, piece) * expected_power(context, piece.patches, pulse, t);
   return context.scenario.transmitter.source_level_db + db_from_power(power);
 }
 
-PatchRows patch_rows(const ReverberationContext& context, std::span<const Patch> patches,
+PatchRows patch_rows(const ReverberationContext& context, std::span<const SectorPatches> pieces,
                      std::size_t most) {
   PatchRows result;
-  if (patches.empty()) return result;
-  result.every = static_cast<int>((patches.size() + most - 1) / most);
-  for (const Patch& patch : patches) {
-    if (patch.cell % static_cast<std::uint32_t>(result.every) != 0 || result.rows.size() == most)
-      continue;
-    const double beamed = std::abs(patch.amplitude * context.pattern(patch.launch_elevation));
-    result.rows.push_back(
-        {.range = patch.range,
-         .area = patch.area,
-         .delay = patch.delay,
-         .grazing_in = patch.grazing_in,
-         .grazing_out = patch.grazing_out,
-         .launch_elevation = patch.launch_elevation,
-         .arrival_elevation = -patch.return_elevation,
-         .scattering_strength_db = db_from_power(patch.cross_section),
-         .level_db = context.scenario.transmitter.source_level_db + db_from_amplitude(beamed)});
+  std::size_t all = 0;
+  for (const SectorPatches& piece : pieces) all += piece.patches.size();
+  if (all == 0) return result;
+  result.every = static_cast<int>((all + most - 1) / most);
+  const int azimuths = context.scenario.reverberation.azimuths;
+  for (const SectorPatches& piece : pieces) {
+    const double share = share_of(context, piece);
+    const double bearing =
+        share == 1.0 ? std::nan("")
+                     : context.first_bearing + 2.0 * pi * (piece.sectors[0] + 0.5) / azimuths;
+    for (const Patch& patch : piece.patches) {
+      if (patch.cell % static_cast<std::uint32_t>(result.every) != 0 || result.rows.size() == most)
+        continue;
+      const double beamed = std::abs(patch.amplitude * context.pattern(patch.launch_elevation));
+      result.rows.push_back({.bearing = bearing,
+                             .range = patch.range,
+                             .area = share * patch.area,
+                             .delay = patch.delay,
+                             .grazing_in = patch.grazing_in,
+                             .grazing_out = patch.grazing_out,
+                             .launch_elevation = patch.launch_elevation,
+                             .arrival_elevation = -patch.return_elevation,
+                             .scattering_strength_db = db_from_power(patch.cross_section),
+                             .level_db = context.scenario.transmitter.source_level_db +
+                                         db_from_amplitude(beamed) + db_from_power(share)});
+    }
   }
   return result;
 }

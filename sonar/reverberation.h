@@ -17,6 +17,15 @@ struct ReverberationContext {
   Kinematics platform;
   double sound_speed;  ///< at the platform [m/s]
   std::uint32_t ping;
+  double first_bearing = 0.0;  ///< where sector 0 begins, clockwise from north [rad]
+};
+
+/// The patches of one plane, and the azimuth sectors of every ring that they stand for: all of them
+/// in a layered ocean, otherwise the two mirrored about the transect.
+struct SectorPatches {
+  std::vector<Patch> patches;  ///< of the whole ring, were it all like this plane
+  std::vector<int> sectors;    ///< 0 … azimuths − 1; sector k is centred on first_bearing +
+                               ///< 2π(k + ½)/azimuths
 };
 
 /// The patches as returns: every ring is split into azimuth sectors, each with its own direction,
@@ -24,21 +33,24 @@ struct ReverberationContext {
 /// sector) and shared by all path pairs through it. The weakest pairs are left out as long as all
 /// that is left out stays 50 dB below what is heard at its time.
 [[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
+                                            std::span<const SectorPatches> pieces);
+/// The same of patches that stand for all sectors.
+[[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
                                             std::span<const Patch> patches);
 
 /// Expected level of the reverberation at the array at time t [dB re 1 µPa, peak envelope/√2]: SL +
-/// 10·log₁₀ Σ_cells |Σ_pairs A·D·s(t − τ)|². −∞ where there is none.
+/// 10·log₁₀ Σ_cells |Σ_pairs A·D·s(t − τ)|², the mean over sectors. −∞ where there is none.
 [[nodiscard]] double expected_reverberation_db(const ReverberationContext& context,
-                                               std::span<const Patch> patches, const Pulse& pulse,
-                                               double t);
+                                               std::span<const SectorPatches> pieces,
+                                               const Pulse& pulse, double t);
 
 /// The patches as rows of the file, at most `most` of them; \return {rows, every}: each every-th
-/// cell is kept.
+/// cell is kept (of each piece).
 struct PatchRows {
   std::vector<PatchRow> rows;
   int every = 1;
 };
 [[nodiscard]] PatchRows patch_rows(const ReverberationContext& context,
-                                   std::span<const Patch> patches, std::size_t most);
+                                   std::span<const SectorPatches> pieces, std::size_t most);
 
 }  // namespace asdic

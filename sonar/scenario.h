@@ -10,6 +10,7 @@
 #include "sonar/array.h"
 #include "sonar/pulse.h"
 #include "sonar/track.h"
+#include "sonar/transect.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
@@ -58,6 +59,7 @@ struct Scenario {
   std::string title;
   std::uint64_t seed = 1;
   Environment environment;
+  Transect transect;         ///< where its range axis lies on the map
   double wind_speed = 10.0;  ///< at 10 m [m/s]
   Track platform;            ///< carries transmitter and array
   Transmitter transmitter;

@@ -117,14 +117,43 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
     tangent_[i] = 0.5 * (before + after);
     slope_[i] = 0.5 * (before.y() / before.x() + after.y() / after.x());
   }
-  // Curvilinear: κ of a facet = (change of the node tangents' slope)/(its horizontal length)·cos³.
-  curvature_.assign(n + 1, 0.0);
-  for (std::size_t i = 1; i < n; ++i) {
+  bend_facets();
+}
+
+// Curvilinear: κ of a facet = (change of the node tangents' slope)/(its horizontal length)·cos³.
+void BoundaryShape::bend_facets() {
+  curvature_.assign(range_.size() + 1, 0.0);
+  for (std::size_t i = 1; i < range_.size(); ++i) {
     const Vec2 &a = tangent_[i - 1], &b = tangent_[i];
-    const double cosine = facet_tangent[i - 1].x();
-    curvature_[i] =
-        (b.y() / b.x() - a.y() / a.x()) / (range_[i] - range_[i - 1]) * cosine * cosine * cosine;
+    const double width = range_[i] - range_[i - 1];
+    const double cosine = width / std::hypot(width, depth_[i] - depth_[i - 1]);
+    curvature_[i] = (b.y() / b.x() - a.y() / a.x()) / width * cosine * cosine * cosine;
   }
+}
+
+BoundaryShape BoundaryShape::along(double origin, double cosine) const {
+  BoundaryShape line = *this;
+  if (cosine < 0.0) {
+    if (!material_.empty()) {
+      // A facet keeps its material: the last one, beyond all nodes, is to come before all of them.
+      // One more node on that flat stretch gives it a facet of its own.
+      line.range_.push_back(range_.back() + 1.0);
+      line.depth_.push_back(depth_.back());
+      line.slope_.push_back(0.0);
+      line.tangent_.emplace_back(1.0, 0.0);
+      line.material_.assign(material_.rbegin(), material_.rend());
+      line.material_.push_back(material_.front());
+    }
+    std::reverse(line.range_.begin(), line.range_.end());
+    std::reverse(line.depth_.begin(), line.depth_.end());
+    std::reverse(line.slope_.begin(), line.slope_.end());
+    std::reverse(line.tangent_.begin(), line.tangent_.end());
+  }
+  for (double& range : line.range_) range = (range - origin) / cosine;
+  for (double& slope : line.slope_) slope *= cosine;
+  for (Vec2& tangent : line.tangent_) tangent.y() *= cosine;
+  line.bend_facets();
+  return line;
 }
 
 std::size_t BoundaryShape::facet(double range) const noexcept {

@@ -40,6 +40,11 @@ class BoundaryShape {
   BoundaryShape(std::span<const double> range, std::span<const double> depth,
                 ShapeInterpolation interpolation, std::vector<BoundaryMaterial> material = {});
 
+  /// The same boundary along a line that leaves the transect at `origin` [m] under an angle of this
+  /// cosine: a point at range r of the line lies at origin + r·cosine of the transect. Depths stay,
+  /// slopes shrink by the cosine. \param cosine  −1..1, not 0; below 0 the line runs backwards
+  [[nodiscard]] BoundaryShape along(double origin, double cosine) const;
+
   [[nodiscard]] std::span<const double> ranges() const noexcept { return range_; }
   [[nodiscard]] std::span<const double> depths() const noexcept { return depth_; }
   [[nodiscard]] ShapeInterpolation interpolation() const noexcept { return interpolation_; }
@@ -66,6 +71,8 @@ class BoundaryShape {
   [[nodiscard]] double deepest() const noexcept;     ///< greatest depth [m]
 
  private:
+  void bend_facets();  // curvature_, out of tangent_
+
   std::vector<double> range_, depth_;       // [n]
   std::vector<double> slope_;               // [n] at the nodes (smooth)
   std::vector<Vec2> tangent_;               // [n] at the nodes, about unit length (curvilinear)

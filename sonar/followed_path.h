@@ -1,0 +1,18 @@
+#pragma once
+#include <optional>
+
+#include "raytrace/arrivals.h"
+#include "raytrace/tracing/ray_tracer.h"
+
+namespace asdic {
+
+/// The same path after its ends, and with them its plane, have moved by metres: traced again from
+/// its launch angle, which Newton's method turns until the ray passes within a tenth of a
+/// millimetre of the receiver. Null if no ray of the same history does: then it has to be searched
+/// for. \param tracer  of the plane as it is now, source at range 0   \param range  of the receiver
+/// [m]
+[[nodiscard]] std::optional<Arrival> followed_path(const RayTracer& tracer, const Arrival& path,
+                                                   double source_depth, double receiver_depth,
+                                                   double range);
+
+}  // namespace asdic

@@ -1,0 +1,69 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "raytrace/eigenrays.h"
+#include "sonar/scenario.h"
+
+namespace asdic {
+
+/// A vertical plane through the ocean: from a place on the map in one direction.
+struct Plane {
+  double origin = 0.0;    ///< of the place along the transect [m]
+  double cos_beta = 1.0;  ///< of the angle between the direction and the transect
+};
+
+/// The sound paths between any two places of a scenario's map.
+///
+/// In a layered ocean one solver serves all places. Where the ocean varies along a transect, sound
+/// travels in the vertical plane through both places (N × 2D), and each plane is a slice of the
+/// ocean with a solver of its own; the latest are kept. Shared by threads; what comes out does not
+/// depend on what is kept. docs/theory/transect.md
+class PropagationPaths {
+ public:
+  PropagationPaths(const Environment& ocean, const Transect& transect);
+
+  /// Of the ocean as it is given: from the transect's origin along it.
+  [[nodiscard]] const EigenraySolver& along_transect() const noexcept { return along_; }
+  [[nodiscard]] bool layered() const noexcept { return layered_; }
+
+  /// The plane through a place in a direction [rad, clockwise from north].
+  [[nodiscard]] Plane plane(const Vec3& from, double bearing) const noexcept;
+  /// The solver of a plane, source at range 0: one for all planes of a layered ocean.
+  [[nodiscard]] std::shared_ptr<const EigenraySolver> solver(const Plane& plane) const;
+
+  /// How far along the transect a place is [m].
+  [[nodiscard]] double along(const Vec3& place) const noexcept {
+    return transect_.range_of(place.x(), place.y());
+  }
+  /// Depth of surface and bottom at a place [m].
+  [[nodiscard]] double surface_depth(const Vec3& place) const noexcept;
+  [[nodiscard]] double bottom_depth(const Vec3& place) const noexcept;
+  /// Speed of sound at a place [m/s].
+  [[nodiscard]] double speed_at(const Vec3& place) const noexcept;
+
+  /// All eigenrays from one place to another, sorted by delay.
+  [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
+                              const PathLimits& limits) const;
+  /// The same paths after the places have moved by metres: searched anew in a layered ocean, where
+  /// that costs microseconds, otherwise each followed from what it was (and searched anew if one
+  /// cannot be). \param known  paths between two places nearby
+  [[nodiscard]] Arrivals follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+                                double frequency, const PathLimits& limits) const;
+
+ private:
+  [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
+
+  EigenraySolver along_;
+  Transect transect_;
+  bool layered_;
+  mutable std::mutex lock_;
+  mutable std::map<std::pair<double, double>, std::shared_ptr<const EigenraySolver>> slices_;
+};
+
+/// What a scenario searches for.
+[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings) noexcept;
+
+}  // namespace asdic
