@@ -88,7 +88,8 @@ class CellSearch {
       const double off = std::abs(range.value(m.angle) - hm.range) +
                          std::abs(time.value(m.angle) - hm.time) * hm.speed +
                          std::abs(range.slope(m.angle) - hm.d_range) * (b.angle - a.angle) / 8.0;
-      if (off > 0.1 * spacing_) return false;  // halves are then right to a sixteenth of that
+      // halves are right to a sixteenth of that where all is smooth, and to about that elsewhere
+      if (off > 0.02 * spacing_) return false;
       if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > grazing_tolerance) return false;
     }
     return true;
@@ -123,7 +124,8 @@ class CellSearch {
            std::vector<CellHit>& out) const {
     const Hermite range(range_node(a, ha), range_node(b, hb));
     const Hermite time(time_node(a, ha), time_node(b, hb));
-    const auto turns = range.extrema();
+    const bool caustic = (ha.d_range > 0.0) != (hb.d_range > 0.0);
+    const auto turns = caustic ? range.extrema() : Hermite::Places{};
     double from = a.angle, from_range = ha.range;
     for (std::size_t i = 0; i <= turns.size(); ++i) {
       const double to = i < turns.size() ? turns.x[i] : b.angle;
