@@ -29,11 +29,11 @@ int ocean(const Options& options) {
       options.data.empty() ? default_ocean_sources() : default_ocean_sources(options.data);
   const OceanSample sample =
       sample_ocean(sources, options.latitude, options.longitude, options.month);
-  std::optional<OceanSection> transect;
+  std::optional<OceanSection> section;
   if (options.bearing)
-    transect = sample_transect(sources, options.latitude, options.longitude, *options.bearing,
-                               *options.range);
-  const std::string fragment = write_scenario_fragment(sample, transect);
+    section = sample_section(sources, options.latitude, options.longitude, *options.bearing,
+                             *options.range, options.month);
+  const std::string fragment = write_scenario_fragment(sample, section);
   if (options.output.empty()) {
     print(fragment);
     return 0;
@@ -43,8 +43,8 @@ int ocean(const Options& options) {
                     count_of(sample.depth.size(), "level"), sample.depth.back(),
                     sample.water_depth));
   for (const std::string& note : sample.notes) print(fmt::format("note: {}\n", note));
-  if (transect)
-    for (const std::string& note : transect->notes) print(fmt::format("note: {}\n", note));
+  if (section)
+    for (const std::string& note : section->notes) print(fmt::format("note: {}\n", note));
   return 0;
 }
 
@@ -67,7 +67,7 @@ void add_ocean_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 12));
   command
       ->add_option("--bearing", options->bearing,
-                   "of a track along which the depth of the sea is told as well [deg]")
+                   "of a track: sea floor and water along it instead of one place's [deg]")
       ->type_name("DEG")
       ->check(CLI::Range(-360.0, 360.0));
   add_length_option(

@@ -35,21 +35,27 @@ struct OceanSample {
 [[nodiscard]] OceanSample sample_ocean(const OceanSources& sources, double latitude,
                                        double longitude, std::optional<int> month = std::nullopt);
 
-/// Depth of the sea along a great circle.
+/// The sea along a great circle: its floor, and its water wherever the grid has another profile.
 struct OceanSection {
   double bearing_deg = 0.0;              ///< at its start, clockwise from north
-  std::vector<double> range{}, depth{};  ///< [points] [m]
+  std::vector<double> range{}, floor{};  ///< [points] range and depth of the sea floor [m]
+  std::vector<double> station{};         ///< [stations] ranges of the profiles [m]
+  std::vector<double> depth{};           ///< [levels] of all of them [m]
+  std::vector<double> speed{};           ///< [stations × levels] speed of sound [m/s]
   std::vector<std::string> notes{};
 };
 
-/// Every 5 km or nearer, from the nearest grid points; ends at the coast. The Earth is a sphere of
-/// 6371 km. \param range  [m], above 0
-[[nodiscard]] OceanSection sample_transect(const OceanSources& sources, double latitude,
-                                           double longitude, double bearing_deg, double range);
+/// Floor every 5 km or nearer, bilinear between grid points; ends at the coast. A profile stands in
+/// the middle of the stretch whose nearest grid point is its own; speeds by Chen and Millero's
+/// equation, PCHIP between measured levels, at levels near enough for straight lines (0.04 m/s).
+/// The Earth is a sphere of 6371 km. \param range  [m], above 0
+[[nodiscard]] OceanSection sample_section(const OceanSources& sources, double latitude,
+                                          double longitude, double bearing_deg, double range,
+                                          std::optional<int> month = std::nullopt);
 
 /// An [environment] for a scenario (docs/formats/scenario.md), as TOML text with its origins and
 /// notes in comments.
 [[nodiscard]] std::string write_scenario_fragment(const OceanSample& ocean,
-                                                  const std::optional<OceanSection>& transect = {});
+                                                  const std::optional<OceanSection>& section = {});
 
 }  // namespace asdic

@@ -1,93 +1,73 @@
 #include <algorithm>
 
+#include "io/scenario/angles.h"
+#include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
 
 namespace asdic::scenario {
 namespace {
 
-BoundaryMaterial read_material(TomlTable& table, std::optional<std::string> fallback) {
-  const std::string kind = table.choice("kind", {"vacuum", "rigid", "fluid"}, std::move(fallback));
-  if (kind == Vacuum::name) return Vacuum{};
-  if (kind == Rigid::name) return Rigid{};
-  const FluidHalfSpace sand;
-  return FluidHalfSpace{
-      .speed = table.number("speed", speed_of_sound, sand.speed),
-      .density = table.number(
-          "density", {.noun = "density", .unit = "kg/m3", .low = 0.0, .above = true}, sand.density),
-      .attenuation_db_per_wavelength = table.number(
-          "attenuation_db_per_wavelength",
-          {.noun = "attenuation", .unit = "dB per wavelength", .low = 0.0, .high = 20.0},
-          sand.attenuation_db_per_wavelength)};
-}
-
-Absorption read_absorption(TomlTable table) {
-  const std::string kind = table.choice("kind", {"none", "thorp", "francois-garrison"}, "thorp");
-  Absorption absorption = NoAbsorption{};
-  if (kind == Thorp::name) absorption = Thorp{};
-  if (kind == FrancoisGarrison::name) {
-    FrancoisGarrison law;
-    law.temperature = table.number(
-        "temperature", {.noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0},
-        law.temperature);
-    law.salinity = table.number(
-        "salinity", {.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0}, law.salinity);
-    law.ph = table.number("ph", {.noun = "pH", .low = 6.0, .high = 9.0}, law.ph);
-    law.depth = table.number("depth", depth_quantity, law.depth);
-    absorption = law;
+/// The bottom is nowhere above the surface: held at every node of both, between which a
+/// piecewise-linear one is straight.
+void check_water(TomlTable& bottom, const Environment& ocean) {
+  std::vector<double> ranges = {0.0};
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
+    if (boundary->shape)
+      ranges.insert(ranges.end(), boundary->shape->ranges().begin(),
+                    boundary->shape->ranges().end());
+  double most = 0.0;
+  for (const double range : ranges) {
+    const double surface = ocean.surface.depth_at(range), floor = ocean.bottom.depth_at(range);
+    most = std::max(most, floor - surface);
+    if (floor < surface)
+      throw bottom.fault(bottom.has("depth") ? "depth" : "shape",
+                         "a bottom below the surface, which is at " + to_text(surface) + " m there",
+                         "a depth of " + to_text(floor) + " m at range " + to_text(range) + " m");
   }
-  table.finish();
-  return absorption;
+  if (!(most > 0.0))
+    throw bottom.fault(bottom.has("depth") ? "depth" : "shape", "water between it and the surface",
+                       "none");
 }
 
-/// Depth of the water: `depth`, or the transect's depth at range 0 (all that a flat bottom can
-/// use).
-double read_bottom_depth(TomlTable& bottom, Scenario& scenario) {
-  constexpr Quantity positive{
-      .noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0, .above = true};
-  if (!bottom.has("transect")) return bottom.number("depth", positive);
-  TomlTable transect = bottom.table("transect");
-  const auto range = transect.numbers("range", {.noun = "range", .unit = "m", .low = 0.0});
-  const auto depth = transect.numbers("depth", positive);
-  if (range.size() != depth.size())
-    throw transect.fault("depth", "as many depths as ranges, " + std::to_string(range.size()));
-  for (std::size_t i = 1; i < range.size(); ++i)
-    if (range[i] <= range[i - 1])
-      throw transect.fault("range[" + std::to_string(i) + "]",
-                           "a range above the one before it, " + to_text(range[i - 1]) + " m");
-  if (range.front() != 0.0) throw transect.fault("range[0]", "0 m, the place of the platform");
-  static_cast<void>(transect.text("note", ""));
-  transect.finish();
-  const double used = bottom.number("depth", positive, depth.front());
-  const auto [least, most] = std::minmax_element(depth.begin(), depth.end());
-  scenario.notes.push_back("the bottom is taken as flat at " + to_text(used) +
-                           " m; along environment.bottom.transect it lies between " +
-                           to_text(*least) + " m and " + to_text(*most) + " m");
-  return used;
+Transect read_transect(TomlTable table) {
+  Transect transect;
+  if (table.has("origin")) {
+    const auto origin = table.numbers("origin", coordinate);
+    if (origin.size() != 2) throw table.fault("origin", "[east, north] in m");
+    transect.x = origin[0];
+    transect.y = origin[1];
+  }
+  transect.bearing =
+      read_angle(table, "bearing", {.noun = "bearing", .low_deg = -360.0, .high_deg = 360.0}, 0.0);
+  table.finish();
+  return transect;
 }
 
 }  // namespace
 
-void read_environment(TomlTable table, const std::filesystem::path& folder, Scenario& scenario) {
-  Environment& ocean = scenario.environment;
+Environment read_ocean(TomlTable& table, const OceanReading& reading) {
+  Environment ocean;
+  TomlTable bottom = table.table("bottom"), surface = table.table("surface");
+  ocean.bottom = read_boundary_place(bottom, reading, false);
+  ocean.surface = read_boundary_place(surface, reading, true);
+  check_water(bottom, ocean);
+  read_water_losses(table, reading, ocean);
+  read_sound_speed(table.table("sound_speed"), reading, ocean);
+  read_boundary_materials(bottom, reading, ocean, std::nullopt, ocean.bottom);
+  bottom.finish();
+  read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
+  surface.finish();
+  return ocean;
+}
+
+void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
+                      Scenario& scenario) {
   scenario.wind_speed =
       table.number("wind_speed", {.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0},
                    scenario.wind_speed);
-  ocean.water_density = table.number(
-      "water_density", {.noun = "density", .unit = "kg/m3", .low = 500.0, .high = 2000.0},
-      ocean.water_density.at(0.0));
-
-  TomlTable bottom = table.table("bottom");
-  ocean.bottom.depth = read_bottom_depth(bottom, scenario);
-  ocean.bottom.material = read_material(bottom, std::nullopt);
-  bottom.finish();
-
-  TomlTable surface = table.table("surface");
-  ocean.surface.material = read_material(surface, std::string(Vacuum::name));
-  surface.finish();
-
-  ocean.absorption = read_absorption(table.table("absorption"));
-  ocean.water =
-      read_sound_speed(table.table("sound_speed"), folder, ocean.bottom.depth, scenario.notes);
+  scenario.transect = read_transect(table.table("transect"));
+  scenario.environment =
+      read_ocean(table, {.folder = folder, .frequency = frequency, .notes = scenario.notes});
   table.finish();
 }
 

@@ -9,13 +9,9 @@
 /// throw InputError.
 namespace asdic::scenario {
 
-void read_environment(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
-/// \param bottom_depth  of the water [m]: temperature-salinity profiles are continued down to it
-/// \param notes  grows by what the user should know
-[[nodiscard]] SoundSpeedProfile read_sound_speed(TomlTable table,
-                                                 const std::filesystem::path& folder,
-                                                 double bottom_depth,
-                                                 std::vector<std::string>& notes);
+/// \param frequency  at which attenuations per metre are meant [Hz]
+void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
+                      Scenario& scenario);
 void read_platform(TomlTable table, Scenario& scenario);
 void read_transmitter(TomlTable table, Scenario& scenario);
 void read_pulse(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);

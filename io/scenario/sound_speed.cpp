@@ -3,9 +3,9 @@
 #include <cmath>
 #include <span>
 
+#include "io/scenario/columns.h"
+#include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
-#include "io/text/csv_table.h"
-#include "io/text/quote.h"
 #include "raytrace/ocean/seawater.h"
 
 namespace asdic::scenario {
@@ -25,83 +25,97 @@ constexpr Quantity temperature_quantity{
     .noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0};
 constexpr Quantity salinity_quantity{.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0};
 
-/// Columns of a profile and where each number came from.
-struct Columns {
-  std::vector<std::vector<double>> values;  // [names][levels]
-  TomlTable* table = nullptr;
-  std::string csv_file;  // "" when they stand in the scenario itself
-  std::vector<int> csv_lines;
-  std::vector<std::string> names;
-
-  [[nodiscard]] std::size_t levels() const { return values[0].size(); }
-
-  [[nodiscard]] InputError fault(std::size_t column, std::size_t level, const std::string& expected,
-                                 std::string_view unit) const {
-    const std::string got = to_text(values[column][level]) + " " + std::string(unit);
-    if (csv_file.empty())
-      return table->fault(names[column] + "[" + std::to_string(level) + "]", expected, got);
-    return InputError(
-        {.where = csv_file + ":" + std::to_string(csv_lines[level]) + ": " + names[column],
-         .got = got,
-         .expected = expected});
-  }
-};
-
-/// `depth` and its companions, from the scenario's arrays or from the CSV file that it names.
-Columns read_columns(TomlTable& table, const std::filesystem::path& folder,
-                     const std::vector<std::pair<std::string, Quantity>>& wanted) {
-  Columns columns;
-  columns.table = &table;
-  for (const auto& [name, quantity] : wanted) columns.names.push_back(name);
-  if (table.has("file")) {
-    const std::filesystem::path path = folder / table.text("file");
-    if (!std::filesystem::exists(path))
-      throw table.fault("file", "a readable CSV file", "no such file " + in_quotes(path.string()));
-    const CsvTable csv = read_csv(path);
-    columns.csv_file = csv.file;
-    columns.csv_lines = csv.lines;
-    for (const std::string& name : columns.names) columns.values.push_back(csv.column(name));
-  } else {
-    for (const auto& [name, quantity] : wanted)
-      columns.values.push_back(table.numbers(name, quantity));
-  }
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto& [name, quantity] = wanted[i];
-    if (columns.values[i].size() != columns.levels())
-      throw table.fault(name, "as many values as depths, " + std::to_string(columns.levels()));
-    for (std::size_t level = 0; level < columns.levels(); ++level) {
-      const double value = columns.values[i][level];
-      if (!quantity.holds(value)) throw columns.fault(i, level, quantity.expected(), quantity.unit);
-      if (i == 0 && level > 0 && value <= columns.values[0][level - 1])
-        throw columns.fault(
-            i, level,
-            "a depth below the one before it, " + to_text(columns.values[0][level - 1]) + " m",
-            "m");
+/// A short table goes on by the law of its first or last interval, as far as that makes sense: its
+/// speed at both boundaries must be near what the samples hold.
+void check_reach(const TomlTable& table, const std::string& key, std::span<const double> depth,
+                 std::span<const double> speed, const Environment& ocean) {
+  const auto [least, most] = std::minmax_element(speed.begin(), speed.end());
+  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+  const double surface =
+      ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
+  const auto ranges = ocean.section ? ocean.section->ranges() : std::span<const double>();
+  for (const double z : {surface, bottom})
+    for (std::size_t i = 0; i < std::max<std::size_t>(1, ranges.size()); ++i) {
+      const double c = ocean.section ? ocean.section->at(ranges[i], z).c : ocean.water.at(z).c;
+      if (!(c > 0.8 * *least && c < 1.25 * *most))
+        throw table.fault(
+            key, "levels that reach from the surface to the bottom at " + to_text(bottom) + " m",
+            "levels from " + to_text(depth.front()) + " to " + to_text(depth.back()) +
+                " m, by which the speed at " + to_text(z) + " m would be " +
+                to_text(std::round(c)) + " m/s");
     }
-  }
-  return columns;
 }
 
-SoundSpeedProfile read_table(TomlTable& table, const std::filesystem::path& folder,
-                             Interpolation interpolation, double bottom_depth) {
-  const Columns columns =
-      read_columns(table, folder, {{"depth", depth_quantity}, {"speed", speed_of_sound}});
-  const auto& depth = columns.values[0];
-  const auto& speed = columns.values[1];
-  auto profile = profile_of(table, depth, speed, interpolation);
-  // A short profile goes on by the law of its first or last interval, as far as that makes sense.
-  const auto [least, most] = std::minmax_element(speed.begin(), speed.end());
-  for (const double z : {0.0, bottom_depth}) {
-    const double c = profile.at(z).c;
-    if (!(c > 0.8 * *least && c < 1.25 * *most))
-      throw table.fault(
-          table.has("file") ? "file" : "depth",
-          "levels that reach from the surface to the bottom at " + to_text(bottom_depth) + " m",
-          "levels from " + to_text(depth.front()) + " to " + to_text(depth.back()) +
-              " m, by which the speed at " + to_text(z) + " m would be " + to_text(std::round(c)) +
-              " m/s");
+void read_table(TomlTable& table, const OceanReading& reading, Interpolation interpolation,
+                Environment& ocean) {
+  const Columns columns = read_columns(
+      table, reading.folder, {{"depth", water_depth_quantity}, {"speed", speed_of_sound}});
+  require_increasing(columns, "m");
+  ocean.water = profile_of(table, columns.values[0], columns.values[1], interpolation);
+  check_reach(table, table.has("file") ? "file" : "depth", columns.values[0], columns.values[1],
+              ocean);
+}
+
+/// `range`, `depth` and rows of `speed`; or a CSV file with a line for every point of the grid.
+SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
+  if (!table.has("file")) {
+    const std::vector<double> range = table.numbers("range", range_quantity);
+    const std::vector<double> depth = table.numbers("depth", water_depth_quantity);
+    const auto rows = table.rows("speed", speed_of_sound);
+    if (rows.size() != range.size())
+      throw table.fault("speed",
+                        "a row for each of the " + std::to_string(range.size()) + " ranges",
+                        std::to_string(rows.size()) + " rows");
+    if (rows[0].size() != depth.size())
+      throw table.fault("speed[0]",
+                        "a speed for each of the " + std::to_string(depth.size()) + " depths");
+    std::vector<double> speed;
+    for (const auto& row : rows) speed.insert(speed.end(), row.begin(), row.end());
+    try {
+      return SoundSpeedSection(range, depth, speed);
+    } catch (const InputError& error) {
+      throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
+    }
   }
-  return profile;
+  const Columns columns = read_columns(
+      table, reading.folder,
+      {{"range", range_quantity}, {"depth", water_depth_quantity}, {"speed", speed_of_sound}});
+  const auto& r = columns.values[0];
+  const auto& z = columns.values[1];
+  const auto distinct = [](std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
+  };
+  const std::vector<double> range = distinct(r), depth = distinct(z);
+  std::vector<double> speed(range.size() * depth.size(), 0.0);
+  const auto place = [](const std::vector<double>& axis, double value) {
+    return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), value) -
+                                    axis.begin());
+  };
+  for (std::size_t row = 0; row < columns.rows(); ++row) {
+    double& c = speed[place(range, r[row]) * depth.size() + place(depth, z[row])];
+    if (c != 0.0)
+      throw columns.fault(0, row,
+                          "one speed a point, not a second one at " + to_text(z[row]) + " m", "m");
+    c = columns.values[2][row];
+  }
+  for (std::size_t i = 0; i < speed.size(); ++i)
+    if (speed[i] == 0.0)
+      throw table.fault("file", "a speed at every depth of every range",
+                        "none at range " + to_text(range[i / depth.size()]) + " m, depth " +
+                            to_text(depth[i % depth.size()]) + " m");
+  if (depth.size() < 2) throw table.fault("file", "at least two depths", "one");
+  return {range, depth, speed};
+}
+
+void read_section(TomlTable& table, const OceanReading& reading, Environment& ocean) {
+  ocean.section = read_grid(table, reading);
+  const auto depth = ocean.section->depths();
+  std::vector<double> at_start;
+  for (const double z : depth) at_start.push_back(ocean.section->at(0.0, z).c);
+  ocean.water = SoundSpeedProfile::table(depth, at_start, Interpolation::c_linear);
+  check_reach(table, table.has("file") ? "file" : "depth", depth, ocean.section->speeds(), ocean);
 }
 
 /// A note when an equation is asked about water that it was not measured in.
@@ -125,9 +139,8 @@ void note_range(const std::string& equation, std::span<const double> temperature
   }
 }
 
-SoundSpeedProfile read_temperature_salinity(TomlTable& table, const std::filesystem::path& folder,
-                                            Interpolation interpolation, double bottom_depth,
-                                            std::vector<std::string>& notes) {
+SoundSpeedProfile read_temperature_salinity(TomlTable& table, const OceanReading& reading,
+                                            Interpolation interpolation, double bottom_depth) {
   static const std::array<std::pair<std::string, SeawaterEquation>, 3> equations{
       {{"chen-millero", SeawaterEquation::chen_millero},
        {"mackenzie", SeawaterEquation::mackenzie},
@@ -141,11 +154,12 @@ SoundSpeedProfile read_temperature_salinity(TomlTable& table, const std::filesys
   const double latitude =
       table.number("latitude_deg",
                    {.noun = "latitude", .unit = "degrees north", .low = -90.0, .high = 90.0}, 45.0);
-  const Columns columns = read_columns(table, folder,
+  const Columns columns = read_columns(table, reading.folder,
                                        {{"depth", depth_quantity},
                                         {"temperature", temperature_quantity},
                                         {"salinity", salinity_quantity}});
-  note_range(name, columns.values[1], columns.values[2], notes);
+  require_increasing(columns, "m");
+  note_range(name, columns.values[1], columns.values[2], reading.notes);
   std::vector<double> depth, speed;
   const auto add = [&](double z, std::size_t level) {
     depth.push_back(z);
@@ -165,25 +179,27 @@ SoundSpeedProfile read_temperature_salinity(TomlTable& table, const std::filesys
 
 }  // namespace
 
-SoundSpeedProfile read_sound_speed(TomlTable table, const std::filesystem::path& folder,
-                                   double bottom_depth, std::vector<std::string>& notes) {
+void read_sound_speed(TomlTable table, const OceanReading& reading, Environment& ocean) {
   const std::string kind =
-      table.choice("kind", {"table", "munk", "isovelocity", "temperature-salinity"});
+      table.choice("kind", {"table", "munk", "isovelocity", "temperature-salinity", "section"});
   Interpolation interpolation = Interpolation::c_linear;
   if (kind == "table" || kind == "temperature-salinity") {
-    const std::string law =
-        table.choice("interpolation", {"c-linear", "n2-linear", "spline", "pchip"}, "c-linear");
-    if (law == "n2-linear") interpolation = Interpolation::n2_linear;
-    if (law == "spline") interpolation = Interpolation::spline;
-    if (law == "pchip") interpolation = Interpolation::pchip;
+    const std::string law = table.choice(
+        "interpolation", {"c-linear", "n2-linear", "spline", "pchip", "pchip-spline-slopes"},
+        "c-linear");
+    for (const Interpolation rule : {Interpolation::n2_linear, Interpolation::spline,
+                                     Interpolation::pchip, Interpolation::pchip_spline_slopes})
+      if (law == name(rule)) interpolation = rule;
   }
-  auto profile = SoundSpeedProfile::isovelocity(1500.0);
   if (kind == "table") {
-    profile = read_table(table, folder, interpolation, bottom_depth);
+    read_table(table, reading, interpolation, ocean);
   } else if (kind == "temperature-salinity") {
-    profile = read_temperature_salinity(table, folder, interpolation, bottom_depth, notes);
+    const double deepest = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+    ocean.water = read_temperature_salinity(table, reading, interpolation, deepest);
+  } else if (kind == "section") {
+    read_section(table, reading, ocean);
   } else if (kind == "isovelocity") {
-    profile = SoundSpeedProfile::isovelocity(table.number("speed", speed_of_sound));
+    ocean.water = SoundSpeedProfile::isovelocity(table.number("speed", speed_of_sound));
   } else {
     MunkParameters munk;
     munk.axis_speed = table.number("axis_speed", speed_of_sound, munk.axis_speed);
@@ -191,10 +207,9 @@ SoundSpeedProfile read_sound_speed(TomlTable table, const std::filesystem::path&
     munk.scale_depth = table.number(
         "scale_depth", {.noun = "depth", .unit = "m", .low = 10.0, .high = 1e5}, munk.scale_depth);
     munk.perturbation = table.number("perturbation", {.low = 0.0, .high = 0.1}, munk.perturbation);
-    profile = SoundSpeedProfile::munk(munk);
+    ocean.water = SoundSpeedProfile::munk(munk);
   }
   table.finish();
-  return profile;
 }
 
 }  // namespace asdic::scenario

@@ -96,6 +96,16 @@ const TomlValue* TomlTable::find(const std::string& key) {
 
 bool TomlTable::has(const std::string& key) { return find(key) != nullptr; }
 
+bool TomlTable::is_table(const std::string& key) {
+  const TomlValue* value = find(key);
+  return value != nullptr && value->table() != nullptr;
+}
+
+bool TomlTable::is_array(const std::string& key) {
+  const TomlValue* value = find(key);
+  return value != nullptr && std::holds_alternative<TomlValue::Array>(value->data);
+}
+
 const TomlValue& TomlTable::require(const std::string& key, const std::string& expected) {
   const TomlValue* value = find(key);
   if (value != nullptr) return *value;
@@ -177,14 +187,36 @@ std::string TomlTable::choice(const std::string& key, const std::vector<std::str
   throw fault(key, join(names) + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
 }
 
-std::vector<double> TomlTable::numbers(const std::string& key, const Quantity& quantity) {
-  const std::string expected = "an array of numbers, each " + quantity.expected();
-  const TomlValue& value = require(key, expected);
+std::vector<double> TomlTable::checked_numbers(const TomlValue& value, const std::string& key,
+                                               const Quantity& quantity,
+                                               const std::string& expected) const {
   const auto* array = std::get_if<TomlValue::Array>(&value.data);
   if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
   std::vector<double> result;
   for (std::size_t i = 0; i < array->size(); ++i)
     result.push_back(checked((*array)[i], element(key, i), quantity));
+  return result;
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, const Quantity& quantity) {
+  const std::string expected = "an array of numbers, each " + quantity.expected();
+  return checked_numbers(require(key, expected), key, quantity, expected);
+}
+
+std::vector<std::vector<double>> TomlTable::rows(const std::string& key, const Quantity& quantity) {
+  const std::string expected = "rows of numbers, each " + quantity.expected();
+  const TomlValue& value = require(key, expected);
+  const auto* array = std::get_if<TomlValue::Array>(&value.data);
+  if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
+  std::vector<std::vector<double>> result;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string row = element(key, i);
+    result.push_back(checked_numbers((*array)[i], row, quantity, "a row of numbers"));
+    if (result.back().size() != result.front().size())
+      throw fault_at(
+          (*array)[i], row,
+          "as many numbers as in the first row, " + std::to_string(result.front().size()));
+  }
   return result;
 }
 

@@ -32,6 +32,8 @@ class TomlTable {
   explicit TomlTable(const TomlValue& table, std::string path = "");
 
   [[nodiscard]] bool has(const std::string& key);
+  [[nodiscard]] bool is_table(const std::string& key);  ///< there, and a table
+  [[nodiscard]] bool is_array(const std::string& key);  ///< there, and an array
 
   double number(const std::string& key, const Quantity& quantity);
   double number(const std::string& key, const Quantity& quantity, double fallback);
@@ -46,6 +48,8 @@ class TomlTable {
                      std::optional<std::string> fallback = std::nullopt);
   /// \return as many numbers as stand there, at least one
   std::vector<double> numbers(const std::string& key, const Quantity& quantity);
+  /// Rows of numbers, at least one, each as long as the first. \return [rows][columns]
+  std::vector<std::vector<double>> rows(const std::string& key, const Quantity& quantity);
   Vec3 vector(const std::string& key, const Quantity& quantity);
   Vec3 vector(const std::string& key, const Quantity& quantity, const Vec3& fallback);
   std::vector<Vec3> vectors(const std::string& key, const Quantity& quantity);
@@ -68,6 +72,8 @@ class TomlTable {
  private:
   const TomlValue* find(const std::string& key);
   const TomlValue& require(const std::string& key, const std::string& expected);
+  std::vector<double> checked_numbers(const TomlValue& value, const std::string& key,
+                                      const Quantity& quantity, const std::string& expected) const;
   double checked(const TomlValue& value, const std::string& key, const Quantity& quantity) const;
   Vec3 checked_vector(const TomlValue& value, const std::string& key, const Quantity&) const;
   [[nodiscard]] InputError fault_at(const TomlValue& value, const std::string& key,

@@ -30,8 +30,9 @@ std::vector<NamedProfile> profiles() {
   }
   std::vector<NamedProfile> all = {{"munk", munk},
                                    {"isovelocity", SoundSpeedProfile::isovelocity(1500.0)}};
-  for (const Interpolation rule : {Interpolation::c_linear, Interpolation::n2_linear,
-                                   Interpolation::spline, Interpolation::pchip})
+  for (const Interpolation rule :
+       {Interpolation::c_linear, Interpolation::n2_linear, Interpolation::spline,
+        Interpolation::pchip, Interpolation::pchip_spline_slopes})
     all.push_back({std::string(name(rule)), SoundSpeedProfile::table(depth, speed, rule)});
   return all;
 }

@@ -38,8 +38,9 @@ Samples any_ocean() {
 // straight line for cubics, so its difference is exact; n²-linear has c⁗ = 105c′⁴/c³, below 1e-6.
 RC_GTEST_PROP(SoundSpeedProfile, DerivativesAreThoseOfTheSpeed, ()) {
   const Samples ocean = any_ocean();
-  const auto rule = *rc::gen::element(Interpolation::c_linear, Interpolation::n2_linear,
-                                      Interpolation::spline, Interpolation::pchip);
+  const auto rule =
+      *rc::gen::element(Interpolation::c_linear, Interpolation::n2_linear, Interpolation::spline,
+                        Interpolation::pchip, Interpolation::pchip_spline_slopes);
   const auto water = SoundSpeedProfile::table(ocean.depth, ocean.speed, rule);
   const auto i = *rc::gen::inRange<std::size_t>(0, water.intervals());
   constexpr double h = 0.01;
@@ -52,7 +53,8 @@ RC_GTEST_PROP(SoundSpeedProfile, DerivativesAreThoseOfTheSpeed, ()) {
 // No overshoot, and monotone between neighbouring samples.
 RC_GTEST_PROP(SoundSpeedProfile, PchipIsMonotoneBetweenSamples, ()) {
   const Samples ocean = any_ocean();
-  const auto water = SoundSpeedProfile::table(ocean.depth, ocean.speed, Interpolation::pchip);
+  const auto rule = *rc::gen::element(Interpolation::pchip, Interpolation::pchip_spline_slopes);
+  const auto water = SoundSpeedProfile::table(ocean.depth, ocean.speed, rule);
   constexpr double rounding = 1e-11;  // of speeds near 1500 m/s, several operations
   for (std::size_t i = 0; i < water.intervals(); ++i) {
     const double a = ocean.speed[i], b = ocean.speed[i + 1];

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/netcdf_grid.h"
+#include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_value.h"
 #include "support/temporary_directory.h"
@@ -124,7 +125,7 @@ TEST(Climatology, MissingFilesSayHowToGetThem) {
   EXPECT_THROW(static_cast<void>(sample_ocean(sources, 91.0, 0.0)), InputError);
   EXPECT_THROW(static_cast<void>(sample_ocean(sources, std::nan(""), 0.0)), InputError);
   EXPECT_THROW(static_cast<void>(sample_ocean(sources, 0.0, 0.0, 13)), InputError);
-  EXPECT_THROW(static_cast<void>(sample_transect(sources, 0.0, 0.0, 0.0, -1.0)), InputError);
+  EXPECT_THROW(static_cast<void>(sample_section(sources, 0.0, 0.0, 0.0, -1.0)), InputError);
 }
 
 class RealOcean : public testing::Test {
@@ -157,25 +158,53 @@ TEST_F(RealOcean, SargassoSea) {
 }
 
 // Westward from 30.5 N 60.5 W the abyssal plain goes on for 100 km; a transect to Africa ends at
-// its coast.
-TEST_F(RealOcean, Transects) {
-  const OceanSection west = sample_transect(sources_, 30.5, -60.5, 270.0, 1e5);
+// its coast, and crosses a profile a degree.
+TEST_F(RealOcean, Sections) {
+  const OceanSection west = sample_section(sources_, 30.5, -60.5, 270.0, 1e5);
   ASSERT_EQ(west.range.size(), 21U);
-  EXPECT_EQ(west.depth.front(), 5395.0);
+  EXPECT_NEAR(west.floor.front(), 5395.0, 0.5);  // 60.5 W is a grid point, but for single precision
   EXPECT_EQ(west.range.back(), 1e5);
-  for (const double depth : west.depth) EXPECT_GT(depth, 4000.0);
-  const OceanSection east = sample_transect(sources_, 30.5, -60.5, 80.0, 8e6);
+  for (const double depth : west.floor) EXPECT_GT(depth, 4000.0);
+  ASSERT_EQ(west.station.size(), 2U);  // 30.5 N 60.5 W, and from 61 W on its neighbour
+  EXPECT_EQ(west.depth.front(), 0.0);
+  EXPECT_GE(west.depth.back(), west.floor.front());
+  EXPECT_EQ(west.speed.size(), 2 * west.depth.size());
+  const OceanSection east = sample_section(sources_, 30.5, -60.5, 80.0, 8e6);
   EXPECT_LT(east.range.back(), 6e6);
+  EXPECT_GT(east.station.size(), 30U);
   EXPECT_THAT(east.notes, testing::Contains(HasSubstr("ends at the coast")));
 }
 
-TEST_F(RealOcean, TheCommittedFragmentIsWhatTheDataSay) {
-  const std::string text = write_scenario_fragment(
-      sample_ocean(sources_, 30.5, -60.5), sample_transect(sources_, 30.5, -60.5, 90.0, 50000.0));
-  const TomlValue now = parse_toml(text, "now");
-  const std::string before = read_text_file(ASDIC_SCENARIOS "/ocean_sargasso.toml");
-  EXPECT_EQ(text, before);
-  EXPECT_NE(now.find("environment"), nullptr);
+// The section's first profile is that of the place, as a scenario reads its temperature and
+// salinity. Straight lines leave it by h²c″/8: at most 25² m²·4.5e-4 (m/s)/m²/8 = 0.035 m/s here, at
+// 1 km; and the fragment prints two decimals.
+TEST_F(RealOcean, ASectionHoldsTheProfileOfItsStart) {
+  const std::string run =
+      "[run]\nfrequency = 100\n[run.source]\ndepth = 50\n[run.receivers]\ndepth = 20\n"
+      "range = 1000\n";
+  const OceanSample here = sample_ocean(sources_, 30.5, -60.5);
+  std::vector<std::string> notes;
+  const Environment one =
+      parse_propagation_case(write_scenario_fragment(here) + run, "one.toml", {}, notes)
+          .environment;
+  const Environment track =
+      parse_propagation_case(
+          write_scenario_fragment(here, sample_section(sources_, 30.5, -60.5, 270.0, 1e5)) + run,
+          "track.toml", {}, notes)
+          .environment;
+  ASSERT_TRUE(track.section.has_value());
+  ASSERT_TRUE(track.bottom.shape.has_value());
+  EXPECT_TRUE(is_layered(one));
+  for (double z = 0.0; z <= 5395.0; z += 1.0)
+    EXPECT_NEAR(track.section->at(-1.0, z).c, one.water.at(z).c, 0.04) << z;
+}
+
+TEST_F(RealOcean, TheCommittedFragmentsAreWhatTheDataSay) {
+  const OceanSample here = sample_ocean(sources_, 30.5, -60.5);
+  EXPECT_EQ(write_scenario_fragment(here), read_text_file(ASDIC_SCENARIOS "/ocean_sargasso.toml"));
+  const OceanSample bermuda = sample_ocean(sources_, 31.5, -65.5);
+  EXPECT_EQ(write_scenario_fragment(bermuda, sample_section(sources_, 31.5, -65.5, 45.0, 250e3)),
+            read_text_file(ASDIC_SCENARIOS "/ocean_bermuda.toml"));
 }
 
 }  // namespace

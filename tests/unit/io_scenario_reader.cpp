@@ -131,15 +131,6 @@ kind = "fluid"
   EXPECT_EQ(own.environment.water.at(2000.0).c, 1490.0);
 }
 
-TEST(ScenarioReader, TransectGivesTheDepthAtItsStartAndANote) {
-  const std::vector<std::string> overrides{
-      R"(environment.bottom={kind="rigid", transect={range=[0,1000], depth=[4800,4900]}})"};
-  const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
-  EXPECT_EQ(s.environment.bottom.depth, 4800.0);
-  ASSERT_EQ(s.notes.size(), 1U);
-  EXPECT_NE(s.notes[0].find("flat at 4800 m"), std::string::npos) << s.notes[0];
-}
-
 // Below its last level the water keeps its temperature and salinity, so the speed grows with
 // pressure alone, by 0.016–0.018 (m/s)/m (Mackenzie's ∂c/∂z at these depths).
 TEST(ScenarioReader, TemperatureSalinityGoesOnToTheBottom) {
@@ -204,8 +195,8 @@ const Fault faults[] = {
     {"MissingTable", "[platform]\nposition = [0.0, 0.0, 4500.0]\n", "",
      "s.toml:1: platform.position: found nothing, expected [east, north, depth] in m"},
     {"MissingKind", "kind = \"rigid\"\n", "",
-     "s.toml:7: environment.bottom.kind: found nothing, expected \"vacuum\", \"rigid\" or "
-     "\"fluid\""},
+     "s.toml:7: environment.bottom.kind: found nothing, expected \"vacuum\", \"rigid\", \"fluid\", "
+     "\"elastic\", \"grain-size\" or \"table\""},
     {"UnknownKind", "\"cw\"", "\"cv\"",
      "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\" or \"file\" (did you "
      "mean \"cw\"?)"},

@@ -61,5 +61,56 @@ TEST(Boundary, IsFiniteWhereBothTermsVanish) {
   EXPECT_EQ(reflection_coefficient(same, 0.0, water), -1.0);
 }
 
+// A solid whose shear wave is infinitely slow is a fluid: the difference falls with (c_s/c₁)³.
+TEST(Boundary, ASolidWithoutShearIsAFluid) {
+  for (double grazing = 0.0; grazing < 1.57; grazing += 0.05) {
+    const auto fluid = reflection_coefficient(
+        FluidHalfSpace{.speed = 1800.0, .density = 2000.0, .attenuation_db_per_wavelength = 0.5},
+        grazing, water);
+    const auto solid = [&](double shear_speed) {
+      return reflection_coefficient(ElasticHalfSpace{.speed = 1800.0,
+                                                     .shear_speed = shear_speed,
+                                                     .density = 2000.0,
+                                                     .attenuation_db_per_wavelength = 0.5,
+                                                     .shear_attenuation_db_per_wavelength = 1.0},
+                                    grazing, water);
+    };
+    EXPECT_EQ(solid(0.0), fluid);
+    EXPECT_NEAR(std::abs(solid(1.0) - fluid), 0.0, 1e-5);
+    EXPECT_NEAR(std::abs(solid(0.1) - fluid), 0.0, 1e-7);
+  }
+}
+
+// Beneath the shear wave's critical angle, arccos(c₁/c_s), a lossless solid reflects everything;
+// above it, and below the compressional one, shear waves carry energy away.
+TEST(Boundary, ShearOpensTheSolid) {
+  const ElasticHalfSpace basalt = {.speed = 5250.0,
+                                   .shear_speed = 2500.0,
+                                   .density = 2700.0,
+                                   .attenuation_db_per_wavelength = 0.0,
+                                   .shear_attenuation_db_per_wavelength = 0.0};
+  const double shear_critical = std::acos(1500.0 / 2500.0), critical = std::acos(1500.0 / 5250.0);
+  for (double grazing = 0.01; grazing < shear_critical; grazing += 0.01)
+    EXPECT_NEAR(std::abs(reflection_coefficient(basalt, grazing, water)), 1.0, 1e-13);
+  const double between = 0.5 * (shear_critical + critical);
+  EXPECT_LT(std::abs(reflection_coefficient(basalt, between, water)), 0.95);
+  EXPECT_NEAR(std::abs(reflection_coefficient(basalt, critical, water)), 1.0, 1e-6);
+  const double z1 = 1500.0 * 1000.0, z2 = 5250.0 * 2700.0;  // at the vertical no shear is excited
+  EXPECT_NEAR(reflection_coefficient(basalt, pi / 2, water).real(), (z2 - z1) / (z2 + z1), 1e-14);
+}
+
+TEST(Boundary, TablesAreLinearInMagnitudeAndPhaseAndEndWithTheirRows) {
+  const ReflectionTable table = {
+      .grazing = {0.1, 0.5, 1.0}, .magnitude = {1.0, 0.5, 0.2}, .phase = {pi, 0.0, -0.4}};
+  EXPECT_EQ(reflection_coefficient(table, 0.0999, water), 0.0);
+  EXPECT_EQ(reflection_coefficient(table, 1.0001, water), 0.0);
+  const auto middle = reflection_coefficient(table, 0.3, water);
+  EXPECT_NEAR(std::abs(middle), 0.75, 1e-15);
+  EXPECT_NEAR(std::arg(middle), pi / 2, 1e-15);
+  EXPECT_NEAR(std::abs(reflection_coefficient(table, 1.0, water)), 0.2, 1e-15);
+  EXPECT_NEAR(std::arg(reflection_coefficient(table, 1.0, water)), -0.4, 1e-15);
+  EXPECT_EQ(reflection_coefficient(ReflectionTable{}, 0.3, water), 0.0);
+}
+
 }  // namespace
 }  // namespace asdic

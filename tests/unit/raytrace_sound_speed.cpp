@@ -12,7 +12,8 @@ namespace asdic {
 namespace {
 
 constexpr std::array every_rule = {Interpolation::c_linear, Interpolation::n2_linear,
-                                   Interpolation::spline, Interpolation::pchip};
+                                   Interpolation::spline, Interpolation::pchip,
+                                   Interpolation::pchip_spline_slopes};
 
 const std::vector<double> depth = {0.0, 40.0, 100.0, 180.0, 400.0, 1000.0, 2500.0, 5000.0};
 const std::vector<double> speed = {1512.0, 1513.5, 1508.0, 1496.0, 1489.0, 1485.0, 1502.0, 1546.0};
@@ -137,6 +138,32 @@ TEST(SoundSpeedProfile, GoesOnByTheLawOfItsEnds) {
     EXPECT_DOUBLE_EQ(water.at(700.0).c, water.at(700.0, 0).c);
   }
   EXPECT_DOUBLE_EQ(SoundSpeedProfile::table(z, c, Interpolation::c_linear).at(0.0).c, 1490.0);
+}
+
+// Where the clamped spline is monotone by itself its slopes stand: c″ is then continuous at the
+// inner samples, and the ends have the slope of the parabola through three samples. Here
+// c = 1500 + z²/1000, for which both are exact.
+TEST(SoundSpeedProfile, SplineSlopesStandWhereTheyAreMonotone) {
+  const std::vector<double> z = {0.0, 50.0, 80.0, 150.0, 300.0};
+  std::vector<double> c;
+  for (const double x : z) c.push_back(1500.0 + 1e-3 * x * x);
+  const auto water = SoundSpeedProfile::table(z, c, Interpolation::pchip_spline_slopes);
+  for (double x = 0.0; x <= 300.0; x += 1.7) {
+    EXPECT_NEAR(water.at(x).c, 1500.0 + 1e-3 * x * x, 1e-11);
+    EXPECT_NEAR(water.at(x).d2c_dz2, 2e-3, 1e-12);
+  }
+}
+
+// Elsewhere they are held between 0 and three times the smaller neighbouring secant. Secants here:
+// 0.2, 0.01, then −0.1 (an extremum between the last two, slope 0); first slope: 0.2 + (0.2 −
+// 0.01)/2 by the parabola; the last, −0.155, stands too.
+TEST(SoundSpeedProfile, SplineSlopesAreLimited) {
+  const std::vector<double> z = {0.0, 100.0, 200.0, 300.0}, c = {1500.0, 1520.0, 1521.0, 1511.0};
+  const auto water = SoundSpeedProfile::table(z, c, Interpolation::pchip_spline_slopes);
+  EXPECT_NEAR(water.at(0.0).dc_dz, 0.295, 1e-13);
+  EXPECT_NEAR(water.at(100.0).dc_dz, 0.03, 1e-13);
+  EXPECT_NEAR(water.at(200.0).dc_dz, 0.0, 1e-13);
+  EXPECT_NEAR(water.at(300.0).dc_dz, -0.155, 1e-13);
 }
 
 // Falling 1/c² reaches 0 (c = ∞) and falling c reaches 0 m/s far outside; both are held first.

@@ -1,0 +1,57 @@
+#include "io/scenario/document.h"
+
+#include "core/error.h"
+#include "io/text/csv_table.h"
+#include "io/text/quote.h"
+#include "io/text/toml_table.h"
+
+namespace asdic::scenario {
+namespace {
+
+/// A file named anywhere in a fragment is relative to the fragment.
+void make_files_absolute(TomlValue& value, const std::filesystem::path& folder) {
+  if (auto* array = std::get_if<TomlValue::Array>(&value.data))
+    for (TomlValue& item : *array) make_files_absolute(item, folder);
+  if (TomlValue::Table* table = value.table())
+    for (TomlEntry& entry : *table) {
+      make_files_absolute(entry.value, folder);
+      if (entry.key != "file") continue;
+      if (auto* name = std::get_if<std::string>(&entry.value.data))
+        *name = std::filesystem::absolute(folder / *name).string();
+    }
+}
+
+/// `include = "ocean.toml"`: a file with an [environment] and nothing else, whose values stand
+/// where the scenario gives none.
+void merge_include(TomlValue& root, const std::filesystem::path& folder) {
+  const TomlValue* include = root.find("include");
+  if (include == nullptr) return;
+  TomlTable reader(root);
+  const std::filesystem::path path = folder / reader.text("include");
+  if (!std::filesystem::exists(path))
+    throw reader.fault("include", "a TOML file with an [environment]",
+                       "no such file " + in_quotes(path.string()));
+  TomlValue fragment = parse_toml(read_text_file(path), path.string());
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(fragment.data))
+    if (entry.key != "environment")
+      throw InputError({.where = entry.value.origin + ": " + entry.key,
+                        .got = "a key of the whole scenario in an included file",
+                        .expected = "[environment] alone"});
+  make_files_absolute(fragment, path.parent_path());
+  merge_defaults(root, fragment);
+}
+
+}  // namespace
+
+TomlValue read_document(std::string_view text, const std::filesystem::path& path,
+                        std::span<const std::string> overrides) {
+  TomlValue document = parse_toml(text, path.string());
+  for (const std::string& assignment : overrides)  // which file to include comes first …
+    if (assignment.starts_with("include=")) apply_override(document, assignment);
+  merge_include(document, path.parent_path());
+  for (const std::string& assignment : overrides)  // … for the others may change what it says
+    apply_override(document, assignment);
+  return document;
+}
+
+}  // namespace asdic::scenario

@@ -1,0 +1,49 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/text/toml_table.h"
+#include "raytrace/propagation_case.h"
+
+namespace asdic {
+
+/// A run of the propagation model as a scenario file describes it: [environment] and [run]
+/// (docs/formats/scenario.md). A whole sonar scenario will do: its ocean is used, in the plane that
+/// leaves the platform along the transect, and the platform's depth and the pulse's frequency
+/// stand where [run] gives none.
+/// \param notes  grows by what the reader did that the user should know
+/// \throws InputError "FILE:LINE: run.beams.kind: found X, expected Y" at the first fault
+[[nodiscard]] PropagationCase read_propagation_case(const std::filesystem::path& path,
+                                                    std::span<const std::string> overrides,
+                                                    std::vector<std::string>& notes);
+
+/// The same for text in memory. \param path  named in messages; files that the text names are
+/// relative to its folder
+[[nodiscard]] PropagationCase parse_propagation_case(std::string_view text,
+                                                     const std::filesystem::path& path,
+                                                     std::span<const std::string> overrides,
+                                                     std::vector<std::string>& notes);
+
+/// How a task, a kind of field, beam or source is called in a file and in messages.
+[[nodiscard]] std::string_view name(Task task) noexcept;
+[[nodiscard]] std::string_view name(FieldKind kind) noexcept;
+[[nodiscard]] std::string_view name(BeamKind kind) noexcept;
+[[nodiscard]] std::string_view name(SourceKind kind) noexcept;
+[[nodiscard]] std::string_view name(CervenyBeams::Width width) noexcept;
+[[nodiscard]] std::string_view name(CervenyBeams::Curvature curvature) noexcept;
+[[nodiscard]] std::string_view name(CervenyBeams::Component component) noexcept;
+
+namespace scenario {
+
+/// `count` values from first to last, both included: what { first, last, count } stands for.
+[[nodiscard]] std::vector<double> evenly_spaced(double first, double last, std::size_t count);
+
+/// [run] and its tables. `run_case` brings the environment, and a frequency and source depths for
+/// where none are given (a frequency of 0, no depths: they are required).
+void read_run(TomlTable table, PropagationCase& run_case);
+
+}  // namespace scenario
+}  // namespace asdic
