@@ -6,6 +6,7 @@
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
+#include "raytrace/tracing/boundary_hits.h"
 
 namespace asdic {
 namespace {
@@ -156,11 +157,10 @@ class BranchFollower {
   double floor_ = 0.0;
 };
 
-}  // namespace
-
-GroundPaths ground_paths(const EigenraySolver& solver, double source_depth, BoundaryKind boundary,
-                         double spacing, double max_range, double frequency,
-                         const PathLimits& limits) {
+/// Of a layered ocean: along the branches of its fan.
+std::vector<CellPath> follow_branches(const EigenraySolver& solver, double source_depth,
+                                      BoundaryKind boundary, double spacing, double max_range,
+                                      double frequency, const PathLimits& limits) {
   const Environment& ocean = solver.environment();
   const double depth = boundary == BoundaryKind::surface ? ocean.surface.depth : ocean.bottom.depth;
   const BranchTable fan = solver.table(source_depth, depth, limits);
@@ -168,7 +168,37 @@ GroundPaths ground_paths(const EigenraySolver& solver, double source_depth, Boun
   BranchFollower follower(ocean, fan, boundary, spacing, max_range, frequency, found);
   fan.for_each_stretch(0.0, max_range,
                        [&](const MonotoneStretch& stretch) { follower.follow(stretch); });
+  return found;
+}
 
+/// Of any other: between neighbours of a fan of marched rays.
+std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
+                                BoundaryKind boundary, double spacing, double max_range,
+                                double frequency, const PathLimits& limits) {
+  const FanLimits fan{.lowest = -limits.max_launch_angle,
+                      .highest = limits.max_launch_angle,
+                      .max_surface_bounces = limits.max_surface_bounces,
+                      .max_bottom_bounces = limits.max_bottom_bounces,
+                      .faintest = limits.faintest};
+  std::vector<CellPath> found;
+  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, boundary,
+                                          spacing, max_range, frequency, fan))
+    found.push_back({hit.cell,
+                     {.delay = hit.delay,
+                      .amplitude = hit.amplitude,
+                      .launch_elevation = hit.launch_elevation,
+                      .grazing = hit.grazing,
+                      .horizontal_slowness = hit.slowness}});
+  return found;
+}
+
+}  // namespace
+
+GroundPaths ground_paths(const EigenraySolver& solver, double source_depth, BoundaryKind boundary,
+                         double spacing, double max_range, double frequency,
+                         const PathLimits& limits) {
+  const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
+      solver, source_depth, boundary, spacing, max_range, frequency, limits);
   GroundPaths ground;
   ground.spacing_ = spacing;
   const auto cells = static_cast<std::size_t>(std::max(0.0, std::ceil(max_range / spacing - 0.5)));

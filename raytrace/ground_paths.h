@@ -16,7 +16,7 @@ struct GroundPath {
       0.0;  ///< as Arrival::amplitude, up to the boundary but without its own reflection
   double launch_elevation = 0.0;     ///< [rad], positive up
   double grazing = 0.0;              ///< at the cell [rad]
-  double horizontal_slowness = 0.0;  ///< ξ [s/m]
+  double horizontal_slowness = 0.0;  ///< dτ/dr along the boundary; over flat ground ξ [s/m]
 };
 
 /// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
@@ -48,7 +48,8 @@ class GroundPaths {
 /// ground grid: delay and range by cubics whose slopes are exact (dτ/dr = ξ), refined until range
 /// and delay are right to a hundredth of the spacing; the amplitude follows from dr/dξ there. Near
 /// a caustic |dr/dξ| is held at the value where two coalescing rays have their greatest (Airy)
-/// amplitude, for the integral of intensity² over range diverges in ray theory. \param spacing  of
+/// amplitude, for the integral of intensity² over range diverges in ray theory. Over slopes, swell
+/// and fronts the fan is marched and `grazing` is the angle to the local tangent. \param spacing of
 /// the grid [m]   \param max_range  [m]   \param frequency  [Hz]
 [[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                                        BoundaryKind boundary, double spacing, double max_range,

@@ -6,9 +6,13 @@
 #include "raytrace/layered/layer.h"
 #include "raytrace/layered/layer_pass.h"
 #include "raytrace/layered/ray_parameter.h"
+#include "raytrace/runs/drawn_path.h"
+#include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
 namespace {
+
+constexpr int most_segments = 200'000;
 
 /// Walks one ray from layer to layer, a thin slice at a time.
 class RayWalker {
@@ -189,10 +193,36 @@ class RayWalker {
   std::size_t index_ = 0;  // of the layer whose top is the present depth
 };
 
+/// In an ocean that is not layered.
+RayPath marched(const Environment& environment, double source_depth, double launch_elevation,
+                double max_range, double depth_step, int max_bounces) {
+  constexpr double any_frequency = 1000.0;  // losses are not drawn
+  constexpr double sagitta = 0.5;
+  const RayTracer tracer(environment, any_frequency);
+  RayTrajectory ray;
+  tracer.trace(0.0, source_depth, launch_elevation,
+               {.min_range = -max_range,
+                .max_range = max_range,
+                .max_surface_bounces = max_bounces,
+                .max_bottom_bounces = max_bounces,
+                .max_segments = most_segments},
+               ray);
+  double length = 1e300;
+  for (const RaySegment& s : ray.segments) {
+    if (s.history.surface_bounces + s.history.bottom_bounces <= max_bounces) continue;
+    length = s.begin.length;
+    break;
+  }
+  return drawn_path(ray, length, sagitta, depth_step);
+}
+
 }  // namespace
 
 RayPath trace_ray(const Environment& environment, double source_depth, double launch_elevation,
                   double max_range, double depth_step, int max_bounces) {
+  if (!is_layered(environment)) {
+    return marched(environment, source_depth, launch_elevation, max_range, depth_step, max_bounces);
+  }
   return RayWalker(environment, source_depth, launch_elevation, depth_step)
       .walk(max_range, max_bounces);
 }

@@ -19,14 +19,6 @@ std::uint64_t mixed(std::uint64_t history, std::uint64_t event) noexcept {  // s
   return x ^ (x >> 31);
 }
 
-/// What a bounce adds to the history: which boundary and, where its tangent jumps, which facet.
-std::uint64_t bounce_event(const Boundary& boundary, bool bottom, double range) noexcept {
-  std::uint64_t facet = 0;
-  if (boundary.shape && boundary.shape->interpolation() == ShapeInterpolation::piecewise_linear)
-    facet = boundary.shape->facet(range);
-  return 4 * facet + (bottom ? 2 : 1);
-}
-
 constexpr std::uint64_t turned_back = 3;  // an event: neither 1 nor 2 modulo 4
 
 LegEnd begin_of(const RaySegment& s) noexcept {
@@ -54,34 +46,56 @@ int bounces(const RaySegment& s) noexcept {
   return s.history.surface_bounces + s.history.bottom_bounces;
 }
 
-double sign_after(int bounces) noexcept { return bounces % 2 == 0 ? -1.0 : 1.0; }
+std::uint32_t columns_below(std::span<const ReceiverColumn> columns, double range) {
+  const auto at = std::partition_point(columns.begin(), columns.end(),
+                                       [&](const ReceiverColumn& c) { return c.range < range; });
+  return static_cast<std::uint32_t>(at - columns.begin());
+}
 
-/// Calls visit(leg index, history, first segment, one past its last segment) for every leg in turn,
-/// until it returns false.
-template <class Visit>
-void for_each_leg(const RayTrajectory& ray, const Environment& environment, Visit&& visit) {
+std::uint32_t columns_up_to(std::span<const ReceiverColumn> columns, double range) {
+  const auto at = std::partition_point(columns.begin(), columns.end(),
+                                       [&](const ReceiverColumn& c) { return c.range <= range; });
+  return static_cast<std::uint32_t>(at - columns.begin());
+}
+
+}  // namespace
+
+std::uint64_t history_after(std::uint64_t history, const Boundary& boundary, BoundaryKind kind,
+                            double range) noexcept {
+  std::uint64_t facet = 0;
+  if (boundary.shape && boundary.shape->interpolation() == ShapeInterpolation::piecewise_linear)
+    facet = boundary.shape->facet(range);
+  return mixed(history, 4 * facet + (kind == BoundaryKind::bottom ? 2 : 1));
+}
+
+double mirror_sign(const RayHistory& history) noexcept {
+  return (history.surface_bounces + history.bottom_bounces) % 2 == 0 ? 1.0 : -1.0;
+}
+
+void split_into_legs(const RayTrajectory& ray, const Environment& environment,
+                     std::vector<LegOfRay>& out) {
   const auto& segments = ray.segments;
+  out.clear();
   std::uint64_t history = 0;
-  std::size_t first = 0, leg = 0;
+  std::size_t first = 0;
   for (std::size_t i = 1; i <= segments.size(); ++i) {
     const bool last = i == segments.size();
     const bool bounced = !last && bounces(segments[i]) != bounces(segments[i - 1]);
     if (!last && !bounced && forward(segments[i]) == forward(segments[i - 1])) continue;
-    if (!visit(leg++, history, first, i)) return;
+    out.push_back({history, first, i});
     if (last) return;
     if (bounced) {
       const bool bottom =
           segments[i].history.bottom_bounces != segments[i - 1].history.bottom_bounces;
-      history = mixed(history, bounce_event(bottom ? environment.bottom : environment.surface,
-                                            bottom, segments[i].begin.range));
+      history = history_after(history, bottom ? environment.bottom : environment.surface,
+                              bottom ? BoundaryKind::bottom : BoundaryKind::surface,
+                              segments[i].begin.range);
     } else {
       history = mixed(history, turned_back);
     }
     first = i;
   }
 }
-
-}  // namespace
 
 ColumnCrossing LegEnd::continued_to(double target, double sign) const noexcept {
   const double step = target - range;
@@ -108,108 +122,113 @@ std::optional<ColumnCrossing> FanRay::crossing_or_continued(const RayLeg& leg, s
   return there;
 }
 
+double position_slope(const Boundary& boundary, double range) noexcept {
+  if (!boundary.shape) return 0.0;
+  if (boundary.shape->interpolation() == ShapeInterpolation::smooth)
+    return boundary.shape->at(range).slope;
+  const std::size_t facet = boundary.shape->facet(range);  // straight, whatever reflects
+  return boundary.shape->depth_at(range + 0.5, facet) -
+         boundary.shape->depth_at(range - 0.5, facet);
+}
+
+double range_per_angle(const LegEnd& end, const Boundary& boundary, double sign) noexcept {
+  // With u the boundary's tangent and n = c(ζ, −ξ) the beam's normal, u·dℓ = n·(∓q dα) + t·ds, so
+  // dℓ = ∓q dα/(u·n) and dr = u_r dℓ.
+  const double slope = position_slope(boundary, end.range);  // u_z/u_r
+  const double across = end.c * (end.zeta - slope * end.xi);
+  return across != 0.0 ? -sign * end.q / across : 0.0;
+}
+
 void digest(const RayTrajectory& ray, const Environment& environment,
             std::span<const ReceiverColumn> columns, FanRay& out) {
   out.angle = ray.launch_elevation;
   out.ended = ray.ended;
   out.legs.clear();
   out.crossings.clear();
+  split_into_legs(ray, environment, out.parts);
   const auto& segments = ray.segments;
-  for_each_leg(
-      ray, environment,
-      [&](std::size_t, std::uint64_t history, std::size_t first, std::size_t last) {
-        const RaySegment &head = segments[first], &tail = segments[last - 1];
-        RayLeg leg{.history = history, .begin = begin_of(head), .end = end_of(tail)};
-        leg.sign = sign_after(bounces(head));
-        leg.strength = std::abs(head.history.reflection);
-        leg.from_boundary =
-            bounces(head) > 0 && (first == 0 || bounces(segments[first - 1]) < bounces(head));
-        leg.to_boundary = last < segments.size()
-                              ? bounces(segments[last]) > bounces(tail)
-                              : ray.ended != RayEnd::box && ray.ended != RayEnd::trapped;
-        leg.turns_begin = head.history.upper_turns + head.history.lower_turns;
-        leg.turns_end = tail.history.upper_turns + tail.history.lower_turns;
-        leg.first_crossing = static_cast<std::uint32_t>(out.crossings.size());
-        const auto cross = [&](const RaySegment& s, std::uint32_t column) {
-          const RayState y = state_at(s, arc_at_range(s, columns[column].range));
-          out.crossings.push_back(crossing_of(y.depth, y.xi, y.zeta, y.q, leg.sign,
-                                              s.history.upper_turns + s.history.lower_turns));
-        };
-        const auto at_least = [&](double range) {
-          return static_cast<std::uint32_t>(
-              std::partition_point(columns.begin(), columns.end(),
-                                   [&](const ReceiverColumn& c) { return c.range < range; }) -
-              columns.begin());
-        };
-        const auto above = [&](double range) {
-          return static_cast<std::uint32_t>(
-              std::partition_point(columns.begin(), columns.end(),
-                                   [&](const ReceiverColumn& c) { return c.range <= range; }) -
-              columns.begin());
-        };
-        if (forward(head)) {  // [begin, end)
-          leg.first_column = leg.last_column = at_least(leg.begin.range);
-          for (std::size_t i = first; i < last; ++i)
-            while (leg.last_column < columns.size() &&
-                   columns[leg.last_column].range < segments[i].end.range)
-              cross(segments[i], leg.last_column++);
-        } else {  // (end, begin], stored by increasing range
-          leg.first_column = leg.last_column = above(leg.begin.range);
-          for (std::size_t i = first; i < last; ++i)
-            while (leg.first_column > 0 &&
-                   columns[leg.first_column - 1].range > segments[i].end.range)
-              cross(segments[i], --leg.first_column);
-          std::reverse(out.crossings.begin() + leg.first_crossing, out.crossings.end());
-        }
-        out.legs.push_back(leg);
-        return true;
-      });
+  const bool at_boundary = ray.ended != RayEnd::box && ray.ended != RayEnd::trapped;
+  for (const auto& [history, first, last] : out.parts) {
+    const RaySegment &head = segments[first], &tail = segments[last - 1];
+    RayLeg leg{.history = history, .begin = begin_of(head), .end = end_of(tail)};
+    leg.sign = -mirror_sign(head.history);
+    leg.strength = std::abs(head.history.reflection);
+    leg.from_boundary =
+        bounces(head) > 0 && (first == 0 || bounces(segments[first - 1]) < bounces(head));
+    leg.to_boundary =
+        last < segments.size() ? bounces(segments[last]) > bounces(tail) : at_boundary;
+    if (leg.from_boundary && !out.legs.empty()) leg.d_begin = out.legs.back().d_end;
+    if (leg.to_boundary) {
+      const auto bounce = static_cast<std::size_t>(bounces(head));
+      const bool surface = bounce < ray.bounces.size()
+                               ? ray.bounces[bounce].boundary == BoundaryKind::surface
+                               : tail.end.zeta < 0.0;
+      leg.d_end =
+          range_per_angle(leg.end, surface ? environment.surface : environment.bottom, leg.sign);
+    }
+    leg.turns_begin = head.history.upper_turns + head.history.lower_turns;
+    leg.turns_end = tail.history.upper_turns + tail.history.lower_turns;
+    leg.first_crossing = static_cast<std::uint32_t>(out.crossings.size());
+    const auto cross = [&](const RaySegment& s, std::uint32_t column) {
+      const RayState y = state_at(s, arc_at_range(s, columns[column].range));
+      out.crossings.push_back(crossing_of(y.depth, y.xi, y.zeta, y.q, leg.sign,
+                                          s.history.upper_turns + s.history.lower_turns));
+    };
+    if (forward(head)) {  // [begin, end)
+      leg.first_column = leg.last_column = columns_below(columns, leg.begin.range);
+      for (std::size_t i = first; i < last; ++i)
+        while (leg.last_column < columns.size() &&
+               columns[leg.last_column].range < segments[i].end.range)
+          cross(segments[i], leg.last_column++);
+    } else {  // (end, begin], stored by increasing range
+      leg.first_column = leg.last_column = columns_up_to(columns, leg.begin.range);
+      for (std::size_t i = first; i < last; ++i)
+        while (leg.first_column > 0 && columns[leg.first_column - 1].range > segments[i].end.range)
+          cross(segments[i], --leg.first_column);
+      std::reverse(out.crossings.begin() + leg.first_crossing, out.crossings.end());
+    }
+    out.legs.push_back(leg);
+  }
 }
 
 std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const Environment& environment,
                                           std::size_t leg, std::uint64_t history, double range) {
-  std::optional<ExactCrossing> found;
-  const auto& segments = ray.segments;
-  for_each_leg(
-      ray, environment,
-      [&](std::size_t index, std::uint64_t this_history, std::size_t first, std::size_t last) {
-        if (index < leg) return true;
-        if (this_history != history) return false;
-        const RaySegment &head = segments[first], &tail = segments[last - 1];
-        const double sign = sign_after(bounces(head));
-        const bool onward = forward(head);
-        const auto within = [&](const RaySegment& s) {
-          return onward ? range < s.end.range : range > s.end.range;
-        };
-        const double behind = onward ? head.begin.range - range : range - head.begin.range;
-        const double beyond = onward ? range - tail.end.range : tail.end.range - range;
-        found.emplace();
-        if (behind > 0.0) {  // the leg begins after the column
-          found->state = head.begin;
-          found->history = head.history;
-          found->c = head.c_begin;
-          found->real = behind < on_boundary;
-          found->crossing = begin_of(head).continued_to(range, sign);
-        } else if (beyond >= 0.0) {  // or ends before it
-          found->state = tail.end;
-          found->history = tail.history;
-          found->c = tail.c_end;
-          found->real = beyond < on_boundary;
-          if (sense_of(tail) * tail.end.q < 0.0) ++found->history.caustics;
-          found->crossing = end_of(tail).continued_to(range, sign);
-        } else {
-          const auto s = std::find_if(segments.begin() + static_cast<std::ptrdiff_t>(first),
-                                      segments.begin() + static_cast<std::ptrdiff_t>(last), within);
-          found->state = state_at(*s, arc_at_range(*s, range));
-          found->history = s->history;
-          found->c = 1.0 / std::hypot(found->state.xi, found->state.zeta);
-          found->real = true;
-          const RayState& y = found->state;
-          found->crossing = crossing_of(y.depth, y.xi, y.zeta, y.q, sign, 0);
-          if (sense_of(*s) * y.q < 0.0) ++found->history.caustics;
-        }
-        return false;
-      });
+  thread_local std::vector<LegOfRay> parts;
+  split_into_legs(ray, environment, parts);
+  if (leg >= parts.size() || parts[leg].history != history) return {};
+  const std::span<const RaySegment> segments(ray.segments.data() + parts[leg].first,
+                                             parts[leg].last - parts[leg].first);
+  const RaySegment &head = segments.front(), &tail = segments.back();
+  const double sign = -mirror_sign(head.history);
+  const bool onward = forward(head);
+  const double behind = onward ? head.begin.range - range : range - head.begin.range;
+  const double beyond = onward ? range - tail.end.range : tail.end.range - range;
+  ExactCrossing found;
+  if (behind > 0.0) {  // the leg begins after the column
+    found.state = head.begin;
+    found.history = head.history;
+    found.c = head.c_begin;
+    found.real = behind < on_boundary;
+    found.crossing = begin_of(head).continued_to(range, sign);
+  } else if (beyond >= 0.0) {  // or ends before it
+    found.state = tail.end;
+    found.history = tail.history;
+    found.c = tail.c_end;
+    found.real = beyond < on_boundary;
+    if (sense_of(tail) * tail.end.q < 0.0) ++found.history.caustics;
+    found.crossing = end_of(tail).continued_to(range, sign);
+  } else {
+    const RaySegment& s = *std::find_if(segments.begin(), segments.end(), [&](const RaySegment& x) {
+      return onward ? range < x.end.range : range > x.end.range;
+    });
+    const RayState y = state_at(s, arc_at_range(s, range));
+    found.state = y;
+    found.history = s.history;
+    found.c = 1.0 / std::hypot(y.xi, y.zeta);
+    found.real = true;
+    if (sense_of(s) * y.q < 0.0) ++found.history.caustics;
+    found.crossing = crossing_of(y.depth, y.xi, y.zeta, y.q, sign, 0);
+  }
   return found;
 }
 

@@ -18,6 +18,25 @@ struct ColumnCrossing {
   int turns = 0;        ///< turning points passed
 };
 
+/// A leg of a trajectory: its segments [first, last), and a number that rays share which have hit
+/// the same boundaries, and facets of them where the tangent jumps, in the same order before.
+struct LegOfRay {
+  std::uint64_t history = 0;
+  std::size_t first = 0, last = 0;
+};
+
+/// The history after one more bounce.
+[[nodiscard]] std::uint64_t history_after(std::uint64_t history, const Boundary& boundary,
+                                          BoundaryKind kind, double range) noexcept;
+
+/// \param out  its memory is reused
+void split_into_legs(const RayTrajectory& ray, const Environment& environment,
+                     std::vector<LegOfRay>& out);
+
+/// (−1)^(bounces): after an odd number of bounces the beam is seen in a mirror, and the ray
+/// launched a little higher is on the other side.
+[[nodiscard]] double mirror_sign(const RayHistory& history) noexcept;
+
 /// The state of a ray at one end of a leg, with the water's gradient: enough to go a little further
 /// along the leg's own curve, as if the boundary were not there.
 struct LegEnd {
@@ -34,6 +53,8 @@ struct LegEnd {
 struct RayLeg {
   std::uint64_t history = 0;
   LegEnd begin, end;
+  double d_begin = 0.0, d_end = 0.0;  ///< how the ranges of its ends move along the boundaries when
+                                      ///< the ray is launched a little higher, dr/dα [m/rad]
   double sign = -1.0;  ///< of the ray's normal: (−1)^(bounces + 1), so that ∂z/∂α = sign·q/(c·ξ)
   double strength = 1.0;               ///< product of the reflections' magnitudes before it
   bool from_boundary = false;          ///< begins there, rather than at the source
@@ -54,7 +75,8 @@ struct RayLeg {
 
 /// One ray of a fan, boiled down to what neighbours are compared by.
 struct FanRay {
-  double angle = 0.0;  ///< launch elevation [rad]
+  double angle = 0.0;           ///< launch elevation [rad]
+  std::vector<LegOfRay> parts;  ///< of the trajectory, one for each leg
   std::vector<RayLeg> legs;
   std::vector<ColumnCrossing> crossings;
   RayEnd ended = RayEnd::box;
@@ -69,6 +91,14 @@ struct FanRay {
                                                                     std::uint32_t column,
                                                                     double range) const noexcept;
 };
+
+/// dr/dα of the place where a ray strikes a boundary: the beam's displacement q·dα across the ray,
+/// seen along the boundary. \param end  of the leg \param sign  RayLeg::sign
+[[nodiscard]] double range_per_angle(const LegEnd& end, const Boundary& boundary,
+                                     double sign) noexcept;
+
+/// Of the boundary as a place; for a curvilinear shape not the slope that reflects.
+[[nodiscard]] double position_slope(const Boundary& boundary, double range) noexcept;
 
 /// \param out  its memory is reused
 void digest(const RayTrajectory& ray, const Environment& environment,

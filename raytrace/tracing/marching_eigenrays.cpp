@@ -1,13 +1,10 @@
 #include "raytrace/tracing/marching_eigenrays.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include "core/units.h"
+#include "raytrace/tracing/fan_splitting.h"
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
 
@@ -20,9 +17,6 @@ constexpr double least_range = 0.1;
 
 /// Roots closer than this are one [rad, s].
 constexpr double same_root = 1e-9;
-
-constexpr int first_intervals = 256;
-constexpr int deepest_split = 60;
 
 /// Tracing goes on behind the last column until the next boundary is met, mostly; and as far as
 /// there are slopes that can send a ray back.
@@ -43,108 +37,63 @@ double before_first_column(const Environment& ocean, double first) {
   return end - 1.0;
 }
 
-/// Launch angles of the first rays: three times denser about the horizontal, where rays are bent
-/// most.
-double first_angle(const FanLimits& limits, int i) {
-  const double u = double(i) / first_intervals;  // 0..1
-  const double v = 2.0 * u - 1.0;
-  const double w = 0.5 * (1.0 + v * (0.5 + 0.5 * v * v));
-  return i == 0                 ? limits.lowest
-         : i == first_intervals ? limits.highest
-                                : limits.lowest + (limits.highest - limits.lowest) * w;
-}
-
 struct Hit {
   std::uint32_t receiver;
   Arrival path;
 };
 
-/// One thread's memory.
-struct Workspace {
-  Workspace(const RayTracer& tracer, double range, double depth, const TraceLimits& limits,
-            std::span<const ReceiverColumn> columns)
-      : roots(tracer, range, depth, limits, columns) {}
-  RootFinder roots;
-  RayTrajectory trajectory;
-  std::deque<FanRay> rays;  // by depth of splitting
-};
+TraceLimits trace_limits(const Environment& ocean, double source_range,
+                         std::span<const ReceiverColumn> columns, const FanLimits& limits) {
+  const double first = columns.front().range, last = columns.back().range;
+  TraceLimits trace{.max_depth = limits.max_depth,
+                    .max_surface_bounces = limits.max_surface_bounces,
+                    .max_bottom_bounces = limits.max_bottom_bounces,
+                    .faintest = limits.faintest};
+  trace.max_range = std::min(limits.max_range, beyond_last_column(ocean, last));
+  trace.max_range = std::max(trace.max_range, last + 1.0);  // the edge of the box is in it
+  trace.min_range =
+      std::max(limits.min_range, before_first_column(ocean, std::min(source_range, first)));
+  return trace;
+}
 
-class FanSearch {
- public:
-  FanSearch(const RayTracer& tracer, double source_range, double source_depth,
-            std::span<const ReceiverColumn> columns, const FanLimits& limits)
+/// What FanSplitting asks for, for receivers in columns.
+struct ColumnSearch {
+  using Ray = FanRay;
+  using Result = Hit;
+
+  ColumnSearch(const RayTracer& tracer, double source_range, double source_depth,
+               const TraceLimits& limits, std::span<const ReceiverColumn> columns, int max_turns)
       : tracer_(tracer),
         source_range_(source_range),
         source_depth_(source_depth),
-        columns_(columns),
         limits_(limits),
-        test_(columns) {
-    trace_limits_ = {.max_depth = limits.max_depth,
-                     .max_surface_bounces = limits.max_surface_bounces,
-                     .max_bottom_bounces = limits.max_bottom_bounces,
-                     .faintest = limits.faintest};
-    const Environment& ocean = tracer.environment();
-    trace_limits_.max_range =
-        std::min(limits.max_range, beyond_last_column(ocean, columns.back().range));
-    // Receivers at the edge of the box are in it.
-    trace_limits_.max_range = std::max(trace_limits_.max_range, columns.back().range + 1.0);
-    trace_limits_.min_range =
-        std::max(limits.min_range,
-                 before_first_column(ocean, std::min(source_range, columns.front().range)));
-  }
+        columns_(columns),
+        max_turns_(max_turns),
+        test_(columns),
+        roots_(tracer, source_range, source_depth, limits, columns) {}
 
-  std::vector<Hit> run() const {
-    std::vector<std::vector<Hit>> hits(first_intervals);
-    tbb::enumerable_thread_specific<Workspace> workspaces([this] {
-      return Workspace(tracer_, source_range_, source_depth_, trace_limits_, columns_);
+  void trace(double angle, FanRay& out) {
+    tracer_.trace(source_range_, source_depth_, angle, limits_, trajectory_);
+    digest(trajectory_, tracer_.environment(), columns_, out);
+  }
+  [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
+    return test_.holds(a, m, b);
+  }
+  void search(const FanRay& a, const FanRay& b, std::vector<Hit>& out) {
+    roots_.search(a, b, max_turns_, [&](std::uint32_t receiver, Arrival&& path) {
+      out.push_back({receiver, std::move(path)});
     });
-    tbb::parallel_for(0, first_intervals, [&](int i) {
-      Workspace& work = workspaces.local();
-      if (work.rays.empty()) work.rays.resize(2);
-      trace(first_angle(limits_, i), work, work.rays[0]);
-      trace(first_angle(limits_, i + 1), work, work.rays[1]);
-      split(work.rays[0], work.rays[1], 2, work, hits[static_cast<std::size_t>(i)]);
-    });
-    std::vector<Hit> all;
-    for (auto& some : hits) std::move(some.begin(), some.end(), std::back_inserter(all));
-    return all;
   }
 
  private:
-  void trace(double angle, Workspace& work, FanRay& out) const {
-    tracer_.trace(source_range_, source_depth_, angle, trace_limits_, work.trajectory);
-    digest(work.trajectory, tracer_.environment(), columns_, out);
-  }
-
-  /// \param slot  of the ray in the middle in the thread's memory
-  void split(const FanRay& a, const FanRay& b, std::size_t slot, Workspace& work,
-             std::vector<Hit>& hits) const {
-    if (work.rays.size() <= slot) work.rays.emplace_back();
-    FanRay& m = work.rays[slot];  // a deque: references stay
-    const double middle = 0.5 * (a.angle + b.angle);
-    if (!(middle > a.angle && middle < b.angle)) return search(a, b, work, hits);
-    trace(middle, work, m);
-    if (slot < deepest_split && !test_.holds(a, m, b)) {
-      split(a, m, slot + 1, work, hits);
-      split(m, b, slot + 1, work, hits);
-    } else {
-      search(a, m, work, hits);
-      search(m, b, work, hits);
-    }
-  }
-
-  void search(const FanRay& a, const FanRay& b, Workspace& work, std::vector<Hit>& hits) const {
-    work.roots.search(a, b, limits_.max_turns, [&](std::uint32_t receiver, Arrival&& path) {
-      hits.push_back({receiver, std::move(path)});
-    });
-  }
-
   const RayTracer& tracer_;
   double source_range_, source_depth_;
+  TraceLimits limits_;
   std::span<const ReceiverColumn> columns_;
-  FanLimits limits_;
-  TraceLimits trace_limits_;
+  int max_turns_;
   NeighbourTest test_;
+  RootFinder roots_;
+  RayTrajectory trajectory_;
 };
 
 void sort_and_drop_doubles(Arrivals& arrivals) {
@@ -181,7 +130,11 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
     if (std::abs(point.range - source_range) < least_range)
       point.range = source_range + least_range;
   const std::vector<ReceiverColumn> columns = make_columns(points);
-  for (Hit& hit : FanSearch(tracer, source_range, source_depth, columns, limits).run()) {
+  const TraceLimits trace = trace_limits(tracer.environment(), source_range, columns, limits);
+  const FanSplitting<ColumnSearch> fan(limits.lowest, limits.highest);
+  for (Hit& hit : fan.run([&] {
+         return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);
+       })) {
     const double offset = std::abs(receivers[hit.receiver].range - source_range);
     if (offset < least_range) raise(hit.path, offset / least_range);
     found[hit.receiver].push_back(std::move(hit.path));

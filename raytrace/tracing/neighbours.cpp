@@ -19,6 +19,9 @@ constexpr double finest = 4e-15;
 /// rays that are closer than this everywhere is left out [m].
 constexpr double finest_gap = 1e-4;
 
+/// How far from the place where a leg turns around a column may be to be looked at [m].
+constexpr double least_room = 0.1;
+
 bool stopped_by_limits(const FanRay& ray) noexcept {
   return ray.ended == RayEnd::bounces || ray.ended == RayEnd::faint ||
          ray.ended == RayEnd::absorbed;
@@ -30,10 +33,28 @@ bool finest_apart(double a, double b) noexcept {
 
 }  // namespace
 
-ColumnSpan columns_of(const RayLeg& a, const RayLeg& b) noexcept {
-  if (a.first_column >= a.last_column) return {b.first_column, b.last_column};
-  if (b.first_column >= b.last_column) return {a.first_column, a.last_column};
-  return {std::min(a.first_column, b.first_column), std::max(a.last_column, b.last_column)};
+ColumnSpan columns_between(const FanRay& a, const FanRay& b, std::size_t leg,
+                           std::span<const ReceiverColumn> columns) noexcept {
+  const RayLeg &la = a.legs[leg], &lb = b.legs[leg];
+  ColumnSpan span{std::min(la.first_column, lb.first_column),
+                  std::max(la.last_column, lb.last_column)};
+  if (la.first_column >= la.last_column) span = {lb.first_column, lb.last_column};
+  if (lb.first_column >= lb.last_column) span = {la.first_column, la.last_column};
+  const auto reach = [&](double ra, double da, double rb, double db) {
+    if ((da > 0.0) == (db > 0.0)) return;
+    const Hermite place({a.angle, ra, da}, {b.angle, rb, db});
+    for (std::size_t i = 0; i < place.extrema().size(); ++i) {
+      const double range = place.value(place.extrema().x[i]);
+      const double low = std::min({ra, rb, range}) - least_room;
+      const double high = std::max({ra, rb, range}) + least_room;
+      while (span.first > 0 && columns[span.first - 1].range >= low) --span.first;
+      while (span.last < columns.size() && columns[span.last].range <= high) ++span.last;
+    }
+  };
+  if (la.to_boundary && lb.to_boundary) reach(la.end.range, la.d_end, lb.end.range, lb.d_end);
+  if (la.from_boundary && lb.from_boundary)
+    reach(la.begin.range, la.d_begin, lb.begin.range, lb.d_begin);
+  return span;
 }
 
 bool NeighbourTest::holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
@@ -51,7 +72,8 @@ bool NeighbourTest::holds(const FanRay& a, const FanRay& m, const FanRay& b) con
 bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
                               std::size_t i) const {
   const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
-  const auto [first, last] = columns_of(la, lb);
+  if (!ends_hold(a, m, b, i)) return false;
+  const auto [first, last] = columns_between(a, b, i, columns_);
   for (std::uint32_t k = first; k < last; ++k) {
     const ReceiverColumn& column = columns_[k];
     const auto za = a.crossing_or_continued(la, k, column.range);
@@ -79,13 +101,35 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
   return true;
 }
 
+/// Whether the place where the leg strikes a boundary is known, for receivers near it.
+bool NeighbourTest::ends_hold(const FanRay& a, const FanRay& m, const FanRay& b,
+                              std::size_t i) const {
+  const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
+  if (!la.to_boundary || !lm.to_boundary || !lb.to_boundary) return true;
+  const Hermite place({a.angle, la.end.range, la.d_end}, {b.angle, lb.end.range, lb.d_end});
+  const double error = std::abs(place.value(m.angle) - lm.end.range);
+  const double steep = std::abs(lm.end.zeta * lm.end.c);
+  if (error * steep < tolerance) return true;
+  // Receivers that the legs' ends may sweep over lie close to the boundary there.
+  const double low = std::min({la.end.range, lm.end.range, lb.end.range}) - error;
+  const double high = std::max({la.end.range, lm.end.range, lb.end.range}) + error;
+  const double sweep = tolerance + error * steep;
+  const double shallow = std::min({la.end.depth, lm.end.depth, lb.end.depth}) - sweep;
+  const double deep = std::max({la.end.depth, lm.end.depth, lb.end.depth}) + sweep;
+  for (auto column = std::partition_point(columns_.begin(), columns_.end(),
+                                          [&](const auto& c) { return c.range < low; });
+       column != columns_.end() && column->range <= high; ++column)
+    if (!column->between(shallow, deep).empty() && !finest_apart(a.angle, b.angle)) return false;
+  return true;
+}
+
 /// Three rays no longer share their history from leg i on. Splitting goes on until the rays left
 /// out are too few to matter, unless no receiver lies further on.
 bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanRay& b,
                                     std::size_t i) const {
   if (finest_apart(a.angle, b.angle)) return false;
   double nearest = 1e300, farthest = -1e300, widest = 0.0;
-  bool same_boundary = true;
+  bool same_boundary = true, turned_back = false;
   for (const FanRay* ray : {&a, &m, &b}) {
     if (i >= ray->legs.size()) {
       if (stopped_by_limits(*ray)) return false;  // no more of the two than this one has
@@ -97,12 +141,14 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
       nearest = std::min({nearest, leg.begin.range, leg.end.range});
       farthest = std::max({farthest, leg.begin.range, leg.end.range});
       widest = std::max({widest, std::abs(leg.begin.q), std::abs(leg.end.q)});
+      turned_back |= leg.end.range < leg.begin.range;
     }
   }
   const auto beyond =
       std::partition_point(columns_.begin(), columns_.end(),
                            [&](const ReceiverColumn& column) { return column.range < nearest; });
-  if (beyond == columns_.end() || beyond->range > farthest) return false;
+  // Rays between may reach further than the three, though not far beyond them.
+  if (beyond == columns_.end() || beyond->range > 2.0 * farthest - nearest) return false;
   if (!same_boundary) return true;
   const RayLeg &la = a.legs[i], &lb = b.legs[i];
   const bool at_a_node = la.from_boundary && lb.from_boundary &&

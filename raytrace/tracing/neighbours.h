@@ -18,16 +18,21 @@ class NeighbourTest {
  private:
   [[nodiscard]] bool leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
                                std::size_t leg) const;
+  [[nodiscard]] bool ends_hold(const FanRay& a, const FanRay& m, const FanRay& b,
+                               std::size_t leg) const;
   [[nodiscard]] bool parting_matters(const FanRay& a, const FanRay& m, const FanRay& b,
                                      std::size_t leg) const;
 
   std::span<const ReceiverColumn> columns_;
 };
 
-/// The first and one past the last column that either of two legs crosses.
+/// The first and one past the last column that a leg may cross on some ray between two neighbours:
+/// those that either of the two crosses, and those that only rays between reach, where the place at
+/// which the leg begins or ends is turned around by a caustic.
 struct ColumnSpan {
   std::uint32_t first, last;
 };
-[[nodiscard]] ColumnSpan columns_of(const RayLeg& a, const RayLeg& b) noexcept;
+[[nodiscard]] ColumnSpan columns_between(const FanRay& a, const FanRay& b, std::size_t leg,
+                                         std::span<const ReceiverColumn> columns) noexcept;
 
 }  // namespace asdic

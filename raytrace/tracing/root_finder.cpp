@@ -33,7 +33,7 @@ void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const F
   farthest_ = source_range_;
   const std::size_t legs = std::min(a.legs.size(), b.legs.size());
   for (std::size_t i = 0; i < legs && a.legs[i].history == b.legs[i].history; ++i) {
-    const auto [first, last] = columns_of(a.legs[i], b.legs[i]);
+    const auto [first, last] = columns_between(a, b, i, columns_);
     for (const RayLeg* leg : {&a.legs[i], &b.legs[i]})
       farthest_ =
           std::max({farthest_, leg->begin.range, std::min(leg->begin.range, leg->end.range)});

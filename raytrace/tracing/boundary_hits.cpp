@@ -1,0 +1,242 @@
+#include "raytrace/tracing/boundary_hits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "raytrace/layered/hermite.h"
+#include "raytrace/layered/path_builder.h"
+#include "raytrace/tracing/fan_splitting.h"
+
+namespace asdic {
+namespace {
+
+/// Neighbours this close in launch angle are told apart no more [rad].
+constexpr double finest = 1e-12;
+
+BoundaryHit hit_at(const RaySegment& s, const Boundary& boundary) {
+  const double c = s.c_end, tr = c * s.end.xi, tz = c * s.end.zeta;
+  const double angle = std::atan(position_slope(boundary, s.end.range));
+  const double ur = std::cos(angle), uz = std::sin(angle);
+  const double across = ur * tz - uz * tr;  // u·n, n = (t_z, −t_r): the beam's normal
+  // q·n·dα moves to u·dℓ along the ray: dℓ = ±q dα/(u·n)
+  const double d_along = mirror_sign(s.history) * s.end.q / across;
+  const double slowness = s.end.xi + s.end.zeta * uz / ur;  // ∇τ·u per range
+  const double reflecting = boundary.shape ? std::atan(boundary.shape->at(s.end.range).slope) : 0.0;
+  BoundaryHit hit;
+  hit.range = s.end.range;
+  hit.d_range = ur * d_along;
+  hit.time = s.end.time;
+  hit.d_time = slowness * hit.d_range;
+  hit.q_per_d_range = std::abs(across / ur);
+  hit.slowness = slowness;
+  hit.grazing =
+      std::asin(std::min(1.0, std::abs(std::cos(reflecting) * tz - std::sin(reflecting) * tr)));
+  hit.speed = c;
+  hit.nepers = s.end.nepers;
+  hit.reflection = s.history.reflection;
+  const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;
+  hit.caustics = s.history.caustics + (sense * s.end.q < 0.0 ? 1 : 0);
+  return hit;
+}
+
+HermiteNode range_node(const StrikingRay& ray, const BoundaryHit& hit) {
+  return {ray.angle, hit.range, hit.d_range};
+}
+HermiteNode time_node(const StrikingRay& ray, const BoundaryHit& hit) {
+  return {ray.angle, hit.time, hit.d_time};
+}
+
+/// What FanSplitting asks for.
+class CellSearch {
+ public:
+  using Ray = StrikingRay;
+  using Result = CellHit;
+
+  CellSearch(const RayTracer& tracer, double source_depth, BoundaryKind boundary, double spacing,
+             double max_range, double frequency, const TraceLimits& limits)
+      : tracer_(tracer),
+        source_depth_(source_depth),
+        boundary_(boundary),
+        spacing_(spacing),
+        max_range_(max_range),
+        frequency_(frequency),
+        limits_(limits) {}
+
+  void trace(double angle, StrikingRay& out) {
+    tracer_.trace(0.0, source_depth_, angle, limits_, trajectory_);
+    digest_hits(trajectory_, tracer_.environment(), boundary_, out);
+  }
+
+  [[nodiscard]] bool holds(const StrikingRay& a, const StrikingRay& m, const StrikingRay& b) const {
+    if (b.angle - a.angle < finest) return true;
+    const std::size_t hits = std::max({a.hits.size(), m.hits.size(), b.hits.size()});
+    for (std::size_t i = 0; i < hits; ++i) {
+      const bool together = i < a.hits.size() && i < m.hits.size() && i < b.hits.size() &&
+                            a.hits[i].history == b.hits[i].history &&
+                            a.hits[i].history == m.hits[i].history;
+      if (!together) return parting_is_fine(a, m, b, i);
+      const BoundaryHit &ha = a.hits[i], &hm = m.hits[i], &hb = b.hits[i];
+      if (std::min({ha.range, hm.range, hb.range}) > max_range_) continue;
+      const double off =
+          std::abs(Hermite(range_node(a, ha), range_node(b, hb)).value(m.angle) - hm.range) +
+          std::abs(Hermite(time_node(a, ha), time_node(b, hb)).value(m.angle) - hm.time) * hm.speed;
+      if (off > 0.1 * spacing_) return false;  // halves are then right to a sixteenth of that
+    }
+    return true;
+  }
+
+  void search(const StrikingRay& a, const StrikingRay& b, std::vector<CellHit>& out) const {
+    const std::size_t hits = std::min(a.hits.size(), b.hits.size());
+    for (std::size_t i = 0; i < hits && a.hits[i].history == b.hits[i].history; ++i)
+      lay(a, a.hits[i], b, b.hits[i], out);
+  }
+
+ private:
+  /// Histories part: at a node of the boundary, or where a ray turns just before it. What is lost
+  /// between two rays is less than a cell's small part.
+  [[nodiscard]] bool parting_is_fine(const StrikingRay& a, const StrikingRay& m,
+                                     const StrikingRay& b, std::size_t i) const {
+    double nearest = 1e300;
+    int stopped = 0;
+    for (const StrikingRay* ray : {&a, &m, &b}) {
+      if (i < ray->hits.size())
+        nearest = std::min(nearest, ray->hits[i].range);
+      else if (ray->ended == RayEnd::faint || ray->ended == RayEnd::absorbed ||
+               ray->ended == RayEnd::bounces)
+        ++stopped;
+    }
+    if (nearest > max_range_ || stopped >= 2) return true;
+    return std::max(a.widest, b.widest) * (b.angle - a.angle) < 0.02 * spacing_;
+  }
+
+  /// Every cell centre between the hits of two rays.
+  void lay(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b, const BoundaryHit& hb,
+           std::vector<CellHit>& out) const {
+    const Hermite range(range_node(a, ha), range_node(b, hb));
+    const Hermite time(time_node(a, ha), time_node(b, hb));
+    const auto turns = range.extrema();
+    double from = a.angle, from_range = ha.range;
+    for (std::size_t i = 0; i <= turns.size(); ++i) {
+      const double to = i < turns.size() ? turns.x[i] : b.angle;
+      const double to_range = i < turns.size() ? range.value(to) : hb.range;
+      lay_monotone(a, ha, b, hb, range, time, from, from_range, to, to_range, out);
+      from = to;
+      from_range = to_range;
+    }
+  }
+
+  void lay_monotone(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
+                    const BoundaryHit& hb, const Hermite& range, const Hermite& time, double from,
+                    double from_range, double to, double to_range,
+                    std::vector<CellHit>& out) const {
+    const bool rising = to_range > from_range;
+    const double near = rising ? from : to, far = rising ? to : from;
+    const double near_range = std::min(from_range, to_range);
+    const double limit = std::min(std::max(from_range, to_range), max_range_);
+    double alpha = near;
+    const double first = std::max(0.0, std::ceil(near_range / spacing_ - 0.5));
+    for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
+      const double r = (cell + 0.5) * spacing_;
+      if (r >= limit) return;
+      double low = std::min(near, far), high = std::max(near, far);
+      for (int i = 0; i < 40; ++i) {  // the cubic's root, from the neighbour's
+        const double off = range.value(alpha) - r;
+        if (std::abs(off) < 1e-3 * spacing_) break;
+        ((off < 0.0) == rising ? low : high) = alpha;
+        const double slope = range.slope(alpha);
+        double next = slope != 0.0 ? alpha - off / slope : low;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        alpha = next;
+      }
+      out.push_back(path(a, ha, b, hb, range, alpha, time.value(alpha), cell));
+    }
+  }
+
+  CellHit path(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
+               const BoundaryHit& hb, const Hermite& range, double alpha, double delay,
+               std::uint32_t cell) const {
+    const double u = (alpha - a.angle) / (b.angle - a.angle);
+    const auto between = [u](double x, double y) { return x + u * (y - x); };
+    const double slope = range.slope(alpha);
+    // Where two rays coalesce: |∂r/∂ξ| of ground_paths.cpp, with ξ the slowness along the boundary.
+    const double bend = (hb.d_range - ha.d_range) / (b.angle - a.angle);
+    const double turn = (hb.slowness - ha.slowness) / (b.angle - a.angle);
+    constexpr double zeta = 0.307;
+    const double floor = turn != 0.0
+                             ? std::cbrt(2.0 / (2.0 * pi * frequency_)) * std::sqrt(zeta) *
+                                   std::pow(std::abs(bend), 2.0 / 3.0) / std::cbrt(std::abs(turn))
+                             : 0.0;
+    const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
+    const double r = (cell + 0.5) * spacing_;
+    const double spreading = std::sqrt(between(ha.speed, hb.speed) * std::abs(std::cos(alpha)) /
+                                       (a.source_speed * r * q));
+    const bool like_a = (slope > 0.0) == (ha.d_range > 0.0);
+    CellHit hit;
+    hit.cell = cell;
+    hit.launch_elevation = alpha;
+    hit.delay = delay;
+    hit.grazing = between(ha.grazing, hb.grazing);
+    hit.slowness = between(ha.slowness, hb.slowness);
+    hit.amplitude = spreading * std::exp(-between(ha.nepers, hb.nepers)) *
+                    (ha.reflection + u * (hb.reflection - ha.reflection)) *
+                    caustic_phase(like_a ? ha.caustics : hb.caustics);
+    return hit;
+  }
+
+  const RayTracer& tracer_;
+  double source_depth_;
+  BoundaryKind boundary_;
+  double spacing_, max_range_, frequency_;
+  TraceLimits limits_;
+  RayTrajectory trajectory_;
+};
+
+}  // namespace
+
+void digest_hits(const RayTrajectory& ray, const Environment& environment, BoundaryKind boundary,
+                 StrikingRay& out) {
+  out.angle = ray.launch_elevation;
+  out.source_speed = ray.source_speed;
+  out.ended = ray.ended;
+  out.widest = 0.0;
+  out.hits.clear();
+  split_into_legs(ray, environment, out.parts);
+  const Boundary& wall =
+      boundary == BoundaryKind::surface ? environment.surface : environment.bottom;
+  std::size_t bounce = 0;
+  for (const auto& [history, first, last] : out.parts) {
+    const RaySegment& s = ray.segments[last - 1];
+    out.widest = std::max(out.widest, std::abs(s.end.q));
+    const int before = s.history.surface_bounces + s.history.bottom_bounces;
+    bounce = static_cast<std::size_t>(before);
+    const bool strikes =
+        bounce < ray.bounces.size() &&
+        (last == ray.segments.size() ||
+         ray.segments[last].history.surface_bounces + ray.segments[last].history.bottom_bounces >
+             before);
+    if (!strikes || ray.bounces[bounce].boundary != boundary) continue;
+    BoundaryHit hit = hit_at(s, wall);
+    hit.history = history_after(history, wall, boundary, s.end.range);
+    out.hits.push_back(hit);
+  }
+}
+
+std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
+                                   BoundaryKind boundary, double spacing, double max_range,
+                                   double frequency, const FanLimits& limits) {
+  // As many bounces before the hit as allowed: the hit itself is one more.
+  TraceLimits trace{.max_range = max_range + spacing,
+                    .max_depth = limits.max_depth,
+                    .max_surface_bounces = limits.max_surface_bounces,
+                    .max_bottom_bounces = limits.max_bottom_bounces,
+                    .faintest = limits.faintest};
+  ++(boundary == BoundaryKind::surface ? trace.max_surface_bounces : trace.max_bottom_bounces);
+  trace.min_range = -max_range;
+  const FanSplitting<CellSearch> fan(limits.lowest, limits.highest);
+  return fan.run([&] {
+    return CellSearch(tracer, source_depth, boundary, spacing, max_range, frequency, trace);
+  });
+}
+
+}  // namespace asdic

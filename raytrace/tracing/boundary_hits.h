@@ -1,0 +1,57 @@
+#pragma once
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/tracing/fan_ray.h"
+#include "raytrace/tracing/marching_eigenrays.h"
+
+namespace asdic {
+
+/// Where a ray strikes one boundary: the incident field, and how place and time move when the ray
+/// is launched a little higher.
+struct BoundaryHit {
+  std::uint64_t history =
+      0;  ///< shared by rays that struck the same boundaries before, and this one
+  double range = 0.0, d_range = 0.0;      ///< r [m], dr/dα along the boundary [m/rad]
+  double time = 0.0, d_time = 0.0;        ///< τ [s], dτ/dα [s/rad]
+  double q_per_d_range = 0.0;             ///< |q|/|dr/dα|: sin(grazing)/cos(slope)
+  double slowness = 0.0;                  ///< dτ/dr along the boundary [s/m]
+  double grazing = 0.0;                   ///< to the reflecting tangent [rad]
+  double speed = 0.0;                     ///< of the water there [m/s]
+  double nepers = 0.0;                    ///< absorption so far
+  std::complex<double> reflection = 1.0;  ///< of the bounces before
+  int caustics = 0;
+};
+
+/// The hits of a ray on one boundary.
+struct StrikingRay {
+  double angle = 0.0;         ///< launch elevation [rad]
+  double source_speed = 0.0;  ///< [m/s]
+  RayEnd ended = RayEnd::box;
+  double widest = 0.0;  ///< greatest |q| on the way [m/rad]
+  std::vector<BoundaryHit> hits;
+  std::vector<LegOfRay> parts;
+};
+
+/// \param out  its memory is reused
+void digest_hits(const RayTrajectory& ray, const Environment& environment, BoundaryKind boundary,
+                 StrikingRay& out);
+
+/// One path to the middle of a cell of a boundary, the ring around the source from i·spacing to
+/// (i + 1)·spacing.
+struct CellHit {
+  std::uint32_t cell = 0;
+  double launch_elevation = 0.0, delay = 0.0, grazing = 0.0, slowness = 0.0;
+  std::complex<double> amplitude = 0.0;
+};
+
+/// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck
+/// the same boundaries; range is right to a hundredth of the spacing. Near a caustic the amplitude
+/// is held as in ground_paths.h. \param spacing, max_range [m]
+[[nodiscard]] std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
+                                                 BoundaryKind boundary, double spacing,
+                                                 double max_range, double frequency,
+                                                 const FanLimits& limits);
+
+}  // namespace asdic
