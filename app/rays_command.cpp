@@ -20,7 +20,7 @@ struct Options {
   int count = 41;
   std::vector<double> elevations;  // [°], instead of the three
   double range = 50e3;
-  std::optional<double> depth;
+  std::optional<double> depth, bearing;  // [m], [°]
   int bounces = 100;
   bool json = false;
   std::string output;
@@ -50,8 +50,11 @@ std::vector<double> elevations(const Options& options) {
 
 int rays(const Options& options) {
   const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
-  const Environment& ocean = scenario.environment;
-  const double depth = options.depth.value_or(scenario.platform.at(0.0).position.z());
+  const Vec3 platform = scenario.platform.at(0.0).position;
+  const double bearing = options.bearing ? radians(*options.bearing) : scenario.transect.bearing;
+  const Environment ocean =
+      ocean_along(scenario.environment, scenario.transect, platform.x(), platform.y(), bearing);
+  const double depth = options.depth.value_or(platform.z());
   if (!(depth >= ocean.surface.depth && depth <= ocean.bottom.depth))
     throw InputError({.where = "--source-depth",
                       .got = fmt::format("{} m", depth),
@@ -101,6 +104,11 @@ void add_rays_command(CLI::App& program, Action& action) {
   add_length_option(
       *command, "--source-depth", [options](double x) { options->depth = x; },
       "depth of the source; default: the platform's at the start");
+  command
+      ->add_option("--bearing", options->bearing,
+                   "of the rays, where the ocean varies along a transect; default: along it [deg]")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0));
   command->add_option("--bounces", options->bounces, "end a ray after so many bounces")
       ->capture_default_str()
       ->type_name("N")

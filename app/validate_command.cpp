@@ -22,29 +22,69 @@ std::string motion(const Vec3& v) {
 }
 
 /// Lowest and highest speed in the water, sampled metre by metre.
-std::pair<double, double> speeds(const Environment& ocean) {
+std::pair<double, double> speeds(const Environment& ocean, double bottom) {
+  if (ocean.section) {
+    const auto all = ocean.section->speeds();
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    return {*low, *high};
+  }
   double low = ocean.water.at(ocean.surface.depth).c, high = low;
   constexpr int steps = 5000;
   for (int i = 0; i <= steps; ++i) {
-    const double c =
-        ocean.water.at(std::lerp(ocean.surface.depth, ocean.bottom.depth, double(i) / steps)).c;
+    const double c = ocean.water.at(std::lerp(ocean.surface.depth, bottom, double(i) / steps)).c;
     low = std::min(low, c);
     high = std::max(high, c);
   }
   return {low, high};
 }
 
+std::string extent(std::span<const double> ranges) {
+  return fmt::format("from {:g} to {:g} km", ranges.front() / 1000.0, ranges.back() / 1000.0);
+}
+
+std::string boundary_text(const Boundary& boundary) {
+  if (!boundary.shape) return material_text(boundary.material);
+  const BoundaryShape& shape = *boundary.shape;
+  return fmt::format("{:g} to {:g} m, {}, {} {}, {}", shape.shallowest(), shape.deepest(),
+                     count_of(shape.ranges().size(), "node"), name(shape.interpolation()),
+                     extent(shape.ranges()),
+                     shape.materials().empty() ? material_text(boundary.material)
+                                               : count_of(shape.materials().size(), "material"));
+}
+
+/// What varies along the transect, and where that lies.
+std::string transect_text(const PingSimulator& simulator) {
+  const Scenario& s = simulator.scenario();
+  const Environment& ocean = s.environment;
+  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return "";
+  std::string text = fmt::format(
+      "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
+      "it, over {:.0f} m\n",
+      s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
+      simulator.paths().along(s.platform.at(0.0).position) / 1000.0,
+      simulator.paths().bottom_depth(s.platform.at(0.0).position));
+  if (ocean.section)
+    text += fmt::format(
+        "section    {} {}, {}\n", count_of(ocean.section->ranges().size(), "profile"),
+        extent(ocean.section->ranges()), count_of(ocean.section->depths().size(), "depth"));
+  return text;
+}
+
 std::string environment_text(const PingSimulator& simulator) {
   const Environment& ocean = simulator.scenario().environment;
-  const auto [low, high] = speeds(ocean);
+  const double surface =
+                   ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth,
+               bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+  const auto [low, high] = speeds(ocean, bottom);
   const double f = simulator.pulse().centre_frequency();
   std::string text = fmt::format(
-      "water      {:g} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
-      ocean.bottom.depth - ocean.surface.depth, low, high,
+      "water      {}{:g} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
+      ocean.bottom.shape ? "at most " : "", bottom - surface, low, high,
       absorption_db_per_km(ocean.absorption, f), f);
-  text += fmt::format("surface    {}, wind {:g} m/s\n", material_text(ocean.surface.material),
+  text += transect_text(simulator);
+  text += fmt::format("surface    {}, wind {:g} m/s\n", boundary_text(ocean.surface),
                       simulator.scenario().wind_speed);
-  text += fmt::format("bottom     {}\n", material_text(ocean.bottom.material));
+  text += fmt::format("bottom     {}\n", boundary_text(ocean.bottom));
   return text;
 }
 
