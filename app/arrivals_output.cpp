@@ -132,7 +132,10 @@ std::string arrivals_json(const ArrivalsResult& result) {
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result) {
   Hdf5Output output(path);
   Hdf5File& file = output.file();
-  write_root(file, "asdic arrivals", *result.scenario);
+  write_root(file, "asdic arrivals",
+             {.title = result.scenario->title,
+              .text = result.scenario->text,
+              .overrides = result.scenario->overrides});
   file.set_attribute("", "frequency_hz", result.frequency);
 
   ArrivalTable arrivals(file);

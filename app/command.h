@@ -17,6 +17,8 @@ void add_validate_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_plot_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_compare_command(CLI::App& program, Action& action);
+void add_field_command(CLI::App& program, Action& action);
 void add_ocean_command(CLI::App& program, Action& action);
 
 /// A scenario as the command line names it.

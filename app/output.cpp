@@ -60,16 +60,16 @@ void Hdf5Output::finish() {
   finished_ = true;
 }
 
-void write_root(Hdf5File& file, const std::string& filetype, const Scenario& scenario) {
+void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin) {
   const Provenance made = provenance(1);
   file.set_attribute("", "filetype", filetype);
   file.set_attribute("", "version", "1.0");
-  file.set_attribute("", "title", scenario.title);
+  file.set_attribute("", "title", origin.title);
   file.set_attribute("", "program_version", made.program_version);
   file.set_attribute("", "build", made.build);
-  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
-  if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
-  file.write_text("scenario", scenario.text);
+  file.set_attribute("", "scenario_sha256", sha256(origin.text));
+  if (!origin.overrides.empty()) file.set_attribute("", "overrides", origin.overrides);
+  file.write_text("scenario", origin.text);
   describe(file, "scenario", "the scenario file, verbatim");
 }
 

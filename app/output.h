@@ -29,8 +29,14 @@ class Hdf5Output {
   bool finished_ = false;
 };
 
+/// What a file of results was made of.
+struct ResultOrigin {
+  std::string title{}, text{};  ///< of the scenario
+  std::vector<std::string> overrides{};
+};
+
 /// What every file of results tells of itself: filetype, version, title, program, and the scenario.
-void write_root(Hdf5File& file, const std::string& filetype, const Scenario& scenario);
+void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin);
 
 /// A whole text file at once: under its name it is complete. \throws RunError
 void write_text_file(const std::filesystem::path& path, std::string_view text);

@@ -9,7 +9,7 @@ namespace asdic::app {
 /// passed. Gone again when it ends.
 class ProgressBar {
  public:
-  /// \param thing  what is counted: "ping"   \param show  false: never
+  /// \param thing  what is counted: "ping", or "%" for a share   \param show  false: never
   ProgressBar(std::string thing, int total, bool show);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

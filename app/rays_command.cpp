@@ -10,6 +10,7 @@
 #include "app/rays_output.h"
 #include "core/error.h"
 #include "io/scenario_reader.h"
+#include "raytrace/ocean/slice.h"
 
 namespace asdic::app {
 namespace {
@@ -53,7 +54,8 @@ int rays(const Options& options) {
   const Vec3 platform = scenario.platform.at(0.0).position;
   const double bearing = options.bearing ? radians(*options.bearing) : scenario.transect.bearing;
   const Environment ocean =
-      ocean_along(scenario.environment, scenario.transect, platform.x(), platform.y(), bearing);
+      slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()),
+            std::cos(bearing - scenario.transect.bearing));
   const double depth = options.depth.value_or(platform.z());
   if (!(depth >= ocean.surface.depth && depth <= ocean.bottom.depth))
     throw InputError({.where = "--source-depth",

@@ -131,7 +131,10 @@ std::string rays_json(const RaysResult& result) {
 void write_rays_file(const std::filesystem::path& path, const RaysResult& result) {
   Hdf5Output output(path);
   Hdf5File& file = output.file();
-  write_root(file, "asdic rays", *result.scenario);
+  write_root(file, "asdic rays",
+             {.title = result.scenario->title,
+              .text = result.scenario->text,
+              .overrides = result.scenario->overrides});
   file.set_attribute("", "source_depth_m", result.source_depth);
 
   RaysGroup group(file, result.rays);

@@ -42,46 +42,14 @@ std::string text_or(const Hdf5File& file, const std::string& object, const std::
   return file.has_attribute(object, key) ? file.attribute_text(object, key) : otherwise;
 }
 
-constexpr FieldKind field_kinds[] = {FieldKind::coherent, FieldKind::incoherent,
-                                     FieldKind::semi_coherent};
+constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-coherent"};
 
 }  // namespace
 
-std::string_view name(FieldKind kind) noexcept {
-  switch (kind) {
-    case FieldKind::coherent:
-      return "coherent";
-    case FieldKind::incoherent:
-      return "incoherent";
-    case FieldKind::semi_coherent:
-      return "semi-coherent";
-  }
-  return "";
-}
-
-std::string_view name(BeamKind kind) noexcept {
-  switch (kind) {
-    case BeamKind::hat:
-      return "hat";
-    case BeamKind::gaussian:
-      return "Gaussian";
-    case BeamKind::ray_centred_hat:
-      return "ray-centred hat";
-    case BeamKind::ray_centred_gaussian:
-      return "ray-centred Gaussian";
-    case BeamKind::simple_gaussian:
-      return "simple Gaussian";
-    case BeamKind::cerveny_cartesian:
-      return "Cerveny, Cartesian";
-    case BeamKind::cerveny_ray_centred:
-      return "Cerveny, ray-centred";
-  }
-  return "";
-}
-
 void write_field(Hdf5File& file, const FieldData& field) {
   file.set_attribute("", "frequency_hz", field.frequency);
-  file.set_attribute("", "field", name(field.kind));
+  file.set_attribute("", "field", field_kinds[static_cast<int>(field.kind)]);
+  file.set_attribute("", "source", field.source == SourceKind::line ? "line" : "point");
   if (!field.beam_kind.empty()) file.set_attribute("", "beam_kind", field.beam_kind);
   if (field.beams > 0) {
     file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
@@ -125,11 +93,11 @@ FieldData read_field(const Hdf5File& file) {
   if (file.has_attribute("", "frequency_hz"))
     field.frequency = file.attribute_number("", "frequency_hz");
   const std::string kind = text_or(file, "", "field", "coherent");
-  const auto known = std::find_if(std::begin(field_kinds), std::end(field_kinds),
-                                  [&](FieldKind k) { return name(k) == kind; });
+  const auto known = std::find(std::begin(field_kinds), std::end(field_kinds), kind);
   if (known == std::end(field_kinds))
     throw wrong(file, "field", '"' + kind + '"', "coherent, incoherent or semi-coherent");
-  field.kind = *known;
+  field.kind = static_cast<FieldKind>(known - std::begin(field_kinds));
+  if (text_or(file, "", "source", "point") == "line") field.source = SourceKind::line;
   if (file.has_attribute("", "beams"))
     field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
   if (file.has_attribute("", "beam_error_db"))
@@ -163,7 +131,8 @@ bellhop::ShadeFile to_shade_file(const FieldData& field) {
                           .receiver_depths = field.receivers.depths,
                           .receiver_ranges = field.receivers.ranges,
                           .pressure = field.pressure};
-  for (std::complex<float>& p : file.pressure) p = -p;
+  if (field.source == SourceKind::point)
+    for (std::complex<float>& p : file.pressure) p = -p;
   return file;
 }
 

@@ -16,10 +16,11 @@ struct FieldData {
   std::string title;
   double frequency = 0.0;  ///< [Hz]
   FieldKind kind = FieldKind::coherent;
+  SourceKind source = SourceKind::point;
   std::vector<double> source_depths;  ///< [m]
   ReceiverGrid receivers;
   std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges], range fastest
-  std::string beam_kind;                      ///< "hat", "Gaussian" …; empty: not known
+  std::string beam_kind;                      ///< "hat", "gaussian" …; empty: not known
   std::size_t beams = 0;                      ///< rays traced per source; 0: not known
   double beam_error_db = 0.0;  ///< what more beams would change, at 95 % of receivers
 };
@@ -32,12 +33,10 @@ void write_field(Hdf5File& file, const FieldData& field);
 [[nodiscard]] FieldData read_field(const Hdf5File& file);
 [[nodiscard]] FieldData read_field(const std::filesystem::path& path);
 
-/// A .shd file holds the negative of the field (docs/formats/bellhop.md).
+/// A .shd file holds the negative of a point source's field (docs/formats/bellhop.md).
 [[nodiscard]] bellhop::ShadeFile to_shade_file(const FieldData& field);
-/// Nothing in the file says how it was added: without an imaginary part it was not coherently.
+/// Nothing in the file says how it was added: without an imaginary part it was not coherently. Nor
+/// does it tell a line source from a point source, which is assumed.
 [[nodiscard]] FieldData from_shade_file(const bellhop::ShadeFile& file);
-
-[[nodiscard]] std::string_view name(FieldKind kind) noexcept;  ///< "coherent", "incoherent" …
-[[nodiscard]] std::string_view name(BeamKind kind) noexcept;   ///< "hat", "Gaussian" …
 
 }  // namespace asdic

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pictures of a ping file: asdic_plot.py FILE.h5 [-o DIR] [--ping N]
+"""Pictures of a file of asdic: asdic_plot.py FILE.h5 [-o DIR] [--ping N] [--against B.h5]
 
 Writes PNGs and prints a line for each. Exit code: 0 all written, 1 they could not be written, 2 the
 input is wrong.

@@ -26,9 +26,10 @@ struct PropagationResult {
   std::vector<std::string> notes;  ///< what the user should know
 };
 
-/// A run that was told to stop.
+/// A run was stopped by its Progress.
 class Interrupted : public std::runtime_error {
  public:
+  using std::runtime_error::runtime_error;
   Interrupted() : std::runtime_error("interrupted") {}
 };
 

@@ -13,10 +13,4 @@ struct Transect {
   [[nodiscard]] double range_of(double east, double north) const noexcept;
 };
 
-/// The ocean in the vertical plane that leaves a place on the map along a bearing [rad]: its range
-/// 0 is that place (raytrace/ocean/slice.h). Sound is taken to stay in its plane: slopes bend it
-/// out of it, which is not followed.
-[[nodiscard]] Environment ocean_along(const Environment& ocean, const Transect& transect,
-                                      double east, double north, double bearing);
-
 }  // namespace asdic

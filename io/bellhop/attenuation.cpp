@@ -48,4 +48,9 @@ double db_per_wavelength(AttenuationUnit unit, double value, double speed,
   return nepers_per_m(unit, value, speed, frequency) * db_per_neper * speed / frequency;
 }
 
+double true_speed(double speed, double db_per_wavelength) noexcept {
+  const double delta = db_per_wavelength / (2.0 * pi * db_per_neper);
+  return speed * (1.0 + delta * delta);
+}
+
 }  // namespace asdic::bellhop

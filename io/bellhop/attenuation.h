@@ -25,4 +25,9 @@ inline constexpr double db_per_neper = 8.6858896;  // BELLHOP's; 4e-9 from 20·l
 [[nodiscard]] double db_per_wavelength(AttenuationUnit unit, double value, double speed,
                                        double frequency) noexcept;
 
+/// The speed of a wave in our sense, given BELLHOP's. It gives the speed an imaginary part, ω/k =
+/// c·(1 + iδ) with δ the nepers in a radian, where ours goes into the wave number, k = (ω/c)·(1 −
+/// iδ): the same k belongs to c·(1 + δ²) and the same loss per wavelength.
+[[nodiscard]] double true_speed(double speed, double db_per_wavelength) noexcept;
+
 }  // namespace asdic::bellhop

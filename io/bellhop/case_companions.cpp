@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -163,7 +164,7 @@ SourcePattern read_source_pattern(CaseReading& reading) {
   // elevation is positive up, and increases
   for (std::size_t i = declination.size(); i-- > 0;)
     pattern.elevation.push_back(radians(-declination[i]));
-  pattern.amplitude.assign(pattern.amplitude.rbegin(), pattern.amplitude.rend());
+  std::reverse(pattern.amplitude.begin(), pattern.amplitude.end());
   return pattern;
 }
 

@@ -76,15 +76,15 @@ BoundaryMaterial half_space(const CaseReading& reading, const ListReader& from,
     from.fail("density", shown(row.density) + " g/cm^3", "a density above 0 g/cm^3");
   const double compressional = attenuation(row.attenuation, row.speed, "attenuation");
   if (row.shear_speed == 0.0)
-    return FluidHalfSpace{.speed = row.speed,
+    return FluidHalfSpace{.speed = true_speed(row.speed, compressional),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional};
-  return ElasticHalfSpace{.speed = row.speed,
-                          .shear_speed = row.shear_speed,
+  const double shear = attenuation(row.shear_attenuation, row.shear_speed, "shear attenuation");
+  return ElasticHalfSpace{.speed = true_speed(row.speed, compressional),
+                          .shear_speed = true_speed(row.shear_speed, shear),
                           .density = 1000.0 * row.density,
                           .attenuation_db_per_wavelength = compressional,
-                          .shear_attenuation_db_per_wavelength = attenuation(
-                              row.shear_attenuation, row.shear_speed, "shear attenuation")};
+                          .shear_attenuation_db_per_wavelength = shear};
 }
 
 BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) {
@@ -111,10 +111,9 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       if (!(phi >= -1.0 && phi <= 9.0))
         env.fail("grain size", shown(phi),
                  "a mean grain size from -1 (coarse sand) to 9 phi (clay)");
-      // beside water of 1500 m/s and 1 g/cm³, whatever the profile says
+      // beside water of 1500 m/s and 1 g/cm³, whatever the profile says; no volume loss is added
       FluidHalfSpace fluid = sediment_of_grain_size(phi, 1500.0, 1000.0);
-      fluid.attenuation_db_per_wavelength +=
-          per_wavelength(reading.volume_loss, fluid.speed, reading.input.run_case.frequency);
+      fluid.speed = true_speed(fluid.speed, fluid.attenuation_db_per_wavelength);
       env.end();
       return fluid;
     }

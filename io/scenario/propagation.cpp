@@ -4,6 +4,7 @@
 #include "io/scenario/ocean.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
+#include "raytrace/ocean/slice.h"
 
 namespace asdic {
 namespace {
@@ -37,8 +38,8 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   const Vec3 platform = scenario.platform.at(0.0).position;
   PropagationCase run;
   run.title = scenario.title;
-  run.environment = ocean_along(scenario.environment, scenario.transect, platform.x(), platform.y(),
-                                scenario.transect.bearing);
+  run.environment =
+      slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()), 1.0);
   run.frequency = Pulse(scenario.pulse).centre_frequency();
   run.source_depths = {platform.z()};
   TomlTable root(document);

@@ -8,15 +8,23 @@ import warnings
 from pathlib import Path
 
 from .data import InputError, PingFile
+from .results import KINDS, filetype
 
 
 def arguments(argv):
     parser = argparse.ArgumentParser(prog="asdic plot",
-                                     description="Draws the pictures of a ping file.")
-    parser.add_argument("file", metavar="FILE.h5", help="a ping file, written by `asdic ping`")
+                                     description="Draws the pictures of a file of asdic's.")
+    parser.add_argument("file", metavar="FILE.h5",
+                        help="written by `asdic ping`, `field`, `arrivals` or `rays`")
     parser.add_argument("-o", "--output", metavar="DIR",
-                        help="folder for the pictures (default: FILE without .h5)")
+                        help="folder for the pictures (default: FILE without .h5); with --against "
+                             "the picture")
     parser.add_argument("--ping", metavar="N", type=int, help="ping to draw (default: the first)")
+    parser.add_argument("--against", metavar="B.h5", help="draw FILE against this reference")
+    parser.add_argument("--names", metavar="NAME", nargs="+", default=[],
+                        help="what the files are called in the pictures")
+    parser.add_argument("--floor", metavar="DB", type=float, default=120.0,
+                        help="differences of fields where both losses are below this")
     return parser.parse_args(argv)
 
 
@@ -57,8 +65,53 @@ def draw_all(data: PingFile, ping: int, folder: Path) -> None:
         say(f"{folder / name}: {module.TITLE}")
 
 
+def draw_result(options) -> None:
+    """Each picture of a field, arrivals or rays, as draw_all does for pings."""
+    from . import arrival_stems, ray_paths, results, style, transmission_loss
+
+    result = results.read(options.file)
+    result.title = result.title or short_name((options.names or [options.file])[0])
+    folder = Path(options.output) if options.output else default_folder(options.file)
+    folder.mkdir(parents=True, exist_ok=True)
+    name, module = {results.Field: ("transmission_loss", transmission_loss),
+                    results.Arrivals: ("arrivals", arrival_stems),
+                    results.Rays: ("rays", ray_paths)}[type(result)]
+    if reason := module.nothing_to_show(result):
+        (folder / f"{name}.png").unlink(missing_ok=True)
+        say(f"{folder / name}.png: left out, {reason}")
+        return
+    sources = result.source_depths.size if isinstance(result, results.Field) else 1
+    for source in range(sources):
+        path = folder / (f"{name}_{source + 1}.png" if sources > 1 else f"{name}.png")
+        style.write(module.draw(result, source) if sources > 1 else module.draw(result), path)
+        say(f"{path}: {module.TITLE}")
+
+
+def draw_comparison(options) -> None:
+    from . import comparison, results, style
+
+    a, b = results.read(options.file), results.read(options.against)
+    names = options.names if len(options.names) == 2 else [options.file, options.against]
+    path = Path(options.output or "comparison.png")
+    figure = comparison.draw(a, b, [short_name(name) for name in names], options.floor)
+    style.write(figure, path)
+    say(f"{path}: A against B", sys.stderr)
+
+
+def short_name(path: str) -> str:
+    """A file's name with the last two folders: cases are often told apart by them."""
+    parts = Path(path).parts
+    return str(Path(*parts[-3:])) if parts else path
+
+
 def run(argv=None) -> int:
     options = arguments(argv)
+    if options.against:
+        draw_comparison(options)
+        return 0
+    if filetype(options.file) in KINDS:
+        draw_result(options)
+        return 0
     with PingFile(options.file) as data:
         ping = data.choose_ping(options.ping)
         folder = Path(options.output) if options.output else default_folder(options.file)

@@ -64,6 +64,11 @@ def name(text: str) -> str:
     return shorten(text, 28).lstrip("_") or "target"
 
 
+def degrees(angle: float) -> str:
+    """−12.5°, with a real minus sign."""
+    return f"{angle:+.6g}°".replace("-", "−") if angle else "0°"
+
+
 def time_axis(axes, first: float, last: float, label: str = "time after the ping / s") -> None:
     axes.set_xlim(first, last if last > first else first + 1e-3)
     axes.set_xlabel(label)

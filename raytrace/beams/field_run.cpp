@@ -8,7 +8,9 @@
 
 #include "core/error.h"
 #include "raytrace/beams/beam.h"
+#include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/convergence.h"
+#include "raytrace/beams/layered_crossings.h"
 
 namespace asdic {
 
@@ -83,41 +85,130 @@ TraceLimits field_limits(const PropagationCase& run_case) {
   return limits;
 }
 
-std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
-                                               const RayTracer& tracer, double source_depth,
-                                               const BeamFan& fan, const Progress& progress) {
-  const BeamSetting setting = beam_setting(run_case, fan);
-  const TraceLimits limits = field_limits(run_case);
-  const std::size_t cells = run_case.receivers.size();
-  const std::size_t parts = std::clamp<std::size_t>(most_partial_cells / cells, 1, most_parts);
-  std::vector<FieldSum> partial(parts, empty_field(run_case));
+namespace {
+
+/// One source and one fan, ready to be summed.
+struct Work {
+  const PropagationCase& run_case;
+  const RayTracer& tracer;
+  double source_depth;
+  const BeamFan& fan;
+  const Progress& progress;
+  BeamSetting setting;
+  TraceLimits limits;
+
+  [[nodiscard]] BeamLaunch launch(double elevation, double source_speed) const {
+    return {elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
+  }
+};
+
+/// Sums the fan in `parts` (each has add(i) for ray i and at(column, row)), which take turns at
+/// packets of neighbouring rays.
+template <class Part>
+std::vector<std::complex<double>> sum_parts(const Work& work, std::vector<Part>& parts) {
+  constexpr std::size_t packet = 16;
+  const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
-  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-    RayTrajectory ray;
-    for (std::size_t i = part; i < fan.elevation.size() && !stopped; i += parts) {
-      tracer.trace(0.0, source_depth, fan.elevation[i], limits, ray);
-      const BeamLaunch launch{
-          fan.elevation[i],
-          launch_amplitude(run_case, source_depth, ray.source_speed, fan.elevation[i])};
-      add_beam(setting, launch, ray, partial[part]);
-      const std::size_t n = ++done;
-      if (progress && n % 64 == 0 && !progress(double(n) / double(fan.elevation.size())))
-        stopped = true;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    for (std::size_t first = p * packet; first < beams && !stopped;
+         first += parts.size() * packet) {
+      const std::size_t last = std::min(first + packet, beams);
+      for (std::size_t i = first; i < last; ++i) parts[p].add(i);
+      const std::size_t n = done += last - first;
+      if (work.progress && !work.progress(double(n) / double(beams))) stopped = true;
     }
   });
   if (stopped) throw Interrupted();
-  const std::size_t rows = run_case.receivers.rows(), columns = run_case.receivers.ranges.size();
-  std::vector<std::complex<double>> field(cells);
-  for (std::size_t j = 0; j < columns; ++j) {
-    const double scale = field_scale(setting, run_case.receivers.ranges[j]);
+  const ReceiverGrid& grid = work.run_case.receivers;
+  const std::size_t rows = grid.rows(), columns = grid.ranges.size();
+  std::vector<std::complex<double>> field(grid.size());
+  tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
+    const double scale = field_scale(work.setting, grid.ranges[j]);
     for (std::size_t k = 0; k < rows; ++k) {
       std::complex<double> sum = 0.0;
-      for (const FieldSum& part : partial) sum += part.sum[j * rows + k];
-      field[k * columns + j] = scale * (setting.coherent ? sum : std::sqrt(sum.real()));
+      for (const Part& part : parts) sum += part.at(j, k);
+      field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
     }
-  }
+  });
   return field;
+}
+
+/// Every kind of beam, receiver by receiver.
+class PlainPart {
+ public:
+  explicit PlainPart(const Work& work) : work_(work), field_(empty_field(work.run_case)) {}
+  void add(std::size_t i) {
+    const double elevation = work_.fan.elevation[i];
+    work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
+    add_beam(work_.setting, work_.launch(elevation, ray_.source_speed), ray_, field_);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
+    return field_.sum[column * field_.rows() + row];
+  }
+
+ private:
+  const Work& work_;
+  RayTrajectory ray_;
+  FieldSum field_;
+};
+
+/// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
+class FastPart {
+ public:
+  FastPart(const Work& work, const LayeredCrossings* layered)
+      : work_(work),
+        layered_(layered),
+        sum_(work.setting, work.run_case.receivers.depths, work.run_case.receivers.ranges.size()) {}
+  void add(std::size_t i) {
+    const double elevation = work_.fan.elevation[i];
+    if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
+      work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
+      find_crossings(ray_, work_.run_case.receivers.ranges, crossings_);
+    }
+    sum_.add(work_.launch(elevation, crossings_.source_speed), crossings_);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
+    return sum_.at(column, row);
+  }
+
+ private:
+  const Work& work_;
+  const LayeredCrossings* layered_;
+  LayeredCrossings::Workspace workspace_;
+  Crossings crossings_;
+  RayTrajectory ray_;
+  ColumnSum sum_;
+};
+
+}  // namespace
+
+std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
+                                               const RayTracer& tracer, double source_depth,
+                                               const BeamFan& fan, const Progress& progress,
+                                               FieldMethod method) {
+  const Work work{run_case,
+                  tracer,
+                  source_depth,
+                  fan,
+                  progress,
+                  beam_setting(run_case, fan),
+                  field_limits(run_case)};
+  const std::size_t cells = run_case.receivers.size();
+  const bool fast = method == FieldMethod::fast && !run_case.receivers.irregular &&
+                    (work.setting.kind == BeamKind::hat || work.setting.kind == BeamKind::gaussian);
+  const std::size_t few = std::clamp<std::size_t>(fan.elevation.size() / 1024, 1, most_parts);
+  const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
+  if (!fast) {
+    std::vector<PlainPart> parts;
+    for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
+    return sum_parts(work, parts);
+  }
+  const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
+                                              source_depth, run_case.receivers.ranges, work.limits);
+  std::vector<FastPart> parts;
+  for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
+  return sum_parts(work, parts);
 }
 
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {

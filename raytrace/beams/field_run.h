@@ -18,12 +18,14 @@ namespace asdic {
 /// How far rays of a field are followed: to the receivers and a little beyond, within the box.
 [[nodiscard]] TraceLimits field_limits(const PropagationCase& run_case);
 
+/// The same numbers by two ways: closed forms and eight receivers at a time where they apply, or
+/// one ray, one receiver after the other.
+enum class FieldMethod { fast, plain };
+
 /// The field of one source and one fan, [rows × ranges], range fastest; a root of intensity if it
 /// is not coherent. What run_field repeats.
-[[nodiscard]] std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
-                                                             const RayTracer& tracer,
-                                                             double source_depth,
-                                                             const BeamFan& fan,
-                                                             const Progress& progress = {});
+[[nodiscard]] std::vector<std::complex<double>> field_of_fan(
+    const PropagationCase& run_case, const RayTracer& tracer, double source_depth,
+    const BeamFan& fan, const Progress& progress = {}, FieldMethod method = FieldMethod::fast);
 
 }  // namespace asdic

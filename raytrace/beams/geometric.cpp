@@ -41,45 +41,47 @@ double gaussian_least_width(double frequency, double time, double speed) noexcep
   return std::min(0.2 * frequency * time, pi * speed / frequency);
 }
 
+void add_crossing(const BeamSetting& setting, double launched, double source_speed,
+                  const Crossing& x, std::span<const double> depths, const AddTo& add_to) {
+  if (x.q == 0.0) return;
+  const double omega = 2.0 * pi * setting.frequency;
+  const bool is_hat = setting.kind == BeamKind::hat;
+  const double root = launched * std::sqrt(x.speed / source_speed);
+  const double least = gaussian_least_width(setting.frequency, x.time, x.speed);
+  const auto add = [&](std::size_t k) {
+    const double dz = depths[k] - x.depth;
+    const double n = std::abs(dz * x.cosine), s = dz * x.sine;
+    const double q = x.q + x.dq_ds * s;
+    const bool beyond = q * x.q < 0.0;  // a caustic lies between the ray and the foot
+    if (beyond && is_hat) return false;
+    const Cut cut = is_hat ? hat(n, q, setting.spacing, setting.coherent)
+                           : gaussian(n, q, setting.spacing, least, setting.coherent);
+    if (!cut.inside) return false;
+    if (setting.coherent) {
+      const std::complex<double> loss = beyond ? x.loss * power_of_i(s > 0.0 ? 1 : -1) : x.loss;
+      add_to(k, loss * std::polar(root * cut.amplitude, -omega * (x.time + s / x.speed)));
+    } else {
+      add_to(k, std::norm(x.loss) * root * root * cut.amplitude);
+    }
+    return true;
+  };
+  const auto first = static_cast<std::size_t>(
+      std::lower_bound(depths.begin(), depths.end(), x.depth) - depths.begin());
+  for (std::size_t k = first; k < depths.size() && add(k); ++k) {
+  }
+  for (std::size_t k = first; k > 0 && add(k - 1); --k) {
+  }
+}
+
 void add_cartesian(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                    FieldSum& field) {
-  const double omega = 2.0 * pi * setting.frequency;
   const double launched = launch_factor(setting, launch);
-  const bool is_hat = setting.kind == BeamKind::hat;
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
-      const Crossing x = crossing_of(segment, state);
-      if (x.q == 0.0) return;
-      const double root = launched * std::sqrt(x.speed / ray.source_speed);
-      const double scale = setting.coherent ? root : root * root;
-      const double loss2 = std::norm(x.loss);
-      const double least = gaussian_least_width(setting.frequency, x.time, x.speed);
-      const std::span<const double> depths = field.column_depths(column);
       std::complex<double>* sum = field.column(column);
-
-      const auto add = [&](std::size_t k) {
-        const double dz = depths[k] - x.depth;
-        const double n = std::abs(dz * x.cosine), s = dz * x.sine;
-        const double q = x.q + x.dq_ds * s;
-        const bool beyond = q * x.q < 0.0;  // a caustic lies between the ray and the foot
-        if (beyond && is_hat) return false;
-        const Cut cut = is_hat ? hat(n, q, setting.spacing, setting.coherent)
-                               : gaussian(n, q, setting.spacing, least, setting.coherent);
-        if (!cut.inside) return false;
-        if (setting.coherent) {
-          const std::complex<double> loss = beyond ? x.loss * power_of_i(s > 0.0 ? 1 : -1) : x.loss;
-          sum[k] += loss * std::polar(scale * cut.amplitude, -omega * (x.time + s / x.speed));
-        } else {
-          sum[k] += loss2 * scale * cut.amplitude;
-        }
-        return true;
-      };
-      const auto first = static_cast<std::size_t>(
-          std::lower_bound(depths.begin(), depths.end(), x.depth) - depths.begin());
-      for (std::size_t k = first; k < depths.size() && add(k); ++k) {
-      }
-      for (std::size_t k = first; k > 0 && add(k - 1); --k) {
-      }
+      add_crossing(setting, launched, ray.source_speed, crossing_of(segment, state),
+                   field.column_depths(column),
+                   [sum](std::size_t k, std::complex<double> p) { sum[k] += p; });
     });
 }
 

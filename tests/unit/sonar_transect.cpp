@@ -6,13 +6,21 @@
 #include <vector>
 
 #include "core/units.h"
+#include "raytrace/ocean/slice.h"
 
 namespace asdic {
 namespace {
 
-/// A front and a slope with two materials, along a transect from (1000, 2000) towards the east.
+/// From (1000, 2000) towards the east.
 const Transect eastward = {.x = 1000.0, .y = 2000.0, .bearing = 0.5 * pi};
 
+/// The ocean in the plane that leaves a place on the map along a bearing.
+Environment ocean_along(const Environment& ocean, const Transect& transect, double east,
+                        double north, double bearing) {
+  return slice(ocean, transect.range_of(east, north), std::cos(bearing - transect.bearing));
+}
+
+/// A front and a slope with two materials.
 Environment slope_and_front() {
   Environment ocean;
   const std::vector<double> r = {0.0, 4000.0, 10000.0}, z = {0.0, 100.0, 500.0};

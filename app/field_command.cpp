@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/field_output.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "core/error.h"
+#include "io/bellhop/bellhop_files.h"
+#include "io/scenario/propagation.h"
+#include "raytrace/propagation.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  ScenarioChoice scenario;
+  std::string output;
+  std::optional<int> threads;
+  bool like_bellhop = false, json = false, quiet = false;
+};
+
+bool is_shade_name(const std::filesystem::path& path) { return path.extension() == ".shd"; }
+
+PropagationResult run_field_of(const PropagationCase& run_case, const Options& options) {
+  const Interrupt interrupt;
+  ProgressBar bar("%", 100, !options.quiet);
+  const Progress progress = [&](double share) {
+    bar.done(static_cast<int>(100.0 * share));
+    return !Interrupt::requested();
+  };
+  try {
+    return options.like_bellhop ? run_like_bellhop(run_case, progress) : run(run_case, progress);
+  } catch (const Interrupted&) {
+    throw RunError("interrupted; no file was written");
+  }
+}
+
+int field(const Options& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  FieldResult result{.scenario = options.scenario.path, .overrides = options.scenario.overrides};
+  result.run_case =
+      read_propagation_case(options.scenario.path, options.scenario.overrides, result.notes);
+  result.run_case.task = Task::field;
+  result.output = options.output.empty()
+                      ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
+                      : options.output;
+  check_output(result.output, options.scenario.path);
+
+  const int threads = options.threads.value_or(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  PropagationResult found = run_field_of(result.run_case, options);
+  result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
+  result.data = field_data(result.run_case, std::move(found));
+  if (is_shade_name(result.output))
+    bellhop::write_shade_file(result.output, to_shade_file(result.data));
+  else
+    write_field_file(result);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  if (options.json)
+    print(field_json(result));
+  else if (!options.quiet)
+    print(field_text(result, wall.count()));
+  return 0;
+}
+
+}  // namespace
+
+void add_field_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "field", "The pressure field of a source over range and depth: transmission loss.");
+  add_scenario_options(*command, options->scenario);
+  command
+      ->add_option(
+          "-o,--output", options->output,
+          "file to write, HDF5 (docs/formats/field.md) or by its ending .shd; default: the "
+          "scenario's name with .h5, in this folder")
+      ->type_name("FILE");
+  command
+      ->add_option("--threads", options->threads,
+                   "that compute; default: one a core. The results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--like-bellhop", options->like_bellhop,
+                    "as BELLHOP does it, with its steps and beams; for comparison");
+  command->add_flag("--json", options->json, "print a summary as JSON (docs/formats/field.md)");
+  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command->footer(
+      "What is run stands in [run] of the scenario (docs/formats/scenario.md).\n"
+      "Example:  asdic field scenarios/slope.toml -o slope.h5 && asdic plot slope.h5");
+  command->callback([options, &action] { action = [options] { return field(*options); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,118 @@
+#include "app/field_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/console.h"
+#include "app/output.h"
+#include "io/compare/statistics.h"
+#include "io/environment_group.h"
+#include "io/scenario/propagation.h"
+#include "io/text/csv_table.h"
+
+namespace asdic::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Transmission losses where there is sound, sorted [dB].
+std::vector<double> losses(const FieldData& data) {
+  std::vector<double> all;
+  for (const std::complex<float> p : data.pressure)
+    if (const double magnitude = std::abs(std::complex<double>(p)); magnitude > 0.0)
+      all.push_back(-20.0 * std::log10(magnitude));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+double silent_pct(const FieldData& data, std::size_t heard) {
+  const auto all = static_cast<double>(data.pressure.size());
+  return all > 0.0 ? 100.0 * (all - static_cast<double>(heard)) / all : 0.0;
+}
+
+std::string receivers_text(const ReceiverGrid& grid) {
+  return grid.irregular
+             ? count_of(grid.ranges.size(), "receiver")
+             : fmt::format("{} depths x {} ranges", grid.depths.size(), grid.ranges.size());
+}
+
+}  // namespace
+
+FieldData field_data(const PropagationCase& run_case, PropagationResult&& result) {
+  return {.title = run_case.title,
+          .frequency = run_case.frequency,
+          .kind = run_case.field,
+          .source = run_case.beams.source,
+          .source_depths = run_case.source_depths,
+          .receivers = run_case.receivers,
+          .pressure = std::move(result.field),
+          .beam_kind = std::string(name(run_case.beams.kind)),
+          .beams = result.beams,
+          .beam_error_db = result.beam_error_db};
+}
+
+void write_field_file(const FieldResult& result) {
+  Hdf5Output output(result.output);
+  Hdf5File& file = output.file();
+  write_root(file, "asdic field",
+             {.title = result.run_case.title,
+              .text = read_text_file(result.scenario, "a scenario file"),
+              .overrides = result.overrides});
+  write_field(file, result.data);
+  const auto& ranges = result.run_case.receivers.ranges;
+  const auto [first, last] = std::minmax_element(ranges.begin(), ranges.end());
+  write_environment_group(file, result.run_case.environment, std::min(0.0, *first),
+                          std::max(0.0, *last));
+  output.finish();
+}
+
+std::string field_text(const FieldResult& result, double wall) {
+  const FieldData& data = result.data;
+  const std::vector<double> tl = losses(data);
+  std::string text =
+      emphasised(data.title.empty() ? result.scenario : data.title) +
+      fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
+                  name(data.source), count_of(data.source_depths.size(), "depth"),
+                  receivers_text(data.receivers));
+  text +=
+      fmt::format("beams      {} of kind {}; more would change {} dB at 95 % of the receivers\n",
+                  data.beams, data.beam_kind, number(data.beam_error_db, 3));
+  if (!tl.empty())
+    text += fmt::format("loss       {} to {} dB, median {} dB; no sound at {:.3g} %\n",
+                        number(tl.front(), 1), number(tl.back(), 1),
+                        number(compare::quantile(tl, 0.5), 1), silent_pct(data, tl.size()));
+  for (const std::string& note : result.notes) text += "note: " + note + '\n';
+  return text + fmt::format("{}: {}, {}\n", result.output.string(),
+                            byte_count(double(std::filesystem::file_size(result.output))),
+                            duration(wall));
+}
+
+std::string field_json(const FieldResult& result) {
+  const FieldData& data = result.data;
+  const std::vector<double> tl = losses(data);
+  ordered_json loss;
+  if (!tl.empty())
+    loss = {{"least", tl.front()}, {"median", compare::quantile(tl, 0.5)}, {"greatest", tl.back()}};
+  const ordered_json all = {{"filetype", "asdic field summary"},
+                            {"version", "1.0"},
+                            {"title", data.title},
+                            {"scenario", result.scenario},
+                            {"output", result.output.string()},
+                            {"frequency_hz", data.frequency},
+                            {"field", name(data.kind)},
+                            {"source", name(data.source)},
+                            {"source_depths", data.source_depths.size()},
+                            {"receivers", data.receivers.size()},
+                            {"beam_kind", data.beam_kind},
+                            {"beams", data.beams},
+                            {"beam_error_db", data.beam_error_db},
+                            {"tl_db", loss},
+                            {"silent_pct", silent_pct(data, tl.size())},
+                            {"notes", result.notes}};
+  return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,30 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/field_file.h"
+#include "raytrace/propagation.h"
+
+namespace asdic::app {
+
+/// A field that was computed, and what of.
+struct FieldResult {
+  std::string scenario;  ///< its file
+  std::vector<std::string> overrides{};
+  PropagationCase run_case{};
+  FieldData data{};
+  std::filesystem::path output{};
+  std::vector<std::string> notes{};
+};
+
+[[nodiscard]] FieldData field_data(const PropagationCase& run_case, PropagationResult&& result);
+
+/// Writes result.output, which gets its name when it is whole. \throws RunError
+void write_field_file(const FieldResult& result);
+
+/// A few lines for people. \param wall  [s]
+[[nodiscard]] std::string field_text(const FieldResult& result, double wall);
+[[nodiscard]] std::string field_json(const FieldResult& result);
+
+}  // namespace asdic::app

@@ -1,0 +1,87 @@
+#include "app/pictures.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "app/console.h"
+#include "core/error.h"
+
+namespace asdic::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// asdic_plot.py beside an installed program, or where the program was built from.
+fs::path find_script() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed =
+      program.parent_path().parent_path() / "share/asdic/python/asdic_plot.py";
+  const fs::path source = fs::path(ASDIC_SOURCE_DIR) / "python/asdic_plot.py";
+  for (const fs::path& script : {installed, source})
+    if (fs::exists(script, error)) return script;
+  throw RunError("plot: found no " + installed.string() + ", expected the pictures' script there");
+}
+
+/// Debian's Python has the packages; ASDIC_PYTHON names another.
+std::string python() {
+  const char* chosen = std::getenv("ASDIC_PYTHON");
+  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
+}
+
+/// Runs a program without a shell. \return its exit status, 128 + n after signal n
+int run(const std::vector<std::string>& words) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  if (const int error =
+          posix_spawn(&child, words[0].c_str(), nullptr, nullptr, arguments.data(), environ))
+    throw RunError(
+        fmt::format("plot: {}: {}; pictures need Python (Debian: python3 python3-h5py "
+                    "python3-matplotlib)",
+                    words[0], std::strerror(error)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw RunError(fmt::format("plot: {}: {}", words[0], std::strerror(errno)));
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void check_modules(const std::string& interpreter) {
+  constexpr const char* modules[] = {"numpy", "h5py", "matplotlib"};
+  const int missing =
+      run({interpreter, "-c",
+           "import importlib.util as u, sys\n"
+           "names = ['numpy', 'h5py', 'matplotlib']\n"
+           "sys.exit(sum(64 >> i for i, m in enumerate(names) if not u.find_spec(m)))"});
+  if (missing == 0) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::size(modules); ++i)
+    if ((missing & (64 >> i)) != 0) names += std::string(names.empty() ? "" : ", ") + modules[i];
+  throw RunError(
+      fmt::format("plot: {} has no {}; pictures need it (Debian: python3-numpy "
+                  "python3-h5py python3-matplotlib)",
+                  interpreter, names.empty() ? "working Python" : names));
+}
+
+}  // namespace
+
+int draw_pictures(const std::vector<std::string>& arguments) {
+  const std::string interpreter = python();
+  const fs::path script = find_script();
+  check_modules(interpreter);
+  flush_output();  // what was said before stands before what the script says
+  std::vector<std::string> words{interpreter, script.string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run(words);
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "io/bellhop/case_parts.h"
+#include "io/bellhop/case_writer_parts.h"
+#include "io/bellhop/decimal.h"
+
+namespace asdic::bellhop {
+namespace {
+
+/// A count and a vector: its ends if it is evenly spaced as the reader spaces it, else all of it.
+std::string vector_text(CaseWriting& writing, const std::vector<double>& x, float factor,
+                        double least, double most, const std::string& who) {
+  const auto read = [&](double value) {
+    return std::clamp(double(float(value) * factor), least, most);
+  };
+  std::vector<std::string> all;
+  bool exact = true;
+  for (const double value : x) {
+    all.push_back(decimal_read_as(value, value / double(factor), read));
+    exact = exact && read(*fortran_number(all.back())) == value;
+  }
+  if (!exact) writing.note("the " + who + " are in single precision there");
+  std::string text = std::to_string(x.size()) + '\n';
+  const GivenVector ends{.values = {*fortran_number(all.front()), *fortran_number(all.back())},
+                         .count = std::int64_t(x.size())};
+  if (x.size() > 2) {
+    std::vector<double> even = single_precision(ends, factor);
+    for (double& value : even) value = std::clamp(value, least, most);
+    if (even == x) return text + all.front() + ' ' + all.back() + " /\n";
+  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    text += all[i] + (i % 8 == 7 || i + 1 == all.size() ? '\n' : ' ');
+  return text;
+}
+
+char task_letter(const PropagationCase& run_case, bool binary) noexcept {
+  switch (run_case.task) {
+    case Task::rays:
+      return 'R';
+    case Task::eigenrays:
+      return 'E';
+    case Task::arrivals:
+      return binary ? 'a' : 'A';
+    case Task::eigenrays_and_arrivals:
+      return binary ? 'v' : 'V';
+    case Task::field:
+      break;
+  }
+  return run_case.field == FieldKind::coherent     ? 'C'
+         : run_case.field == FieldKind::incoherent ? 'I'
+                                                   : 'S';
+}
+
+char beam_letter(BeamKind kind) noexcept {
+  switch (kind) {
+    case BeamKind::hat:
+      return 'G';
+    case BeamKind::gaussian:
+      return 'B';
+    case BeamKind::ray_centred_hat:
+      return 'g';
+    case BeamKind::ray_centred_gaussian:
+      return 'b';
+    case BeamKind::simple_gaussian:
+      return 'S';
+    case BeamKind::cerveny_cartesian:
+      return 'C';
+    case BeamKind::cerveny_ray_centred:
+      return 'R';
+  }
+  return 'G';
+}
+
+std::string declination_text(double elevation) {
+  return decimal_read_as(elevation, 0.0 - degrees(elevation), [](double x) { return radians(-x); });
+}
+
+std::string fan_text(const PropagationCase& run_case) {
+  const BeamSettings& beams = run_case.beams;
+  const std::vector<double>& list = beams.elevations;
+  const std::size_t n = list.size() > 1 ? list.size() : std::size_t(beams.count);
+  std::string text = std::to_string(list.size() == 1 ? std::max<std::size_t>(n, 1) : n);
+  if (run_case.literal.single_beam) text += ' ' + std::to_string(*run_case.literal.single_beam);
+  text += '\n';
+  if (list.empty()) {
+    text += declination_text(beams.highest);
+    if (n != 1) text += ' ' + declination_text(beams.lowest);
+    return text + " /\n";
+  }
+  for (std::size_t i = list.size(); i-- > 0;)
+    text += declination_text(list[i]) + (i % 8 == 0 && i > 0 ? '\n' : ' ');
+  return text + "/\n";
+}
+
+std::string cerveny_text(const CervenyBeams& beams) {
+  using Width = CervenyBeams::Width;
+  using Curvature = CervenyBeams::Curvature;
+  using Component = CervenyBeams::Component;
+  const char width = beams.width == Width::space_filling ? 'F'
+                     : beams.width == Width::minimum     ? 'M'
+                     : beams.width == Width::wkb         ? 'W'
+                                                         : 'C';
+  const char curvature = beams.curvature == Curvature::standard  ? 'S'
+                         : beams.curvature == Curvature::doubled ? 'D'
+                                                                 : 'Z';
+  const char component = beams.component == Component::pressure   ? 'P'
+                         : beams.component == Component::vertical ? 'V'
+                                                                  : 'H';
+  return std::string("'") + width + curvature + "' " + decimal(beams.width_multiplier) + ' ' +
+         decimal_read_as(beams.loop_range, beams.loop_range / 1000.0,
+                         [](double x) { return 1000.0 * x; }) +
+         '\n' + std::to_string(beams.images) + ' ' + std::to_string(beams.window) + " '" +
+         component + "'\n";
+}
+
+}  // namespace
+
+std::string run_text(CaseWriting& writing, bool binary_arrivals) {
+  const PropagationCase& run_case = writing.run_case;
+  const BeamSettings& beams = run_case.beams;
+  const ReceiverGrid& grid = run_case.receivers;
+  const double top = writing.depths.front(), bottom = writing.depths.back();
+  std::string text =
+      vector_text(writing, run_case.source_depths, 1.0F, top, bottom, "source depths") +
+      vector_text(writing, grid.depths, 1.0F, top, bottom, "receiver depths") +
+      vector_text(writing, grid.ranges, 1000.0F, -infinity, infinity, "receiver ranges");
+
+  std::string letters = {task_letter(run_case, binary_arrivals),
+                         beam_letter(beams.kind),
+                         beams.pattern ? '*' : ' ',
+                         beams.source == SourceKind::line ? 'X' : 'R',
+                         grid.irregular ? 'I' : 'R',
+                         '2',
+                         beams.displacement ? 'S' : ' '};
+  while (letters.back() == ' ') letters.pop_back();
+  text += '\'' + letters + "'\n";
+  if (beams.pattern) write_source_pattern(writing, *beams.pattern);
+
+  text += fan_text(run_case);
+  const auto km = [](double x) { return 1000.0 * x; };
+  text += decimal(run_case.literal.step) + ' ' + decimal(run_case.box_depth) + ' ' +
+          decimal_read_as(run_case.box_range, run_case.box_range / 1000.0, km) + '\n';
+  if (beams.kind == BeamKind::cerveny_cartesian || beams.kind == BeamKind::cerveny_ray_centred)
+    text += cerveny_text(beams.cerveny.value_or(CervenyBeams{}));
+  return text;
+}
+
+}  // namespace asdic::bellhop

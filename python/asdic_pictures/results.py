@@ -1,0 +1,208 @@
+"""Reads results of the propagation model: files of `asdic field`, `arrivals` and `rays`.
+
+Whatever is wrong with one becomes an InputError. Elevations are positive up, depth positive down.
+"""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+
+import h5py
+import numpy as np
+
+from .data import InputError
+
+KINDS = ("asdic field", "asdic arrivals", "asdic rays")
+
+
+@dataclass
+class Sea:
+    """The sea as a picture needs it; parts that the file does not tell are None."""
+
+    boundary_range: np.ndarray | None = None    # [n] [m]
+    surface: np.ndarray | None = None           # [n] depth [m]
+    bottom: np.ndarray | None = None            # [n] depth [m]
+    depth: np.ndarray | None = None             # [k] [m]
+    sound_speed: np.ndarray | None = None       # [k] at range 0 [m/s]
+
+
+@dataclass
+class Field:
+    title: str
+    frequency: float
+    source_depths: np.ndarray
+    depth: np.ndarray           # [rows] or [receivers]
+    range: np.ndarray           # [columns] or [receivers]
+    irregular: bool
+    pressure: np.ndarray        # [sources, rows, columns] or [sources, receivers]
+    how: str                    # "coherent", …; with the kind of beams
+    sea: Sea = field(default_factory=Sea)
+
+    def tl(self, source: int) -> np.ndarray:
+        """Transmission loss [dB]; NaN where there is no sound."""
+        magnitude = np.abs(self.pressure[source])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            loss = -20.0 * np.log10(magnitude)
+        return np.where(np.isfinite(loss), loss, np.nan)
+
+
+@dataclass
+class Receiver:
+    """What one receiver hears. [n] each"""
+
+    label: str
+    range: float
+    delay: np.ndarray           # [s]
+    level: np.ndarray           # re the pressure at 1 m [dB]
+    launch: np.ndarray          # elevation [°]
+    surface: np.ndarray         # bounces
+    bottom: np.ndarray
+
+
+@dataclass
+class Arrivals:
+    title: str
+    frequency: float
+    receivers: list[Receiver]
+
+
+@dataclass
+class Rays:
+    title: str
+    launch: np.ndarray          # [n] elevation [°]
+    surface: np.ndarray         # [n] bounces
+    bottom: np.ndarray
+    range: np.ndarray           # [n, points] [m], padded with NaN
+    depth: np.ndarray
+    bottom_depth: float
+    sea: Sea = field(default_factory=Sea)
+
+
+def text(attributes, name: str) -> str:
+    try:
+        value = attributes[name]
+    except Exception:
+        return ""
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def filetype(path) -> str:
+    """What kind of file it is; "" where that cannot be told (then it is nothing of ours)."""
+    try:
+        with h5py.File(path, "r") as f:
+            return text(f.attrs, "filetype")
+    except Exception:
+        return ""
+
+
+class Reader:
+    """An open file that says what is missing."""
+
+    def __init__(self, path):
+        if not os.path.exists(path):
+            raise InputError(path, "no such file", "a result of asdic field, arrivals or rays")
+        try:
+            self.file = h5py.File(path, "r")
+        except Exception as error:
+            raise InputError(path, "a file that is not HDF5",
+                             "a result of asdic field, arrivals or rays") from error
+        self.path = str(path)
+
+    def has(self, name) -> bool:
+        return name in self.file
+
+    def array(self, name) -> np.ndarray:
+        try:
+            return np.asarray(self.file[name][()])
+        except Exception as error:
+            raise InputError(self.path, f"no dataset {name} that can be read",
+                             "one (docs/formats)") from error
+
+    def number(self, name, otherwise=np.nan) -> float:
+        try:
+            return float(np.ravel(self.file.attrs[name])[0])
+        except Exception:
+            return otherwise
+
+    def title(self) -> str:
+        return text(self.file.attrs, "title")
+
+    def sea(self) -> Sea:
+        """An older file, or one of another program, tells nothing of its sea."""
+        names = {"boundary_range": "boundary_range", "surface": "surface_depth",
+                 "bottom": "bottom_depth", "depth": "depth", "sound_speed": "sound_speed"}
+        found = {key: self.array("environment/" + name) for key, name in names.items()
+                 if self.has("environment/" + name)}
+        return Sea(**found)
+
+
+def read(path):
+    """→ Field, Arrivals or Rays"""
+    reader = Reader(path)
+    with reader.file:
+        kind = text(reader.file.attrs, "filetype")
+        if kind not in KINDS:
+            raise InputError(path, f'filetype "{kind}"', "one of " + ", ".join(KINDS))
+        return {"asdic field": read_field, "asdic arrivals": read_arrivals,
+                "asdic rays": read_rays}[kind](reader)
+
+
+def read_field(reader: Reader) -> Field:
+    irregular = reader.has("receiver")
+    prefix = "receiver_" if irregular else ""
+    parts = reader.array("pressure")
+    if parts.ndim != (3 if irregular else 4) or parts.shape[-1] != 2 or 0 in parts.shape:
+        raise InputError(reader.path, f"pressure of shape {parts.shape}",
+                         "(source_depth, depth, range, re_im)")
+    how = [text(reader.file.attrs, "field") or "coherent"]
+    if beams := text(reader.file.attrs, "beam_kind"):
+        how.append(f"{beams} beams")
+    return Field(reader.title(), reader.number("frequency_hz"), reader.array("source_depth"),
+                 reader.array(prefix + "depth"), reader.array(prefix + "range"), irregular,
+                 parts[..., 0] + 1j * parts[..., 1], ", ".join(how), reader.sea())
+
+
+LEGS = {0: "source to target", 1: "target to array", 2: "source to array", 3: "source to receiver"}
+
+
+def read_arrivals(reader: Reader) -> Arrivals:
+    def column(name):
+        return reader.array("arrivals/" + name)
+
+    amplitude = np.hypot(column("amplitude_real"), column("amplitude_imag"))
+    with np.errstate(divide="ignore"):
+        level = 20.0 * np.log10(amplitude)
+    distance = column("range")
+    if reader.has("arrivals/range_index"):
+        keys = np.stack([column(n) for n in ("source_index", "depth_index", "range_index")], axis=1)
+    else:
+        keys = np.stack([column(n) for n in ("ping", "leg", "target", "channel")], axis=1)
+    receivers = []
+    for key in np.unique(keys, axis=0):
+        rows = np.flatnonzero(np.all(keys == key, axis=1) & np.isfinite(level))
+        if rows.size:
+            receivers.append(Receiver(
+                receiver_label(reader, key, float(distance[rows[0]])), float(distance[rows[0]]),
+                column("delay")[rows], level[rows], column("launch_elevation_deg")[rows],
+                column("surface_bounces")[rows], column("bottom_bounces")[rows]))
+    return Arrivals(reader.title(), reader.number("frequency_hz"), receivers)
+
+
+def receiver_label(reader: Reader, key, distance: float) -> str:
+    where = f"range {distance / 1e3:.3f} km"
+    if len(key) == 4:
+        depth = reader.number("receiver_depth_m")
+        leg = LEGS.get(int(key[1]), "")
+        target = f", target {key[2]}" if key[2] >= 0 else ""
+        return f"{leg}{target}, {where}" + (f", depth {depth:g} m" if np.isfinite(depth) else "")
+    depths, sources = reader.array("depth"), reader.array("source_depth")
+    i = int(key[2] if reader.number("irregular", 0.0) else key[1])
+    source = f", source at {sources[int(key[0])]:g} m" if sources.size > 1 else ""
+    return f"{where}, depth {depths[i]:g} m{source}"
+
+
+def read_rays(reader: Reader) -> Rays:
+    return Rays(reader.title(), reader.array("rays/launch_elevation_deg"),
+                reader.array("rays/surface_bounces"), reader.array("rays/bottom_bounces"),
+                reader.array("rays/range"), reader.array("rays/depth"),
+                reader.number("bottom_depth_m"), reader.sea())

@@ -1,0 +1,272 @@
+#include "raytrace/beams/column_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/beams/crossing.h"
+#include "raytrace/beams/geometric.h"
+#include "raytrace/beams/lanes.h"
+
+namespace asdic {
+
+namespace {
+
+const float root_of_two_pi = static_cast<float>(std::sqrt(2.0 * pi));
+
+}  // namespace
+
+ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
+                     std::size_t columns)
+    : setting_(setting), depths_(depths), padded_depths_(depths.begin(), depths.end()) {
+  padded_depths_.resize(depths.size() + lanes, depths.back() + 1e6);
+  stride_ = (depths.size() + 2 * lanes - 1) / lanes * lanes;
+  real_.assign(columns * stride_, 0.0F);
+  if (setting.coherent) imaginary_.assign(columns * stride_, 0.0F);
+  first_depth_ = depths.front();
+  const double wavelength = 1500.0 / setting.frequency;
+  const double step =
+      depths.size() < 2 ? 0.0 : (depths.back() - first_depth_) / double(depths.size() - 1);
+  bool even = step > 0.0;
+  for (std::size_t k = 0; k < depths.size(); ++k)
+    even = even && std::abs(depths[k] - (first_depth_ + double(k) * step)) <
+                       std::min(1e-3 * step, 1e-5 * wavelength);
+  if (even) spacing_ = step, per_spacing_ = 1.0 / step;
+}
+
+void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
+  const std::size_t n = x.size();
+  for (auto* array :
+       {&amplitude_, &phase_, &wave_number_, &cosine_, &sine_, &q_, &growth_, &least_, &offset_})
+    array->resize(n);
+  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n);
+  const double f = setting_.frequency, spacing = setting_.spacing;
+  launched_ = beams::launch_factor(setting_, launch);
+  const bool coherent = setting_.coherent;
+  // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  const double times = is_hat ? 1.0 : 4.0, least_factor = is_hat ? 0.0 : 1.0;
+  const double widening_scale = times * spacing;
+  const double *speeds = x.speed.data(), *qs = x.q.data(), *levels = x.level.data(),
+               *times_of = x.time.data(), *phases = x.phase.data(), *sines = x.sine.data(),
+               *cosines = x.cosine.data(), *dq_ds = x.dq_ds.data();
+  float *amplitude = amplitude_.data(), *phase = phase_.data(), *wave_number = wave_number_.data(),
+        *cosine_out = cosine_.data(), *sine_out = sine_.data(), *q_out = q_.data(),
+        *growth_out = growth_.data(), *least_out = least_.data();
+  double *above = above_.data(), *below = below_.data();
+  const double launched2 = launched_ * launched_ / x.source_speed;
+  const double k_unit = -2.0 * pi * f;
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const double c = speeds[i], q = qs[i];
+    const double intensity = launched2 * levels[i] * levels[i] * c;
+    amplitude[i] = static_cast<float>(intensity);
+    const double cycles = f * times_of[i];
+    phase[i] = static_cast<float>(phases[i] - 2.0 * pi * (cycles - std::floor(cycles)));
+    wave_number[i] = static_cast<float>(k_unit * sines[i] / c);
+    const double cosine = std::abs(cosines[i]);
+    const double growth = dq_ds[i] * sines[i];
+    cosine_out[i] = static_cast<float>(cosine);
+    sine_out[i] = static_cast<float>(sines[i]);
+    q_out[i] = static_cast<float>(q);
+    growth_out[i] = static_cast<float>(growth);
+    const double a = 0.2 * f * times_of[i], b = pi * c / f;
+    const double least = least_factor * (a < b ? a : b);
+    least_out[i] = static_cast<float>(least);
+    const double widening = widening_scale * (q < 0.0 ? -growth : growth);
+    const double narrow = std::abs(q) * spacing;
+    const double width = times * (narrow > least ? narrow : least);
+    above[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
+    below[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
+  }
+  if (coherent)
+    for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
+  find_rows(x);
+  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
+}
+
+void ColumnSum::find_rows(const Crossings& x) {
+  const std::size_t n = x.size();
+  const double top = first_depth_, per = per_spacing_, step = spacing_;
+  const auto rows = static_cast<double>(depths_.size());
+  const double *depth = x.depth.data(), *above = above_.data(), *below = below_.data();
+  std::int32_t *first_out = first_.data(), *last_out = last_.data();
+  float* offset = offset_.data();
+  if (step > 0.0) {
+    ASDIC_INDEPENDENT
+    for (std::size_t i = 0; i < n; ++i) {
+      const double z = depth[i];
+      double first = std::ceil((z - above[i] - top) * per);
+      double last = std::floor((z + below[i] - top) * per) + 1.0;
+      first = first < 0.0 ? 0.0 : first;
+      last = last > rows ? rows : last;
+      first = first > rows ? rows : first;
+      last = last < first ? first : last;
+      first_out[i] = static_cast<std::int32_t>(first);
+      last_out[i] = static_cast<std::int32_t>(last);
+      offset[i] = static_cast<float>(top + first * step - z);
+    }
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = [&](double z) {
+        return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
+                                         depths_.begin());
+      };
+      first_[i] = row(x.depth[i] - above_[i]);
+      last_[i] = row(x.depth[i] + below_[i]);
+    }
+  }
+}
+
+/// What add_evenly needs of each crossing from one group of rows to the next.
+void ColumnSum::prepare_recurrences(std::size_t n) {
+  const float step = static_cast<float>(lanes) * static_cast<float>(spacing_);
+  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_}) array->resize(n + lanes);
+  for (auto* array : {&wave_number_, &cosine_, &least_}) array->resize(n + lanes);
+  for (std::size_t i = 0; i < n; i += lanes) {
+    Lanes c, s;
+    cos_sin(load(&wave_number_[i]) * step, c, s);
+    store(c, &turn_cosine_[i]);
+    store(s, &turn_sine_[i]);
+    const Lanes u = load(&cosine_[i]) / load(&least_[i]) * step;
+    store(exponential(-u * u), &ratio_of_ratio_[i]);  // exp(−2aD²)
+  }
+}
+
+ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
+  const float growth = std::abs(growth_[i]), q = std::abs(q_[i]);
+  const auto spacing = static_cast<float>(setting_.spacing);
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  if (q == 0.0F) return Way::none;
+  if (cosine_[i] < (is_hat ? 2.0F : 8.0F) * spacing * growth) return Way::plain;
+  if (last_[i] <= first_[i]) return Way::none;
+  if (is_hat || !setting_.coherent || !(spacing_ > 0.0)) return Way::lanes;
+  const auto reach = static_cast<float>(std::max(above_[i], below_[i]));
+  const bool constant = q > growth * reach && (q + growth * reach) * spacing < least_[i];
+  return constant ? Way::even : Way::lanes;
+}
+
+template <bool coherent, bool is_hat>
+void ColumnSum::add_rows(const Crossings& x) {
+  const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
+  const float share_scale = spacing / root_of_two_pi;
+  const auto row_spacing = static_cast<float>(spacing_);
+  const Lanes depth_ramp = ramp() * row_spacing;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Way how = way(i);
+    if (how == Way::none) continue;
+    if (how == Way::plain) {
+      add_plainly(x, i);
+      continue;
+    }
+    float* real = real_.data() + x.column[i] * stride_;
+    float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
+    if (how == Way::even) {
+      add_evenly(i, real, imaginary);
+      continue;
+    }
+    const float cosine = cosine_[i], q0 = q_[i], growth = growth_[i], amplitude = amplitude_[i];
+    const auto last = static_cast<std::size_t>(last_[i]);
+    float offset = offset_[i];
+    for (auto k = static_cast<std::size_t>(first_[i]); k < last; k += lanes) {
+      Lanes dz;
+      if (spacing_ > 0.0)
+        dz = offset + depth_ramp;
+      else
+        dz = Lanes([&](auto l) { return static_cast<float>(padded_depths_[k + l] - x.depth[i]); });
+      offset += static_cast<float>(lanes) * row_spacing;
+      const Lanes n = abs(dz) * cosine;
+      const Lanes signed_q = q0 + growth * dz;
+      const Lanes q = max(abs(signed_q), Lanes(1e-30F));
+      Lanes weight;
+      if constexpr (is_hat) {
+        const Lanes per_q = 1.0F / q;
+        weight = amplitude * max(Lanes(0.0F), 1.0F - n * per_q * per_spacing);
+        weight *= coherent ? sqrt(per_q) : per_q;
+      } else {
+        const Lanes per_sigma = 1.0F / max(q * spacing, Lanes(least_[i]));
+        const Lanes u = n * per_sigma;
+        weight = amplitude * share_scale * per_sigma * exponential(-0.5F * u * u);
+        if constexpr (coherent) weight *= sqrt(q);
+        where(u >= 4.0F, weight) = 0.0F;
+      }
+      if constexpr (coherent) {
+        Lanes angle = phase_[i] + wave_number_[i] * dz;
+        if constexpr (!is_hat) {  // a caustic lies between the ray and the foot
+          const Lanes quarter = copysign(Lanes(static_cast<float>(0.5 * pi)), dz * sine_[i]);
+          where(signed_q * q0 < 0.0F, angle) = angle + quarter;
+        }
+        Lanes c, s;
+        cos_sin(angle, c, s);
+        store(load(real + k) + weight * c, real + k);
+        store(load(imaginary + k) + weight * s, imaginary + k);
+      } else {
+        store(load(real + k) + weight, real + k);
+      }
+    }
+  }
+}
+
+/// A Gaussian of constant width: over D = lanes·(row spacing) its logarithm changes by −a(2·dz·D +
+/// D²), a = cos²θ/2σ², and that by −2aD²; the phase turns evenly.
+void ColumnSum::add_evenly(std::size_t i, float* real, float* imaginary) const {
+  const auto row_spacing = static_cast<float>(spacing_);
+  const float step = static_cast<float>(lanes) * row_spacing;
+  const float per_sigma = 1.0F / least_[i];
+  const float u = cosine_[i] * per_sigma, a = 0.5F * u * u;
+  const float reach = 4.0F / u;
+  const float amplitude =
+      amplitude_[i] * static_cast<float>(setting_.spacing) / root_of_two_pi * per_sigma;
+  Lanes dz = offset_[i] + row_spacing * ramp();
+  Lanes bell = amplitude * exponential(-a * dz * dz);
+  Lanes ratio = exponential(-a * step * (2.0F * dz + step));
+  const float ratio_of_ratio = ratio_of_ratio_[i];
+  Lanes c, s;
+  cos_sin(phase_[i] + wave_number_[i] * dz, c, s);
+  const float turn_c = turn_cosine_[i], turn_s = turn_sine_[i];
+  Lanes q = abs(q_[i] + growth_[i] * dz);
+  const float growth = std::copysign(growth_[i], growth_[i] * q_[i]) * step;
+  const auto last = static_cast<std::size_t>(last_[i]);
+  for (auto k = static_cast<std::size_t>(first_[i]); k < last; k += lanes) {
+    Lanes weight = bell * sqrt(q);
+    where(abs(dz) >= reach, weight) = 0.0F;
+    store(load(real + k) + weight * c, real + k);
+    store(load(imaginary + k) + weight * s, imaginary + k);
+    dz += step;
+    q = abs(q + growth);
+    bell *= ratio;
+    ratio *= ratio_of_ratio;
+    const Lanes c_next = c * turn_c - s * turn_s;
+    s = s * turn_c + c * turn_s;
+    c = c_next;
+  }
+}
+
+void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
+  const Crossing crossing{.depth = x.depth[i],
+                          .cosine = x.cosine[i],
+                          .sine = x.sine[i],
+                          .speed = x.speed[i],
+                          .time = x.time[i],
+                          .length = 0.0,
+                          .q = x.q[i],
+                          .dq_ds = x.dq_ds[i],
+                          .loss = std::polar(x.level[i], x.phase[i])};
+  float* real = real_.data() + x.column[i] * stride_;
+  float* imaginary = setting_.coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
+  beams::add_crossing(setting_, launched_, x.source_speed, crossing, depths_,
+                      [&](std::size_t k, std::complex<double> p) {
+                        real[k] += static_cast<float>(p.real());
+                        if (imaginary != nullptr) imaginary[k] += static_cast<float>(p.imag());
+                      });
+}
+
+void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {
+  prepare(launch, crossings);
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  if (setting_.coherent)
+    is_hat ? add_rows<true, true>(crossings) : add_rows<true, false>(crossings);
+  else
+    is_hat ? add_rows<false, true>(crossings) : add_rows<false, false>(crossings);
+}
+
+}  // namespace asdic

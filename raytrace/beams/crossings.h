@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raytrace/tracing/ray_trajectory.h"
+
+namespace asdic {
+
+/// The crossings of one ray with the columns of a grid of receivers, an array for each quantity, so
+/// that loops over them vectorise. Memory is reused from ray to ray.
+struct Crossings {
+  double source_speed = 0.0;          ///< c₀ [m/s]
+  std::vector<std::uint32_t> column;  ///< [n]
+  std::vector<double> depth;          ///< [n] [m]
+  std::vector<double> cosine, sine;   ///< [n] of the angle below the horizon; cosine < 0: backwards
+  std::vector<double> speed;          ///< [n] c [m/s]
+  std::vector<double> time;           ///< [n] τ [s]
+  std::vector<double> q, dq_ds;       ///< [n] ∂n/∂α [m/rad] and its growth c·p [1/rad]
+  std::vector<double> level;          ///< [n] |reflections|·exp(−∫α ds)
+  std::vector<double> phase;          ///< [n] of reflections and caustics [rad]
+
+  [[nodiscard]] std::size_t size() const noexcept { return column.size(); }
+  void resize(std::size_t n);
+};
+
+/// The crossings of a traced ray.
+void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out);
+
+}  // namespace asdic

@@ -1,0 +1,72 @@
+#pragma once
+#include <cstdint>
+#include <experimental/simd>
+
+#include "core/units.h"
+
+/// The compiler may take the next loop's iterations for independent.
+#if defined(__clang__)
+#define ASDIC_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define ASDIC_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
+namespace asdic {
+
+/// As many single-precision numbers as the machine adds at once.
+using Lanes = std::experimental::native_simd<float>;
+inline constexpr std::size_t lanes = Lanes::size();
+
+inline Lanes load(const float* from) noexcept {
+  return Lanes(from, std::experimental::element_aligned);
+}
+inline void store(const Lanes& value, float* to) noexcept {
+  value.copy_to(to, std::experimental::element_aligned);
+}
+
+/// 0, 1, 2, …
+inline Lanes ramp() noexcept {
+  return Lanes([](auto i) { return static_cast<float>(static_cast<int>(i)); });
+}
+
+/// Nearest whole number, |x| < 4e6: adding 1.5·2²³ leaves no room for the fraction.
+inline Lanes nearest(const Lanes& x) noexcept {
+  constexpr float magic = 12582912.0F;
+  return (x + magic) - magic;
+}
+
+/// cos and sin of an angle of up to some 10⁴ rad, to 2e-7, out of those of half of it within ±π/2.
+inline void cos_sin(const Lanes& angle, Lanes& cosine, Lanes& sine) noexcept {
+  constexpr float inverse_turn = static_cast<float>(0.5 / pi);
+  constexpr float turn_high = 6.28125F, turn_low = static_cast<float>(2.0 * pi - 6.28125);
+  const Lanes turns = nearest(angle * inverse_turn);
+  const Lanes x = 0.5F * ((angle - turns * turn_high) - turns * turn_low);
+  const Lanes x2 = x * x;
+  const Lanes s =
+      x * (1.0F + x2 * (-1.0F / 6 +
+                        x2 * (1.0F / 120 + x2 * (-1.0F / 5040 +
+                                                 x2 * (1.0F / 362880 + x2 * (-1.0F / 39916800))))));
+  const Lanes c =
+      1.0F +
+      x2 * (-0.5F + x2 * (1.0F / 24 + x2 * (-1.0F / 720 +
+                                            x2 * (1.0F / 40320 + x2 * (-1.0F / 3628800 +
+                                                                       x2 * (1.0F / 479001600))))));
+  sine = 2.0F * s * c;
+  cosine = 1.0F - 2.0F * s * s;
+}
+
+/// eˣ for −80 ≤ x ≤ 80 (below: of −80), to 2e-7: 2ⁿ·e^f with |f| ≤ ½·ln 2.
+inline Lanes exponential(const Lanes& argument) noexcept {
+  constexpr float log2_e = 1.44269504F, ln2_high = 0.693359375F, ln2_low = -2.12194440e-4F;
+  const Lanes x = max(argument, Lanes(-80.0F));
+  const Lanes n = nearest(x * log2_e);
+  const Lanes f = (x - n * ln2_high) - n * ln2_low;
+  const Lanes e =
+      1.0F + f * (1.0F + f * (0.5F + f * (1.0F / 6 +
+                                          f * (1.0F / 24 + f * (1.0F / 120 + f * (1.0F / 720))))));
+  using Whole = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
+  const Whole bits = (std::experimental::static_simd_cast<Whole>(n) + 127) << 23;
+  return e * __builtin_bit_cast(Lanes, bits);
+}
+
+}  // namespace asdic
