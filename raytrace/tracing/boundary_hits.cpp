@@ -40,6 +40,10 @@ BoundaryHit hit_at(const RaySegment& s, const Boundary& boundary) {
   return hit;
 }
 
+/// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
+/// then right to a quarter of it [rad].
+constexpr double grazing_tolerance = 4e-3;
+
 HermiteNode range_node(const StrikingRay& ray, const BoundaryHit& hit) {
   return {ray.angle, hit.range, hit.d_range};
 }
@@ -82,6 +86,7 @@ class CellSearch {
           std::abs(Hermite(range_node(a, ha), range_node(b, hb)).value(m.angle) - hm.range) +
           std::abs(Hermite(time_node(a, ha), time_node(b, hb)).value(m.angle) - hm.time) * hm.speed;
       if (off > 0.1 * spacing_) return false;  // halves are then right to a sixteenth of that
+      if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > grazing_tolerance) return false;
     }
     return true;
   }
