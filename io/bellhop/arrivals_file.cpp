@@ -152,7 +152,8 @@ class BinarySource {
       std::memcpy(&narrow, content.data() + byte, 4);
       value = double(narrow);
     }
-    if (!std::isfinite(value)) fail(item, "a number that is not finite", "a finite number");
+    if (!(std::abs(value) <= double(std::numeric_limits<float>::max())))
+      fail(item, shown(value), "a number that single precision holds");
     return value;
   }
 

@@ -17,6 +17,8 @@ inline std::string_view text(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
+inline std::string last_refusal;  ///< for the message of a law that does not hold
+
 /// Does what may refuse its input, in words. Anything else that is thrown ends the program.
 template <class Work>
 bool refuses(Work work) {
@@ -24,7 +26,8 @@ bool refuses(Work work) {
     work();
     return false;
   } catch (const InputError& error) {
-    if (std::string_view(error.what()).empty()) std::abort();
+    last_refusal = error.what();
+    if (last_refusal.empty()) std::abort();
     return true;
   }
 }
@@ -32,7 +35,7 @@ bool refuses(Work work) {
 /// A law that must hold. \throws nothing: the program ends
 inline void insist(bool holds, const char* law) {
   if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", law);
+  std::fprintf(stderr, "does not hold: %s (%s)\n", law, last_refusal.c_str());
   std::abort();
 }
 
