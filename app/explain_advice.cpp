@@ -136,8 +136,8 @@ std::vector<std::string> advice_on(const Explanation& e) {
   // The method is of second order: delays and paths come nearer with the square of the step.
   if (const double error = step_effect(e); !field && error > small)
     out.push_back(
-        fmt::format("with BELLHOP, a step of about {:.2g} m would bring its share below {:g} {}",
-                    e.step * std::sqrt(small / error), small, arrivals ? "us" : "m"));
+        fmt::format("with BELLHOP, a step of about {} m would bring its share below {:g} {}",
+                    rounded(e.step * std::sqrt(small / error)), small, arrivals ? "us" : "m"));
   if (e.on_disk) {
     out.push_back(same(e.on_disk->like_bellhop)
                       ? e.on_disk->file +
