@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string root, output;
-  bool like_bellhop = false, quiet = false;
+  bool like_bellhop = false, beams_as_written = false, quiet = false;
   bellhop::Dialect dialect = bellhop::Dialect::fortran;
   std::optional<int> threads;
 };
@@ -89,6 +89,15 @@ void choose_single_beam(PropagationCase& run_case, std::vector<std::string>& not
   beams.count = 1;
 }
 
+/// As many beams as the file says, no more: asdic's rays, BELLHOP's fan.
+void fix_fan(PropagationCase& run_case) {
+  BeamSettings& beams = run_case.beams;
+  const int n = run_case.literal.beams;
+  if (!beams.elevations.empty() || n < 2) return;
+  for (int i = 0; i < n; ++i)
+    beams.elevations.push_back(std::lerp(beams.lowest, beams.highest, double(i) / (n - 1)));
+}
+
 PropagationResult search(const bellhop::Input& input, const Options& options) {
   const Interrupt interrupt;
   constexpr int steps = 100;
@@ -129,6 +138,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   StopWatch watch;
   bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
   if (!options.like_bellhop) choose_single_beam(input.run_case, input.notes);
+  if (options.beams_as_written) fix_fan(input.run_case);
   const double parse = watch.lap();
   report.line(input.echo);
   report.notes(input.notes);
@@ -187,6 +197,8 @@ void add_bellhop_command(CLI::App& program, Action& action) {
       ->required();
   command->add_flag("--like-bellhop", options->like_bellhop,
                     "with BELLHOP's own steps, beams and merging, to compare with its files");
+  command->add_flag("--beams-as-written", options->beams_as_written,
+                    "exactly the beams of the file, where fields take as many as they need");
   command
       ->add_option("--dialect", options->dialect,
                    "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
