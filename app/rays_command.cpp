@@ -9,8 +9,8 @@
 #include "app/output.h"
 #include "app/rays_output.h"
 #include "core/error.h"
-#include "io/scenario_reader.h"
-#include "raytrace/ocean/slice.h"
+#include "io/scenario/propagation.h"
+#include "io/text/csv_table.h"
 
 namespace asdic::app {
 namespace {
@@ -21,7 +21,7 @@ struct Options {
   int count = 41;
   std::vector<double> elevations;  // [°], instead of the three
   double range = 50e3;
-  std::optional<double> depth, bearing;  // [m], [°]
+  std::optional<double> depth;
   int bounces = 100;
   bool json = false;
   std::string output;
@@ -49,23 +49,34 @@ std::vector<double> elevations(const Options& options) {
   return all;
 }
 
-int rays(const Options& options) {
-  const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
-  const Vec3 platform = scenario.platform.at(0.0).position;
-  const double bearing = options.bearing ? radians(*options.bearing) : scenario.transect.bearing;
-  const Environment ocean =
-      slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()),
-            std::cos(bearing - scenario.transect.bearing));
-  const double depth = options.depth.value_or(platform.z());
-  if (!(depth >= ocean.surface.depth && depth <= ocean.bottom.depth))
+/// The ocean and the source out of a sonar scenario, or one of an ocean and a run.
+RaysResult read(const Options& options) {
+  std::vector<std::string> overrides = options.scenario.overrides, notes;
+  overrides.insert(overrides.end(),
+                   {"run.task=rays", fmt::format("run.box_range={}", options.range)});
+  RaysResult result;
+  result.run_case = read_propagation_case(options.scenario.path, overrides, notes);
+  result.origin = {.title = result.run_case.title,
+                   .path = options.scenario.path,
+                   .text = read_text_file(options.scenario.path, "a scenario file"),
+                   .overrides = options.scenario.overrides};
+  const Environment& ocean = result.run_case.environment;
+  const double depth = options.depth.value_or(result.run_case.source_depths.front());
+  const double top = ocean.surface.depth_at(0.0), bottom = ocean.bottom.depth_at(0.0);
+  if (!(depth >= top && depth <= bottom))
     throw InputError({.where = "--source-depth",
                       .got = fmt::format("{} m", depth),
-                      .expected = fmt::format("a depth between {} and {} m", ocean.surface.depth,
-                                              ocean.bottom.depth)});
-  RaysResult result{.scenario = &scenario, .source_depth = depth};
-  for (const double elevation : elevations(options))
-    result.rays.push_back(
-        trace_ray(ocean, depth, radians(elevation), options.range, 50.0, options.bounces));
+                      .expected = fmt::format("a depth between {} and {} m", top, bottom)});
+  result.run_case.source_depths = {depth};
+  return result;
+}
+
+int rays(const Options& options) {
+  const std::vector<double> fan = elevations(options);
+  RaysResult result = read(options);
+  for (const double elevation : fan)
+    result.rays.push_back(trace_ray(result.run_case.environment, result.source_depth(),
+                                    radians(elevation), options.range, 50.0, options.bounces));
   if (!options.output.empty()) {
     check_output(options.output, options.scenario.path);
     write_rays_file(options.output, result);
@@ -81,8 +92,9 @@ int rays(const Options& options) {
 
 void add_rays_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "rays", "Trace a fan of rays from the platform and tell where they go.");
+  CLI::App* command = program.add_subcommand("rays",
+                                             "Trace a fan of rays from the platform, or from the "
+                                             "source of a run, and tell where they go.");
   add_scenario_options(*command, options->scenario);
   command->add_option("--from", options->from, "first elevation, positive up [deg]")
       ->capture_default_str()
@@ -105,12 +117,7 @@ void add_rays_command(CLI::App& program, Action& action) {
       "how far to trace, e.g. 50km; default: 50km");
   add_length_option(
       *command, "--source-depth", [options](double x) { options->depth = x; },
-      "depth of the source; default: the platform's at the start");
-  command
-      ->add_option("--bearing", options->bearing,
-                   "of the rays, where the ocean varies along a transect; default: along it [deg]")
-      ->type_name("DEG")
-      ->check(CLI::Range(-360.0, 360.0));
+      "depth of the source; default: the platform's at the start, or the run's");
   command->add_option("--bounces", options->bounces, "end a ray after so many bounces")
       ->capture_default_str()
       ->type_name("N")
@@ -118,8 +125,8 @@ void add_rays_command(CLI::App& program, Action& action) {
   command->add_flag("--json", options->json, "print JSON (docs/formats/rays.md)");
   command
       ->add_option("-o,--output", options->output,
-                   "write HDF5 (docs/formats/rays.md), instead of the table")
-      ->type_name("FILE.h5");
+                   "write HDF5 (docs/formats/rays.md), or by its ending .ray, instead of the table")
+      ->type_name("FILE");
   command->footer(
       "Example:  asdic rays scenarios/deep_ocean.toml --from 0 --to 10 --count 11 --range 60km");
   command->callback([options, &action] { action = [options] { return rays(*options); }; });

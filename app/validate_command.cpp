@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
 #include "app/console.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
 #include "sonar/geometry.h"
@@ -12,6 +15,8 @@
 
 namespace asdic::app {
 namespace {
+
+const double db_per_neper = 20.0 / std::log(10.0);
 
 std::string position(const Vec3& p) {
   return fmt::format("{:g} m east, {:g} m north, {:g} m deep", p.x(), p.y(), p.z());
@@ -21,71 +26,68 @@ std::string motion(const Vec3& v) {
   return v.isZero() ? "at rest" : fmt::format("moving at {:.2f} m/s", v.norm());
 }
 
-/// Lowest and highest speed in the water, sampled metre by metre.
-std::pair<double, double> speeds(const Environment& ocean, double bottom) {
+/// Lowest and highest speed in the water: of a section's samples, or looked at in 5000 depths.
+std::pair<double, double> speeds(const Environment& ocean) {
   if (ocean.section) {
-    const auto all = ocean.section->speeds();
-    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    const auto [low, high] =
+        std::minmax_element(ocean.section->speeds().begin(), ocean.section->speeds().end());
     return {*low, *high};
   }
-  double low = ocean.water.at(ocean.surface.depth).c, high = low;
+  const double top = ocean.surface.depth, bottom = ocean.bottom.depth;
+  double low = ocean.water.at(top).c, high = low;
   constexpr int steps = 5000;
   for (int i = 0; i <= steps; ++i) {
-    const double c = ocean.water.at(std::lerp(ocean.surface.depth, bottom, double(i) / steps)).c;
+    const double c = ocean.water.at(std::lerp(top, bottom, double(i) / steps)).c;
     low = std::min(low, c);
     high = std::max(high, c);
   }
   return {low, high};
 }
 
-std::string extent(std::span<const double> ranges) {
-  return fmt::format("from {:g} to {:g} km", ranges.front() / 1000.0, ranges.back() / 1000.0);
+std::string depth_of_water(const Environment& ocean) {
+  if (!ocean.bottom.shape) return fmt::format("{:g}", ocean.bottom.depth - ocean.surface.depth);
+  return fmt::format("{:g} to {:g}", ocean.bottom.shape->shallowest() - ocean.surface.depth,
+                     ocean.bottom.shape->deepest() - ocean.surface.depth);
 }
 
 std::string boundary_text(const Boundary& boundary) {
-  if (!boundary.shape) return material_text(boundary.material);
-  const BoundaryShape& shape = *boundary.shape;
-  return fmt::format("{:g} to {:g} m, {}, {} {}, {}", shape.shallowest(), shape.deepest(),
-                     count_of(shape.ranges().size(), "node"), name(shape.interpolation()),
-                     extent(shape.ranges()),
-                     shape.materials().empty() ? material_text(boundary.material)
-                                               : count_of(shape.materials().size(), "material"));
+  std::string text = material_text(boundary.material);
+  if (!boundary.shape) return text;
+  const auto ranges = boundary.shape->ranges();
+  text += fmt::format(", {}, {} from {:g} to {:g} km, {:g} to {:g} m deep",
+                      name(boundary.shape->interpolation()), count_of(ranges.size(), "node"),
+                      ranges.front() / 1000.0, ranges.back() / 1000.0, boundary.shape->shallowest(),
+                      boundary.shape->deepest());
+  if (!boundary.shape->materials().empty()) text += ", a material each";
+  return text;
 }
 
-/// What varies along the transect, and where that lies.
+std::string environment_text(const Environment& ocean, double f, std::optional<double> wind) {
+  const auto [low, high] = speeds(ocean);
+  const double loss = db_per_neper * 1e3 * attenuation_np_per_m(ocean, f).at(ocean.surface.depth);
+  std::string text = fmt::format(
+      "water      {} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
+      depth_of_water(ocean), low, high, loss, f);
+  if (ocean.section)
+    text += fmt::format(
+        "           {} from {:g} to {:g} km\n", count_of(ocean.section->ranges().size(), "profile"),
+        ocean.section->ranges().front() / 1000.0, ocean.section->ranges().back() / 1000.0);
+  text += "surface    " + boundary_text(ocean.surface);
+  text += wind ? fmt::format(", wind {:g} m/s\n", *wind) : "\n";
+  return text + "bottom     " + boundary_text(ocean.bottom) + "\n";
+}
+
+/// Where on the map the ocean's range axis lies, if it has one.
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   const Environment& ocean = s.environment;
   if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return "";
-  std::string text = fmt::format(
+  const Vec3 platform = s.platform.at(0.0).position;
+  return fmt::format(
       "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
       "it, over {:.0f} m\n",
       s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
-      simulator.paths().along(s.platform.at(0.0).position) / 1000.0,
-      simulator.paths().bottom_depth(s.platform.at(0.0).position));
-  if (ocean.section)
-    text += fmt::format(
-        "section    {} {}, {}\n", count_of(ocean.section->ranges().size(), "profile"),
-        extent(ocean.section->ranges()), count_of(ocean.section->depths().size(), "depth"));
-  return text;
-}
-
-std::string environment_text(const PingSimulator& simulator) {
-  const Environment& ocean = simulator.scenario().environment;
-  const double surface =
-                   ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth,
-               bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  const auto [low, high] = speeds(ocean, bottom);
-  const double f = simulator.pulse().centre_frequency();
-  std::string text = fmt::format(
-      "water      {}{:g} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
-      ocean.bottom.shape ? "at most " : "", bottom - surface, low, high,
-      absorption_db_per_km(ocean.absorption, f), f);
-  text += transect_text(simulator);
-  text += fmt::format("surface    {}, wind {:g} m/s\n", boundary_text(ocean.surface),
-                      simulator.scenario().wind_speed);
-  text += fmt::format("bottom     {}\n", boundary_text(ocean.bottom));
-  return text;
+      simulator.paths().along(platform) / 1000.0, simulator.paths().bottom_depth(platform));
 }
 
 std::string sonar_text(const PingSimulator& simulator) {
@@ -95,6 +97,7 @@ std::string sonar_text(const PingSimulator& simulator) {
   constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
   constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
   std::string text =
+      transect_text(simulator) +
       fmt::format("platform   {}, {}\n", position(platform.position), motion(platform.velocity));
   text +=
       s.transmitter.taper == Taper::omnidirectional
@@ -144,11 +147,48 @@ std::string size_text(const Scenario& s) {
       samples, byte_count(bytes));
 }
 
+std::string axis_text(const std::vector<double>& values, double unit) {
+  if (values.size() == 1) return fmt::format("{:g}", values[0] / unit);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return fmt::format("{} from {:g} to {:g}", values.size(), *low / unit, *high / unit);
+}
+
+std::string run_text(const PropagationCase& run) {
+  std::string text =
+      fmt::format("source     {}, {:g} Hz, at depths [m]: {}\n", name(run.beams.source),
+                  run.frequency, axis_text(run.source_depths, 1.0));
+  if (run.receivers.size() > 0)
+    text +=
+        fmt::format("receivers  {}at depths [m]: {}, ranges [km]: {}\n",
+                    run.receivers.irregular ? "one by one, " : "",
+                    axis_text(run.receivers.depths, 1.0), axis_text(run.receivers.ranges, 1000.0));
+  text += fmt::format("fan        {:g} to {:g} deg\n", degrees(run.beams.lowest),
+                      degrees(run.beams.highest));
+  text += fmt::format("task       {}", name(run.task));
+  if (run.task == Task::field)
+    text += fmt::format(", {}, {} beams", name(run.field), name(run.beams.kind));
+  return text + "\n";
+}
+
+/// An ocean and a run of the propagation model, without a sonar.
+int validate_run(const ScenarioChoice& choice) {
+  std::vector<std::string> notes;
+  const PropagationCase run = read_propagation_case(choice.path, choice.overrides, notes);
+  print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
+  print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run));
+  for (const std::string& note : notes) print("note: " + note + '\n');
+  print(choice.path + ": good\n");
+  return 0;
+}
+
 int validate(const ScenarioChoice& choice) {
+  if (!has_sonar(choice.path, choice.overrides)) return validate_run(choice);
   const PingSimulator simulator(read_scenario(choice.path, choice.overrides));
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
-  print(environment_text(simulator) + sonar_text(simulator) + size_text(scenario));
+  print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
+                         scenario.wind_speed) +
+        sonar_text(simulator) + size_text(scenario));
   for (const std::string& note : scenario.notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
@@ -158,8 +198,8 @@ int validate(const ScenarioChoice& choice) {
 
 void add_validate_command(CLI::App& program, Action& action) {
   auto choice = std::make_shared<ScenarioChoice>();
-  CLI::App* command =
-      program.add_subcommand("validate", "Read and check a scenario, and say what it means.");
+  CLI::App* command = program.add_subcommand(
+      "validate", "Read and check a scenario or a run, and say what it means.");
   add_scenario_options(*command, *choice);
   command->footer(
       "Exit status: 0 good, 2 not.\n"

@@ -39,8 +39,7 @@ SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOpti
     else
       field64 = std::make_unique<FieldSums<double>>(given.field, columns, size);
   }
-  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals) 
-  {
+  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals) {
     if (options.single_precision)
       arrivals32 = std::make_unique<ArrivalStore<float>>(size, options.merge);
     else
@@ -80,10 +79,8 @@ void SourceResults::append_arrivals(const ArrivalStore<Real>& store,
 
 void SourceResults::append_to(PropagationResult& result, double source_speed, double spacing) {
   const BeamKind kind = run_case.beams.kind;
-  const bool cerveny =
-      kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred;
-  const double beam_factor =
-      cerveny ? spacing * std::sqrt(run_case.frequency) / source_speed : 1.0;
+  const bool cerveny = kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred;
+  const double beam_factor = cerveny ? spacing * std::sqrt(run_case.frequency) / source_speed : 1.0;
   if (field32) append_field(*field32, result, beam_factor);
   if (field64) append_field(*field64, result, beam_factor);
   if (arrivals32) append_arrivals(*arrivals32, result);

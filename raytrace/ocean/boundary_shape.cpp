@@ -115,7 +115,7 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Vec2 &before = facet_tangent[i - 1], &after = facet_tangent[i];
     tangent_[i] = 0.5 * (before + after);
-    slope_[i] = 0.5 * (before.y() / before.x() + after.y() / after.x());
+    slope_[i] = (depth_[i + 1] - depth_[i - 1]) / (range_[i + 1] - range_[i - 1]);
   }
   bend_facets();
   find_extremes();

@@ -12,8 +12,8 @@ namespace asdic {
 /// How a boundary runs between its nodes.
 enum class ShapeInterpolation {
   piecewise_linear,  ///< straight facets: the tangent jumps at a node
-  smooth,  ///< a cubic through the nodes with continuous slope (mean of the neighbouring facets'
-           ///< slopes at a node): position, tangent and curvature are those of one curve
+  smooth,  ///< a cubic through the nodes with continuous slope, at a node that of the line between
+           ///< its neighbours: position, tangent and curvature are those of one curve
   curvilinear,  ///< BELLHOP's: straight facets for the position; tangent and normal turn linearly
                 ///< from node to node, and a curvature goes with them
 };
