@@ -67,11 +67,13 @@ class BoundaryShape {
   }
   [[nodiscard]] BoundaryPoint at(double range) const noexcept { return at(range, facet(range)); }
 
-  [[nodiscard]] double shallowest() const noexcept;  ///< least depth reached anywhere [m]
-  [[nodiscard]] double deepest() const noexcept;     ///< greatest depth [m]
+  /// Least and greatest depth reached anywhere [m].
+  [[nodiscard]] double shallowest() const noexcept { return shallowest_; }
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
  private:
   void bend_facets();  // curvature_, out of tangent_
+  void find_extremes();
 
   std::vector<double> range_, depth_;       // [n]
   std::vector<double> slope_;               // [n] at the nodes (smooth)
@@ -79,6 +81,7 @@ class BoundaryShape {
   std::vector<double> curvature_;           // [n + 1] per facet (curvilinear)
   std::vector<BoundaryMaterial> material_;  // [n] or empty
   ShapeInterpolation interpolation_;
+  double shallowest_ = 0.0, deepest_ = 0.0;
 };
 
 }  // namespace asdic
