@@ -9,6 +9,7 @@
 #include "app/output.h"
 #include "app/run_arrivals.h"
 #include "core/error.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "sonar/echo.h"
 #include "sonar/ping.h"
@@ -117,7 +118,8 @@ int arrivals_of_run(const Options& options) {
 }
 
 int arrivals(const Options& options) {
-  if (is_run_scenario(options.scenario)) return arrivals_of_run(options);
+  if (!has_sonar(options.scenario.path, options.scenario.overrides))
+    return arrivals_of_run(options);
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
   const bool free = options.receiver_depth || options.range;

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """The 16 reference cases of BELLHOP run by asdic, and how far everything is from everything.
 
-    ASDIC=path/to/asdic scripts/compare_bellhop.sh [CASE ...]
+    ASDIC=path/to/asdic scripts/compare_bellhop.sh [--times] [CASE ...]
 
 For each case of tests/data/bellhop: BELLHOP's default run against its converged one; asdic's own run
 of case.env against the converged one; asdic's rays with exactly the fan of converged/case.env against
 the converged one; and --like-bellhop against the default run. Everything by `asdic compare`. Prints
-Markdown. Exit code: 0, 1 when a run failed, 2 when there is nothing to run.
+Markdown; --times adds asdic's wall times. Exit code: 0, 1 when a run failed, 2 when there is nothing to run.
 """
 import json
 import os
@@ -108,8 +108,10 @@ def row(*cells):
     return "| " + " | ".join(str(c) for c in cells) + " |"
 
 
-def table(head, rows):
-    return "\n".join([row(*head), row(*["---"] * len(head)), *rows])
+def table(head, rows, times=True):
+    """The last column is of times, or goes."""
+    lines = [row(*head), row(*["---"] * len(head)), *rows]
+    return "\n".join(lines if times else [line[:-2].rpartition("|")[0] + "|" for line in lines])
 
 
 def field_row(case):
@@ -176,6 +178,8 @@ def ray_rows(case):
 
 
 def main(names):
+    times = "--times" in names
+    names = [name for name in names if name != "--times"]
     every = sorted(p.parent.name for p in DATA.glob("*/meta.json"))
     names = names or every
     if not every or not set(names) <= set(every):
@@ -190,11 +194,12 @@ def main(names):
                          "residual of the converged", "asdic against the converged",
                          "its mean level, dB", "asdic with the converged fan",
                          "like BELLHOP against its default", "asdic, s"],
-                        [field_row(c) for c in of["shd"]]))
+                        [field_row(c) for c in of["shd"]], times))
         if of["arr"]:
             print("\nArrivals: paths joined, within 40 dB of the strongest; spreads as median / 95 %\n")
             print(table(["case", "", "matched % (within 20 dB)", "delay µs", "amplitude dB",
-                         "angle °, 95 %", "s"], [r for c in of["arr"] for r in arrival_rows(c)]))
+                         "angle °, 95 %", "asdic, s"],
+                        [r for c in of["arr"] for r in arrival_rows(c)], times))
         if of["ray"]:
             print("\nRays: distance from the other's path, median / max over the rays [m]\n")
             print(table(["case", "", "paired", "end points aside", "end points"],

@@ -25,6 +25,7 @@ struct BoundaryPoint {
   double depth = 0.0;      ///< [m]
   double slope = 0.0;      ///< d(depth)/d(range) of the tangent that reflects
   double curvature = 0.0;  ///< dφ/ds along the boundary, φ = atan(slope), s arc length [1/m]
+  double length = 1.0;     ///< of the tangent vector that reflects: below 1 on a curvilinear facet
 };
 
 /// Where a sea floor or a sea surface is that is not flat: depth as a function of range, beyond the

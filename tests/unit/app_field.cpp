@@ -56,8 +56,8 @@ std::complex<double> mirror(double range, double depth) {
   return std::polar(1.0 / direct, -k * direct) - std::polar(1.0 / image, -k * image);
 }
 
-// Straight rays: the sum of hat beams interpolates linearly between two rays, and the beams are doubled
-// until that costs less than 0.1 dB, 1.2 % of the pressure. No receiver is in a null.
+// Straight rays: the sum of hat beams interpolates linearly between two rays, and the beams are
+// doubled until that costs less than 0.1 dB, 1.2 % of the pressure. No receiver is in a null.
 TEST_F(FieldCommand, WritesTheFieldOfTheScenario) {
   const auto run = asdic(folder, "field mirror.toml -o mirror.h5 --json");
   ASSERT_EQ(run.status, 0) << run.err;
