@@ -8,7 +8,8 @@ namespace {
 constexpr double far_away = 1e30;  // where the flat ends of a boundary stop [m]
 }
 
-BoundaryLine::BoundaryLine(const Boundary& boundary, BoundaryKind kind) : kind_(kind) {
+BoundaryLine::BoundaryLine(const Boundary& boundary, BoundaryKind kind, bool unit_normals)
+    : kind_(kind), unit_normals_(unit_normals) {
   const bool flat = !boundary.shape;
   const std::vector<double> flat_depth = {boundary.depth};
   const auto r = flat ? std::span<const double>{} : boundary.shape->ranges();
@@ -57,9 +58,15 @@ BoundaryLine::Facet BoundaryLine::facet(const Vec2& x, std::size_t i) const noex
   if (!curvilinear_) return {.tangent = tangent_[i], .normal = normal_[i]};
   const double length = (node(i + 1) - node(i)).norm();
   const double s = (x - node(i)).dot(tangent_[i]) / length;
-  const Vec2 t = (1.0 - s) * node_tangent_[i] + s * node_tangent_[i + 1];
+  Vec2 t = (1.0 - s) * node_tangent_[i] + s * node_tangent_[i + 1];
+  double curvature = curvature_[i];
+  if (unit_normals_) {
+    const Vec2 &a = node_tangent_[i], &b = node_tangent_[i + 1];
+    curvature = (a.x() * b.y() - a.y() * b.x()) / t.squaredNorm() / length;
+    t.normalize();
+  }
   const Vec2 n = kind_ == BoundaryKind::bottom ? Vec2(-t.y(), t.x()) : Vec2(t.y(), -t.x());
-  return {.tangent = t, .normal = n, .curvature = curvature_[i]};
+  return {.tangent = t, .normal = n, .curvature = curvature};
 }
 
 }  // namespace asdic::like_bellhop

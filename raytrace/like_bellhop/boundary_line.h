@@ -10,7 +10,8 @@ namespace asdic::like_bellhop {
 /// on both sides. Unit vectors (range, depth); normals point out of the water.
 class BoundaryLine {
  public:
-  BoundaryLine(const Boundary& boundary, BoundaryKind kind);
+  /// \param unit_normals  make the means of a curvilinear boundary unit vectors
+  BoundaryLine(const Boundary& boundary, BoundaryKind kind, bool unit_normals = false);
 
   /// What reflects at a point of a segment. On a curvilinear boundary tangent and normal are means
   /// of the nodes' and not quite of unit length.
@@ -46,7 +47,7 @@ class BoundaryLine {
   }
 
   BoundaryKind kind_;
-  bool curvilinear_ = false;
+  bool curvilinear_ = false, unit_normals_ = false;
   std::vector<double> range_, depth_;       // [n + 2] with the far ends
   std::vector<Vec2> tangent_, normal_;      // [n + 1] of the segments
   std::vector<Vec2> node_tangent_;          // [n + 2], plain means

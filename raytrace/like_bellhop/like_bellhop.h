@@ -14,6 +14,9 @@ struct LikeBellhopOptions {
                       ///< without, every beam leaves its own
   bool single_precision =
       true;  ///< fields are summed in float32, delays of arrivals stored in float32
+  bool unit_normals =
+      false;  ///< curvilinear boundaries reflect with normals made unit vectors, and
+              ///< bend as their tangents turn: what BELLHOP would do without its slip
 };
 
 /// A case as 2-D BELLHOP does it: second-order steps of hundreds of metres that land on every depth

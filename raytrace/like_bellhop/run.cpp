@@ -19,13 +19,14 @@ constexpr std::size_t most_blocks = 16;   // of receivers, each laid by one task
 
 LiteralOcean make_ocean(const PropagationCase& run_case, const LikeBellhopOptions& options) {
   const Environment& e = run_case.environment;
-  LiteralOcean ocean{.water = LiteralWater(e, run_case.frequency),
-                     .surface = BoundaryLine(e.surface, BoundaryKind::surface),
-                     .bottom = BoundaryLine(e.bottom, BoundaryKind::bottom),
-                     .frequency = run_case.frequency,
-                     .step = options.step.value_or(run_case.literal.step),
-                     .box_range = run_case.box_range,
-                     .box_depth = run_case.box_depth};
+  LiteralOcean ocean{
+      .water = LiteralWater(e, run_case.frequency),
+      .surface = BoundaryLine(e.surface, BoundaryKind::surface, options.unit_normals),
+      .bottom = BoundaryLine(e.bottom, BoundaryKind::bottom, options.unit_normals),
+      .frequency = run_case.frequency,
+      .step = options.step.value_or(run_case.literal.step),
+      .box_range = run_case.box_range,
+      .box_depth = run_case.box_depth};
   if (!(ocean.step > 0.0))
     ocean.step = 0.1 * (ocean.water.last_depth() - ocean.water.first_depth());
   return ocean;

@@ -110,24 +110,17 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   find_extremes();
 }
 
-// Curvilinear, as BELLHOP has it: a node's tangent is the plain mean of both facets' unit tangents
-// (the flat stretches beyond the ends count), and κ of a facet is that of the corner at its end,
-// (change of slope)/(the facet's horizontal length)·cos³.
+// Curvilinear: a node's tangent is the mean of both facets' unit tangents; the flat stretches
+// beyond the ends count.
 void BoundaryShape::bend_facets() {
   const std::size_t n = range_.size();
   tangent_.assign(n, Vec2(1.0, 0.0));
-  curvature_.assign(n + 1, 0.0);
   Vec2 before(1.0, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 after = i + 1 < n
                            ? Vec2(range_[i + 1] - range_[i], depth_[i + 1] - depth_[i]).normalized()
                            : Vec2(1.0, 0.0);
     tangent_[i] = 0.5 * (before + after);
-    if (i > 0) {
-      const double cosine = before.x();
-      curvature_[i] = (after.y() / after.x() - before.y() / before.x()) /
-                      (range_[i] - range_[i - 1]) * cosine * cosine * cosine;
-    }
     before = after;
   }
 }
@@ -194,11 +187,13 @@ BoundaryPoint BoundaryShape::at(double range, std::size_t facet) const noexcept 
               .curvature = curvature_of(slope, cubic.second(share))};
     }
     case ShapeInterpolation::curvilinear: {
-      const Vec2 tangent = (1.0 - share) * tangent_[facet - 1] + share * tangent_[facet];
+      const Vec2 &a = tangent_[facet - 1], &b = tangent_[facet];
+      const Vec2 tangent = (1.0 - share) * a + share * b;
+      // κ = dφ/ds of the turning tangent along the facet
+      const double length = std::hypot(width, depth_[facet] - depth_[facet - 1]);
       return {.depth = depth_at(range, facet),
               .slope = tangent.y() / tangent.x(),
-              .curvature = curvature_[facet],
-              .length = tangent.norm()};
+              .curvature = (a.x() * b.y() - a.y() * b.x()) / tangent.squaredNorm() / length};
     }
     case ShapeInterpolation::piecewise_linear:
       break;

@@ -25,7 +25,6 @@ struct BoundaryPoint {
   double depth = 0.0;      ///< [m]
   double slope = 0.0;      ///< d(depth)/d(range) of the tangent that reflects
   double curvature = 0.0;  ///< dφ/ds along the boundary, φ = atan(slope), s arc length [1/m]
-  double length = 1.0;     ///< of the tangent vector that reflects: below 1 on a curvilinear facet
 };
 
 /// Where a sea floor or a sea surface is that is not flat: depth as a function of range, beyond the
@@ -73,13 +72,12 @@ class BoundaryShape {
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
  private:
-  void bend_facets();  // curvature_, out of tangent_
+  void bend_facets();  // tangent_, out of the nodes
   void find_extremes();
 
   std::vector<double> range_, depth_;       // [n]
   std::vector<double> slope_;               // [n] at the nodes (smooth)
   std::vector<Vec2> tangent_;               // [n] at the nodes, about unit length (curvilinear)
-  std::vector<double> curvature_;           // [n + 1] per facet (curvilinear)
   std::vector<BoundaryMaterial> material_;  // [n] or empty
   ShapeInterpolation interpolation_;
   double shallowest_ = 0.0, deepest_ = 0.0;

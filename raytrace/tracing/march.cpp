@@ -467,8 +467,7 @@ Tangent March::tangent_at(BoundaryKind kind) const noexcept {
   const double length = std::hypot(1.0, point.slope);
   return {.r = 1.0 / length,
           .z = point.slope / length,
-          .curvature = point.curvature,
-          .length = point.length};
+          .curvature = point.curvature};
 }
 
 bool March::reflect_at(BoundaryKind kind) {
