@@ -192,7 +192,7 @@ void ColumnSum::add_rows(const Crossings& x) {
       if constexpr (coherent) {
         Lanes angle = phase_[i] + wave_number_[i] * dz;
         if constexpr (!is_hat) {  // a caustic lies between the ray and the foot
-          const Lanes quarter = copysign(Lanes(static_cast<float>(0.5 * pi)), dz * sine_[i]);
+          const Lanes quarter = with_sign(Lanes(static_cast<float>(0.5 * pi)), dz * sine_[i]);
           where(signed_q * q0 < 0.0F, angle) = angle + quarter;
         }
         Lanes c, s;

@@ -29,6 +29,17 @@ inline Lanes ramp() noexcept {
   return Lanes([](auto i) { return static_cast<float>(static_cast<int>(i)); });
 }
 
+/// `magnitude`, above 0, with the sign of another. (clang 14 cannot read the library's.)
+inline Lanes with_sign(const Lanes& magnitude, const Lanes& sign) noexcept {
+#if defined(__clang__)
+  Lanes result = magnitude;
+  where(sign < 0.0F, result) = -magnitude;
+  return result;
+#else
+  return copysign(magnitude, sign);
+#endif
+}
+
 /// Nearest whole number, |x| < 4e6: adding 1.5·2²³ leaves no room for the fraction.
 inline Lanes nearest(const Lanes& x) noexcept {
   constexpr float magic = 12582912.0F;
