@@ -9,6 +9,7 @@
 #include "app/output.h"
 #include "app/run_arrivals.h"
 #include "core/error.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "sonar/echo.h"
 #include "sonar/ping.h"
@@ -22,35 +23,38 @@ struct Options {
   std::optional<int> target;      // from 0
   int ping = 1;
   std::optional<double> source_depth, receiver_depth, range, frequency;
+  std::optional<double> bearing;  // [°]
   bool json = false;
   std::string output;
 };
 
 /// From the platform's depth (or another) to any depth and range.
 Leg to_receiver(const PingSimulator& simulator, const Options& options) {
-  const Environment& ocean = simulator.scenario().environment;
   if (!options.receiver_depth || !options.range)
     throw InputError({.where = options.range ? "--receiver-depth" : "--range",
                       .got = "nothing",
                       .expected = "a length: --receiver-depth and --range go together"});
-  const auto in_water = [&](const std::string& option, double depth) {
-    if (depth >= ocean.surface.depth && depth <= ocean.bottom.depth) return depth;
+  const Scenario& scenario = simulator.scenario();
+  const Vec3 platform = scenario.platform.at((options.ping - 1) * scenario.pings.interval).position;
+  const PropagationPaths& paths = simulator.paths();
+  const double bearing = options.bearing   ? radians(*options.bearing)
+                         : paths.layered() ? 0.0
+                                           : scenario.transect.bearing;
+  const auto plane = paths.solver(paths.plane(platform, bearing));
+  const auto in_water = [&](const std::string& option, double depth, double range) {
+    const double top = plane->environment().surface.depth_at(range),
+                 bottom = plane->environment().bottom.depth_at(range);
+    if (depth >= top && depth <= bottom) return depth;
     throw InputError({.where = option,
                       .got = fmt::format("{} m", depth),
-                      .expected = fmt::format("a depth between {} and {} m", ocean.surface.depth,
-                                              ocean.bottom.depth)});
+                      .expected = fmt::format("a depth between {} and {} m", top, bottom)});
   };
-  const PropagationSettings& limits = simulator.scenario().propagation;
-  const double time = (options.ping - 1) * simulator.scenario().pings.interval;
-  const double source =
-      options.source_depth.value_or(simulator.scenario().platform.at(time).position.z());
-  Leg leg{.range = *options.range};
-  leg.arrivals = simulator.ocean().find(
-      in_water("--source-depth", source), in_water("--receiver-depth", *options.receiver_depth),
-      *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
-      {.max_surface_bounces = limits.max_surface_bounces,
-       .max_bottom_bounces = limits.max_bottom_bounces,
-       .max_launch_angle = limits.max_launch_angle});
+  Leg leg{.bearing = bearing, .range = *options.range};
+  leg.arrivals =
+      plane->find(in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0),
+                  in_water("--receiver-depth", *options.receiver_depth, *options.range),
+                  *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
+                  limits_of(scenario.propagation));
   return leg;
 }
 
@@ -114,7 +118,8 @@ int arrivals_of_run(const Options& options) {
 }
 
 int arrivals(const Options& options) {
-  if (is_run_scenario(options.scenario)) return arrivals_of_run(options);
+  if (!has_sonar(options.scenario.path, options.scenario.overrides))
+    return arrivals_of_run(options);
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
   const bool free = options.receiver_depth || options.range;
@@ -170,6 +175,12 @@ void add_arrivals_command(CLI::App& program, Action& action) {
   add_length_option(
       *command, "--source-depth", [options](double x) { options->source_depth = x; },
       "depth of the source, with --range; default: the platform's");
+  command
+      ->add_option("--bearing", options->bearing,
+                   "of that receiver, where the ocean varies along a transect; default: along it "
+                   "[deg]")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0));
   command
       ->add_option("--frequency", options->frequency,
                    "at which losses are told [Hz]; default: the pulse's centre")

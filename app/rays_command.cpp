@@ -10,7 +10,9 @@
 #include "app/rays_output.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
+#include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
+#include "raytrace/ocean/slice.h"
 
 namespace asdic::app {
 namespace {
@@ -21,7 +23,7 @@ struct Options {
   int count = 41;
   std::vector<double> elevations;  // [°], instead of the three
   double range = 50e3;
-  std::optional<double> depth;
+  std::optional<double> depth, bearing;  // [m], [°]
   int bounces = 100;
   bool json = false;
   std::string output;
@@ -49,6 +51,18 @@ std::vector<double> elevations(const Options& options) {
   return all;
 }
 
+/// The vertical plane through the platform of a sonar scenario along a bearing [deg].
+Environment plane_along(const Options& options, double bearing) {
+  if (!has_sonar(options.scenario.path, options.scenario.overrides))
+    throw InputError({.where = "--bearing",
+                      .got = fmt::format("{} deg and a run without a platform", bearing),
+                      .expected = "a sonar scenario, whose platform is somewhere on the map"});
+  const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
+  const Vec3 platform = scenario.platform.at(0.0).position;
+  return slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()),
+               std::cos(radians(bearing) - scenario.transect.bearing));
+}
+
 /// The ocean and the source out of a sonar scenario, or one of an ocean and a run.
 RaysResult read(const Options& options) {
   std::vector<std::string> overrides = options.scenario.overrides, notes;
@@ -60,6 +74,7 @@ RaysResult read(const Options& options) {
                    .path = options.scenario.path,
                    .text = read_text_file(options.scenario.path, "a scenario file"),
                    .overrides = options.scenario.overrides};
+  if (options.bearing) result.run_case.environment = plane_along(options, *options.bearing);
   const Environment& ocean = result.run_case.environment;
   const double depth = options.depth.value_or(result.run_case.source_depths.front());
   const double top = ocean.surface.depth_at(0.0), bottom = ocean.bottom.depth_at(0.0);
@@ -118,6 +133,11 @@ void add_rays_command(CLI::App& program, Action& action) {
   add_length_option(
       *command, "--source-depth", [options](double x) { options->depth = x; },
       "depth of the source; default: the platform's at the start, or the run's");
+  command
+      ->add_option("--bearing", options->bearing,
+                   "of the rays, where the ocean varies along a transect; default: along it [deg]")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0));
   command->add_option("--bounces", options->bounces, "end a ray after so many bounces")
       ->capture_default_str()
       ->type_name("N")

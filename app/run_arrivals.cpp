@@ -12,7 +12,6 @@
 #include "core/units.h"
 #include "io/bellhop/results.h"
 #include "io/result_file.h"
-#include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
 
@@ -31,11 +30,6 @@ void each_receiver(const RunArrivals& all, const See& see) {
 }
 
 }  // namespace
-
-bool is_run_scenario(const ScenarioChoice& choice) {
-  const std::string text = read_text_file(choice.path, "a scenario file");
-  return scenario::read_document(text, choice.path, choice.overrides).find("platform") == nullptr;
-}
 
 RunArrivals find_run_arrivals(const ScenarioChoice& choice,
                               const std::vector<std::string>& more_overrides) {

@@ -16,9 +16,6 @@ struct RunArrivals {
   std::vector<std::string> notes{};
 };
 
-/// Whether a scenario is of an ocean and a run, without a sonar. \throws InputError
-[[nodiscard]] bool is_run_scenario(const ScenarioChoice& choice);
-
 /// Reads a scenario with [run] and finds the arrivals; Ctrl-C ends it. \throws InputError, RunError
 [[nodiscard]] RunArrivals find_run_arrivals(const ScenarioChoice& choice,
                                             const std::vector<std::string>& more_overrides);

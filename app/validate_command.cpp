@@ -44,6 +44,19 @@ std::pair<double, double> speeds(const Environment& ocean) {
   return {low, high};
 }
 
+/// Where the transect lies along which the ocean varies.
+std::string transect_text(const PingSimulator& simulator) {
+  const Scenario& s = simulator.scenario();
+  const Environment& ocean = s.environment;
+  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return "";
+  return fmt::format(
+      "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
+      "it, over {:.0f} m\n",
+      s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
+      simulator.paths().along(s.platform.at(0.0).position) / 1000.0,
+      simulator.paths().bottom_depth(s.platform.at(0.0).position));
+}
+
 std::string depth_of_water(const Environment& ocean) {
   if (!ocean.bottom.shape) return fmt::format("{:g}", ocean.bottom.depth - ocean.surface.depth);
   return fmt::format("{:g} to {:g}", ocean.bottom.shape->shallowest() - ocean.surface.depth,
@@ -174,7 +187,7 @@ int validate(const ScenarioChoice& choice) {
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
-        sonar_text(simulator) + size_text(scenario));
+        transect_text(simulator) + sonar_text(simulator) + size_text(scenario));
   for (const std::string& note : scenario.notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;

@@ -5,11 +5,13 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/layered/column_fit.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/marching_eigenrays.h"
@@ -44,8 +46,9 @@ void raise(Arrival& path, double share, const Column& column) {
 constexpr double same_root = 1e-9;
 
 /// The root of r(σ) = range inside a stretch that has it between its ends: from the cubic's guess
-/// by Newton, kept inside a shrinking bracket.
-double refine(const BranchTable& table, const MonotoneStretch& s, double range) {
+/// by Newton, kept inside a shrinking bracket. \param evaluate  σ to exact r and dr/dσ
+template <class Evaluate>
+double refine(const Evaluate& evaluate, const MonotoneStretch& s, double range) {
   double low = s.sigma_begin, high = s.sigma_end;
   const bool rising = s.range_end > s.range_begin;
   double x =
@@ -53,24 +56,85 @@ double refine(const BranchTable& table, const MonotoneStretch& s, double range) 
       (high - low) * std::clamp((range - s.range_begin) / (s.range_end - s.range_begin), 0.0, 1.0);
   const Hermite cubic({s.sigma_begin, s.range_begin, s.slope_begin},
                       {s.sigma_end, s.range_end, s.slope_end});
-  for (int i = 0; i < 4; ++i) {  // the cubic costs nothing: start from its root
-    const double slope = cubic.slope(x);
-    const double next = slope != 0.0 ? x - (cubic.value(x) - range) / slope : x;
+  for (int i = 0; i < 4; ++i) {  // the cubic costs little: start from its root
+    const double slope = cubic.slope(x), off = cubic.value(x) - range;
+    const double next = slope != 0.0 ? x - off / slope : x;
     if (!(next > low && next < high)) break;
     x = next;
+    if (std::abs(off) < 0.1) break;
   }
   for (int i = 0; i < 100; ++i) {
-    const auto [r, slope] = table.evaluate(*s.interval, s.branch, x);
+    const BranchTable::RangeSlope here = evaluate(x);
+    const double r = here.range, slope = here.slope;
     const double miss = r - range;
     ((miss < 0.0) == rising ? low : high) = x;
     if (std::abs(miss) < 1e-5) break;
     double next = slope != 0.0 ? x - miss / slope : low;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (!(next > low && next < high)) {
+      next = 0.5 * (low + high);
+    } else {
+      // What the step leaves is ½r″δ², seen on the cubic; it need not be looked at when it is a
+      // tenth of a millimetre and changes the slope by no more than 1e-8 (path_builder.cpp sees to
+      // it). Next to the vertical, where r goes like √(1 − σ), no cubic tells.
+      const double bend = std::abs(cubic.bend(next)), left = 2.0 * bend * (next - x) * (next - x);
+      if (left < 1e-4 && left * bend < 1e-8 * slope * slope &&
+          std::abs(next - x) < 3e-4 * (1.0 - x))
+        return next;
+    }
     if (next == x || high - low < 1e-16 * high) break;
     x = next;
   }
   return x;
 }
+
+/// Roots on the stretches of one fan: where there are many between two nodes, from series instead
+/// of walks through the column.
+class RootSource {
+ public:
+  RootSource(const BranchTable& fan, const PathBuilder& builder) : fan_(fan), builder_(builder) {}
+
+  /// \param count  of roots expected on the stretch
+  Arrival at(const MonotoneStretch& s, double range, std::size_t count) {
+    ColumnFits* fits = fits_of(s, count);
+    if (fits == nullptr) {
+      const auto walk = [&](double sigma) { return fan_.evaluate(*s.interval, s.branch, sigma); };
+      return builder_.build(*s.interval, s.branch, refine(walk, s, range), range);
+    }
+    const BranchWeights w = weights(s.branch, fan_.column().source_is_upper());
+    const double c_ref = s.interval->reference_speed;
+    const auto series = [&](double sigma) {
+      const RayParameter ray(c_ref, sigma);
+      const ColumnSums sums = fits->sums(ray);
+      return BranchTable::RangeSlope{
+          w.of(sums.up.range, sums.middle.range, sums.down.range),
+          w.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) * ray.slowness_per_sigma()};
+    };
+    const RayParameter ray(c_ref, refine(series, s, range));
+    return builder_.build(*s.interval, s.branch, ray, fits->all(ray), range);
+  }
+
+ private:
+  static constexpr std::size_t worth_a_fit = 5;  // a fit takes twelve walks, a root two to three
+
+  ColumnFits* fits_of(const MonotoneStretch& s, std::size_t count) {
+    if (interval_ != s.interval) {  // visited one after the other
+      interval_ = s.interval;
+      fits_.assign(s.interval->sigma.size(), std::nullopt);
+    }
+    std::optional<ColumnFits>& fits = fits_[s.cell];
+    if (!fits) {
+      if (count < worth_a_fit) return nullptr;
+      fits.emplace(fan_.column(), s.interval->reference_speed, s.interval->sigma[s.cell],
+                   s.interval->sigma[s.cell + 1]);
+    }
+    return &*fits;
+  }
+
+  const BranchTable& fan_;
+  const PathBuilder& builder_;
+  const FanInterval* interval_ = nullptr;
+  std::vector<std::optional<ColumnFits>> fits_;
+};
 
 /// The ray along a depth where the speed has no gradient, which r(σ) cannot tell: it stays there,
 /// and its beam obeys d²q/dr² = −(c″/c)·q.
@@ -210,6 +274,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
 
   const BranchTable fan = table(source_depth, receiver_depth, limits);
   const PathBuilder builder(environment_, fan.column(), frequency);
+  RootSource roots(fan, builder);
   fan.for_each_stretch(
       range_of(0), range_of(order.size() - 1), [&](const MonotoneStretch& stretch) {
         const double low = std::min(stretch.range_begin, stretch.range_end),
@@ -218,11 +283,13 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
         const auto first = std::partition_point(order.begin(), order.end(), [&](std::size_t i) {
           return std::max(ranges[i], least_range) < low;
         });
-        for (auto it = first; it != order.end(); ++it) {
+        const auto last = std::partition_point(first, order.end(), [&](std::size_t i) {
+          return std::max(ranges[i], least_range) <= high;
+        });
+        const auto count = static_cast<std::size_t>(last - first);
+        for (auto it = first; it != last; ++it) {
           const double range = std::max(ranges[*it], least_range);
-          if (range > high) break;
-          Arrival path =
-              builder.build(*stretch.interval, stretch.branch, refine(fan, stretch, range), range);
+          Arrival path = roots.at(stretch, range, count);
           if (ranges[*it] < least_range) raise(path, ranges[*it] / least_range, fan.column());
           if (std::isfinite(path.delay) && std::isfinite(path.spreading) &&
               std::abs(path.reflection) >= limits.faintest)

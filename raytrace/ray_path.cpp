@@ -89,6 +89,7 @@ class RayWalker {
 
   /// From an edge of the layer to a depth inside it that the ray reaches.
   Way way(const Layer& layer, double edge, double depth) const {
+    if (std::abs(depth - edge) < same_depth) return {};  // cut_at would not cut there
     std::vector<Layer> parts = {layer};
     depth = cut_at(parts, depth);
     const Layer& part = edge < depth ? parts.front() : parts.back();

@@ -180,6 +180,12 @@ class StretchSplitter {
                   const std::function<void(const MonotoneStretch&)>& visit)
       : table_(table), interval_(interval), branch_(branch), visit_(visit) {}
 
+  void split_cell(std::size_t cell, HermiteNode a, HermiteNode b) {
+    cell_ = cell;
+    split(a, b);
+  }
+
+ private:
   void split(HermiteNode a, HermiteNode b, bool caustic_a = false, int depth = 0) {
     const Hermite cubic(a, b);
     const auto turns = cubic.extrema();
@@ -202,7 +208,6 @@ class StretchSplitter {
     emit(a, b, caustic_a, false);
   }
 
- private:
   HermiteNode node(double sigma) const {
     const auto [range, slope] = table_.evaluate(interval_, branch_, sigma);
     return {sigma, range, slope};
@@ -229,6 +234,7 @@ class StretchSplitter {
   void emit(const HermiteNode& a, const HermiteNode& b, bool caustic_a, bool caustic_b) const {
     if (!(b.x > a.x) || !std::isfinite(a.value) || !std::isfinite(b.value)) return;
     visit_({.interval = &interval_,
+            .cell = cell_,
             .branch = branch_,
             .sigma_begin = a.x,
             .sigma_end = b.x,
@@ -243,6 +249,7 @@ class StretchSplitter {
   const BranchTable& table_;
   const FanInterval& interval_;
   Branch branch_;
+  std::size_t cell_ = 0;
   const std::function<void(const MonotoneStretch&)>& visit_;
 };
 
@@ -288,7 +295,7 @@ void BranchTable::for_each_stretch(double low, double high,
           const double margin = 0.25 * (b.x - a.x) * (std::abs(a.slope) + std::abs(b.slope)) + 1e-3;
           if (std::max(a.value, b.value) + margin >= low &&
               std::min(a.value, b.value) - margin <= high)
-            splitter.split(a, b);
+            splitter.split_cell(i - 1, a, b);
           a = b;
         }
       }

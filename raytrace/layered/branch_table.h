@@ -38,6 +38,7 @@ struct FanInterval {
 /// A stretch of an interval over which a branch's range is monotone in σ.
 struct MonotoneStretch {
   const FanInterval* interval = nullptr;
+  std::size_t cell = 0;  ///< between nodes cell and cell + 1
   Branch branch;
   double sigma_begin = 0.0, sigma_end = 0.0;
   double range_begin = 0.0, range_end = 0.0;        ///< r at the two ends [m]

@@ -100,4 +100,27 @@ ColumnDetails Column::details(const RayParameter& ray) const noexcept {
   return details;
 }
 
+Column::All Column::all(const RayParameter& ray) const noexcept {
+  All all;
+  const auto crossed = [&ray](Pass& pass, PassDetail& detail) {
+    return [&ray, &pass, &detail](const Layer& layer, double top, double bottom) {
+      pass += layer.law == Layer::Law::c_linear ? cross_c_linear(layer, ray, top, bottom)
+                                                : cross(layer, ray, top, bottom);
+      detail += cross_detail(layer, ray, top, bottom);
+    };
+  };
+  const auto turned = [&ray](Pass& pass, PassDetail& detail) {
+    return [&ray, &pass, &detail](const Layer& layer, double sine) {
+      pass += turn(layer, ray, sine);
+      detail += turn_detail(layer, ray, sine);
+    };
+  };
+  ColumnSums& s = all.sums;
+  ColumnDetails& d = all.details;
+  walk_between(layers_, upper_, lower_, ray, crossed(s.middle, d.middle));
+  s.turns_above = walk<false>(layers_, upper_, ray, crossed(s.up, d.up), turned(s.up, d.up));
+  s.turns_below = walk<true>(layers_, lower_, ray, crossed(s.down, d.down), turned(s.down, d.down));
+  return all;
+}
+
 }  // namespace asdic

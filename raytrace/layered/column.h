@@ -31,6 +31,12 @@ class Column {
 
   [[nodiscard]] ColumnSums sums(const RayParameter& ray) const noexcept;
   [[nodiscard]] ColumnDetails details(const RayParameter& ray) const noexcept;
+  /// Both in one walk.
+  struct All {
+    ColumnSums sums;
+    ColumnDetails details;
+  };
+  [[nodiscard]] All all(const RayParameter& ray) const noexcept;
 
   [[nodiscard]] bool source_is_upper() const noexcept { return source_is_upper_; }
   [[nodiscard]] double source_speed() const noexcept { return source_speed_; }

@@ -27,6 +27,11 @@ class Hermite {
     return (a_[1] + t * (2.0 * a_[2] + 3.0 * t * a_[3])) / h_;
   }
 
+  [[nodiscard]] double bend(double x) const noexcept {  ///< second derivative
+    const double t = (x - x0_) / h_;
+    return (2.0 * a_[2] + 6.0 * t * a_[3]) / (h_ * h_);
+  }
+
   /// At most two places strictly inside, in order.
   struct Places {
     std::array<double, 2> x{};

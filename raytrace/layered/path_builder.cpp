@@ -64,17 +64,27 @@ std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surfa
   return product;
 }
 
-Arrival PathBuilder::build(const FanInterval& interval, const Branch& branch, double sigma,
+Arrival PathBuilder::build(const FanInterval& interval, const Branch& branch,
+                           const RayParameter& traced, const Column::All& walk,
                            double range) const {
-  const RayParameter ray(interval.reference_speed, sigma);
   const BranchWeights w = weights(branch, column_.source_is_upper());
-  const ColumnSums sums = column_.sums(ray);
-  const ColumnDetails details = column_.details(ray);
+  const auto& [sums, details] = walk;
+  const double sigma = traced.sigma;
 
   Arrival path;
   const int tops = branch.top_vertices(), bottoms = branch.bottom_vertices();
   (interval.turns_above ? path.upper_turns : path.surface_bounces) = tops;
   (interval.turns_below ? path.lower_turns : path.bottom_bounces) = bottoms;
+  const double range_per_slowness = w.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range);
+
+  // The ray traced misses the receiver by a millimetre at most. Its neighbour does not, by one more
+  // step of Newton's method.
+  const double miss = range - w.of(sums.up.range, sums.middle.range, sums.down.range);
+  const double slope = range_per_slowness * traced.slowness_per_sigma();
+  const double step = std::abs(miss) < 1e-2 && slope != 0.0 ? miss / slope : 0.0;
+  const RayParameter ray(
+      interval.reference_speed,
+      std::abs(step) < 1e-3 * std::min(sigma, 1.0 - sigma) ? sigma + step : sigma);
 
   const double sine_source = sine_at_source(ray), sine_receiver = sine_at_receiver(ray);
   path.horizontal_slowness = ray.slowness;
@@ -83,17 +93,16 @@ Arrival PathBuilder::build(const FanInterval& interval, const Branch& branch, do
   path.arrival_elevation = (branch.arrives_upward() ? 1.0 : -1.0) *
                            std::atan2(sine_receiver, ray.slowness * column_.receiver_speed());
 
-  const double range_per_slowness = w.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range);
   path.caustics = caustics_passed(path.upper_turns + path.lower_turns, range_per_slowness);
   path.q = std::abs(range_per_slowness) * sine_source / column_.source_speed() * sine_receiver *
            (path.caustics % 2 == 0 ? 1.0 : -1.0);
   path.spreading = spreading(ray, std::max(range, 1e-6), range_per_slowness);
 
-  // The root misses the receiver by a little; along the wavefront's normal dτ/dr = ξ, so the delay
-  // is corrected to first order.
-  const double miss = range - w.of(sums.up.range, sums.middle.range, sums.down.range);
+  // Along the wavefront's normal dτ/dr = ξ, so the delay is corrected to first order, and the
+  // length as if it were the delay times a mean speed.
   path.delay = w.of(details.up.time, details.middle.time, details.down.time) + ray.slowness * miss;
   path.path_length = w.of(details.up.length, details.middle.length, details.down.length);
+  path.path_length += path.path_length / path.delay * ray.slowness * miss;
   path.absorption_db = absorption_db_per_metre_ * path.path_length;
   path.reflection = reflections(ray, path.surface_bounces, path.bottom_bounces);
 
@@ -106,13 +115,16 @@ Arrival PathBuilder::build(const FanInterval& interval, const Branch& branch, do
       branch.starts_up ? sums.up.range + (column_.source_is_upper() ? 0.0 : sums.middle.range)
                        : sums.down.range + (column_.source_is_upper() ? sums.middle.range : 0.0);
   path.bounces.reserve(static_cast<std::size_t>(path.surface_bounces + path.bottom_bounces));
+  const double surface_grazing =
+      path.surface_bounces > 0 ? grazing_at(ray, column_.surface_speed()) : 0.0;
+  const double bottom_grazing =
+      path.bottom_bounces > 0 ? grazing_at(ray, column_.bottom_speed()) : 0.0;
   for (int k = 0; k < branch.vertices; ++k) {
     const bool top = branch.starts_up == (k % 2 == 0);
     if (top ? interval.turns_above : interval.turns_below) continue;
-    path.bounces.push_back(
-        {.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
-         .grazing = grazing_at(ray, top ? column_.surface_speed() : column_.bottom_speed()),
-         .range = first + k * half_cycle});
+    path.bounces.push_back({.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
+                            .grazing = top ? surface_grazing : bottom_grazing,
+                            .range = first + k * half_cycle});
   }
   return path;
 }

@@ -13,6 +13,13 @@ class PathBuilder {
 
   /// \param sigma  the root on this interval and branch   \param range  of the receiver [m]
   [[nodiscard]] Arrival build(const FanInterval& interval, const Branch& branch, double sigma,
+                              double range) const {
+    const RayParameter ray(interval.reference_speed, sigma);
+    return build(interval, branch, ray, column_.all(ray), range);
+  }
+  /// The same from what the ray's walk through the column gave.
+  [[nodiscard]] Arrival build(const FanInterval& interval, const Branch& branch,
+                              const RayParameter& traced, const Column::All& walk,
                               double range) const;
 
   /// √(c_r ξ /(r·|dr/dξ|·(sin θ₀/c_s)·sin θ_r)): the amplitude of a ray tube [1/m × 1 m].

@@ -51,14 +51,12 @@ SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOpti
 template <class Real>
 void SourceResults::append_field(const FieldSums<Real>& sums, PropagationResult& result,
                                  double beam_factor) const {
-  // BELLHOP's sign is −1 for a point source and +1 for a line source; ours is the opposite.
-  const double sign = run_case.beams.source == SourceKind::line ? -1.0 : 1.0;
   for (std::size_t i = 0; i < sums.sums().size(); ++i) {
     const double scale = beam_factor * range_factor(run_case.beams.source,
                                                     run_case.receivers.ranges[i % columns], 0.0);
     const std::complex<double> sum(sums.sums()[i]);
     const std::complex<double> p = sums.kind() == FieldKind::coherent
-                                       ? sign * scale * sum
+                                       ? scale * sum
                                        : std::complex<double>(scale * std::sqrt(sum.real()));
     result.field.emplace_back(static_cast<float>(p.real()), static_cast<float>(p.imag()));
   }

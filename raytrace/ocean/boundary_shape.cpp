@@ -103,31 +103,32 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   check_nodes(range, depth, material_.size());
   const std::size_t n = range_.size();
 
-  // The facets, as unit vectors; node tangents are the mean of both sides'. The first and the last
-  // node are flat, as the boundary goes on beyond them.
-  std::vector<Vec2> facet_tangent;
-  for (std::size_t i = 1; i < n; ++i) {
-    const Vec2 along(range_[i] - range_[i - 1], depth_[i] - depth_[i - 1]);
-    facet_tangent.push_back(along.normalized());
-  }
   slope_.assign(n, 0.0);
-  tangent_.assign(n, Vec2(1.0, 0.0));
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const Vec2 &before = facet_tangent[i - 1], &after = facet_tangent[i];
-    tangent_[i] = 0.5 * (before + after);
+  for (std::size_t i = 1; i + 1 < n; ++i)
     slope_[i] = (depth_[i + 1] - depth_[i - 1]) / (range_[i + 1] - range_[i - 1]);
-  }
   bend_facets();
+  find_extremes();
 }
 
-// Curvilinear: κ of a facet = (change of the node tangents' slope)/(its horizontal length)·cos³.
+// Curvilinear, as BELLHOP has it: a node's tangent is the plain mean of both facets' unit tangents
+// (the flat stretches beyond the ends count), and κ of a facet is that of the corner at its end,
+// (change of slope)/(the facet's horizontal length)·cos³.
 void BoundaryShape::bend_facets() {
-  curvature_.assign(range_.size() + 1, 0.0);
-  for (std::size_t i = 1; i < range_.size(); ++i) {
-    const Vec2 &a = tangent_[i - 1], &b = tangent_[i];
-    const double width = range_[i] - range_[i - 1];
-    const double cosine = width / std::hypot(width, depth_[i] - depth_[i - 1]);
-    curvature_[i] = (b.y() / b.x() - a.y() / a.x()) / width * cosine * cosine * cosine;
+  const std::size_t n = range_.size();
+  tangent_.assign(n, Vec2(1.0, 0.0));
+  curvature_.assign(n + 1, 0.0);
+  Vec2 before(1.0, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 after = i + 1 < n
+                           ? Vec2(range_[i + 1] - range_[i], depth_[i + 1] - depth_[i]).normalized()
+                           : Vec2(1.0, 0.0);
+    tangent_[i] = 0.5 * (before + after);
+    if (i > 0) {
+      const double cosine = before.x();
+      curvature_[i] = (after.y() / after.x() - before.y() / before.x()) /
+                      (range_[i] - range_[i - 1]) * cosine * cosine * cosine;
+    }
+    before = after;
   }
 }
 
@@ -140,18 +141,15 @@ BoundaryShape BoundaryShape::along(double origin, double cosine) const {
       line.range_.push_back(range_.back() + 1.0);
       line.depth_.push_back(depth_.back());
       line.slope_.push_back(0.0);
-      line.tangent_.emplace_back(1.0, 0.0);
       line.material_.assign(material_.rbegin(), material_.rend());
       line.material_.push_back(material_.front());
     }
     std::reverse(line.range_.begin(), line.range_.end());
     std::reverse(line.depth_.begin(), line.depth_.end());
     std::reverse(line.slope_.begin(), line.slope_.end());
-    std::reverse(line.tangent_.begin(), line.tangent_.end());
   }
   for (double& range : line.range_) range = (range - origin) / cosine;
   for (double& slope : line.slope_) slope *= cosine;
-  for (Vec2& tangent : line.tangent_) tangent.y() *= cosine;
   line.bend_facets();
   return line;
 }
@@ -199,7 +197,8 @@ BoundaryPoint BoundaryShape::at(double range, std::size_t facet) const noexcept 
       const Vec2 tangent = (1.0 - share) * tangent_[facet - 1] + share * tangent_[facet];
       return {.depth = depth_at(range, facet),
               .slope = tangent.y() / tangent.x(),
-              .curvature = curvature_[facet]};
+              .curvature = curvature_[facet],
+              .length = tangent.norm()};
     }
     case ShapeInterpolation::piecewise_linear:
       break;
@@ -207,24 +206,17 @@ BoundaryPoint BoundaryShape::at(double range, std::size_t facet) const noexcept 
   return {.depth = depth_at(range, facet), .slope = (depth_[facet] - depth_[facet - 1]) / width};
 }
 
-double BoundaryShape::shallowest() const noexcept {
-  double least = *std::min_element(depth_.begin(), depth_.end());
-  if (interpolation_ == ShapeInterpolation::smooth)
-    for (std::size_t i = 1; i < range_.size(); ++i)
-      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
-                                            slope_[i - 1], slope_[i])))
-        least = std::min(least, depth);
-  return least;
-}
-
-double BoundaryShape::deepest() const noexcept {
-  double most = *std::max_element(depth_.begin(), depth_.end());
-  if (interpolation_ == ShapeInterpolation::smooth)
-    for (std::size_t i = 1; i < range_.size(); ++i)
-      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
-                                            slope_[i - 1], slope_[i])))
-        most = std::max(most, depth);
-  return most;
+void BoundaryShape::find_extremes() {
+  const auto [least, most] = std::minmax_element(depth_.begin(), depth_.end());
+  shallowest_ = *least;
+  deepest_ = *most;
+  if (interpolation_ != ShapeInterpolation::smooth) return;
+  for (std::size_t i = 1; i < range_.size(); ++i)
+    for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
+                                          slope_[i - 1], slope_[i]))) {
+      shallowest_ = std::min(shallowest_, depth);
+      deepest_ = std::max(deepest_, depth);
+    }
 }
 
 }  // namespace asdic

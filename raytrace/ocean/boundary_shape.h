@@ -25,6 +25,7 @@ struct BoundaryPoint {
   double depth = 0.0;      ///< [m]
   double slope = 0.0;      ///< d(depth)/d(range) of the tangent that reflects
   double curvature = 0.0;  ///< dφ/ds along the boundary, φ = atan(slope), s arc length [1/m]
+  double length = 1.0;     ///< of the tangent vector that reflects: below 1 on a curvilinear facet
 };
 
 /// Where a sea floor or a sea surface is that is not flat: depth as a function of range, beyond the
@@ -67,11 +68,13 @@ class BoundaryShape {
   }
   [[nodiscard]] BoundaryPoint at(double range) const noexcept { return at(range, facet(range)); }
 
-  [[nodiscard]] double shallowest() const noexcept;  ///< least depth reached anywhere [m]
-  [[nodiscard]] double deepest() const noexcept;     ///< greatest depth [m]
+  /// Least and greatest depth reached anywhere [m].
+  [[nodiscard]] double shallowest() const noexcept { return shallowest_; }
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
  private:
   void bend_facets();  // curvature_, out of tangent_
+  void find_extremes();
 
   std::vector<double> range_, depth_;       // [n]
   std::vector<double> slope_;               // [n] at the nodes (smooth)
@@ -79,6 +82,7 @@ class BoundaryShape {
   std::vector<double> curvature_;           // [n + 1] per facet (curvilinear)
   std::vector<BoundaryMaterial> material_;  // [n] or empty
   ShapeInterpolation interpolation_;
+  double shallowest_ = 0.0, deepest_ = 0.0;
 };
 
 }  // namespace asdic

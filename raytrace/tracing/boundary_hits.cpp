@@ -40,6 +40,10 @@ BoundaryHit hit_at(const RaySegment& s, const Boundary& boundary) {
   return hit;
 }
 
+/// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
+/// then right to a quarter of it [rad].
+constexpr double grazing_tolerance = 4e-3;
+
 HermiteNode range_node(const StrikingRay& ray, const BoundaryHit& hit) {
   return {ray.angle, hit.range, hit.d_range};
 }
@@ -78,10 +82,15 @@ class CellSearch {
       if (!together) return parting_is_fine(a, m, b, i);
       const BoundaryHit &ha = a.hits[i], &hm = m.hits[i], &hb = b.hits[i];
       if (std::min({ha.range, hm.range, hb.range}) > max_range_) continue;
-      const double off =
-          std::abs(Hermite(range_node(a, ha), range_node(b, hb)).value(m.angle) - hm.range) +
-          std::abs(Hermite(time_node(a, ha), time_node(b, hb)).value(m.angle) - hm.time) * hm.speed;
-      if (off > 0.1 * spacing_) return false;  // halves are then right to a sixteenth of that
+      const Hermite range(range_node(a, ha), range_node(b, hb));
+      const Hermite time(time_node(a, ha), time_node(b, hb));
+      // the slope tells what a lucky value does not
+      const double off = std::abs(range.value(m.angle) - hm.range) +
+                         std::abs(time.value(m.angle) - hm.time) * hm.speed +
+                         std::abs(range.slope(m.angle) - hm.d_range) * (b.angle - a.angle) / 8.0;
+      // halves are right to a sixteenth of that where all is smooth, and to about that elsewhere
+      if (off > 0.02 * spacing_) return false;
+      if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > grazing_tolerance) return false;
     }
     return true;
   }
@@ -115,7 +124,8 @@ class CellSearch {
            std::vector<CellHit>& out) const {
     const Hermite range(range_node(a, ha), range_node(b, hb));
     const Hermite time(time_node(a, ha), time_node(b, hb));
-    const auto turns = range.extrema();
+    const bool caustic = (ha.d_range > 0.0) != (hb.d_range > 0.0);
+    const auto turns = caustic ? range.extrema() : Hermite::Places{};
     double from = a.angle, from_range = ha.range;
     for (std::size_t i = 0; i <= turns.size(); ++i) {
       const double to = i < turns.size() ? turns.x[i] : b.angle;
@@ -218,6 +228,7 @@ void digest_hits(const RayTrajectory& ray, const Environment& environment, Bound
     if (!strikes || ray.bounces[bounce].boundary != boundary) continue;
     BoundaryHit hit = hit_at(s, wall);
     hit.history = history_after(history, wall, boundary, s.end.range);
+    out.widest = std::max(out.widest, std::abs(hit.d_range));
     out.hits.push_back(hit);
   }
 }

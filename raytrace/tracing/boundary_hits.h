@@ -29,7 +29,7 @@ struct StrikingRay {
   double angle = 0.0;         ///< launch elevation [rad]
   double source_speed = 0.0;  ///< [m/s]
   RayEnd ended = RayEnd::box;
-  double widest = 0.0;  ///< greatest |q| on the way [m/rad]
+  double widest = 0.0;  ///< greatest |q| and |dr/dα| on the way [m/rad]
   std::vector<BoundaryHit> hits;
   std::vector<LegOfRay> parts;
 };

@@ -19,9 +19,12 @@ double reflect(RayState& y, const Local& water, const Tangent& boundary) noexcep
   const double tr = c * y.xi, tz = c * y.zeta;
   const double cosine = boundary.r * tr + boundary.z * tz;                // cos(β − φ)
   const double sine = away_from_zero(boundary.z * tr - boundary.r * tz);  // sin(β − φ)
-  // mirrored at the tangent: φ_out = 2β − φ_in
-  const double out_r = cosine * boundary.r - sine * boundary.z;
-  const double out_z = cosine * boundary.z + sine * boundary.r;
+  // mirrored at the tangent: φ_out = 2β − φ_in; with a normal of length L the part across it keeps
+  // 2L² − 1 of itself
+  const double kept = (2.0 * boundary.length * boundary.length - 1.0) * sine;
+  const double unit = 1.0 / std::hypot(cosine, kept);
+  const double out_r = unit * (cosine * boundary.r - kept * boundary.z);
+  const double out_z = unit * (cosine * boundary.z + kept * boundary.r);
   // n = (−t_z, t_r)
   const double bends = -(water.c_r * -(tz + out_z) + water.c_z * (tr + out_r)) / c;
   const double jump = (bends * cosine - 2.0 * boundary.curvature) / (c * sine);

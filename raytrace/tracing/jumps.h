@@ -7,6 +7,7 @@ namespace asdic::tracing {
 struct Tangent {
   double r = 1.0, z = 0.0;  ///< unit vector
   double curvature = 0.0;   ///< dβ/ds [1/m]
+  double length = 1.0;      ///< of the vector that reflects (BoundaryPoint::length)
 };
 
 /// Reflection: t → t − 2(t·n)n, and the beam's p jumps. Let a neighbouring ray strike the boundary
@@ -16,7 +17,8 @@ struct Tangent {
 ///
 ///   p → p + q/(c·sin(β − φ)) · [ −∇c·(n_in + n_out)/c · cos(β − φ) − 2κ ]
 ///
-/// docs/theory/reflections.md; for a flat bottom it is Δp = 2c_z cos²θ q/(c² sin θ).
+/// A tangent of another length than 1 reflects as t − 2(t·n)n with an n of that length, made a unit
+/// vector again. docs/theory/reflections.md; for a flat bottom it is Δp = 2c_z cos²θ q/(c² sin θ).
 /// \return grazing angle [rad]
 double reflect(RayState& y, const Local& water, const Tangent& boundary) noexcept;
 

@@ -44,15 +44,15 @@ struct Hit {
 
 TraceLimits trace_limits(const Environment& ocean, double source_range,
                          std::span<const ReceiverColumn> columns, const FanLimits& limits) {
-  const double first = columns.front().range, last = columns.back().range;
+  const double first = std::min(source_range, columns.front().range);
+  const double last = std::max(source_range, columns.back().range);
   TraceLimits trace{.max_depth = limits.max_depth,
                     .max_surface_bounces = limits.max_surface_bounces,
                     .max_bottom_bounces = limits.max_bottom_bounces,
                     .faintest = limits.faintest};
   trace.max_range = std::min(limits.max_range, beyond_last_column(ocean, last));
   trace.max_range = std::max(trace.max_range, last + 1.0);  // the edge of the box is in it
-  trace.min_range =
-      std::max(limits.min_range, before_first_column(ocean, std::min(source_range, first)));
+  trace.min_range = std::max(limits.min_range, before_first_column(ocean, first));
   return trace;
 }
 

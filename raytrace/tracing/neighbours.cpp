@@ -73,6 +73,7 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
                               std::size_t i) const {
   const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
   if (!ends_hold(a, m, b, i)) return false;
+  const double width = b.angle - a.angle;
   const auto [first, last] = columns_between(a, b, i, columns_);
   for (std::uint32_t k = first; k < last; ++k) {
     const ReceiverColumn& column = columns_[k];
@@ -89,7 +90,9 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
     const auto zm = m.crossing_or_continued(lm, k, column.range);
     if (!zm) continue;
     const Hermite cubic({a.angle, za->depth, za->slope}, {b.angle, zb->depth, zb->slope});
-    const double error = std::abs(cubic.value(m.angle) - zm->depth);
+    // the slope tells what a lucky value does not
+    const double error = std::max(std::abs(cubic.value(m.angle) - zm->depth),
+                                  std::abs(cubic.slope(m.angle) - zm->slope) * 0.125 * width);
     const bool turns_apart = std::abs(za->turns - zb->turns) > 1;
     if (error * zm->cosine < tolerance && !turns_apart) continue;
     const double low = std::min({za->depth, zb->depth, zm->depth});
@@ -107,7 +110,9 @@ bool NeighbourTest::ends_hold(const FanRay& a, const FanRay& m, const FanRay& b,
   const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
   if (!la.to_boundary || !lm.to_boundary || !lb.to_boundary) return true;
   const Hermite place({a.angle, la.end.range, la.d_end}, {b.angle, lb.end.range, lb.d_end});
-  const double error = std::abs(place.value(m.angle) - lm.end.range);
+  const double error =
+      std::max(std::abs(place.value(m.angle) - lm.end.range),
+               std::abs(place.slope(m.angle) - lm.d_end) * 0.125 * (b.angle - a.angle));
   const double steep = std::abs(lm.end.zeta * lm.end.c);
   if (error * steep < tolerance) return true;
   // Receivers that the legs' ends may sweep over lie close to the boundary there.

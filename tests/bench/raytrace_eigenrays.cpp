@@ -2,9 +2,13 @@
 
 #include <vector>
 
+#include "core/units.h"
 #include "raytrace/eigenrays.h"
 #include "raytrace/ground_paths.h"
 #include "raytrace/ray_path.h"
+#include "raytrace/runs/arrivals_run.h"
+#include "raytrace/tracing/marching_eigenrays.h"
+#include "support/oceans.h"
 
 // Eigenrays, many receivers, and the surface patches of a whole ping, in the deep ocean of the
 // thesis: source at 4500 m, target at 125 m and 30 km.
@@ -71,6 +75,48 @@ void BM_SurfacePathsOfAPing(benchmark::State& state) {
   name_profile(state);
 }
 BENCHMARK(BM_SurfacePathsOfAPing)->DenseRange(0, 4)->Unit(benchmark::kMillisecond);
+
+/// A run as a file of BELLHOP asks for it: 200 receivers near the surface out to 50 km, a lossy
+/// bottom, no limit of bounces but what reflections leave.
+void BM_ArrivalsOfARun(benchmark::State& state) {
+  PropagationCase run_case;
+  run_case.environment = deep_ocean(static_cast<int>(state.range(0)));
+  run_case.frequency = 4000.0;
+  run_case.source_depths = {4500.0};
+  run_case.receivers.depths = {5.0};
+  for (int i = 1; i <= 200; ++i) run_case.receivers.ranges.push_back(250.0 * i);
+  run_case.beams.lowest = -radians(89.0);
+  run_case.beams.highest = radians(89.0);
+  run_case.task = Task::arrivals;
+  std::size_t arrivals = 0;
+  for (auto _ : state)
+    for (const Arrivals& here : run_arrivals(run_case).arrivals) arrivals += here.size();
+  state.counters["arrivals/s"] =
+      benchmark::Counter(static_cast<double>(arrivals), benchmark::Counter::kIsRate);
+  name_profile(state);
+}
+BENCHMARK(BM_ArrivalsOfARun)->DenseRange(0, 4)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Eigenrays over slopes, swell and fronts: 15 receivers in three columns.
+void BM_MarchingEigenrays(benchmark::State& state) {
+  const support::CurvedOcean ocean =
+      support::curved_oceans()[static_cast<std::size_t>(state.range(0))];
+  const RayTracer tracer(ocean.environment, 500.0);
+  std::vector<ReceiverPoint> receivers;
+  for (const double part : {0.25, 0.6, 1.0})
+    for (const double z : {5.0, 70.0, 200.0, 400.0, 600.0})
+      receivers.push_back({part * ocean.range, z});
+  std::size_t found = 0;
+  for (auto _ : state)
+    for (const Arrivals& here : marching_eigenrays(
+             tracer, 0.0, ocean.source_depth, receivers,
+             {.lowest = -1.2, .highest = 1.2, .max_surface_bounces = 6, .max_bottom_bounces = 6}))
+      found += here.size();
+  state.counters["eigenrays/s"] =
+      benchmark::Counter(static_cast<double>(found), benchmark::Counter::kIsRate);
+  state.SetLabel(ocean.name);
+}
+BENCHMARK(BM_MarchingEigenrays)->DenseRange(0, 9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void BM_TraceRay(benchmark::State& state) {
   const Environment ocean = deep_ocean(static_cast<int>(state.range(0)));
