@@ -33,102 +33,23 @@ ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
   if (even) spacing_ = step, per_spacing_ = 1.0 / step;
 }
 
-void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
-  const std::size_t n = x.size();
-  for (auto* array :
-       {&amplitude_, &phase_, &wave_number_, &cosine_, &sine_, &q_, &growth_, &least_, &offset_})
-    array->resize(n);
-  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n);
-  const double f = setting_.frequency, spacing = setting_.spacing;
-  launched_ = beams::launch_factor(setting_, launch);
-  const bool coherent = setting_.coherent;
-  // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
-  const bool is_hat = setting_.kind == BeamKind::hat;
-  const double times = is_hat ? 1.0 : 4.0, least_factor = is_hat ? 0.0 : 1.0;
-  const double widening_scale = times * spacing;
-  const double *speeds = x.speed.data(), *qs = x.q.data(), *levels = x.level.data(),
-               *times_of = x.time.data(), *phases = x.phase.data(), *sines = x.sine.data(),
-               *cosines = x.cosine.data(), *dq_ds = x.dq_ds.data();
-  float *amplitude = amplitude_.data(), *phase = phase_.data(), *wave_number = wave_number_.data(),
-        *cosine_out = cosine_.data(), *sine_out = sine_.data(), *q_out = q_.data(),
-        *growth_out = growth_.data(), *least_out = least_.data();
-  double *above = above_.data(), *below = below_.data();
-  const double launched2 = launched_ * launched_ / x.source_speed;
-  const double k_unit = -2.0 * pi * f;
-  ASDIC_INDEPENDENT
-  for (std::size_t i = 0; i < n; ++i) {
-    const double c = speeds[i], q = qs[i];
-    const double intensity = launched2 * levels[i] * levels[i] * c;
-    amplitude[i] = static_cast<float>(intensity);
-    const double cycles = f * times_of[i];
-    phase[i] = static_cast<float>(phases[i] - 2.0 * pi * (cycles - std::floor(cycles)));
-    wave_number[i] = static_cast<float>(k_unit * sines[i] / c);
-    const double cosine = std::abs(cosines[i]);
-    const double growth = dq_ds[i] * sines[i];
-    cosine_out[i] = static_cast<float>(cosine);
-    sine_out[i] = static_cast<float>(sines[i]);
-    q_out[i] = static_cast<float>(q);
-    growth_out[i] = static_cast<float>(growth);
-    const double a = 0.2 * f * times_of[i], b = pi * c / f;
-    const double least = least_factor * (a < b ? a : b);
-    least_out[i] = static_cast<float>(least);
-    const double widening = widening_scale * (q < 0.0 ? -growth : growth);
-    const double narrow = std::abs(q) * spacing;
-    const double width = times * (narrow > least ? narrow : least);
-    above[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
-    below[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
-  }
-  if (coherent)
-    for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
-  find_rows(x);
-  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
-}
-
-void ColumnSum::find_rows(const Crossings& x) {
-  const std::size_t n = x.size();
-  const double top = first_depth_, per = per_spacing_, step = spacing_;
-  const auto rows = static_cast<double>(depths_.size());
-  const double *depth = x.depth.data(), *above = above_.data(), *below = below_.data();
-  std::int32_t *first_out = first_.data(), *last_out = last_.data();
-  float* offset = offset_.data();
-  if (step > 0.0) {
-    ASDIC_INDEPENDENT
-    for (std::size_t i = 0; i < n; ++i) {
-      const double z = depth[i];
-      double first = std::ceil((z - above[i] - top) * per);
-      double last = std::floor((z + below[i] - top) * per) + 1.0;
-      first = first < 0.0 ? 0.0 : first;
-      last = last > rows ? rows : last;
-      first = first > rows ? rows : first;
-      last = last < first ? first : last;
-      first_out[i] = static_cast<std::int32_t>(first);
-      last_out[i] = static_cast<std::int32_t>(last);
-      offset[i] = static_cast<float>(top + first * step - z);
-    }
-  } else {
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = [&](double z) {
-        return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
-                                         depths_.begin());
-      };
-      first_[i] = row(x.depth[i] - above_[i]);
-      last_[i] = row(x.depth[i] + below_[i]);
-    }
-  }
-}
-
-/// What add_evenly needs of each crossing from one group of rows to the next.
+/// What add_evenly needs of each crossing: its bell's height and sharpness a = cos²θ/2σ², and how
+/// bell and phase go on from one group of rows to the next.
 void ColumnSum::prepare_recurrences(std::size_t n) {
   const float step = static_cast<float>(lanes) * static_cast<float>(spacing_);
-  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_}) array->resize(n + lanes);
-  for (auto* array : {&wave_number_, &cosine_, &least_}) array->resize(n + lanes);
+  const float share_scale = static_cast<float>(setting_.spacing) / root_of_two_pi;
+  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_, &sharpness_, &height_})
+    array->resize(n + lanes);
   for (std::size_t i = 0; i < n; i += lanes) {
     Lanes c, s;
     cos_sin(load(&wave_number_[i]) * step, c, s);
     store(c, &turn_cosine_[i]);
     store(s, &turn_sine_[i]);
-    const Lanes u = load(&cosine_[i]) / load(&least_[i]) * step;
-    store(exponential(-u * u), &ratio_of_ratio_[i]);  // exp(−2aD²)
+    const Lanes per_sigma = 1.0F / load(&least_[i]);
+    const Lanes u = load(&cosine_[i]) * per_sigma;
+    store(0.5F * u * u, &sharpness_[i]);
+    store(load(&amplitude_[i]) * share_scale * per_sigma, &height_[i]);
+    store(exponential(-(u * u) * (step * step)), &ratio_of_ratio_[i]);  // exp(−2aD²)
   }
 }
 
@@ -147,60 +68,109 @@ ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
 
 template <bool coherent, bool is_hat>
 void ColumnSum::add_rows(const Crossings& x) {
+  for (std::size_t i = 0; i < x.size(); ++i) add_crossing_rows<coherent, is_hat>(x, i);
+}
+
+template <bool coherent, bool is_hat>
+void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
+  const Way how = way(i);
+  if (how == Way::none) return;
+  if (how == Way::plain) return add_plainly(x, i);
+  float* real = real_.data() + x.column[i] * stride_;
+  float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
+  if (how == Way::even) return add_evenly(i, real, imaginary);
   const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
   const float share_scale = spacing / root_of_two_pi;
   const auto row_spacing = static_cast<float>(spacing_);
   const Lanes depth_ramp = ramp() * row_spacing;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Way how = way(i);
-    if (how == Way::none) continue;
-    if (how == Way::plain) {
-      add_plainly(x, i);
-      continue;
+  const float cosine = cosine_[i], q0 = q_[i], growth = growth_[i], amplitude = amplitude_[i];
+  const auto last = static_cast<std::size_t>(last_[i]);
+  float offset = offset_[i];
+  for (auto k = static_cast<std::size_t>(first_[i]); k < last; k += lanes) {
+    Lanes dz;
+    if (spacing_ > 0.0)
+      dz = offset + depth_ramp;
+    else
+      dz = Lanes([&](auto l) { return static_cast<float>(padded_depths_[k + l] - x.depth[i]); });
+    offset += static_cast<float>(lanes) * row_spacing;
+    const Lanes n = abs(dz) * cosine;
+    const Lanes signed_q = q0 + growth * dz;
+    const Lanes q = max(abs(signed_q), Lanes(1e-30F));
+    Lanes weight;
+    if constexpr (is_hat) {
+      const Lanes per_q = 1.0F / q;
+      weight = amplitude * max(Lanes(0.0F), 1.0F - n * per_q * per_spacing);
+      weight *= coherent ? sqrt(per_q) : per_q;
+    } else {
+      const Lanes per_sigma = 1.0F / max(q * spacing, Lanes(least_[i]));
+      const Lanes u = n * per_sigma;
+      weight = amplitude * share_scale * per_sigma * exponential(-0.5F * u * u);
+      if constexpr (coherent) weight *= sqrt(q);
+      where(u >= 4.0F, weight) = 0.0F;
     }
-    float* real = real_.data() + x.column[i] * stride_;
-    float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
-    if (how == Way::even) {
-      add_evenly(i, real, imaginary);
-      continue;
-    }
-    const float cosine = cosine_[i], q0 = q_[i], growth = growth_[i], amplitude = amplitude_[i];
-    const auto last = static_cast<std::size_t>(last_[i]);
-    float offset = offset_[i];
-    for (auto k = static_cast<std::size_t>(first_[i]); k < last; k += lanes) {
-      Lanes dz;
-      if (spacing_ > 0.0)
-        dz = offset + depth_ramp;
-      else
-        dz = Lanes([&](auto l) { return static_cast<float>(padded_depths_[k + l] - x.depth[i]); });
-      offset += static_cast<float>(lanes) * row_spacing;
-      const Lanes n = abs(dz) * cosine;
-      const Lanes signed_q = q0 + growth * dz;
-      const Lanes q = max(abs(signed_q), Lanes(1e-30F));
-      Lanes weight;
-      if constexpr (is_hat) {
-        const Lanes per_q = 1.0F / q;
-        weight = amplitude * max(Lanes(0.0F), 1.0F - n * per_q * per_spacing);
-        weight *= coherent ? sqrt(per_q) : per_q;
-      } else {
-        const Lanes per_sigma = 1.0F / max(q * spacing, Lanes(least_[i]));
-        const Lanes u = n * per_sigma;
-        weight = amplitude * share_scale * per_sigma * exponential(-0.5F * u * u);
-        if constexpr (coherent) weight *= sqrt(q);
-        where(u >= 4.0F, weight) = 0.0F;
+    if constexpr (coherent) {
+      Lanes angle = phase_[i] + wave_number_[i] * dz;
+      if constexpr (!is_hat) {  // a caustic lies between the ray and the foot
+        const Lanes quarter = with_sign(Lanes(static_cast<float>(0.5 * pi)), dz * sine_[i]);
+        where(signed_q * q0 < 0.0F, angle) = angle + quarter;
       }
+      Lanes c, s;
+      cos_sin(angle, c, s);
+      store(load(real + k) + weight * c, real + k);
+      store(load(imaginary + k) + weight * s, imaginary + k);
+    } else {
+      store(load(real + k) + weight, real + k);
+    }
+  }
+}
+
+/// Hats that reach a few evenly spaced rows only: as many crossings at a time as there are lanes,
+/// row by row downwards, where the phase turns evenly.
+template <bool coherent>
+void ColumnSum::add_narrow_hats(const Crossings& x) {
+  constexpr int most_rows = 12;
+  const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
+  const auto row_spacing = static_cast<float>(spacing_);
+  float re[most_rows * lanes], im[most_rows * lanes];
+  for (std::size_t i = 0; i < x.size(); i += lanes) {
+    const std::size_t used = std::min(lanes, x.size() - i);
+    int rows = 0;
+    for (std::size_t l = 0; l < used; ++l) rows = std::max(rows, last_[i + l] - first_[i + l]);
+    const Lanes cosine = load(&cosine_[i]), q0 = load(&q_[i]), growth = load(&growth_[i]);
+    if (rows > most_rows || any_of(cosine < 2.0F * spacing * abs(growth))) {
+      for (std::size_t l = 0; l < used; ++l) add_crossing_rows<coherent, true>(x, i + l);
+      continue;
+    }
+    Lanes amplitude = load(&amplitude_[i]), dz = load(&offset_[i]), c, s, turn_c, turn_s;
+    where(q0 == 0.0F, amplitude) = 0.0F;
+    if constexpr (coherent) {
+      const Lanes wave_number = load(&wave_number_[i]);
+      cos_sin(load(&phase_[i]) + wave_number * dz, c, s);
+      cos_sin(wave_number * row_spacing, turn_c, turn_s);
+    }
+    for (int m = 0; m < rows; ++m) {
+      const Lanes per_q = 1.0F / max(abs(q0 + growth * dz), Lanes(1e-30F));
+      const Lanes share = max(Lanes(0.0F), 1.0F - abs(dz) * cosine * per_q * per_spacing);
+      const Lanes weight = amplitude * share * (coherent ? sqrt(per_q) : per_q);
+      float* to = re + static_cast<std::size_t>(m) * lanes;
       if constexpr (coherent) {
-        Lanes angle = phase_[i] + wave_number_[i] * dz;
-        if constexpr (!is_hat) {  // a caustic lies between the ray and the foot
-          const Lanes quarter = with_sign(Lanes(static_cast<float>(0.5 * pi)), dz * sine_[i]);
-          where(signed_q * q0 < 0.0F, angle) = angle + quarter;
-        }
-        Lanes c, s;
-        cos_sin(angle, c, s);
-        store(load(real + k) + weight * c, real + k);
-        store(load(imaginary + k) + weight * s, imaginary + k);
+        store(weight * c, to);
+        store(weight * s, im + static_cast<std::size_t>(m) * lanes);
+        const Lanes c_next = c * turn_c - s * turn_s;
+        s = s * turn_c + c * turn_s;
+        c = c_next;
       } else {
-        store(load(real + k) + weight, real + k);
+        store(weight, to);
+      }
+      dz += row_spacing;
+    }
+    for (std::size_t l = 0; l < used; ++l) {
+      const std::size_t base = x.column[i + l] * stride_ + static_cast<std::size_t>(first_[i + l]);
+      const int count = last_[i + l] - first_[i + l];
+      for (int m = 0; m < count; ++m) {
+        const std::size_t from = static_cast<std::size_t>(m) * lanes + l;
+        real_[base + static_cast<std::size_t>(m)] += re[from];
+        if constexpr (coherent) imaginary_[base + static_cast<std::size_t>(m)] += im[from];
       }
     }
   }
@@ -211,34 +181,36 @@ void ColumnSum::add_rows(const Crossings& x) {
 void ColumnSum::add_evenly(std::size_t i, float* real, float* imaginary) const {
   const auto row_spacing = static_cast<float>(spacing_);
   const float step = static_cast<float>(lanes) * row_spacing;
-  const float per_sigma = 1.0F / least_[i];
-  const float u = cosine_[i] * per_sigma, a = 0.5F * u * u;
-  const float reach = 4.0F / u;
-  const float amplitude =
-      amplitude_[i] * static_cast<float>(setting_.spacing) / root_of_two_pi * per_sigma;
+  const float a = sharpness_[i];
   Lanes dz = offset_[i] + row_spacing * ramp();
-  Lanes bell = amplitude * exponential(-a * dz * dz);
+  Lanes bell = height_[i] * exponential(-a * dz * dz);
   Lanes ratio = exponential(-a * step * (2.0F * dz + step));
   const float ratio_of_ratio = ratio_of_ratio_[i];
   Lanes c, s;
   cos_sin(phase_[i] + wave_number_[i] * dz, c, s);
   const float turn_c = turn_cosine_[i], turn_s = turn_sine_[i];
-  Lanes q = abs(q_[i] + growth_[i] * dz);
-  const float growth = std::copysign(growth_[i], growth_[i] * q_[i]) * step;
+  const float q_slope = q_[i] < 0.0F ? -growth_[i] : growth_[i];
+  Lanes q = std::abs(q_[i]) + q_slope * dz;
+  const float growth = q_slope * step;
+  auto k = static_cast<std::size_t>(first_[i]);
   const auto last = static_cast<std::size_t>(last_[i]);
-  for (auto k = static_cast<std::size_t>(first_[i]); k < last; k += lanes) {
-    Lanes weight = bell * sqrt(q);
-    where(abs(dz) >= reach, weight) = 0.0F;
+  const auto put = [&](const Lanes& weight) {
     store(load(real + k) + weight * c, real + k);
     store(load(imaginary + k) + weight * s, imaginary + k);
-    dz += step;
-    q = abs(q + growth);
+  };
+  for (; k + lanes <= last; k += lanes) {
+    put(bell * sqrt(q));
+    q += growth;
     bell *= ratio;
     ratio *= ratio_of_ratio;
     const Lanes c_next = c * turn_c - s * turn_s;
     s = s * turn_c + c * turn_s;
     c = c_next;
   }
+  if (k == last) return;
+  Lanes weight = bell * sqrt(q);  // not a number where q would be negative: behind the last row
+  where(ramp() >= static_cast<float>(last - k), weight) = 0.0F;
+  put(weight);
 }
 
 void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
@@ -262,11 +234,14 @@ void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
 
 void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {
   prepare(launch, crossings);
-  const bool is_hat = setting_.kind == BeamKind::hat;
-  if (setting_.coherent)
+  const bool is_hat = setting_.kind == BeamKind::hat, even = spacing_ > 0.0;
+  if (setting_.coherent) {
+    if (is_hat && even) return add_narrow_hats<true>(crossings);
     is_hat ? add_rows<true, true>(crossings) : add_rows<true, false>(crossings);
-  else
+  } else {
+    if (is_hat && even) return add_narrow_hats<false>(crossings);
     is_hat ? add_rows<false, true>(crossings) : add_rows<false, false>(crossings);
+  }
 }
 
 }  // namespace asdic

@@ -42,6 +42,10 @@ class ColumnSum {
   [[nodiscard]] Way way(std::size_t i) const noexcept;
   template <bool coherent, bool is_hat>
   void add_rows(const Crossings& crossings);
+  template <bool coherent, bool is_hat>
+  void add_crossing_rows(const Crossings& crossings, std::size_t i);
+  template <bool coherent>
+  void add_narrow_hats(const Crossings& crossings);
   void add_evenly(std::size_t i, float* real, float* imaginary) const;
   void add_plainly(const Crossings& crossings, std::size_t i);
 
@@ -55,10 +59,11 @@ class ColumnSum {
 
   // Of one beam, [crossings].
   double launched_ = 1.0;
-  std::vector<float> amplitude_, phase_, wave_number_;           // at the ray; dφ/dz
-  std::vector<float> cosine_, sine_, q_, growth_;                // |cos θ|, sin θ, q, dq/dz
-  std::vector<float> least_;                                     // least σ of a Gaussian
-  std::vector<float> turn_cosine_, turn_sine_, ratio_of_ratio_;  // of add_evenly
+  std::vector<float> amplitude_, phase_, wave_number_;  // at the ray; dφ/dz
+  std::vector<float> cosine_, sine_, q_, growth_;       // |cos θ|, sin θ, q, dq/dz
+  std::vector<float> least_;                            // least σ of a Gaussian
+  std::vector<float> turn_cosine_, turn_sine_, ratio_of_ratio_, sharpness_,
+      height_;                              // of add_evenly
   std::vector<float> offset_;               // of the first row from the ray [m]
   std::vector<double> above_, below_;       // how far the beam reaches [m]
   std::vector<std::int32_t> first_, last_;  // rows within reach, [first, last)

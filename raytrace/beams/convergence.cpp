@@ -48,7 +48,8 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
   double last_change = 0.0;
   int last_count = 0;
   while (true) {
-    // Every second of an odd number of beams has both ends; around a circle it takes an even number.
+    // Every second of an odd number of beams has both ends; around a circle it takes an even
+    // number.
     FanField fan = field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count));
     const double change = level_difference_db(fan.half, fan.field, 0.95);
     // change ~ count^−p; what is left is the sum of all further halvings. p is 2 between smooth

@@ -26,7 +26,7 @@ using FieldOfFan = std::function<FanField(const BeamFan&)>;
                                              const FieldOfFan& field_of);
 
 inline constexpr double wanted_error_db = 0.2;  ///< |ΔTL| at 95 % of the cells
-inline constexpr int most_beams = 65'537;       ///< beyond this the error is told and left
+inline constexpr int most_beams = 32'769;       ///< beyond this the error is told and left
 
 /// |ΔTL| that a share of the cells stays below [dB], among those where either is above the floor:
 /// 100 dB below 1 m, or 60 dB below the strongest, whatever is fainter.

@@ -23,31 +23,30 @@ struct RayCoordinates {
 };
 
 inline RayCoordinates ray_coordinates(const RayState& state, double range, double depth) noexcept {
-  const double c = 1.0 / std::hypot(state.xi, state.zeta);
+  const double c = 1.0 / std::sqrt(state.xi * state.xi + state.zeta * state.zeta);
   const double dr = range - state.range, dz = depth - state.depth;
   return {c * (dr * state.xi + dz * state.zeta), c * (dz * state.xi - dr * state.zeta)};
 }
 
 /// The state of the segment whose normal passes through the receiver, which lies ahead of the
-/// segment's begin and behind its end. Regula falsi kept in its bracket (Illinois); the function is
-/// a straight line but for the ray's curvature, so two or three steps reach a micrometre.
+/// segment's begin and behind its end. By secants within the bracket; the function is a straight
+/// line but for the ray's curvature, so two or three reach a micrometre.
 inline RayState foot_state(const RaySegment& segment, double range, double depth, double ahead,
                            double behind) noexcept {
-  double a = 0.0, b = segment.end.length - segment.begin.length;
-  double fa = ahead, fb = behind;
+  double low = 0.0, high = segment.end.length - segment.begin.length;
+  double slope = (behind - ahead) / high;
+  double s = -ahead / slope, last_s = 0.0, last = ahead;
   RayState state = segment.begin;
   for (int i = 0; i < 60; ++i) {
-    const double s = a + (b - a) * fa / (fa - fb);
     state = state_at(segment, s);
-    const double f = ray_coordinates(state, range, depth).along;
-    if (std::abs(f) < 1e-6 || b - a < 1e-7) break;
-    if (f >= 0.0) {
-      a = s, fa = f;
-      fb *= 0.5;
-    } else {
-      b = s, fb = f;
-      fa *= 0.5;
-    }
+    const double miss = ray_coordinates(state, range, depth).along;
+    if (std::abs(miss) < 1e-6 || high - low < 1e-7) break;
+    (miss >= 0.0 ? low : high) = s;
+    if (s != last_s && (miss - last) / (s - last_s) < 0.0) slope = (miss - last) / (s - last_s);
+    last_s = s;
+    last = miss;
+    s -= miss / slope;
+    if (!(s > low && s < high)) s = 0.5 * (low + high);
   }
   return state;
 }
@@ -92,15 +91,32 @@ void for_each_foot(const RayTrajectory& ray, FieldSum& field, Reach&& reach, Ima
         std::lower_bound(ranges.begin(), ranges.end(), left) - ranges.begin());
     const auto last = static_cast<std::size_t>(
         std::upper_bound(ranges.begin(), ranges.end(), right) - ranges.begin());
-    for (std::size_t j = first; j < last; ++j) {
-      if (field.irregular) {
+    if (field.irregular) {
+      for (std::size_t j = first; j < last; ++j)
         if (depths[j] >= top && depths[j] <= bottom) serve(j, depths[j], field.column(j));
-        continue;
+      continue;
+    }
+    // Where the normals of begin and end cross a row: its receivers between them are those in
+    // question.
+    const bool steep = from.xi * to.xi <= 0.0 || cosine < 0.01;
+    const double slope_from = from.zeta / from.xi, slope_to = to.zeta / to.xi;
+    const auto row = std::lower_bound(depths.begin(), depths.end(), top);
+    for (auto k = static_cast<std::size_t>(row - depths.begin());
+         k < depths.size() && depths[k] <= bottom; ++k) {
+      std::size_t j = first, end = last;
+      if (!steep) {
+        const double depth = image(depths[k]);
+        const double a = from.range - (depth - from.depth) * slope_from;
+        const double b = to.range - (depth - to.depth) * slope_to;
+        const auto least = ranges.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto most = ranges.begin() + static_cast<std::ptrdiff_t>(last);
+        const double slack = 1e-9 * (std::abs(a) + std::abs(b));
+        j = static_cast<std::size_t>(std::lower_bound(least, most, std::min(a, b) - slack) -
+                                     ranges.begin());
+        end = static_cast<std::size_t>(std::upper_bound(least, most, std::max(a, b) + slack) -
+                                       ranges.begin());
       }
-      const auto begin = static_cast<std::size_t>(
-          std::lower_bound(depths.begin(), depths.end(), top) - depths.begin());
-      for (std::size_t k = begin; k < depths.size() && depths[k] <= bottom; ++k)
-        serve(j, depths[k], field.column(j) + k);
+      for (; j < end; ++j) serve(j, depths[k], field.column(j) + k);
     }
   }
 }

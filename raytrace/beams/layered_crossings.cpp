@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "raytrace/beams/lanes.h"
 
@@ -20,6 +21,13 @@ inline double atanh_over_w(double w2) noexcept {
                                        w2 * (1.0 / 13 + w2 * (1.0 / 15 + w2 * (1.0 / 17))))))));
 }
 constexpr double series_limit = 0.1;
+
+/// The same number into the next few places.
+using Doubles = std::experimental::native_simd<double>;
+constexpr std::size_t doubles = Doubles::size();
+inline void fill(double value, double* to) noexcept {
+  Doubles(value).copy_to(to, std::experimental::element_aligned);
+}
 
 /// τ over a range Δ within one layer. \param w_over_g  ξΔ/(1 − s_a·s_b)
 inline double layer_time(double w_over_g, double g) noexcept {
@@ -78,7 +86,7 @@ std::size_t LayeredCrossings::first_layer(double sine) const noexcept {
 bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings& out) const {
   const double cosine = std::cos(launch_elevation), sine = -std::sin(launch_elevation);
   if (!(cosine > 1e-3) || std::abs(sine) < 1e-9) return false;
-  const double xi = cosine / source_speed_, xi2 = xi * xi;
+  const double xi = cosine / source_speed_, xi2 = xi * xi, slow = 1.0 / xi;
   const std::size_t layers = gradient_.size(), nodes = depth_.size(), columns = ranges_.size();
 
   // Each layer once: sin θ at its nodes, the range and time it takes to pass it. Where ξc > 1 the
@@ -93,21 +101,29 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
   ASDIC_INDEPENDENT
   for (std::size_t i = 0; i < layers; ++i) {
     const double a = s_at[i], b = s_at[i + 1];
-    const double reach = xi * (c_at[i] + c_at[i + 1]) * (z_at[i + 1] - z_at[i]) / (a + b + 1e-300);
+    const double reach = xi * (c_at[i] + c_at[i + 1]) * (z_at[i + 1] - z_at[i]) / (a + b + 1e-30);
     const double w_over_g = xi * reach / (1.0 - a * b), w = w_over_g * g_at[i];
     layer_reach[i] = reach;
     layer_time_at[i] = w_over_g * atanh_over_w(w * w);
-    steep += w * w >= series_limit ? 1 : 0;
+    steep += w * w * (a * b > 0.0 ? 1.0 : 0.0) >= series_limit ? 1 : 0;
   }
+  work.jump.resize(nodes);
+  double* jump = work.jump.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 1; i < layers; ++i) jump[i] = (g_at[i] - g_at[i - 1]) * xi2 / s_at[i];
   if (steep > 0)
     for (std::size_t i = 0; i < layers; ++i)
       work.time[i] = layer_time(xi * work.reach[i] / (1.0 - s_at[i] * s_at[i + 1]), gradient_[i]);
 
   for (auto* array :
        {&work.r, &work.s, &work.z, &work.cosine, &work.tau, &work.q, &work.p, &work.g})
-    array->resize(columns);
-  out.resize(columns);
+    array->resize(columns + doubles);
+  out.resize(columns + doubles);
   out.source_speed = source_speed_;
+  double *r_to = work.r.data(), *s_to = work.s.data(), *z_to = work.z.data(),
+         *cos_to = work.cosine.data(), *tau_to = work.tau.data(), *q_to = work.q.data(),
+         *p_to = work.p.data(), *g_to = work.g.data(), *level_to = out.level.data(),
+         *phase_to = out.phase.data();
 
   std::complex<double> coefficient[2];  // of surface and bottom, once they are met
   double loss[2] = {-1.0, -1.0}, turn[2] = {0.0, 0.0};
@@ -149,10 +165,11 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
           xi2 * g * g * reach * reach < series_limit * (1.0 - s * s) * (1.0 - s_end * s_end);
       const std::size_t first = column;
       while (column < columns && ranges_[column] < r_end) ++column;
-      for (std::size_t j = first; j < column; ++j) {
-        work.r[j] = r, work.s[j] = s, work.z[j] = z, work.cosine[j] = cos_a;
-        work.tau[j] = tau, work.q[j] = q, work.p[j] = p, work.g[j] = g;
-        out.level[j] = level, out.phase[j] = phase;
+      // four at a time; what is written too many is overwritten by the layers to come
+      for (std::size_t j = first; j < column; j += doubles) {
+        fill(r, r_to + j), fill(s, s_to + j), fill(z, z_to + j), fill(cos_a, cos_to + j);
+        fill(tau, tau_to + j), fill(q, q_to + j), fill(p, p_to + j), fill(g, g_to + j);
+        fill(level, level_to + j), fill(phase, phase_to + j);
       }
       if (alpha_ != 0.0)  // the arc is its chord times asin(y)/y
         for (std::size_t j = first; j < column; ++j) {
@@ -170,7 +187,7 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
     // The layer's end, and what happens there.
     r = r_end;
     tau += time;
-    q += p * reach / xi;
+    q += p * (reach * slow);
     if (q * sense < 0.0) {
       sense = -sense;
       phase += 0.5 * pi;
@@ -196,9 +213,8 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
       if (level == 0.0 || level < faintest_) break;
       continue;
     }
-    const std::size_t next = s > 0.0 ? node : node - 1;
-    p -= q * (gradient_[next] - g) * xi2 / s;
-    layer = next;
+    p -= q * jump[node];  // either way: g's jump and sin θ change sign together
+    layer = s > 0.0 ? node : node - 1;
   }
 
   // All crossings at once.
@@ -210,7 +226,6 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
   double *depth = out.depth.data(), *cos_out = out.cosine.data(), *sine_out = out.sine.data(),
          *speed = out.speed.data(), *time = out.time.data(), *q_out = out.q.data(),
          *dq = out.dq_ds.data(), *phase_out = out.phase.data();
-  const double slow = 1.0 / xi;
   ASDIC_INDEPENDENT
   for (std::size_t j = 0; j < n; ++j) {
     const double d = ranges[j] - r_a[j], bend = xi * g_a[j];
@@ -232,7 +247,7 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
       const double d = ranges[j] - r_a[j];
       time[j] = t_a[j] + layer_time(xi * d / (1.0 - s_a[j] * sine_out[j]), g_a[j]);
     }
-  for (std::size_t j = 0; j < n; ++j) out.column[j] = static_cast<std::uint32_t>(j);
+  std::iota(out.column.begin(), out.column.end(), 0U);
   return true;
 }
 

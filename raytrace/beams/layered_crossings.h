@@ -31,7 +31,7 @@ class LayeredCrossings {
 
   /// Memory of one thread.
   struct Workspace {
-    std::vector<double> sine, reach, time;              // [nodes], [layers], [layers]
+    std::vector<double> sine, jump, reach, time;        // [nodes] twice, [layers] twice
     std::vector<double> r, s, z, cosine, tau, q, p, g;  // [columns] the layer's begin
   };
 

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/beams/column_sum.h"
+#include "raytrace/beams/geometric.h"
+#include "raytrace/beams/lanes.h"
+
+// What the loops over receivers need, for all crossings of a beam: loops that the compiler
+// vectorises.
+namespace asdic {
+
+void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
+  const std::size_t n = x.size();
+  for (auto* array :
+       {&amplitude_, &phase_, &wave_number_, &cosine_, &sine_, &q_, &growth_, &least_, &offset_})
+    array->assign(n + lanes, 0.0F);  // the last lanes are read, and count for nothing
+  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n);
+  const double f = setting_.frequency, spacing = setting_.spacing;
+  launched_ = beams::launch_factor(setting_, launch);
+  const bool coherent = setting_.coherent;
+  // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  const double times = is_hat ? 1.0 : 4.0, least_factor = is_hat ? 0.0 : 1.0;
+  const double widening_scale = times * spacing;
+  const double *speeds = x.speed.data(), *qs = x.q.data(), *levels = x.level.data(),
+               *times_of = x.time.data(), *phases = x.phase.data(), *sines = x.sine.data(),
+               *cosines = x.cosine.data(), *dq_ds = x.dq_ds.data();
+  float *amplitude = amplitude_.data(), *phase = phase_.data(), *wave_number = wave_number_.data(),
+        *cosine_out = cosine_.data(), *sine_out = sine_.data(), *q_out = q_.data(),
+        *growth_out = growth_.data(), *least_out = least_.data();
+  double *above = above_.data(), *below = below_.data();
+  const double launched2 = launched_ * launched_ / x.source_speed;
+  const double k_unit = -2.0 * pi * f;
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const double c = speeds[i], q = qs[i];
+    const double intensity = launched2 * levels[i] * levels[i] * c;
+    amplitude[i] = static_cast<float>(intensity);
+    const double cycles = f * times_of[i];
+    phase[i] = static_cast<float>(phases[i] - 2.0 * pi * (cycles - std::floor(cycles)));
+    wave_number[i] = static_cast<float>(k_unit * sines[i] / c);
+    const double cosine = std::abs(cosines[i]);
+    const double growth = dq_ds[i] * sines[i];
+    cosine_out[i] = static_cast<float>(cosine);
+    sine_out[i] = static_cast<float>(sines[i]);
+    q_out[i] = static_cast<float>(q);
+    growth_out[i] = static_cast<float>(growth);
+    const double a = 0.2 * f * times_of[i], b = pi * c / f;
+    const double least = least_factor * (a < b ? a : b);
+    least_out[i] = static_cast<float>(least);
+    // (|q| + |dq/dz|·4σ/cos θ)·Δα < σ: the least width holds all over the beam
+    const double most = (std::abs(q) + std::abs(growth) * times * least / cosine) * spacing;
+    const double widens = most < least ? 0.0 : widening_scale;
+    const double widening = widens * (q < 0.0 ? -growth : growth);
+    const double narrow = std::abs(q) * spacing;
+    const double width = times * (narrow > least ? narrow : least);
+    above[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
+    below[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
+  }
+  if (coherent)
+    for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
+  find_rows(x);
+  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
+}
+
+void ColumnSum::find_rows(const Crossings& x) {
+  const std::size_t n = x.size();
+  const double top = first_depth_, per = per_spacing_, step = spacing_;
+  const auto rows = static_cast<double>(depths_.size());
+  const double *depth = x.depth.data(), *above = above_.data(), *below = below_.data();
+  std::int32_t *first_out = first_.data(), *last_out = last_.data();
+  float* offset = offset_.data();
+  if (step > 0.0) {
+    ASDIC_INDEPENDENT
+    for (std::size_t i = 0; i < n; ++i) {
+      const double z = depth[i];
+      double first = std::ceil((z - above[i] - top) * per);
+      double last = std::floor((z + below[i] - top) * per) + 1.0;
+      first = first < 0.0 ? 0.0 : first;
+      last = last > rows ? rows : last;
+      first = first > rows ? rows : first;
+      last = last < first ? first : last;
+      first_out[i] = static_cast<std::int32_t>(first);
+      last_out[i] = static_cast<std::int32_t>(last);
+      offset[i] = static_cast<float>(top + first * step - z);
+    }
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = [&](double z) {
+        return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
+                                         depths_.begin());
+      };
+      first_[i] = row(x.depth[i] - above_[i]);
+      last_[i] = row(x.depth[i] + below_[i]);
+    }
+  }
+}
+
+}  // namespace asdic
