@@ -3,9 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <iterator>
 #include <vector>
+
+#include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
 
@@ -27,11 +30,11 @@ class FanSplitting {
 
   FanSplitting(double lowest, double highest) : lowest_(lowest), highest_(highest) {}
 
-  /// \param make_work  called once a thread   \param unfinished  of the first intervals, those that
-  /// were split as often as is allowed \return results by increasing launch elevation
+  /// \param make_work  called once a thread   \param watch  see SearchWatch
+  /// \return results by increasing launch elevation; too few when it was stopped
   template <class MakeWork>
   [[nodiscard]] std::vector<Result> run(const MakeWork& make_work,
-                                        int* unfinished = nullptr) const {
+                                        SearchWatch* watch = nullptr) const {
     struct Memory {
       Work work;
       std::deque<Ray> rays;  // two ends, then the middle of each depth of splitting
@@ -39,7 +42,10 @@ class FanSplitting {
     tbb::enumerable_thread_specific<Memory> memories([&] { return Memory{make_work(), {}}; });
     std::vector<std::vector<Result>> results(first_intervals);
     std::vector<int> left(first_intervals, most_rays);
+    std::atomic<int> done = 0;
+    std::atomic<bool> stopped = false;
     tbb::parallel_for(0, first_intervals, [&](int i) {
+      if (stopped) return;
       Memory& memory = memories.local();
       if (memory.rays.empty()) memory.rays.resize(2);
       Ray &a = memory.rays[0], &b = memory.rays[1];
@@ -47,10 +53,14 @@ class FanSplitting {
       memory.work.trace(first_angle(i + 1), b);
       const auto slot = static_cast<std::size_t>(i);
       split(memory.work, memory.rays, a, b, 2, left[slot], results[slot]);
+      if (watch != nullptr && watch->progress && !watch->progress(double(++done) / first_intervals))
+        stopped = true;
     });
-    if (unfinished != nullptr)
-      *unfinished = static_cast<int>(
+    if (watch != nullptr) {
+      watch->stopped = stopped;
+      watch->unfinished = static_cast<int>(
           std::count_if(left.begin(), left.end(), [](int rays) { return rays <= 0; }));
+    }
     std::vector<Result> all;
     for (auto& some : results)
       all.insert(all.end(), std::make_move_iterator(some.begin()),

@@ -125,7 +125,7 @@ void raise(Arrival& path, double share) {
 std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_range,
                                          double source_depth,
                                          std::span<const ReceiverPoint> receivers,
-                                         const FanLimits& limits, int* unfinished) {
+                                         const FanLimits& limits, SearchWatch* watch) {
   std::vector<Arrivals> found(receivers.size());
   if (receivers.empty()) return found;
   std::vector<ReceiverPoint> points(receivers.begin(), receivers.end());
@@ -138,7 +138,7 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
   const auto work = [&] {
     return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);
   };
-  for (Hit& hit : fan.run(work, unfinished)) {
+  for (Hit& hit : fan.run(work, watch)) {
     const double offset = std::abs(receivers[hit.receiver].range - source_range);
     if (offset < least_range) raise(hit.path, offset / least_range);
     found[hit.receiver].push_back(std::move(hit.path));
