@@ -7,6 +7,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/output.h"
+#include "app/run_arrivals.h"
 #include "core/error.h"
 #include "io/scenario_reader.h"
 #include "sonar/echo.h"
@@ -21,35 +22,38 @@ struct Options {
   std::optional<int> target;      // from 0
   int ping = 1;
   std::optional<double> source_depth, receiver_depth, range, frequency;
+  std::optional<double> bearing;  // [°]
   bool json = false;
   std::string output;
 };
 
 /// From the platform's depth (or another) to any depth and range.
 Leg to_receiver(const PingSimulator& simulator, const Options& options) {
-  const Environment& ocean = simulator.scenario().environment;
   if (!options.receiver_depth || !options.range)
     throw InputError({.where = options.range ? "--receiver-depth" : "--range",
                       .got = "nothing",
                       .expected = "a length: --receiver-depth and --range go together"});
-  const auto in_water = [&](const std::string& option, double depth) {
-    if (depth >= ocean.surface.depth && depth <= ocean.bottom.depth) return depth;
+  const Scenario& scenario = simulator.scenario();
+  const Vec3 platform = scenario.platform.at((options.ping - 1) * scenario.pings.interval).position;
+  const PropagationPaths& paths = simulator.paths();
+  const double bearing = options.bearing   ? radians(*options.bearing)
+                         : paths.layered() ? 0.0
+                                           : scenario.transect.bearing;
+  const auto plane = paths.solver(paths.plane(platform, bearing));
+  const auto in_water = [&](const std::string& option, double depth, double range) {
+    const double top = plane->environment().surface.depth_at(range),
+                 bottom = plane->environment().bottom.depth_at(range);
+    if (depth >= top && depth <= bottom) return depth;
     throw InputError({.where = option,
                       .got = fmt::format("{} m", depth),
-                      .expected = fmt::format("a depth between {} and {} m", ocean.surface.depth,
-                                              ocean.bottom.depth)});
+                      .expected = fmt::format("a depth between {} and {} m", top, bottom)});
   };
-  const PropagationSettings& limits = simulator.scenario().propagation;
-  const double time = (options.ping - 1) * simulator.scenario().pings.interval;
-  const double source =
-      options.source_depth.value_or(simulator.scenario().platform.at(time).position.z());
-  Leg leg{.range = *options.range};
-  leg.arrivals = simulator.ocean().find(
-      in_water("--source-depth", source), in_water("--receiver-depth", *options.receiver_depth),
-      *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
-      {.max_surface_bounces = limits.max_surface_bounces,
-       .max_bottom_bounces = limits.max_bottom_bounces,
-       .max_launch_angle = limits.max_launch_angle});
+  Leg leg{.bearing = bearing, .range = *options.range};
+  leg.arrivals =
+      plane->find(in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0),
+                  in_water("--receiver-depth", *options.receiver_depth, *options.range),
+                  *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
+                  limits_of(scenario.propagation));
   return leg;
 }
 
@@ -88,16 +92,45 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
   return legs;
 }
 
+/// Of a scenario with [run] and without a sonar: at all its receivers, or at the one asked for.
+int arrivals_of_run(const Options& options) {
+  if (!options.legs.empty() || options.target)
+    throw InputError({.where = options.scenario.path + ": platform",
+                      .got = "none",
+                      .expected = "a sonar, for --leg and --target"});
+  std::vector<std::string> overrides;
+  const auto set = [&](const char* key, const std::optional<double>& value) {
+    if (value) overrides.push_back(fmt::format("{}={}", key, *value));
+  };
+  set("run.source.depth", options.source_depth);
+  set("run.receivers.depth", options.receiver_depth);
+  set("run.receivers.range", options.range);
+  set("run.frequency", options.frequency);
+  if (!options.output.empty()) check_output(options.output, options.scenario.path);
+  const RunArrivals found = find_run_arrivals(options.scenario, overrides);
+  if (!options.output.empty()) write_run_arrivals(options.output, found);
+  if (options.json)
+    print(run_arrivals_json(found));
+  else if (options.output.empty())
+    print(run_arrivals_table(found));
+  return 0;
+}
+
 int arrivals(const Options& options) {
+  if (is_run_scenario(options.scenario)) return arrivals_of_run(options);
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
   const bool free = options.receiver_depth || options.range;
-  const ArrivalsResult result{
-      .scenario = &scenario,
+  ArrivalsResult result{
+      .origin = origin_of(scenario),
       .ping = options.ping,
       .frequency = options.frequency.value_or(simulator.pulse().centre_frequency()),
       .to_receiver = free,
+      .receiver_depth = options.receiver_depth.value_or(0.0),
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
+  const double time = (options.ping - 1) * scenario.pings.interval;
+  result.source_depth = options.source_depth.value_or(scenario.platform.at(time).position.z());
+  for (const Target& target : scenario.targets) result.targets.push_back(target.name);
   if (!options.output.empty()) {
     check_output(options.output, options.scenario.path);
     write_arrivals_file(options.output, result);
@@ -115,7 +148,8 @@ void add_arrivals_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "arrivals",
-      "Every eigenray from the platform to the targets and back, or to any depth and range.");
+      "Every eigenray from the platform to the targets and back, or to any depth and range; of a "
+      "scenario with a [run], to all its receivers.");
   add_scenario_options(*command, options->scenario);
   command
       ->add_option("--leg", options->legs,
@@ -140,6 +174,12 @@ void add_arrivals_command(CLI::App& program, Action& action) {
       *command, "--source-depth", [options](double x) { options->source_depth = x; },
       "depth of the source, with --range; default: the platform's");
   command
+      ->add_option("--bearing", options->bearing,
+                   "of that receiver, where the ocean varies along a transect; default: along it "
+                   "[deg]")
+      ->type_name("DEG")
+      ->check(CLI::Range(-360.0, 360.0));
+  command
       ->add_option("--frequency", options->frequency,
                    "at which losses are told [Hz]; default: the pulse's centre")
       ->type_name("HZ")
@@ -147,8 +187,9 @@ void add_arrivals_command(CLI::App& program, Action& action) {
   command->add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
   command
       ->add_option("-o,--output", options->output,
-                   "write HDF5 (docs/formats/arrivals.md), instead of the table")
-      ->type_name("FILE.h5");
+                   "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
+                   "the table")
+      ->type_name("FILE");
   command->footer(
       "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
       "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"

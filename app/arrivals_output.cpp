@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
-#include "app/output.h"
 #include "core/units.h"
 #include "io/arrival_table.h"
 
@@ -23,7 +22,7 @@ std::string title_of(const ArrivalsResult& result, const Leg& leg) {
   const std::string distance = fmt::format("{} km", number(leg.range / 1000.0, 3));
   const std::string found = count_of(leg.arrivals.size(), "path");
   if (result.to_receiver) return fmt::format("to a receiver at {}: {}", distance, found);
-  const std::string& target = result.scenario->targets[static_cast<std::size_t>(leg.target)].name;
+  const std::string& target = result.targets[static_cast<std::size_t>(leg.target)];
   return fmt::format("{}, {}, bearing {} deg: {}",
                      leg.kind == Leg::Kind::source_to_target ? fmt::format("platform to {}", target)
                                                              : fmt::format("{} to array", target),
@@ -40,89 +39,101 @@ std::string bounces_of(const Arrival& arrival) {
   return text;
 }
 
+ordered_json json_of(const Arrivals& arrivals) {
+  ordered_json paths = ordered_json::array();
+  for (const Arrival& a : arrivals) {
+    ordered_json bounces = ordered_json::array();
+    for (const Bounce& bounce : a.bounces)
+      bounces.push_back(
+          {{"boundary", bounce.boundary == BoundaryKind::surface ? "surface" : "bottom"},
+           {"grazing_deg", degrees(bounce.grazing)},
+           {"range", bounce.range}});
+    paths.push_back({{"launch_elevation_deg", degrees(a.launch_elevation)},
+                     {"arrival_elevation_deg", degrees(a.arrival_elevation)},
+                     {"delay", a.delay},
+                     {"level_db", db_from_amplitude(std::abs(a.amplitude))},
+                     {"phase_deg", degrees(std::arg(a.amplitude))},
+                     {"amplitude_real", a.amplitude.real()},
+                     {"amplitude_imag", a.amplitude.imag()},
+                     {"spreading_db", -db_from_amplitude(a.spreading)},
+                     {"absorption_db", a.absorption_db},
+                     {"reflection_db", 0.0 - db_from_amplitude(std::abs(a.reflection))},
+                     {"path_length", a.path_length},
+                     {"upper_turns", a.upper_turns},
+                     {"lower_turns", a.lower_turns},
+                     {"caustics", a.caustics},
+                     {"bounces", bounces}});
+  }
+  return paths;
+}
+
 }  // namespace
+
+std::string paths_table(const Arrivals& arrivals) {
+  if (arrivals.empty()) return {};
+  Table table({{"path"},
+               {"launch", "deg"},
+               {"arrival", "deg"},
+               {"delay", "s"},
+               {"level", "dB"},
+               {"phase", "deg"},
+               {"spreading", "dB"},
+               {"absorption", "dB"},
+               {"reflection", "dB"},
+               {"turns"},
+               {"caustics"},
+               {"bounces", "deg", true}});
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const Arrival& a = arrivals[i];
+    table.row(
+        {std::to_string(i), number(degrees(a.launch_elevation), 3),
+         number(degrees(a.arrival_elevation), 3), number(a.delay, 5),
+         number(db_from_amplitude(std::abs(a.amplitude)), 2),
+         number(degrees(std::arg(a.amplitude)), 1), number(-db_from_amplitude(a.spreading), 2),
+         number(a.absorption_db, 2), number(-db_from_amplitude(std::abs(a.reflection)), 2),
+         std::to_string(a.upper_turns + a.lower_turns), std::to_string(a.caustics), bounces_of(a)});
+  }
+  return table.text();
+}
+
+std::string arrivals_legend(double frequency) {
+  return fmt::format(
+      "\nlosses at {} Hz; level re the pressure at 1 m; elevations of travel, "
+      "positive up; bounces: s surface, b bottom, with grazing angle\n",
+      frequency);
+}
 
 std::string arrivals_table(const ArrivalsResult& result) {
   std::string text;
   for (const Leg& leg : result.legs) {
     if (!text.empty()) text += '\n';
-    text += emphasised(title_of(result, leg)) + '\n';
-    if (leg.arrivals.empty()) continue;
-    Table table({{"path"},
-                 {"launch", "deg"},
-                 {"arrival", "deg"},
-                 {"delay", "s"},
-                 {"level", "dB"},
-                 {"phase", "deg"},
-                 {"spreading", "dB"},
-                 {"absorption", "dB"},
-                 {"reflection", "dB"},
-                 {"turns"},
-                 {"caustics"},
-                 {"bounces", "deg", true}});
-    for (std::size_t i = 0; i < leg.arrivals.size(); ++i) {
-      const Arrival& a = leg.arrivals[i];
-      table.row({std::to_string(i), number(degrees(a.launch_elevation), 3),
-                 number(degrees(a.arrival_elevation), 3), number(a.delay, 5),
-                 number(db_from_amplitude(std::abs(a.amplitude)), 2),
-                 number(degrees(std::arg(a.amplitude)), 1),
-                 number(-db_from_amplitude(a.spreading), 2), number(a.absorption_db, 2),
-                 number(-db_from_amplitude(std::abs(a.reflection)), 2),
-                 std::to_string(a.upper_turns + a.lower_turns), std::to_string(a.caustics),
-                 bounces_of(a)});
-    }
-    text += table.text();
+    text += emphasised(title_of(result, leg)) + '\n' + paths_table(leg.arrivals);
   }
-  return text + fmt::format(
-                    "\nlosses at {} Hz; level re the pressure at 1 m; elevations of travel, "
-                    "positive up; bounces: s surface, b bottom, with grazing angle\n",
-                    result.frequency);
+  return text + arrivals_legend(result.frequency);
 }
+
+std::string paths_json(const Arrivals& arrivals) { return json_of(arrivals).dump(); }
 
 std::string arrivals_json(const ArrivalsResult& result) {
   ordered_json legs = ordered_json::array();
   for (const Leg& leg : result.legs) {
-    ordered_json paths = ordered_json::array();
-    for (const Arrival& a : leg.arrivals) {
-      ordered_json bounces = ordered_json::array();
-      for (const Bounce& bounce : a.bounces)
-        bounces.push_back(
-            {{"boundary", bounce.boundary == BoundaryKind::surface ? "surface" : "bottom"},
-             {"grazing_deg", degrees(bounce.grazing)},
-             {"range", bounce.range}});
-      paths.push_back({{"launch_elevation_deg", degrees(a.launch_elevation)},
-                       {"arrival_elevation_deg", degrees(a.arrival_elevation)},
-                       {"delay", a.delay},
-                       {"level_db", db_from_amplitude(std::abs(a.amplitude))},
-                       {"phase_deg", degrees(std::arg(a.amplitude))},
-                       {"amplitude_real", a.amplitude.real()},
-                       {"amplitude_imag", a.amplitude.imag()},
-                       {"spreading_db", -db_from_amplitude(a.spreading)},
-                       {"absorption_db", a.absorption_db},
-                       {"reflection_db", 0.0 - db_from_amplitude(std::abs(a.reflection))},
-                       {"path_length", a.path_length},
-                       {"upper_turns", a.upper_turns},
-                       {"lower_turns", a.lower_turns},
-                       {"caustics", a.caustics},
-                       {"bounces", bounces}});
-    }
     ordered_json one;
     if (!result.to_receiver) {
       one["leg"] = leg_name(leg);
       one["target"] = leg.target;
-      one["target_name"] = result.scenario->targets[static_cast<std::size_t>(leg.target)].name;
+      one["target_name"] = result.targets[static_cast<std::size_t>(leg.target)];
       one["bearing_deg"] = compass_degrees(leg.bearing);
     } else {
       one["leg"] = "receiver";
     }
     one["range"] = leg.range;
-    one["arrivals"] = paths;
+    one["arrivals"] = json_of(leg.arrivals);
     legs.push_back(one);
   }
   const ordered_json all = {{"filetype", "asdic arrivals"},
                             {"version", "1.0"},
-                            {"title", result.scenario->title},
-                            {"scenario", result.scenario->path},
+                            {"title", result.origin.title},
+                            {"scenario", result.origin.path},
                             {"ping", result.ping},
                             {"frequency_hz", result.frequency},
                             {"legs", legs}};
@@ -132,11 +143,12 @@ std::string arrivals_json(const ArrivalsResult& result) {
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result) {
   Hdf5Output output(path);
   Hdf5File& file = output.file();
-  write_root(file, "asdic arrivals",
-             {.title = result.scenario->title,
-              .text = result.scenario->text,
-              .overrides = result.scenario->overrides});
+  write_root(file, "asdic arrivals", result.origin);
   file.set_attribute("", "frequency_hz", result.frequency);
+  if (result.to_receiver) {
+    file.set_attribute("", "source_depth_m", result.source_depth);
+    file.set_attribute("", "receiver_depth_m", result.receiver_depth);
+  }
 
   ArrivalTable arrivals(file);
   for (Leg leg : result.legs) {

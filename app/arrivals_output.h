@@ -3,17 +3,19 @@
 #include <string>
 #include <vector>
 
+#include "app/output.h"
 #include "sonar/ping_record.h"
-#include "sonar/scenario.h"
 
 namespace asdic::app {
 
 /// Eigenrays that were found, and for what.
 struct ArrivalsResult {
-  const Scenario* scenario = nullptr;
+  ResultOrigin origin;
+  std::vector<std::string> targets;  ///< their names
   int ping = 1;
-  double frequency = 0.0;    ///< [Hz]
-  bool to_receiver = false;  ///< one leg, from a source to a free receiver
+  double frequency = 0.0;                           ///< [Hz]
+  bool to_receiver = false;                         ///< one leg, from a source to a free receiver
+  double source_depth = 0.0, receiver_depth = 0.0;  ///< of that leg [m]
   std::vector<Leg> legs;
 };
 
@@ -22,5 +24,11 @@ struct ArrivalsResult {
 [[nodiscard]] std::string arrivals_json(const ArrivalsResult& result);
 /// docs/formats/arrivals.md \throws RunError
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result);
+
+/// The parts of these for one list of paths.
+[[nodiscard]] std::string paths_table(const Arrivals& arrivals);
+[[nodiscard]] std::string paths_json(const Arrivals& arrivals);
+/// What the columns mean, under the tables.
+[[nodiscard]] std::string arrivals_legend(double frequency);
 
 }  // namespace asdic::app

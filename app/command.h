@@ -19,7 +19,10 @@ void add_plot_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action);
 void add_field_command(CLI::App& program, Action& action);
+void add_explain_command(CLI::App& program, Action& action);
 void add_ocean_command(CLI::App& program, Action& action);
+void add_bellhop_command(CLI::App& program, Action& action);
+void add_convert_command(CLI::App& program, Action& action);
 
 /// A scenario as the command line names it.
 struct ScenarioChoice {

@@ -39,17 +39,42 @@ RayPaths::Path drawn(const RayPath& ray, RayPaths::Kind kind) {
   return path;
 }
 
+/// A boundary of a plane out to a range, where it is not flat.
+RayPaths::Line line(const Boundary& boundary, double extent) {
+  constexpr int points = 500;
+  RayPaths::Line line;
+  if (!boundary.shape) return line;
+  for (int i = 0; i <= points; ++i) line.range.push_back(extent * i / points);
+  for (const double node : boundary.shape->ranges())
+    if (node > 0.0 && node < extent) line.range.push_back(node);
+  std::sort(line.range.begin(), line.range.end());
+  for (const double range : line.range) line.depth.push_back(boundary.depth_at(range));
+  return line;
+}
+
+/// Towards the first target that is there; else along the transect.
+double bearing_of_fan(const Scenario& scenario) {
+  const Vec3 source = scenario.platform.at(0.0).position;
+  for (const Target& target : scenario.targets)
+    if (target.first_ping <= 1 && target.last_ping >= 1)
+      return separation(source, target.track.at(0.0).position).bearing;
+  return scenario.transect.bearing;
+}
+
 }  // namespace
 
 RayPaths drawn_rays(const PingSimulator& simulator) {
   const Scenario& scenario = simulator.scenario();
-  const Environment& ocean = scenario.environment;
+  const PropagationPaths& paths = simulator.paths();
   const Vec3 source = scenario.platform.at(0.0).position;
   const PropagationSettings& limits = scenario.propagation;
   const int bounces = limits.max_surface_bounces + limits.max_bottom_bounces;
   const double one_way = 0.5 * (scenario.pings.recording_start + scenario.pings.recording_duration);
-  const double c = ocean.water.at(source.z()).c;
+  const double c = paths.speed_at(source);
   const std::vector<double> elevations = fan(simulator.transmitter(1));
+  const double bearing = bearing_of_fan(scenario);
+  const auto along_fan = paths.solver(paths.plane(source, bearing));
+  const Environment& ocean = along_fan->environment();
 
   double extent = 0.0;
   for (const double elevation : elevations) {
@@ -62,6 +87,11 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
   extent = extent > 0.0 ? margin * extent : 0.5 * c * one_way;
 
   RayPaths result;
+  if (!paths.layered()) {
+    result.bearing = bearing;
+    result.bottom = line(ocean.bottom, extent);
+    result.surface = line(ocean.surface, extent);
+  }
   for (const double elevation : elevations) {
     const RayPath ray = trace_ray(ocean, source.z(), elevation, extent, 50.0, bounces);
     result.paths.push_back(drawn(ray, RayPaths::Kind::fan));
@@ -71,16 +101,14 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
   for (const Target& target : scenario.targets) {
     if (target.first_ping > 1 || target.last_ping < 1) continue;
     const Vec3 position = target.track.at(0.0).position;
-    const double range = separation(source, position).range;
-    const Arrivals arrivals = simulator.ocean().find(
-        source.z(), position.z(), range, simulator.pulse().centre_frequency(),
-        {.max_surface_bounces = limits.max_surface_bounces,
-         .max_bottom_bounces = limits.max_bottom_bounces,
-         .max_launch_angle = limits.max_launch_angle});
+    const Separation way = separation(source, position);
+    const auto plane = paths.solver(paths.plane(source, way.bearing));
+    const Arrivals arrivals = plane->find(source.z(), position.z(), way.range,
+                                          simulator.pulse().centre_frequency(), limits_of(limits));
     for (std::size_t i = 0; i < std::min(arrivals.size(), most_eigenrays); ++i)
-      result.paths.push_back(
-          drawn(trace_ray(ocean, source.z(), arrivals[i].launch_elevation, range),
-                RayPaths::Kind::eigenray));
+      result.paths.push_back(drawn(
+          trace_ray(plane->environment(), source.z(), arrivals[i].launch_elevation, way.range),
+          RayPaths::Kind::eigenray));
   }
   std::sort(result.hit_range.begin(), result.hit_range.end());
   return result;

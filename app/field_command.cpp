@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/scenario/propagation.h"
+#include "io/text/csv_table.h"
 #include "raytrace/propagation.h"
 
 namespace asdic::app {
@@ -45,10 +46,14 @@ PropagationResult run_field_of(const PropagationCase& run_case, const Options& o
 
 int field(const Options& options) {
   const auto begin = std::chrono::steady_clock::now();
-  FieldResult result{.scenario = options.scenario.path, .overrides = options.scenario.overrides};
+  FieldResult result;
   result.run_case =
       read_propagation_case(options.scenario.path, options.scenario.overrides, result.notes);
   result.run_case.task = Task::field;
+  result.origin = {.title = result.run_case.title,
+                   .path = options.scenario.path,
+                   .text = read_text_file(options.scenario.path, "a scenario file"),
+                   .overrides = options.scenario.overrides};
   result.output = options.output.empty()
                       ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                       : options.output;

@@ -7,11 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
-#include "app/output.h"
 #include "io/compare/statistics.h"
 #include "io/environment_group.h"
 #include "io/scenario/propagation.h"
-#include "io/text/csv_table.h"
 
 namespace asdic::app {
 namespace {
@@ -57,10 +55,7 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
 void write_field_file(const FieldResult& result) {
   Hdf5Output output(result.output);
   Hdf5File& file = output.file();
-  write_root(file, "asdic field",
-             {.title = result.run_case.title,
-              .text = read_text_file(result.scenario, "a scenario file"),
-              .overrides = result.overrides});
+  write_root(file, "asdic field", result.origin);
   write_field(file, result.data);
   const auto& ranges = result.run_case.receivers.ranges;
   const auto [first, last] = std::minmax_element(ranges.begin(), ranges.end());
@@ -73,7 +68,7 @@ std::string field_text(const FieldResult& result, double wall) {
   const FieldData& data = result.data;
   const std::vector<double> tl = losses(data);
   std::string text =
-      emphasised(data.title.empty() ? result.scenario : data.title) +
+      emphasised(data.title.empty() ? result.origin.path : data.title) +
       fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
                   name(data.source), count_of(data.source_depths.size(), "depth"),
                   receivers_text(data.receivers));
@@ -99,7 +94,7 @@ std::string field_json(const FieldResult& result) {
   const ordered_json all = {{"filetype", "asdic field summary"},
                             {"version", "1.0"},
                             {"title", data.title},
-                            {"scenario", result.scenario},
+                            {"scenario", result.origin.path},
                             {"output", result.output.string()},
                             {"frequency_hz", data.frequency},
                             {"field", name(data.kind)},

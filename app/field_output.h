@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/output.h"
 #include "io/field_file.h"
 #include "raytrace/propagation.h"
 
@@ -10,8 +11,7 @@ namespace asdic::app {
 
 /// A field that was computed, and what of.
 struct FieldResult {
-  std::string scenario;  ///< its file
-  std::vector<std::string> overrides{};
+  ResultOrigin origin{};
   PropagationCase run_case{};
   FieldData data{};
   std::filesystem::path output{};

@@ -42,6 +42,8 @@ int run(int argc, char** argv) {
   for (auto* add : {app::add_ping_command, app::add_rays_command, app::add_arrivals_command,
                     app::add_validate_command, app::add_info_command, app::add_plot_command,
                     app::add_export_command, app::add_ocean_command, app::add_compare_command,
+                    app::add_export_command, app::add_ocean_command, app::add_bellhop_command,
+                    app::add_convert_command, app::add_explain_command, app::add_compare_command,
                     app::add_field_command})
     add(program, action);
   for (CLI::App* command : program.get_subcommands({}))

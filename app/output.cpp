@@ -60,6 +60,13 @@ void Hdf5Output::finish() {
   finished_ = true;
 }
 
+ResultOrigin origin_of(const Scenario& scenario) {
+  return {.title = scenario.title,
+          .path = scenario.path,
+          .text = scenario.text,
+          .overrides = scenario.overrides};
+}
+
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin) {
   const Provenance made = provenance(1);
   file.set_attribute("", "filetype", filetype);

@@ -29,11 +29,13 @@ class Hdf5Output {
   bool finished_ = false;
 };
 
-/// What a file of results was made of.
+/// The scenario that results were made of.
 struct ResultOrigin {
-  std::string title{}, text{};  ///< of the scenario
+  std::string title{}, path{}, text{};
   std::vector<std::string> overrides{};
 };
+
+[[nodiscard]] ResultOrigin origin_of(const Scenario& scenario);
 
 /// What every file of results tells of itself: filetype, version, title, program, and the scenario.
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin);

@@ -9,8 +9,9 @@
 #include <numeric>
 
 #include "app/console.h"
-#include "app/output.h"
 #include "core/units.h"
+#include "io/bellhop/results.h"
+#include "io/environment_group.h"
 #include "io/ping/growing_table.h"
 
 namespace asdic::app {
@@ -121,21 +122,32 @@ std::string rays_json(const RaysResult& result) {
   }
   const ordered_json all = {{"filetype", "asdic rays"},
                             {"version", "1.0"},
-                            {"title", result.scenario->title},
-                            {"scenario", result.scenario->path},
-                            {"source_depth", result.source_depth},
+                            {"title", result.origin.title},
+                            {"scenario", result.origin.path},
+                            {"source_depth", result.source_depth()},
                             {"rays", list}};
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 void write_rays_file(const std::filesystem::path& path, const RaysResult& result) {
+  if (path.extension() == ".ray") {
+    PropagationCase run_case = result.run_case;
+    run_case.task = Task::rays;
+    bellhop::write_ray_file(
+        path, bellhop::ray_file(run_case, {.rays = {result.rays}, .beams = result.rays.size()}));
+    return;
+  }
+  double least_range = 0.0, greatest_range = 0.0;
+  for (const RayPath& ray : result.rays)
+    for (const RayPoint& point : ray.points) {
+      least_range = std::min(least_range, point.range);
+      greatest_range = std::max(greatest_range, point.range);
+    }
   Hdf5Output output(path);
   Hdf5File& file = output.file();
-  write_root(file, "asdic rays",
-             {.title = result.scenario->title,
-              .text = result.scenario->text,
-              .overrides = result.scenario->overrides});
-  file.set_attribute("", "source_depth_m", result.source_depth);
+  write_root(file, "asdic rays", result.origin);
+  file.set_attribute("", "source_depth_m", result.source_depth());
+  write_environment_group(file, result.run_case.environment, least_range, greatest_range);
 
   RaysGroup group(file, result.rays);
   group.column<double>(

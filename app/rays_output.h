@@ -3,22 +3,25 @@
 #include <string>
 #include <vector>
 
+#include "app/output.h"
+#include "raytrace/propagation_case.h"
 #include "raytrace/ray_path.h"
-#include "sonar/scenario.h"
 
 namespace asdic::app {
 
 /// A fan that was traced.
 struct RaysResult {
-  const Scenario* scenario = nullptr;
-  double source_depth = 0.0;  ///< [m]
-  std::vector<RayPath> rays;
+  ResultOrigin origin{};
+  PropagationCase run_case{};  ///< its ocean and frequency, and the one source
+  std::vector<RayPath> rays{};
+
+  [[nodiscard]] double source_depth() const { return run_case.source_depths.front(); }  ///< [m]
 };
 
 [[nodiscard]] std::string rays_table(const RaysResult& result);
 /// docs/formats/rays.md
 [[nodiscard]] std::string rays_json(const RaysResult& result);
-/// docs/formats/rays.md \throws RunError
+/// docs/formats/rays.md, or a .ray file, by the name's ending \throws RunError
 void write_rays_file(const std::filesystem::path& path, const RaysResult& result);
 
 }  // namespace asdic::app

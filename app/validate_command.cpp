@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
 #include "app/console.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
 #include "sonar/geometry.h"
@@ -12,6 +15,8 @@
 
 namespace asdic::app {
 namespace {
+
+const double db_per_neper = 20.0 / std::log(10.0);
 
 std::string position(const Vec3& p) {
   return fmt::format("{:g} m east, {:g} m north, {:g} m deep", p.x(), p.y(), p.z());
@@ -21,31 +26,68 @@ std::string motion(const Vec3& v) {
   return v.isZero() ? "at rest" : fmt::format("moving at {:.2f} m/s", v.norm());
 }
 
-/// Lowest and highest speed in the water, sampled metre by metre.
+/// Lowest and highest speed in the water: of a section's samples, or looked at in 5000 depths.
 std::pair<double, double> speeds(const Environment& ocean) {
-  double low = ocean.water.at(ocean.surface.depth).c, high = low;
+  if (ocean.section) {
+    const auto [low, high] =
+        std::minmax_element(ocean.section->speeds().begin(), ocean.section->speeds().end());
+    return {*low, *high};
+  }
+  const double top = ocean.surface.depth, bottom = ocean.bottom.depth;
+  double low = ocean.water.at(top).c, high = low;
   constexpr int steps = 5000;
   for (int i = 0; i <= steps; ++i) {
-    const double c =
-        ocean.water.at(std::lerp(ocean.surface.depth, ocean.bottom.depth, double(i) / steps)).c;
+    const double c = ocean.water.at(std::lerp(top, bottom, double(i) / steps)).c;
     low = std::min(low, c);
     high = std::max(high, c);
   }
   return {low, high};
 }
 
-std::string environment_text(const PingSimulator& simulator) {
-  const Environment& ocean = simulator.scenario().environment;
-  const auto [low, high] = speeds(ocean);
-  const double f = simulator.pulse().centre_frequency();
-  std::string text = fmt::format(
-      "water      {:g} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
-      ocean.bottom.depth - ocean.surface.depth, low, high,
-      absorption_db_per_km(ocean.absorption, f), f);
-  text += fmt::format("surface    {}, wind {:g} m/s\n", material_text(ocean.surface.material),
-                      simulator.scenario().wind_speed);
-  text += fmt::format("bottom     {}\n", material_text(ocean.bottom.material));
+/// Where the transect lies along which the ocean varies.
+std::string transect_text(const PingSimulator& simulator) {
+  const Scenario& s = simulator.scenario();
+  const Environment& ocean = s.environment;
+  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return "";
+  return fmt::format(
+      "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
+      "it, over {:.0f} m\n",
+      s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
+      simulator.paths().along(s.platform.at(0.0).position) / 1000.0,
+      simulator.paths().bottom_depth(s.platform.at(0.0).position));
+}
+
+std::string depth_of_water(const Environment& ocean) {
+  if (!ocean.bottom.shape) return fmt::format("{:g}", ocean.bottom.depth - ocean.surface.depth);
+  return fmt::format("{:g} to {:g}", ocean.bottom.shape->shallowest() - ocean.surface.depth,
+                     ocean.bottom.shape->deepest() - ocean.surface.depth);
+}
+
+std::string boundary_text(const Boundary& boundary) {
+  std::string text = material_text(boundary.material);
+  if (!boundary.shape) return text;
+  const auto ranges = boundary.shape->ranges();
+  text += fmt::format(", {}, {} from {:g} to {:g} km, {:g} to {:g} m deep",
+                      name(boundary.shape->interpolation()), count_of(ranges.size(), "node"),
+                      ranges.front() / 1000.0, ranges.back() / 1000.0, boundary.shape->shallowest(),
+                      boundary.shape->deepest());
+  if (!boundary.shape->materials().empty()) text += ", a material each";
   return text;
+}
+
+std::string environment_text(const Environment& ocean, double f, std::optional<double> wind) {
+  const auto [low, high] = speeds(ocean);
+  const double loss = db_per_neper * 1e3 * attenuation_np_per_m(ocean, f).at(ocean.surface.depth);
+  std::string text = fmt::format(
+      "water      {} m deep, sound speed {:.2f} to {:.2f} m/s, {:.4f} dB/km at {:g} Hz\n",
+      depth_of_water(ocean), low, high, loss, f);
+  if (ocean.section)
+    text += fmt::format(
+        "           {} from {:g} to {:g} km\n", count_of(ocean.section->ranges().size(), "profile"),
+        ocean.section->ranges().front() / 1000.0, ocean.section->ranges().back() / 1000.0);
+  text += "surface    " + boundary_text(ocean.surface);
+  text += wind ? fmt::format(", wind {:g} m/s\n", *wind) : "\n";
+  return text + "bottom     " + boundary_text(ocean.bottom) + "\n";
 }
 
 std::string sonar_text(const PingSimulator& simulator) {
@@ -104,11 +146,48 @@ std::string size_text(const Scenario& s) {
       samples, byte_count(bytes));
 }
 
+std::string axis_text(const std::vector<double>& values, double unit) {
+  if (values.size() == 1) return fmt::format("{:g}", values[0] / unit);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return fmt::format("{} from {:g} to {:g}", values.size(), *low / unit, *high / unit);
+}
+
+std::string run_text(const PropagationCase& run) {
+  std::string text =
+      fmt::format("source     {}, {:g} Hz, at depths [m]: {}\n", name(run.beams.source),
+                  run.frequency, axis_text(run.source_depths, 1.0));
+  if (run.receivers.size() > 0)
+    text +=
+        fmt::format("receivers  {}at depths [m]: {}, ranges [km]: {}\n",
+                    run.receivers.irregular ? "one by one, " : "",
+                    axis_text(run.receivers.depths, 1.0), axis_text(run.receivers.ranges, 1000.0));
+  text += fmt::format("fan        {:g} to {:g} deg\n", degrees(run.beams.lowest),
+                      degrees(run.beams.highest));
+  text += fmt::format("task       {}", name(run.task));
+  if (run.task == Task::field)
+    text += fmt::format(", {}, {} beams", name(run.field), name(run.beams.kind));
+  return text + "\n";
+}
+
+/// An ocean and a run of the propagation model, without a sonar.
+int validate_run(const ScenarioChoice& choice) {
+  std::vector<std::string> notes;
+  const PropagationCase run = read_propagation_case(choice.path, choice.overrides, notes);
+  print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
+  print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run));
+  for (const std::string& note : notes) print("note: " + note + '\n');
+  print(choice.path + ": good\n");
+  return 0;
+}
+
 int validate(const ScenarioChoice& choice) {
+  if (!has_sonar(choice.path, choice.overrides)) return validate_run(choice);
   const PingSimulator simulator(read_scenario(choice.path, choice.overrides));
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
-  print(environment_text(simulator) + sonar_text(simulator) + size_text(scenario));
+  print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
+                         scenario.wind_speed) +
+        transect_text(simulator) + sonar_text(simulator) + size_text(scenario));
   for (const std::string& note : scenario.notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
@@ -118,8 +197,8 @@ int validate(const ScenarioChoice& choice) {
 
 void add_validate_command(CLI::App& program, Action& action) {
   auto choice = std::make_shared<ScenarioChoice>();
-  CLI::App* command =
-      program.add_subcommand("validate", "Read and check a scenario, and say what it means.");
+  CLI::App* command = program.add_subcommand(
+      "validate", "Read and check a scenario or a run, and say what it means.");
   add_scenario_options(*command, *choice);
   command->footer(
       "Exit status: 0 good, 2 not.\n"

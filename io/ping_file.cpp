@@ -36,15 +36,16 @@ std::vector<GrowingTable::Column> echo_columns() {
 
 std::vector<GrowingTable::Column> patch_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
+          {"bearing_deg", "of the sector, clockwise from north; NaN: the whole ring", "degree"},
           {"range", "of the cell's centre from the source", "m"},
-          {"area", "of the whole ring of this cell", "m2"},
+          {"area", "of the ring, or of this sector and its mirror image", "m2"},
           {"delay", "there and back", "s"},
           {"grazing_in_deg", "angle at which sound comes to the surface", "degree"},
           {"grazing_out_deg", "angle at which sound leaves the surface", "degree"},
           {"launch_elevation_deg", "of the outgoing path, positive up", "degree"},
           {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
           {"scattering_strength_db", "of this pair of angles", "dB"},
-          {"level_db", "expected, of the whole ring, pulse not windowed, re 1 uPa", "dB"}};
+          {"level_db", "expected, of that area, pulse not windowed, re 1 uPa", "dB"}};
 }
 
 std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -208,9 +209,9 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   every = std::max(every, step);
   for (std::size_t i = 0; i < record.patches.size(); i += std::max<std::size_t>(1, step)) {
     const PatchRow& p = record.patches[i];
-    patches.row({double(record.ping), p.range, p.area, p.delay, degrees(p.grazing_in),
-                 degrees(p.grazing_out), degrees(p.launch_elevation), degrees(p.arrival_elevation),
-                 p.scattering_strength_db, p.level_db});
+    patches.row({double(record.ping), compass_degrees(p.bearing), p.range, p.area, p.delay,
+                 degrees(p.grazing_in), degrees(p.grazing_out), degrees(p.launch_elevation),
+                 degrees(p.arrival_elevation), p.scattering_strength_db, p.level_db});
   }
   arrivals.write();
   echoes.write();

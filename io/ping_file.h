@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,13 @@ struct RayPaths {
     double launch_elevation = 0.0;         ///< positive up [rad]
     std::vector<double> range{}, depth{};  ///< [points] [m]
   };
+  struct Line {
+    std::vector<double> range{}, depth{};  ///< [points] [m]
+  };
   std::vector<Path> paths{};
+  /// Over a transect: the plane of the fan, and the boundaries in it that are not flat.
+  std::optional<double> bearing{};  ///< clockwise from north [rad]
+  Line bottom{}, surface{};
   std::vector<double> hit_range{};  ///< where the fan meets the surface [m]
 };
 

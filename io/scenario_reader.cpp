@@ -24,6 +24,11 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& path
 
   TomlTable root(document);
   static_cast<void>(root.has("include"));
+  if (root.has("run") && !root.has("platform"))
+    throw root.fault("platform",
+                     "a sonar: [platform], [pulse], [array], …; for the propagation "
+                     "model alone: asdic field, rays or arrivals",
+                     "[run] and no sonar");
   scenario.title = root.text("title", "");
   scenario.seed = static_cast<std::uint64_t>(
       root.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));

@@ -23,6 +23,15 @@ if [ "${1:-}" != --no-asan ]; then
   fi
 fi
 
+if [ "${1:-}" != --no-asan ]; then
+  runs=${ASDIC_FUZZ_RUNS:-1000000}
+  if said=$(scripts/fuzz.sh "$runs" 2>&1); then
+    verdict fuzz good "$(grep -c good <<<"$said") readers, $runs runs each"
+  else
+    verdict fuzz FAILED "$(grep -v good <<<"$said" | tr '\n' ' ')"
+  fi
+fi
+
 if [ -z "${ASDIC:-}" ]; then
   cmake --preset ci >/dev/null && cmake --build --preset ci --target asdic_app >/dev/null
   ASDIC=$root/build/ci/bin/asdic

@@ -72,8 +72,10 @@ void read_section(CaseReading& reading, const std::vector<double>& depth,
 [[nodiscard]] SourcePattern read_source_pattern(CaseReading& reading);
 
 // case_run.cpp
+void read_run(CaseReading& reading);  ///< run type, fan, step, box, Cerveny's lines
+
+// case_vectors.cpp
 void read_receivers(CaseReading& reading);  ///< sources, receivers
-void read_run(CaseReading& reading);        ///< run type, fan, step, box, Cerveny's lines
 
 /// A vector as its READ gives it: all values, or the two ends, or one.
 struct GivenVector {

@@ -115,6 +115,15 @@ double speed_at(const Environment& ocean, double depth) {
              : ocean.water.at(depth).c;
 }
 
+/// The speed that is written in a row. Beside a section it only tells the wavelength of the
+/// attenuation, of which a row can hold less than a neper in a radian.
+double row_speed(const PropagationCase& run_case, double depth, double db_per_km) {
+  const double c = speed_at(run_case.environment, depth);
+  const double alpha = db_per_km / (1000.0 * db_per_neper);
+  const bool too_much = !(alpha * c < 0.9 * 2.0 * pi * run_case.frequency);
+  return run_case.environment.section && too_much ? pi * run_case.frequency / alpha : c;
+}
+
 std::string profile_text(CaseWriting& writing) {
   const PropagationCase& run_case = writing.run_case;
   const Environment& ocean = run_case.environment;
@@ -123,8 +132,8 @@ std::string profile_text(CaseWriting& writing) {
   if (is_plain_munk(ocean)) return text;
   std::string before;  // what a short row would take over
   for (const double z : depths) {
-    const double c = speed_at(ocean, z);
     const double density = ocean.water_density.at(z), loss = attenuation_at(run_case, z);
+    const double c = row_speed(run_case, z, loss);
     const auto per_km = [&](double x) {
       return 1000.0 * db_per_neper *
              nepers_per_m(AttenuationUnit::db_per_wavelength, x, c, run_case.frequency);

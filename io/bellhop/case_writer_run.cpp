@@ -15,23 +15,26 @@ std::string vector_text(CaseWriting& writing, const std::vector<double>& x, floa
   const auto read = [&](double value) {
     return std::clamp(double(float(value) * factor), least, most);
   };
-  std::vector<std::string> all;
-  bool exact = true;
-  for (const double value : x) {
-    all.push_back(decimal_read_as(value, value / double(factor), read));
-    exact = exact && read(*fortran_number(all.back())) == value;
-  }
-  if (!exact) writing.note("the " + who + " are in single precision there");
-  std::string text = std::to_string(x.size()) + '\n';
-  const GivenVector ends{.values = {*fortran_number(all.front()), *fortran_number(all.back())},
-                         .count = std::int64_t(x.size())};
+  const auto text_of = [&](double value) {
+    return decimal_read_as(value, value / double(factor), read);
+  };
+  const std::string count = std::to_string(x.size()) + '\n';
   if (x.size() > 2) {
+    const std::string first = text_of(x.front()), last = text_of(x.back());
+    const GivenVector ends{.values = {*fortran_number(first), *fortran_number(last)},
+                           .count = std::int64_t(x.size())};
     std::vector<double> even = single_precision(ends, factor);
     for (double& value : even) value = std::clamp(value, least, most);
-    if (even == x) return text + all.front() + ' ' + all.back() + " /\n";
+    if (even == x) return count + first + ' ' + last + " /\n";
   }
-  for (std::size_t i = 0; i < all.size(); ++i)
-    text += all[i] + (i % 8 == 7 || i + 1 == all.size() ? '\n' : ' ');
+  std::string text = count;
+  bool exact = true;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::string value = text_of(x[i]);
+    exact = exact && read(*fortran_number(value)) == x[i];
+    text += value + (i % 8 == 7 || i + 1 == x.size() ? '\n' : ' ');
+  }
+  if (!exact) writing.note("the " + who + " are in single precision there");
   return text;
 }
 

@@ -184,6 +184,7 @@ bool ListReader::real(double& value, std::string_view item) {
   if (!found) return false;
   const auto number = found->quoted ? std::nullopt : fortran_number(found->text);
   if (!number) fail(item, shown(found->text), "a number");
+  if (!(std::abs(*number) < 1e30)) fail(item, shown(found->text), "a number below 1e30");
   value = *number;
   return true;
 }

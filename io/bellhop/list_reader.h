@@ -27,7 +27,7 @@ class ListReader {
   void end();
 
   // One item each: false, and `value` as it was, if it is left out. \param item  its name
-  // \throws InputError  what stands there is something else, or the file ends
+  // \throws InputError  what stands there is something else, or 1e30 or more, or the file ends
   bool real(double& value, std::string_view item);
   bool integer(std::int64_t& value, std::string_view item);
   bool text(std::string& value, std::string_view item);

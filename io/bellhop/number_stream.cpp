@@ -18,7 +18,7 @@ bool parts(char c) noexcept { return c == ' ' || c == '\n' || c == '\t' || c == 
 NumberStream::NumberStream(std::string_view text, std::string file)
     : text_(text),
       file_(std::move(file)),
-      most_repeats_(1'000'000 + static_cast<std::int64_t>(text.size())) {}
+      most_repeats_(100'000 + static_cast<std::int64_t>(text.size())) {}
 
 void NumberStream::fail(const char* item, std::string got, std::string expected) const {
   throw InputError({.where = file_ + ':' + std::to_string(line_) + ": " + item,

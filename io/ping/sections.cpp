@@ -6,29 +6,10 @@
 #include <numeric>
 
 #include "io/ping/growing_table.h"
-#include "io/text/material_text.h"
-#include "io/text/toml_value.h"
-#include "sonar/transmitter.h"
+#include "io/ping/scale.h"
 
 namespace asdic::ping_file {
 namespace {
-
-std::string text_of(const Absorption& absorption) {
-  std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
-  if (const auto* law = std::get_if<FrancoisGarrison>(&absorption))
-    text += ", " + to_text(law->temperature) + " degC, " + to_text(law->salinity) + " psu, pH " +
-            to_text(law->ph) + ", " + to_text(law->depth) + " m";
-  return text;
-}
-
-std::string interpolation_of(const SoundSpeedProfile& water) {
-  if (const auto& munk = water.munk_parameters())
-    return "munk, axis " + to_text(munk->axis_speed) + " m/s at " + to_text(munk->axis_depth) +
-           " m, scale " + to_text(munk->scale_depth) + " m, perturbation " +
-           to_text(munk->perturbation);
-  if (water.depths().size() == 1) return "isovelocity";
-  return std::string(name(water.interpolation()));
-}
 
 std::string_view text_of(PulseKind kind) {
   constexpr std::string_view names[] = {"cw", "lfm", "hfm", "file"};
@@ -40,13 +21,14 @@ std::string_view text_of(PulseWindow window) {
   return names[static_cast<int>(window)];
 }
 
-template <class T>
-void write_scale(Hdf5File& file, const std::string& dataset, const std::string& dimension,
-                 const std::vector<T>& values, const std::string& long_name,
-                 const std::string& units = "") {
-  file.write<T>(dataset, values, {values.size()});
-  describe(file, dataset, long_name, units);
-  file.make_scale(dataset, dimension);
+/// A boundary in the plane of the rays.
+void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& line) {
+  if (line.range.empty()) return;
+  const std::string range = "rays/" + side + "_range", depth = "rays/" + side + "_depth";
+  write_scale(file, range, "rays_" + side, line.range, "from the source, along the rays", "m");
+  file.write<double>(depth, line.depth, {line.depth.size()});
+  describe(file, depth, "of the " + side + " in the plane of the rays, positive down", "m");
+  file.attach_scales(depth, {range});
 }
 
 }  // namespace
@@ -103,41 +85,6 @@ void write_replica(Hdf5File& file, const Scenario& scenario) {
   file.set_attribute("replica", "source_level_db", scenario.transmitter.source_level_db);
 }
 
-void write_environment(Hdf5File& file, const Scenario& scenario) {
-  const Environment& ocean = scenario.environment;
-  constexpr std::size_t points = 501;
-  std::vector<double> depth, speed;
-  for (std::size_t i = 0; i < points; ++i) {
-    depth.push_back(ocean.surface.depth + (ocean.bottom.depth - ocean.surface.depth) *
-                                              static_cast<double>(i) / (points - 1.0));
-    speed.push_back(ocean.water.at(depth.back()).c);
-  }
-  write_scale(file, "environment/depth", "depth", depth, "depth, positive down", "m");
-  file.write<double>("environment/sound_speed", speed, {points});
-  describe(file, "environment/sound_speed", "speed of sound", "m/s");
-  file.attach_scales("environment/sound_speed", {"environment/depth"});
-
-  const std::string group = "environment";
-  file.set_attribute(group, "surface", material_text(ocean.surface.material));
-  file.set_attribute(group, "bottom", material_text(ocean.bottom.material));
-  file.set_attribute(group, "bottom_depth_m", ocean.bottom.depth);
-  file.set_attribute(group, "wind_speed_mps", scenario.wind_speed);
-  file.set_attribute(group, "absorption", text_of(ocean.absorption));
-  file.set_attribute(group, "interpolation", interpolation_of(ocean.water));
-  std::visit(
-      [&](auto law) {
-        file.set_attribute(group, "scattering_model", law.name);
-        law.describe([&](const char* key, double value, const Range&) {
-          file.set_attribute(group, std::string("scattering_") + key, value);
-        });
-      },
-      scenario.reverberation.surface);
-  const double speed_at_source = ocean.water.at(scenario.platform.at(0.0).position.z()).c;
-  const double wavelength = speed_at_source / Pulse(scenario.pulse).centre_frequency();
-  file.set_attribute(group, "transmitter_line_length_m",
-                     BeamPattern(scenario.transmitter, wavelength).line_length());
-}
-
 void write_rays(Hdf5File& file, const RayPaths& rays) {
   const std::size_t n = rays.paths.size();
   std::size_t points = 0;
@@ -171,6 +118,9 @@ void write_rays(Hdf5File& file, const RayPaths& rays) {
     file.attach_scales(name, {"rays/ray"});
   for (const char* name : {"rays/range", "rays/depth"})
     file.attach_scales(name, {"rays/ray", "rays/point"});
+  write_line(file, "bottom", rays.bottom);
+  write_line(file, "surface", rays.surface);
+  if (rays.bearing) file.set_attribute("rays", "bearing_deg", compass_degrees(*rays.bearing));
   if (rays.hit_range.empty()) return;
   std::vector<std::int32_t> hit(rays.hit_range.size());
   std::iota(hit.begin(), hit.end(), 0);

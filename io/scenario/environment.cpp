@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "io/scenario/angles.h"
 #include "io/scenario/ocean.h"
@@ -7,16 +8,27 @@
 namespace asdic::scenario {
 namespace {
 
-/// The bottom is nowhere above the surface: held at every node of both, between which a
-/// piecewise-linear one is straight.
-void check_water(TomlTable& bottom, const Environment& ocean) {
+/// Ranges at which two boundaries can be nearest: all nodes, and places between where one is
+/// curved.
+std::vector<double> places_to_look(const Environment& ocean) {
   std::vector<double> ranges = {0.0};
-  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
-    if (boundary->shape)
-      ranges.insert(ranges.end(), boundary->shape->ranges().begin(),
-                    boundary->shape->ranges().end());
+  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom}) {
+    if (!boundary->shape) continue;
+    const auto nodes = boundary->shape->ranges();
+    ranges.insert(ranges.end(), nodes.begin(), nodes.end());
+    constexpr int between = 8;
+    if (boundary->shape->interpolation() == ShapeInterpolation::smooth)
+      for (std::size_t i = 1; i < nodes.size(); ++i)
+        for (int k = 1; k < between; ++k)
+          ranges.push_back(std::lerp(nodes[i - 1], nodes[i], double(k) / between));
+  }
+  return ranges;
+}
+
+/// The bottom is nowhere above the surface, and somewhere below it.
+void check_water(TomlTable& bottom, const Environment& ocean) {
   double most = 0.0;
-  for (const double range : ranges) {
+  for (const double range : places_to_look(ocean)) {
     const double surface = ocean.surface.depth_at(range), floor = ocean.bottom.depth_at(range);
     most = std::max(most, floor - surface);
     if (floor < surface)

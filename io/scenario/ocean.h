@@ -42,7 +42,7 @@ void read_water_losses(TomlTable& table, const OceanReading& reading, Environmen
 [[nodiscard]] Environment read_ocean(TomlTable& table, const OceanReading& reading);
 
 inline const Quantity water_depth_quantity{
-    .noun = "depth", .unit = "m", .low = -1000.0, .high = 12000.0};
+    .noun = "depth", .unit = "m", .low = -20000.0, .high = 20000.0};
 inline const Quantity range_quantity{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 
 }  // namespace asdic::scenario

@@ -55,6 +55,12 @@ PropagationCase read_propagation_case(const std::filesystem::path& path,
   return parse_propagation_case(read_text_file(path, "a scenario file"), path, overrides, notes);
 }
 
+bool has_sonar(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  const TomlValue document =
+      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
+  return document.find("platform") != nullptr || document.find("run") == nullptr;
+}
+
 PropagationCase parse_propagation_case(std::string_view text, const std::filesystem::path& path,
                                        std::span<const std::string> overrides,
                                        std::vector<std::string>& notes) {

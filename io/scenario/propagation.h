@@ -27,6 +27,10 @@ namespace asdic {
                                                      std::span<const std::string> overrides,
                                                      std::vector<std::string>& notes);
 
+/// Whether a file describes a sonar: it has a [platform], or no [run] either.
+[[nodiscard]] bool has_sonar(const std::filesystem::path& path,
+                             std::span<const std::string> overrides);
+
 /// How a task, a kind of field, beam or source is called in a file and in messages.
 [[nodiscard]] std::string_view name(Task task) noexcept;
 [[nodiscard]] std::string_view name(FieldKind kind) noexcept;

@@ -286,6 +286,12 @@ class PingFile:
     def bottom_depth(self) -> float:
         return self.attribute("environment", "bottom_depth_m")
 
+    def rays_line(self, side: str):
+        """Range and depth [m] of the "bottom" or "surface" in the rays' plane; None where flat"""
+        if not self.has(f"rays/{side}_depth"):
+            return None
+        return self.read(f"rays/{side}_range"), self.read(f"rays/{side}_depth")
+
     @cached_property
     def target_names(self) -> list[str]:
         if not self.has("target_index"):

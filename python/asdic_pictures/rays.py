@@ -9,6 +9,7 @@ from . import style
 TITLE = "Rays of the transmitted beam and eigenrays to the targets"
 
 HALF_THE_EARTH = 2e7    # round its girth [m]
+SEA_FLOOR = "#cdbfa9"
 
 
 def nothing_to_show(data, ping):
@@ -128,12 +129,21 @@ def draw_boundaries(data, panels):
     bottom = data.bottom_depth
     if not np.isfinite(bottom) or bottom <= 0:
         bottom = float(np.nanmax(data.profile[0]))
-    panels[0].set_ylim(bottom * 1.045, -bottom * 0.03)
-    for axes in panels:
-        axes.axhspan(bottom, bottom * 1.045, color="#cdbfa9", lw=0, zorder=1)
+    floor, surface = data.rays_line("bottom"), data.rays_line("surface")
+    deepest = bottom if floor is None else max(float(np.nanmax(floor[1])), bottom)
+    panels[0].set_ylim(deepest * 1.045, -deepest * 0.03)
+    flat = panels if floor is None else panels[:1]
+    for axes in flat:
+        axes.axhspan(bottom, deepest * 1.045, color=SEA_FLOOR, lw=0, zorder=1)
+    if floor is not None:
+        panels[1].fill_between(floor[0] / 1e3, floor[1], deepest * 1.045, color=SEA_FLOOR, lw=0,
+                               zorder=1)
+    for axes in panels if surface is None else panels[:1]:
         axes.axhline(0.0, color=style.BLUE, lw=1.2, zorder=1)
-    panels[1].text(0.995, bottom * 1.0225, "sea floor", transform=panels[1].get_yaxis_transform(),
-                   ha="right", va="center_baseline",
+    if surface is not None:
+        panels[1].plot(surface[0] / 1e3, surface[1], color=style.BLUE, lw=1.2, zorder=1)
+    panels[1].text(0.995, deepest * 1.0225, "sea floor",
+                   transform=panels[1].get_yaxis_transform(), ha="right", va="center_baseline",
                    fontsize=8, color="#5d4f38")
     panels[1].tick_params(labelleft=False)
     panels[1].grid(True)

@@ -61,23 +61,29 @@ def describe(field, source: int) -> str:
             f"{field.source_depths[source]:g} m, {field.how}")
 
 
-def draw_line(field, source: int):
-    """Receivers at one depth: a curve over range."""
+MOST_CURVES = 4
+
+
+def draw_curves(field, source: int):
+    """Receivers at a few depths: a curve over range for each."""
     fig, axes = style.figure(TITLE, 4.2)
-    axes.plot(field.range / 1e3, field.tl(source)[0], color=style.BLUE, lw=1.1)
+    for k, loss in enumerate(field.tl(source)):
+        axes.plot(field.range / 1e3, loss, lw=1.1, label=f"{field.depth[k]:g} m",
+                  color=(style.BLUE, style.VERMILION, style.GREEN, style.PURPLE)[k])
     low, high = limits(field.tl(source), span=100.0)
     axes.set_ylim(high + 2, low - 2)
     axes.set_xlim(min(field.range.min(), 0.0) / 1e3, field.range.max() / 1e3)
     axes.set_ylabel("transmission loss / dB")
     axes.set_xlabel("range from the source / km")
     axes.grid(True)
-    style.subtitle(axes, f"{describe(field, source)}, receivers at {field.depth[0]:g} m")
+    axes.legend(title="receivers at", loc="upper right")
+    style.subtitle(axes, describe(field, source))
     return fig
 
 
 def draw(field, source: int = 0):
-    if not field.irregular and field.depth.size == 1:
-        return draw_line(field, source)
+    if not field.irregular and field.depth.size <= MOST_CURVES:
+        return draw_curves(field, source)
     fig, axes = sea.figure(TITLE, field.sea)
     values = field.tl(source)
     mesh = draw_map(axes, field, values, limits(values), MAP)

@@ -7,9 +7,6 @@ namespace asdic {
 
 namespace {
 
-constexpr double wanted_error_db = 0.1;
-constexpr int most_beams = 400'000;
-
 /// Where doubling starts: neighbouring rays at the last receiver no further apart than keeps a
 /// straight front between them within a sixteenth of a wavelength of a spherical one.
 int first_count(const PropagationCase& run_case) {
@@ -43,35 +40,39 @@ double level_difference_db(const std::vector<std::complex<double>>& a,
   return *at;
 }
 
-ConvergedField fixed_field(const BeamFan& fan, const FieldOfFan& field_of) {
-  return {.field = field_of(fan), .beams = fan.elevation.size()};
-}
-
-ConvergedField converged_field(const PropagationCase& run_case, double /*source_depth*/,
-                               const FieldOfFan& field_of) {
+ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of) {
   const BeamSettings& beams = run_case.beams;
-  int count = std::max({beams.count, first_count(run_case), 2});
-  ConvergedField answer{.field = field_of(even_fan(beams.lowest, beams.highest, count)),
-                        .beams = static_cast<std::size_t>(count)};
+  const bool circle = std::abs(beams.highest - beams.lowest - 2.0 * pi) < 1e-9;
+  const int most = std::max(most_beams, beams.count | 1);
+  int count = std::max(beams.count, first_count(run_case)) | 1;
   double last_change = 0.0;
+  int last_count = 0;
   while (true) {
-    count = 2 * count - 1;
-    std::vector<std::complex<double>> finer =
-        field_of(even_fan(beams.lowest, beams.highest, count));
-    const double change = level_difference_db(answer.field, finer, 0.95);
-    // Changes shrink by 2 (edges of ray families) to 4 (between smooth neighbours) per doubling;
-    // what is left is their geometric sum.
-    const double ratio =
-        last_change > 0.0 ? std::clamp(last_change / std::max(change, 1e-12), 1.5, 4.0) : 2.0;
-    last_change = change;
-    answer = {.field = std::move(finer),
-              .beams = static_cast<std::size_t>(count),
-              .error_db = change / (ratio - 1.0)};
+    // Every second of an odd number of beams has both ends; around a circle it takes an even number.
+    FanField fan = field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count));
+    const double change = level_difference_db(fan.half, fan.field, 0.95);
+    // change ~ count^−p; what is left is the sum of all further halvings. p is 2 between smooth
+    // neighbours, 1 or less where edges of ray families decide.
+    double p = 1.0;
+    if (last_count > 0 && change > 0.0)
+      p = std::clamp(std::log(last_change / change) / std::log(double(count) / last_count), 0.5,
+                     2.0);
+    ConvergedField answer{.field = std::move(fan.field),
+                          .beams = static_cast<std::size_t>(count),
+                          .error_db = change / (std::exp2(p) - 1.0)};
     if (answer.error_db <= wanted_error_db) return answer;
-    if (2 * count > most_beams) break;
+    if (count >= most) {
+      answer.note = "the field is not sure of its number of beams: " + std::to_string(count) +
+                    " leave an error of about " + std::to_string(answer.error_db) +
+                    " dB at 95 % of the receivers";
+      return answer;
+    }
+    last_change = change;
+    last_count = count;
+    const double factor =
+        std::clamp(std::pow(answer.error_db / wanted_error_db, 1.0 / p), 2.0, 4.0);
+    count = std::min(static_cast<int>(factor * count) | 1, most);
   }
-  answer.note = "the field still changes with the number of beams";
-  return answer;
 }
 
 }  // namespace asdic

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "raytrace/beams/fan.h"
+#include "raytrace/beams/field_run.h"
 
 namespace asdic {
 
@@ -12,19 +13,20 @@ namespace asdic {
 struct ConvergedField {
   std::vector<std::complex<double>> field;  ///< [rows × ranges]
   std::size_t beams = 0;
-  double error_db =
-      0.0;           ///< estimate of |ΔTL| to the limit of infinitely many, at 95 % of the cells
-  std::string note;  ///< what the user should know
+  double error_db = 0.0;  ///< estimate of |ΔTL| to infinitely many beams, at 95 % of the cells
+  std::string note;       ///< what the user should know
 };
 
-using FieldOfFan = std::function<std::vector<std::complex<double>>(const BeamFan&)>;
+/// The field of a fan and of every second beam of it.
+using FieldOfFan = std::function<FanField(const BeamFan&)>;
 
-/// Doubles the number of beams until the field stays what it is. docs/theory/fields.md
-[[nodiscard]] ConvergedField converged_field(const PropagationCase& run_case, double source_depth,
+/// Makes the fan denser until it is as good as every second beam of it to `wanted_error_db`,
+/// allowing for the rate at which that difference shrinks. docs/theory/fields.md
+[[nodiscard]] ConvergedField converged_field(const PropagationCase& run_case,
                                              const FieldOfFan& field_of);
 
-/// The field of one given fan; its error is not known.
-[[nodiscard]] ConvergedField fixed_field(const BeamFan& fan, const FieldOfFan& field_of);
+inline constexpr double wanted_error_db = 0.2;  ///< |ΔTL| at 95 % of the cells
+inline constexpr int most_beams = 65'537;       ///< beyond this the error is told and left
 
 /// |ΔTL| that a share of the cells stays below [dB], among those where either is above the floor:
 /// 100 dB below 1 m, or 60 dB below the strongest, whatever is fainter.

@@ -96,16 +96,17 @@ struct Work {
   const Progress& progress;
   BeamSetting setting;
   TraceLimits limits;
+  bool with_half;
 
   [[nodiscard]] BeamLaunch launch(double elevation, double source_speed) const {
     return {elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
   }
 };
 
-/// Sums the fan in `parts` (each has add(i) for ray i and at(column, row)), which take turns at
-/// packets of neighbouring rays.
+/// Sums the fan in `parts`, which take turns at packets of neighbouring rays. Each has add(i) for
+/// ray i and at(column, row, half).
 template <class Part>
-std::vector<std::complex<double>> sum_parts(const Work& work, std::vector<Part>& parts) {
+FanField sum_parts(const Work& work, std::vector<Part>& parts) {
   constexpr std::size_t packet = 16;
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
@@ -122,54 +123,72 @@ std::vector<std::complex<double>> sum_parts(const Work& work, std::vector<Part>&
   if (stopped) throw Interrupted();
   const ReceiverGrid& grid = work.run_case.receivers;
   const std::size_t rows = grid.rows(), columns = grid.ranges.size();
-  std::vector<std::complex<double>> field(grid.size());
-  tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
-    const double scale = field_scale(work.setting, grid.ranges[j]);
-    for (std::size_t k = 0; k < rows; ++k) {
-      std::complex<double> sum = 0.0;
-      for (const Part& part : parts) sum += part.at(j, k);
-      field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
-    }
-  });
-  return field;
+  FanField result;
+  const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
+    field.resize(grid.size());
+    tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
+      const double scale = field_scale(work.setting, grid.ranges[j]);
+      for (std::size_t k = 0; k < rows; ++k) {
+        std::complex<double> sum = 0.0;
+        for (const Part& part : parts) sum += part.at(j, k, half);
+        field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
+      }
+    });
+  };
+  collect(false, result.field);
+  if (work.with_half) collect(true, result.half);
+  return result;
 }
 
 /// Every kind of beam, receiver by receiver.
 class PlainPart {
  public:
-  explicit PlainPart(const Work& work) : work_(work), field_(empty_field(work.run_case)) {}
+  explicit PlainPart(const Work& work)
+      : work_(work), setting_{work.setting, work.setting}, field_{empty_field(work.run_case), {}} {
+    setting_[1].spacing *= 2.0;
+    if (work.with_half) field_[1] = field_[0];
+  }
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
-    add_beam(work_.setting, work_.launch(elevation, ray_.source_speed), ray_, field_);
+    const BeamLaunch launch = work_.launch(elevation, ray_.source_speed);
+    add_beam(setting_[0], launch, ray_, field_[0]);
+    if (work_.with_half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
   }
-  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
-    return field_.sum[column * field_.rows() + row];
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
+    const FieldSum& field = field_[half ? 1 : 0];
+    return field.sum[column * field.rows() + row];
   }
 
  private:
   const Work& work_;
+  BeamSetting setting_[2];
   RayTrajectory ray_;
-  FieldSum field_;
+  FieldSum field_[2];
 };
 
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:
-  FastPart(const Work& work, const LayeredCrossings* layered)
-      : work_(work),
-        layered_(layered),
-        sum_(work.setting, work.run_case.receivers.depths, work.run_case.receivers.ranges.size()) {}
+  FastPart(const Work& work, const LayeredCrossings* layered) : work_(work), layered_(layered) {
+    const ReceiverGrid& grid = work.run_case.receivers;
+    BeamSetting setting = work.setting;
+    sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    setting.spacing *= 2.0;
+    if (work.with_half) sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+  }
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
       work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
       find_crossings(ray_, work_.run_case.receivers.ranges, crossings_);
     }
-    sum_.add(work_.launch(elevation, crossings_.source_speed), crossings_);
+    const BeamLaunch launch = work_.launch(elevation, crossings_.source_speed);
+    sum_[0].add(launch, crossings_);
+    if (work_.with_half && i % 2 == 0) sum_[1].add(launch, crossings_);
   }
-  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row) const {
-    return sum_.at(column, row);
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
+    return sum_[half ? 1 : 0].at(column, row);
   }
 
  private:
@@ -178,26 +197,28 @@ class FastPart {
   LayeredCrossings::Workspace workspace_;
   Crossings crossings_;
   RayTrajectory ray_;
-  ColumnSum sum_;
+  std::vector<ColumnSum> sum_;
 };
 
 }  // namespace
 
-std::vector<std::complex<double>> field_of_fan(const PropagationCase& run_case,
-                                               const RayTracer& tracer, double source_depth,
-                                               const BeamFan& fan, const Progress& progress,
-                                               FieldMethod method) {
+FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, double source_depth,
+                      const BeamFan& fan, const Progress& progress, FieldMethod method,
+                      bool with_half) {
   const Work work{run_case,
                   tracer,
                   source_depth,
                   fan,
                   progress,
                   beam_setting(run_case, fan),
-                  field_limits(run_case)};
+                  field_limits(run_case),
+                  with_half};
   const std::size_t cells = run_case.receivers.size();
   const bool fast = method == FieldMethod::fast && !run_case.receivers.irregular &&
                     (work.setting.kind == BeamKind::hat || work.setting.kind == BeamKind::gaussian);
-  const std::size_t few = std::clamp<std::size_t>(fan.elevation.size() / 1024, 1, most_parts);
+  // A packet of beams costs as much as a share of the grid: fewer parts for fewer beams.
+  const std::size_t few =
+      std::clamp<std::size_t>(fan.elevation.size() / (fast ? 1024 : 64), 1, most_parts);
   const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
   if (!fast) {
     std::vector<PlainPart> parts;
@@ -218,12 +239,16 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
     const double depth = run_case.source_depths[i];
-    const auto field_of = [&](const BeamFan& fan) {
-      return field_of_fan(run_case, tracer, depth, fan, progress);
-    };
-    const ConvergedField answer = run_case.beams.elevations.empty()
-                                      ? converged_field(run_case, depth, field_of)
-                                      : fixed_field(given_fan(run_case.beams.elevations), field_of);
+    ConvergedField answer;
+    if (run_case.beams.elevations.empty()) {
+      answer = converged_field(run_case, [&](const BeamFan& fan) {
+        return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, true);
+      });
+    } else {
+      const BeamFan fan = given_fan(run_case.beams.elevations);
+      answer = {.field = field_of_fan(run_case, tracer, depth, fan, progress).field,
+                .beams = fan.elevation.size()};
+    }
     for (const std::complex<double>& p : answer.field) result.field.emplace_back(p);
     result.beams = std::max(result.beams, answer.beams);
     result.beam_error_db = std::max(result.beam_error_db, answer.error_db);

@@ -22,10 +22,18 @@ namespace asdic {
 /// one ray, one receiver after the other.
 enum class FieldMethod { fast, plain };
 
-/// The field of one source and one fan, [rows × ranges], range fastest; a root of intensity if it
-/// is not coherent. What run_field repeats.
-[[nodiscard]] std::vector<std::complex<double>> field_of_fan(
-    const PropagationCase& run_case, const RayTracer& tracer, double source_depth,
-    const BeamFan& fan, const Progress& progress = {}, FieldMethod method = FieldMethod::fast);
+/// The field of one source and one fan, and of every second beam of it.
+struct FanField {
+  std::vector<std::complex<double>> field;  ///< [rows × ranges], range fastest; a root of intensity
+                                            ///< if it is not coherent
+  std::vector<std::complex<double>>
+      half;  ///< the same of beams 0, 2, 4, …, twice as wide, if asked for
+};
+
+/// What run_field repeats. \param with_half  fill `half` (the fan has an odd number of beams)
+[[nodiscard]] FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer,
+                                    double source_depth, const BeamFan& fan,
+                                    const Progress& progress = {},
+                                    FieldMethod method = FieldMethod::fast, bool with_half = false);
 
 }  // namespace asdic

@@ -9,10 +9,10 @@ namespace asdic::like_bellhop {
 /// A ray and what makes a beam of it.
 struct Beam {
   const LiteralRay& ray;
-  double frequency = 0.0;      ///< [Hz]
-  double source_speed = 0.0;   ///< c₀ [m/s]
-  double spacing = 0.0;        ///< dα, mean spacing of the fan [rad]
-  double step = 0.0;           ///< STEP [m]
+  double frequency = 0.0;                          ///< [Hz]
+  double source_speed = 0.0;                       ///< c₀ [m/s]
+  double spacing = 0.0;                            ///< dα, mean spacing of the fan [rad]
+  double step = 0.0;                               ///< STEP [m]
   double surface_depth = 0.0, bottom_depth = 0.0;  ///< over which images are mirrored [m]
   SourceKind source = SourceKind::point;
 
@@ -37,14 +37,14 @@ struct ReceiverBlock {
 /// What one segment of one beam brings to one receiver.
 struct Contribution {
   std::size_t row = 0, column = 0;
-  std::size_t segment = 0;   ///< from point segment − 1 to point segment
-  double amplitude = 0.0;    ///< on the axis of the beam, spreading by range left out
-  double weight = 0.0;       ///< across the beam
-  double intensity_factor = 1.0;  ///< intensities add (amplitude² · weight · this)
-  double phase = 0.0;        ///< reflections and caustics [rad]
-  std::complex<double> tau;  ///< [s]
-  double arrival_declination = 0.0;  ///< of the segment's chord [rad], positive down
-  const LiteralPoint* end = nullptr; ///< the segment's end
+  std::size_t segment = 0;            ///< from point segment − 1 to point segment
+  double amplitude = 0.0;             ///< on the axis of the beam, spreading by range left out
+  double weight = 0.0;                ///< across the beam
+  double intensity_factor = 1.0;      ///< intensities add (amplitude² · weight · this)
+  double phase = 0.0;                 ///< reflections and caustics [rad]
+  std::complex<double> tau;           ///< [s]
+  double arrival_declination = 0.0;   ///< of the segment's chord [rad], positive down
+  const LiteralPoint* end = nullptr;  ///< the segment's end
 };
 
 /// Where contributions go.

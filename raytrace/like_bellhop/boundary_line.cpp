@@ -13,8 +13,7 @@ BoundaryLine::BoundaryLine(const Boundary& boundary, BoundaryKind kind) : kind_(
   const std::vector<double> flat_depth = {boundary.depth};
   const auto r = flat ? std::span<const double>{} : boundary.shape->ranges();
   const auto z = flat ? std::span<const double>(flat_depth) : boundary.shape->depths();
-  curvilinear_ =
-      !flat && boundary.shape->interpolation() != ShapeInterpolation::piecewise_linear;
+  curvilinear_ = !flat && boundary.shape->interpolation() != ShapeInterpolation::piecewise_linear;
   const auto add = [this](double range, double depth) {
     range_.push_back(range);
     depth_.push_back(depth);

@@ -6,8 +6,8 @@
 
 namespace asdic::like_bellhop {
 
-/// A boundary as BELLHOP keeps it: straight segments through its nodes, made flat out to infinity on
-/// both sides. Unit vectors (range, depth); normals point out of the water.
+/// A boundary as BELLHOP keeps it: straight segments through its nodes, made flat out to infinity
+/// on both sides. Unit vectors (range, depth); normals point out of the water.
 class BoundaryLine {
  public:
   BoundaryLine(const Boundary& boundary, BoundaryKind kind);
@@ -47,11 +47,11 @@ class BoundaryLine {
 
   BoundaryKind kind_;
   bool curvilinear_ = false;
-  std::vector<double> range_, depth_;         // [n + 2] with the far ends
-  std::vector<Vec2> tangent_, normal_;        // [n + 1] of the segments
-  std::vector<Vec2> node_tangent_;            // [n + 2], plain means
-  std::vector<double> curvature_;             // [n + 1]
-  std::vector<BoundaryMaterial> material_;    // [n + 1]
+  std::vector<double> range_, depth_;       // [n + 2] with the far ends
+  std::vector<Vec2> tangent_, normal_;      // [n + 1] of the segments
+  std::vector<Vec2> node_tangent_;          // [n + 2], plain means
+  std::vector<double> curvature_;           // [n + 1]
+  std::vector<BoundaryMaterial> material_;  // [n + 1]
 };
 
 }  // namespace asdic::like_bellhop

@@ -8,21 +8,23 @@ namespace asdic::like_bellhop {
 /// ε of a Červený beam: q = q₁ + ε·q₂, p = p₁ + ε·p₂.
 ///   space filling  iωh²/2, h = 2c/(ω·dα)     minimum  iωh²/2, h² = 2c·R/ω (narrowest at range R)
 ///   WKB  −c²·sin α/(cos²α·c_z), real: a front that is plane in every layer
-[[nodiscard]] std::complex<double> beam_epsilon(const Beam& beam, const CervenyBeams& kind) noexcept;
+[[nodiscard]] std::complex<double> beam_epsilon(const Beam& beam,
+                                                const CervenyBeams& kind) noexcept;
 
 /// Branch of √q along a ray: ±1, changing when q crosses the negative real axis.
 [[nodiscard]] inline double next_branch(double branch, std::complex<double> from,
                                         std::complex<double> to) noexcept {
-  const bool crossed = (from.imag() < 0.0 && to.imag() >= 0.0) ||
-                       (from.imag() > 0.0 && to.imag() <= 0.0);
+  const bool crossed =
+      (from.imag() < 0.0 && to.imag() >= 0.0) || (from.imag() > 0.0 && to.imag() <= 0.0);
   return to.real() < 0.0 && crossed ? -branch : branch;
 }
 
 /// 1 up to 50 wavelengths off the ray, 0 beyond 100, a cubic between.
 [[nodiscard]] double taper(double distance, double wavelength) noexcept;
 
-/// The receiver at `depth` as image k sees it (0: itself, 1: over the surface, 2: under the bottom),
-/// and the sign of its reflection: the surface is taken as pressure release, the bottom as rigid.
+/// The receiver at `depth` as image k sees it (0: itself, 1: over the surface, 2: under the
+/// bottom), and the sign of its reflection: the surface is taken as pressure release, the bottom as
+/// rigid.
 struct Image {
   double depth, sign;
 };

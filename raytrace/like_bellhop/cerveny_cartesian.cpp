@@ -58,6 +58,7 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
   const Complex epsilon = beam_epsilon(beam, kind);
   const double window = static_cast<double>(kind.window) * kind.window;
   const auto q_of = [&](const LiteralPoint& y) { return y.q1 + epsilon * y.q2; };
+  const double wavelength = beam.source_speed / beam.frequency;
   ColumnWalk columns(block, points.front().x.x());
   double branch = 1.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -66,8 +67,9 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
     if (i > 1) branch = next_branch(branch, q_of(points[i - 2]), qa);
     if (a.x.x() == b.x.x()) continue;
     const Complex ha = vertical_curvature(a, epsilon), hb = vertical_curvature(b, epsilon);
-    const double wavelength = a.c / beam.frequency;
     columns.over(a.x.x(), b.x.x(), [&](std::size_t column) {
+      // BELLHOP leaves out the last of several ranges (all but a few beams there).
+      if (column > 0 && column + 1 == block.grid.ranges.size()) return;
       const double w = (block.grid.ranges[column] - a.x.x()) / (b.x.x() - a.x.x());
       const double z = a.x.y() + w * (b.x.y() - a.x.y());
       const double t_z = a.t.y() + w * (b.t.y() - a.t.y());
@@ -75,8 +77,8 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
       const Complex q = qa + w * (qb - qa), tau = a.tau + w * (b.tau - a.tau);
       const Complex h = ha + w * (hb - ha);
       if (h.imag() > 0.0) return;  // it would grow away from the ray
-      const Complex amplitude = factor * b.amplitude * next_branch(branch, qa, q) *
-                                std::sqrt(c * std::abs(epsilon) / q);
+      const Complex amplitude =
+          factor * b.amplitude * next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q);
       for (std::size_t row = block.row_begin; row < block.row_end; ++row) {
         Complex sum = 0.0;
         for (int k = 0; k < kind.images; ++k) {

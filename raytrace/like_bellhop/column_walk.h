@@ -5,9 +5,9 @@
 
 namespace asdic::like_bellhop {
 
-/// The column of receivers that moves along with a ray. It stops short of a segment's end, so that a
-/// range at a joint belongs to the segment that begins there if the ray goes forwards, to none if it
-/// goes backwards, and to the first backward one where it turns.
+/// The column of receivers that moves along with a ray. It stops short of a segment's end, so that
+/// a range at a joint belongs to the segment that begins there if the ray goes forwards, to none if
+/// it goes backwards, and to the first backward one where it turns.
 class ColumnWalk {
  public:
   ColumnWalk(const ReceiverBlock& block, double range) noexcept

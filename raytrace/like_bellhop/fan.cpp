@@ -4,6 +4,16 @@
 #include <cmath>
 
 namespace asdic::like_bellhop {
+namespace {
+
+/// The number of degrees that somebody wrote: that of few digits beside an angle [rad], if there is
+/// one.
+double written_degrees(double angle) {
+  const double exact = degrees(angle), few = std::round(exact * 1e9) / 1e9;
+  return std::abs(exact - few) < 1e-12 ? few : exact;
+}
+
+}  // namespace
 int automatic_beams(const PropagationCase& run_case, double depth) {
   if (run_case.task == Task::rays) return 50;
   const double range = run_case.receivers.ranges.back();
@@ -27,9 +37,11 @@ LiteralFan make_fan(const PropagationCase& run_case, const LikeBellhopOptions& o
   } else {
     int n = options.beams.value_or(run_case.literal.beams);
     if (n <= 0) n = automatic_beams(run_case, depth);
-    const double first = -beams.highest, last = -beams.lowest;
-    for (int i = 0; i < n; ++i)
-      fan.declinations.push_back(n == 1 ? first : first + i * ((last - first) / (n - 1)));
+    // In degrees and with one rounding, as the reference outputs were computed: on a node of the
+    // water it is the last bit that tells whether a horizontal ray goes up or down.
+    const double first = written_degrees(-beams.highest), last = written_degrees(-beams.lowest);
+    const double spacing = n > 1 ? (last - first) / (n - 1) : 0.0;
+    for (int i = 0; i < n; ++i) fan.declinations.push_back(radians(std::fma(i, spacing, first)));
   }
   const std::vector<double>& a = fan.declinations;
   fan.spacing = a.size() > 1 ? (a.back() - a.front()) / static_cast<double>(a.size() - 1) : 0.0;

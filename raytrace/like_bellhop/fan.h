@@ -16,8 +16,8 @@ struct LiteralFan {
 [[nodiscard]] LiteralFan make_fan(const PropagationCase& run_case,
                                   const LikeBellhopOptions& options, double depth);
 
-/// How many rays BELLHOP takes when left to itself: 50 to look at, otherwise max(⌊0.3·R·f/1500⌋, 300,
-/// ⌊π/atan(D/(10R))⌋), R the farthest receiver.
+/// How many rays BELLHOP takes when left to itself: 50 to look at, otherwise max(⌊0.3·R·f/1500⌋,
+/// 300, ⌊π/atan(D/(10R))⌋), R the farthest receiver.
 [[nodiscard]] int automatic_beams(const PropagationCase& run_case, double depth);
 
 /// How few beams a coherent run may have before BELLHOP warns: 2 + width/√(c/(6fR)).

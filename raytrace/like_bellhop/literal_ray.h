@@ -7,12 +7,12 @@
 namespace asdic::like_bellhop {
 
 /// A point of a ray where a step ended; at a reflection there are two at one place. The tangent is
-/// scaled: unit tangent / c. p and q are two real solutions of the dynamic equations: the first starts
-/// with p = 1, q = 0 (a point source), the second with p = 0, q = 1.
+/// scaled: unit tangent / c. p and q are two real solutions of the dynamic equations: the first
+/// starts with p = 1, q = 0 (a point source), the second with p = 0, q = 1.
 struct LiteralPoint {
-  Vec2 x = Vec2::Zero();  ///< (range, depth) [m]
-  Vec2 t = Vec2::Zero();  ///< [s/m]
-  double c = 0.0;         ///< [m/s]
+  Vec2 x = Vec2::Zero();         ///< (range, depth) [m]
+  Vec2 t = Vec2::Zero();         ///< [s/m]
+  double c = 0.0;                ///< [m/s]
   Vec2 gradient = Vec2::Zero();  ///< of c, by the cell that the ray goes into [1/s]
   double p1 = 1.0, q1 = 0.0;
   double p2 = 0.0, q2 = 1.0;

@@ -8,14 +8,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double neper_db = 8.6858896;   // BELLHOP's 20·log₁₀e
-constexpr double least_magnitude = 1e-5; // of a half space's coefficient: less is nothing
+constexpr double neper_db = 8.6858896;    // BELLHOP's 20·log₁₀e
+constexpr double least_magnitude = 1e-5;  // of a half space's coefficient: less is nothing
 
 struct Wave {
-  double omega;       // [rad/s]
-  double kx, kz;      // along and across the boundary [1/m]
-  double rho;         // of the water [kg/m³]
-  double frequency;   // [Hz]
+  double omega;      // [rad/s]
+  double kx, kz;     // along and across the boundary [1/m]
+  double rho;        // of the water [kg/m³]
+  double frequency;  // [Hz]
 };
 
 /// BELLHOP's c + i·α·c²/ω = c·(1 + iδ), of the speed c·(1 + δ²) that has the same wave number.
@@ -61,7 +61,8 @@ void from_table(const ReflectionTable& table, double grazing, LiteralPoint& y) n
     y.amplitude = 0.0;
     return;
   }
-  std::size_t i = static_cast<std::size_t>(std::upper_bound(a.begin(), a.end(), grazing) - a.begin());
+  std::size_t i =
+      static_cast<std::size_t>(std::upper_bound(a.begin(), a.end(), grazing) - a.begin());
   i = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(a.size(), 2) - 1);
   if (a.size() == 1) {
     y.amplitude *= table.magnitude[0];
@@ -114,7 +115,8 @@ LiteralPoint reflect(const LiteralOcean& ocean, const LiteralPoint& in, Boundary
   y.gradient = w.gradient();
   // The normal of the reflected ray is the mirror image of the incident one's.
   const Vec2 tangent_in = w.c * in.t, tangent_out = w.c * y.t;
-  const Vec2 normal_in(-tangent_in.y(), tangent_in.x()), normal_out(tangent_out.y(), -tangent_out.x());
+  const Vec2 normal_in(-tangent_in.y(), tangent_in.x()),
+      normal_out(tangent_out.y(), -tangent_out.x());
   double cn = -w.gradient().dot(normal_out - normal_in);
   const double cs = -w.gradient().dot(tangent_out - tangent_in);
   double rn = 2.0 * facet.curvature / (w.c * w.c * th);

@@ -5,8 +5,8 @@
 namespace asdic::like_bellhop {
 
 /// The ray after a reflection at its place: mirrored tangent, p with the jumps of the boundary's
-/// curvature and of the sound speed's gradient, amplitude and phase with the coefficient. An amplitude
-/// of 0 says that nothing was reflected.
+/// curvature and of the sound speed's gradient, amplitude and phase with the coefficient. An
+/// amplitude of 0 says that nothing was reflected.
 LiteralPoint reflect(const LiteralOcean& ocean, const LiteralPoint& in, BoundaryKind kind,
                      RayPlace& place, CervenyBeams::Curvature curvature) noexcept;
 

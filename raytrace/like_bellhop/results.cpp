@@ -39,8 +39,7 @@ SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOpti
     else
       field64 = std::make_unique<FieldSums<double>>(given.field, columns, size);
   }
-  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals) 
-  {
+  if (given.task == Task::arrivals || given.task == Task::eigenrays_and_arrivals) {
     if (options.single_precision)
       arrivals32 = std::make_unique<ArrivalStore<float>>(size, options.merge);
     else
@@ -52,14 +51,12 @@ SourceResults::SourceResults(const PropagationCase& given, const LikeBellhopOpti
 template <class Real>
 void SourceResults::append_field(const FieldSums<Real>& sums, PropagationResult& result,
                                  double beam_factor) const {
-  // BELLHOP's sign is −1 for a point source and +1 for a line source; ours is the opposite.
-  const double sign = run_case.beams.source == SourceKind::line ? -1.0 : 1.0;
   for (std::size_t i = 0; i < sums.sums().size(); ++i) {
     const double scale = beam_factor * range_factor(run_case.beams.source,
                                                     run_case.receivers.ranges[i % columns], 0.0);
     const std::complex<double> sum(sums.sums()[i]);
     const std::complex<double> p = sums.kind() == FieldKind::coherent
-                                       ? sign * scale * sum
+                                       ? scale * sum
                                        : std::complex<double>(scale * std::sqrt(sum.real()));
     result.field.emplace_back(static_cast<float>(p.real()), static_cast<float>(p.imag()));
   }
@@ -80,10 +77,8 @@ void SourceResults::append_arrivals(const ArrivalStore<Real>& store,
 
 void SourceResults::append_to(PropagationResult& result, double source_speed, double spacing) {
   const BeamKind kind = run_case.beams.kind;
-  const bool cerveny =
-      kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred;
-  const double beam_factor =
-      cerveny ? spacing * std::sqrt(run_case.frequency) / source_speed : 1.0;
+  const bool cerveny = kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred;
+  const double beam_factor = cerveny ? spacing * std::sqrt(run_case.frequency) / source_speed : 1.0;
   if (field32) append_field(*field32, result, beam_factor);
   if (field64) append_field(*field64, result, beam_factor);
   if (arrivals32) append_arrivals(*arrivals32, result);

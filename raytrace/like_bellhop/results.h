@@ -15,7 +15,7 @@ struct SourceResults {
 
   const PropagationCase& run_case;
   std::size_t rows = 0, columns = 0;
-  std::unique_ptr<FieldSums<float>> field32;   ///< one of the two, for a field
+  std::unique_ptr<FieldSums<float>> field32;  ///< one of the two, for a field
   std::unique_ptr<FieldSums<double>> field64;
   std::unique_ptr<ArrivalStore<float>> arrivals32;  ///< one of the two, for arrivals
   std::unique_ptr<ArrivalStore<double>> arrivals64;
@@ -24,7 +24,8 @@ struct SourceResults {
 
  private:
   template <class Real>
-  void append_field(const FieldSums<Real>& sums, PropagationResult& result, double beam_factor) const;
+  void append_field(const FieldSums<Real>& sums, PropagationResult& result,
+                    double beam_factor) const;
   template <class Real>
   void append_arrivals(const ArrivalStore<Real>& store, PropagationResult& result) const;
 };

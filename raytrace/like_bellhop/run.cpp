@@ -26,7 +26,8 @@ LiteralOcean make_ocean(const PropagationCase& run_case, const LikeBellhopOption
                      .step = options.step.value_or(run_case.literal.step),
                      .box_range = run_case.box_range,
                      .box_depth = run_case.box_depth};
-  if (!(ocean.step > 0.0)) ocean.step = 0.1 * (ocean.water.last_depth() - ocean.water.first_depth());
+  if (!(ocean.step > 0.0))
+    ocean.step = 0.1 * (ocean.water.last_depth() - ocean.water.first_depth());
   return ocean;
 }
 
@@ -37,7 +38,8 @@ void check(const PropagationCase& run_case) {
       (run_case.receivers.depths.empty() || run_case.receivers.ranges.empty()))
     throw InputError({.where = "receivers", .got = "none", .expected = "depths and ranges"});
   if (!(run_case.box_range > 0.0) || !(run_case.box_depth > 0.0))
-    throw InputError({.where = "box", .got = "nothing", .expected = "a range and a depth where rays end"});
+    throw InputError(
+        {.where = "box", .got = "nothing", .expected = "a range and a depth where rays end"});
 }
 
 /// Puts every contribution where the task wants it.
@@ -89,12 +91,13 @@ void lay(const BeamSettings& beams, const Beam& beam, const ReceiverBlock& block
   }
 }
 
-/// Blocks of columns, or of rows for beams that follow each depth line. Every receiver belongs to one
-/// block, so its sum does not depend on who computes it.
+/// Blocks of columns, or of rows for beams that follow each depth line. Every receiver belongs to
+/// one block, so its sum does not depend on who computes it.
 std::vector<ReceiverBlock> make_blocks(const PropagationCase& run_case) {
   const ReceiverGrid& grid = run_case.receivers;
   const BeamKind kind = run_case.beams.kind;
-  const bool by_rows = kind == BeamKind::ray_centred_hat || kind == BeamKind::ray_centred_gaussian ||
+  const bool by_rows = kind == BeamKind::ray_centred_hat ||
+                       kind == BeamKind::ray_centred_gaussian ||
                        kind == BeamKind::cerveny_ray_centred;
   const std::size_t n = by_rows ? grid.rows() : grid.ranges.size();
   const std::size_t count = std::min(n, most_blocks);
@@ -116,8 +119,7 @@ class Run {
         options_(options),
         progress_(progress),
         ocean_(make_ocean(run_case, options)),
-        fan_(make_fan(run_case, options,
-                      ocean_.water.last_depth() - ocean_.water.first_depth())) {}
+        fan_(make_fan(run_case, options, ocean_.water.last_depth() - ocean_.water.first_depth())) {}
 
   PropagationResult operator()() {
     PropagationResult result;
@@ -199,12 +201,12 @@ class Run {
   void note(PropagationResult& result) const {
     const bool coherent = case_.task == Task::field && case_.field == FieldKind::coherent;
     if (!coherent || fan_.declinations.size() < 2) return;
-    const double least = least_beams(case_, source_speed_,
-                                     fan_.declinations.back() - fan_.declinations.front());
+    const double least =
+        least_beams(case_, source_speed_, fan_.declinations.back() - fan_.declinations.front());
     if (static_cast<double>(fan_.declinations.size()) < least)
-      result.notes.push_back("fewer beams than BELLHOP advises: " +
-                             std::to_string(fan_.declinations.size()) + " of " +
-                             std::to_string(static_cast<long>(std::ceil(least))));
+      result.notes.push_back(
+          "fewer beams than BELLHOP advises: " + std::to_string(fan_.declinations.size()) + " of " +
+          std::to_string(static_cast<long>(std::ceil(least))));
   }
 
   const PropagationCase& case_;

@@ -6,7 +6,7 @@
 namespace asdic::like_bellhop {
 namespace {
 
-constexpr double same_phase = 0.05;         // arrivals nearer than this in ωτ and in phase are one [rad]
+constexpr double same_phase = 0.05;  // arrivals nearer than this in ωτ and in phase are one [rad]
 constexpr std::size_t storage = 20'000'000;  // arrivals in all
 
 }  // namespace
@@ -30,7 +30,8 @@ void FieldSums<Real>::add(std::size_t row, std::size_t column,
                           std::complex<double> pressure) noexcept {
   auto& sum = sum_[row * columns_ + column];
   if (kind_ == FieldKind::coherent)
-    sum += std::complex<Real>(static_cast<Real>(pressure.real()), static_cast<Real>(pressure.imag()));
+    sum +=
+        std::complex<Real>(static_cast<Real>(pressure.real()), static_cast<Real>(pressure.imag()));
   else
     sum += static_cast<Real>(std::norm(pressure));
 }

@@ -38,8 +38,8 @@ struct StoredArrival {
   int surface_bounces = 0, bottom_bounces = 0;
 };
 
-/// Arrivals of all receivers, with BELLHOP's merging (only with the last one stored at the receiver)
-/// and its limit of storage.
+/// Arrivals of all receivers, with BELLHOP's merging (only with the last one stored at the
+/// receiver) and its limit of storage.
 template <class Real>
 class ArrivalStore {
  public:

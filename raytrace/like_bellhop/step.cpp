@@ -123,8 +123,8 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
   const double p11 = from.p1 - half * bend0 * from.q1, q11 = from.q1 + half * w0.c * from.p1;
   const double p21 = from.p2 - half * bend0 * from.q2, q21 = from.q2 + half * w0.c * from.p2;
 
-  // Phase 2: the step may be cut again along the direction at its middle; the less of it is left, the
-  // more the derivatives at the beginning weigh.
+  // Phase 2: the step may be cut again along the direction at its middle; the less of it is left,
+  // the more the derivatives at the beginning weigh.
   ocean.water.locate(x1, t1, place.cell);
   const WaterPoint w1 = ocean.water.at(x1, place.cell);
   const Vec2 u1 = w1.c * t1;

@@ -9,9 +9,9 @@ namespace asdic::like_bellhop {
 struct LiteralOcean {
   LiteralWater water;
   BoundaryLine surface, bottom;
-  double frequency = 0.0;                      ///< [Hz]
-  double step = 0.0;                           ///< longest step [m]
-  double box_range = 0.0, box_depth = 0.0;     ///< [m]
+  double frequency = 0.0;                   ///< [Hz]
+  double step = 0.0;                        ///< longest step [m]
+  double box_range = 0.0, box_depth = 0.0;  ///< [m]
 };
 
 /// Where a ray is: cell of the water, segments of the boundaries.
@@ -23,10 +23,10 @@ struct RayPlace {
 /// What a step has landed on.
 enum class Landing { water, surface, bottom };
 
-/// One step of the modified polygon (midpoint) method, second order: half an Euler step, then a whole
-/// step with a mean of the derivatives at its beginning and its middle. Both are cut to end on the next
-/// node of the water, node of a boundary, boundary or side of the box; `place.cell` moves along.
-/// \return where the step ended; p has the jump of a change of cell
+/// One step of the modified polygon (midpoint) method, second order: half an Euler step, then a
+/// whole step with a mean of the derivatives at its beginning and its middle. Both are cut to end
+/// on the next node of the water, node of a boundary, boundary or side of the box; `place.cell`
+/// moves along. \return where the step ended; p has the jump of a change of cell
 LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace& place,
                   Landing& landing) noexcept;
 

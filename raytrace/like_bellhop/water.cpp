@@ -5,12 +5,13 @@
 namespace asdic::like_bellhop {
 namespace {
 
-/// The interval of increasing nodes that holds x; on a node, on the side to which `direction` points.
+/// The interval of increasing nodes that holds x; on a node, on the side to which `direction`
+/// points.
 std::size_t locate_on(const std::vector<double>& node, double x, double direction, std::size_t i) {
   const std::size_t last = node.size() - 2;
   i = std::min(i, last);
   while (i > 0 && (x < node[i] || (x == node[i] && direction < 0.0))) --i;
-  while (i < last && (x > node[i + 1] || (x == node[i + 1] && direction > 0.0))) ++i;
+  while (i < last && (x > node[i + 1] || (x == node[i + 1] && direction >= 0.0))) ++i;
   return i;
 }
 
@@ -110,8 +111,7 @@ WaterPoint LiteralWater::at(const Vec2& x, const WaterCell& cell) const noexcept
   }
   const ComplexLaw& law = law_[cell.row];
   const double t = x.y() - law.z0;
-  const std::complex<double> value =
-      law.a[0] + t * (law.a[1] + t * (law.a[2] + t * law.a[3]));
+  const std::complex<double> value = law.a[0] + t * (law.a[1] + t * (law.a[2] + t * law.a[3]));
   if (water_.interpolation() == Interpolation::n2_linear) {
     const std::complex<double> speed = 1.0 / std::sqrt(value);
     const double c = speed.real();

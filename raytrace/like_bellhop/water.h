@@ -7,25 +7,26 @@
 
 namespace asdic::like_bellhop {
 
-/// Sound speed at a point, complex for its loss: c + i·α·c²/ω, with the derivatives of the real part.
+/// Sound speed at a point, complex for its loss: c + i·α·c²/ω, with the derivatives of the real
+/// part.
 struct WaterPoint {
-  double c = 0.0;        ///< [m/s]
-  double c_loss = 0.0;   ///< imaginary part [m/s]
-  double c_r = 0.0, c_z = 0.0;  ///< gradient [1/s]
+  double c = 0.0;                             ///< [m/s]
+  double c_loss = 0.0;                        ///< imaginary part [m/s]
+  double c_r = 0.0, c_z = 0.0;                ///< gradient [1/s]
   double c_rr = 0.0, c_rz = 0.0, c_zz = 0.0;  ///< [1/(m·s)]
 
   [[nodiscard]] Vec2 gradient() const noexcept { return {c_r, c_z}; }
 };
 
-/// The depth interval and (range-dependent water) range interval that a ray is in. Carried along it,
-/// because on a node the direction of travel decides.
+/// The depth interval and (range-dependent water) range interval that a ray is in. Carried along
+/// it, because on a node the direction of travel decides.
 struct WaterCell {
   std::size_t row = 0, column = 0;
   [[nodiscard]] bool operator==(const WaterCell&) const noexcept = default;
 };
 
-/// The water as BELLHOP interpolates it: complex speeds at the nodes, real and imaginary part by the
-/// law of the profile (1/c² linear: the complex 1/c²).
+/// The water as BELLHOP interpolates it: complex speeds at the nodes, real and imaginary part by
+/// the law of the profile (1/c² linear: the complex 1/c²).
 class LiteralWater {
  public:
   LiteralWater(const Environment& environment, double frequency);
@@ -55,11 +56,11 @@ class LiteralWater {
 
   SoundSpeedProfile water_;
   DepthFunction density_, attenuation_;
-  std::vector<double> depth_;      // [n] nodes; empty: no nodes at all
-  std::vector<ComplexLaw> law_;    // [n − 1]
-  std::vector<double> range_;      // [m] of a section
-  std::vector<double> speed_;      // [m × n] of a section
-  std::vector<double> loss_;       // [n] imaginary parts at the nodes of a section [m/s]
+  std::vector<double> depth_;    // [n] nodes; empty: no nodes at all
+  std::vector<ComplexLaw> law_;  // [n − 1]
+  std::vector<double> range_;    // [m] of a section
+  std::vector<double> speed_;    // [m × n] of a section
+  std::vector<double> loss_;     // [n] imaginary parts at the nodes of a section [m/s]
   double angular_frequency_;
   double first_depth_, last_depth_;
 };

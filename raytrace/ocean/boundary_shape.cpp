@@ -115,9 +115,10 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Vec2 &before = facet_tangent[i - 1], &after = facet_tangent[i];
     tangent_[i] = 0.5 * (before + after);
-    slope_[i] = 0.5 * (before.y() / before.x() + after.y() / after.x());
+    slope_[i] = (depth_[i + 1] - depth_[i - 1]) / (range_[i + 1] - range_[i - 1]);
   }
   bend_facets();
+  find_extremes();
 }
 
 // Curvilinear: κ of a facet = (change of the node tangents' slope)/(its horizontal length)·cos³.
@@ -207,24 +208,17 @@ BoundaryPoint BoundaryShape::at(double range, std::size_t facet) const noexcept 
   return {.depth = depth_at(range, facet), .slope = (depth_[facet] - depth_[facet - 1]) / width};
 }
 
-double BoundaryShape::shallowest() const noexcept {
-  double least = *std::min_element(depth_.begin(), depth_.end());
-  if (interpolation_ == ShapeInterpolation::smooth)
-    for (std::size_t i = 1; i < range_.size(); ++i)
-      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
-                                            slope_[i - 1], slope_[i])))
-        least = std::min(least, depth);
-  return least;
-}
-
-double BoundaryShape::deepest() const noexcept {
-  double most = *std::max_element(depth_.begin(), depth_.end());
-  if (interpolation_ == ShapeInterpolation::smooth)
-    for (std::size_t i = 1; i < range_.size(); ++i)
-      for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
-                                            slope_[i - 1], slope_[i])))
-        most = std::max(most, depth);
-  return most;
+void BoundaryShape::find_extremes() {
+  const auto [least, most] = std::minmax_element(depth_.begin(), depth_.end());
+  shallowest_ = *least;
+  deepest_ = *most;
+  if (interpolation_ != ShapeInterpolation::smooth) return;
+  for (std::size_t i = 1; i < range_.size(); ++i)
+    for (const double depth : turns(Cubic(range_[i] - range_[i - 1], depth_[i - 1], depth_[i],
+                                          slope_[i - 1], slope_[i]))) {
+      shallowest_ = std::min(shallowest_, depth);
+      deepest_ = std::max(deepest_, depth);
+    }
 }
 
 }  // namespace asdic

@@ -12,8 +12,8 @@ namespace asdic {
 /// How a boundary runs between its nodes.
 enum class ShapeInterpolation {
   piecewise_linear,  ///< straight facets: the tangent jumps at a node
-  smooth,  ///< a cubic through the nodes with continuous slope (mean of the neighbouring facets'
-           ///< slopes at a node): position, tangent and curvature are those of one curve
+  smooth,  ///< a cubic through the nodes with continuous slope, at a node that of the line between
+           ///< its neighbours: position, tangent and curvature are those of one curve
   curvilinear,  ///< BELLHOP's: straight facets for the position; tangent and normal turn linearly
                 ///< from node to node, and a curvature goes with them
 };
@@ -67,11 +67,13 @@ class BoundaryShape {
   }
   [[nodiscard]] BoundaryPoint at(double range) const noexcept { return at(range, facet(range)); }
 
-  [[nodiscard]] double shallowest() const noexcept;  ///< least depth reached anywhere [m]
-  [[nodiscard]] double deepest() const noexcept;     ///< greatest depth [m]
+  /// Least and greatest depth reached anywhere [m].
+  [[nodiscard]] double shallowest() const noexcept { return shallowest_; }
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
  private:
   void bend_facets();  // curvature_, out of tangent_
+  void find_extremes();
 
   std::vector<double> range_, depth_;       // [n]
   std::vector<double> slope_;               // [n] at the nodes (smooth)
@@ -79,6 +81,7 @@ class BoundaryShape {
   std::vector<double> curvature_;           // [n + 1] per facet (curvilinear)
   std::vector<BoundaryMaterial> material_;  // [n] or empty
   ShapeInterpolation interpolation_;
+  double shallowest_ = 0.0, deepest_ = 0.0;
 };
 
 }  // namespace asdic

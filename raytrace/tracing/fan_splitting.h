@@ -1,13 +1,12 @@
 #pragma once
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <deque>
 #include <iterator>
+#include <memory>
 #include <vector>
 
+#include "raytrace/tracing/parallel.h"
 #include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
@@ -39,15 +38,18 @@ class FanSplitting {
       Work work;
       std::deque<Ray> rays;  // two ends, then the middle of each depth of splitting
     };
-    tbb::enumerable_thread_specific<Memory> memories([&] { return Memory{make_work(), {}}; });
+    std::vector<std::unique_ptr<Memory>> memories(tracing::most_workers());
     std::vector<std::vector<Result>> results(first_intervals);
     std::vector<int> left(first_intervals, most_rays);
     std::atomic<int> done = 0;
     std::atomic<bool> stopped = false;
-    tbb::parallel_for(0, first_intervals, [&](int i) {
+    tracing::parallel(first_intervals, [&](std::size_t worker, int i) {
       if (stopped) return;
-      Memory& memory = memories.local();
-      if (memory.rays.empty()) memory.rays.resize(2);
+      if (!memories[worker]) {
+        memories[worker] = std::make_unique<Memory>(Memory{make_work(), {}});
+        memories[worker]->rays.resize(2);
+      }
+      Memory& memory = *memories[worker];
       Ray &a = memory.rays[0], &b = memory.rays[1];
       memory.work.trace(first_angle(i), a);
       memory.work.trace(first_angle(i + 1), b);

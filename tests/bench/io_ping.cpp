@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <filesystem>
+#include <string>
 
 #include "io/ping_file.h"
 #include "io/scenario_reader.h"
@@ -18,8 +19,8 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void BM_PingOfTheDeepOcean(benchmark::State& state) {
-  const Scenario scenario = read_scenario(ASDIC_SCENARIOS "/deep_ocean.toml");
+void ping(benchmark::State& state, const std::string& path) {
+  const Scenario scenario = read_scenario(path);
   const auto file = std::filesystem::temp_directory_path() / "asdic_bench_ping.h5";
   for (auto _ : state) {
     const PingSimulator simulator(scenario);  // nothing is kept from the last one
@@ -34,7 +35,17 @@ void BM_PingOfTheDeepOcean(benchmark::State& state) {
                                                      benchmark::Counter::kIsIterationInvariantRate);
   state.counters["peak MB"] = peak_memory_mb();
 }
+
+void BM_PingOfTheDeepOcean(benchmark::State& state) {
+  ping(state, ASDIC_SCENARIOS "/deep_ocean.toml");
+}
 BENCHMARK(BM_PingOfTheDeepOcean)->UseRealTime()->Unit(benchmark::kMillisecond)->MinTime(3.0);
+
+// 35 s over a real sea floor and section, 12 planes of reverberation: rays are marched.
+void BM_PingOverASeamount(benchmark::State& state) {
+  ping(state, ASDIC_SCENARIOS "/seamount_ping.toml");
+}
+BENCHMARK(BM_PingOverASeamount)->UseRealTime()->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace
 }  // namespace asdic

@@ -21,8 +21,8 @@ class Commands : public ::testing::Test {
 };
 
 TEST_F(Commands, AllHaveHelpWithAnExampleAndAVersion) {
-  for (const char* name :
-       {"", "ping", "rays", "arrivals", "validate", "info", "plot", "export", "ocean", "compare"}) {
+  for (const char* name : {"", "bellhop", "convert", "explain", "ping", "rays", "arrivals",
+                           "validate", "info", "plot", "export", "ocean", "compare", "field"}) {
     const auto help = asdic(folder, std::string(name) + " --help");
     EXPECT_EQ(help.status, 0) << name;
     EXPECT_EQ(help.err, "") << name;

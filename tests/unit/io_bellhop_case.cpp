@@ -404,7 +404,8 @@ TEST(BellhopCase, EveryMalformedLineIsTold) {
        "case.env:15: number of receiver ranges: found 1000000000, expected a whole number from 1 "
        "to "
        "1000000"},
-      {16, "0 1e99 /", "case.env:16: receiver ranges: found 1e+99, expected a number below 1e30"},
+      {16, "0 1e99 /",
+       "case.env:16: receiver ranges: value 2: found \"1e99\", expected a number below 1e30"},
       {17, "'XG'",
        "case.env:17: run type: letter 1: found \"X\", expected R (rays), E (eigenrays), A or a "
        "(arrivals), V or v (both), C, I or S (field)"},

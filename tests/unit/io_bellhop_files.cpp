@@ -210,7 +210,7 @@ TEST(BellhopFiles, MalformedArrivalsAndRaysAreTold) {
             "file:11: depth: found the end of the file, expected a number");
   EXPECT_EQ(complaint(parse_ray_file, "'t'\n 1 9000000000000*1\n"),
             "file:2: number of source x: found \"9000000000000*1\", expected a number, repeated at "
-            "most 1000023 times");
+            "most 100023 times");
 }
 
 // One path by hand: 2 surface bounces, 1 caustic, R = 0.5·e^{i·0.3} at the bottom, 6 dB of

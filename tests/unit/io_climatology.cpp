@@ -176,8 +176,8 @@ TEST_F(RealOcean, Sections) {
 }
 
 // The section's first profile is that of the place, as a scenario reads its temperature and
-// salinity. Straight lines leave it by h²c″/8: at most 25² m²·4.5e-4 (m/s)/m²/8 = 0.035 m/s here, at
-// 1 km; and the fragment prints two decimals.
+// salinity. Straight lines leave it by h²c″/8: at most 25² m²·4.5e-4 (m/s)/m²/8 = 0.035 m/s here,
+// at 1 km; and the fragment prints two decimals.
 TEST_F(RealOcean, ASectionHoldsTheProfileOfItsStart) {
   const std::string run =
       "[run]\nfrequency = 100\n[run.source]\ndepth = 50\n[run.receivers]\ndepth = 20\n"

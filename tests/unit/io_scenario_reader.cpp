@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/scenario/propagation.h"
 #include "support/temporary_directory.h"
 
 namespace asdic {
@@ -399,6 +400,15 @@ TEST(ScenarioReader, FilesThatCannotBeReadAreNamed) {
   EXPECT_THROW(static_cast<void>(read_scenario(folder.path())), InputError);
 }
 
+TEST(ScenarioReader, ARunIsNoSonar) {
+  try {
+    static_cast<void>(read_scenario(ASDIC_SCENARIOS "/wedge.toml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.fault().got, "[run] and no sonar");
+  }
+}
+
 TEST(Scenarios, AllOfThemRead) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(ASDIC_SCENARIOS)) {
@@ -409,6 +419,11 @@ TEST(Scenarios, AllOfThemRead) {
       EXPECT_NO_THROW(static_cast<void>(
           parse_scenario(text.substr(text.find("[platform]")), "s.toml", include)))
           << entry.path();
+    } else if (!has_sonar(entry.path(), {})) {  // runs of the propagation model
+      std::vector<std::string> notes;
+      EXPECT_NO_THROW(static_cast<void>(read_propagation_case(entry.path(), {}, notes)))
+          << entry.path();
+      EXPECT_TRUE(notes.empty()) << entry.path();
     } else {
       EXPECT_NO_THROW(static_cast<void>(read_scenario(entry.path()))) << entry.path();
     }

@@ -153,5 +153,156 @@ TEST(Transect, AFlatShapeIsTheLayeredOcean) {
   }
 }
 
+/// Reverberation over the wedge, short: 6 sectors, two of them straight across the slope.
+Scenario reverberant() {
+  Scenario s = wedge();
+  s.targets.clear();
+  s.reverberation = {.enabled = true, .azimuths = 6, .ground_spacing = 20.0};
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  s.pings.recording_duration = 5.0;
+  return s;
+}
+
+constexpr double steep_enough = 0.02;  // [rad]
+
+std::vector<GroundSectors> ground_of(const Scenario& s, const PropagationPaths& paths) {
+  return *SurfaceGround(paths, {.azimuths = s.reverberation.azimuths,
+                                .spacing = 20.0,
+                                .max_range = 4000.0,
+                                .frequency = 4000.0,
+                                .limits = limits_of(s.propagation)})
+              .around(s.platform.start.position);
+}
+
+/// Cell by cell: the same paths. The first cell, straight above, is left out: there the layered
+/// grid, whose cubics begin at range 0, is 75 dB too low for the path by the sea floor. Amplitudes
+/// are compared above 0.02 rad of grazing: at the limiting ray the marched grid's fall to zero.
+/// \param delay, grazing, amplitude  allowed differences [s], [rad], relative
+void expect_same(const GroundPaths& a, const GroundPaths& b, double delay, double grazing,
+                 double amplitude) {
+  ASSERT_EQ(a.cells(), b.cells());
+  for (std::size_t cell = 1; cell < a.cells(); ++cell) {
+    ASSERT_EQ(a.paths(cell).size(), b.paths(cell).size()) << cell;
+    for (const GroundPath& p : a.paths(cell)) {
+      const auto unlike = [&](const GroundPath& other) {
+        return std::abs(other.launch_elevation - p.launch_elevation) +
+               std::abs(other.delay - p.delay);
+      };
+      const auto all = b.paths(cell);
+      const auto nearest = std::min_element(
+          all.begin(), all.end(),
+          [&](const GroundPath& x, const GroundPath& y) { return unlike(x) < unlike(y); });
+      EXPECT_NEAR(nearest->delay, p.delay, delay) << cell;
+      EXPECT_NEAR(nearest->grazing, p.grazing, grazing) << cell;
+      if (p.grazing < steep_enough) continue;
+      EXPECT_LT(std::abs(nearest->amplitude - p.amplitude), amplitude * std::abs(p.amplitude))
+          << cell;
+    }
+  }
+}
+
+// Across the slope nothing varies: that sector has the bits of a layered ocean of the platform's
+// depth. Upslope and downslope have not.
+TEST(Transect, TheSectorAcrossTheSlopeIsLayered) {
+  const Scenario s = reverberant();
+  const PropagationPaths paths(s.environment, s.transect);
+  Environment here = s.environment;
+  here.bottom.depth = paths.bottom_depth(s.platform.start.position);
+  here.bottom.shape.reset();
+  const PropagationPaths layered(here, {});
+  const auto planes = ground_of(s, paths), ring = ground_of(s, layered);
+  ASSERT_EQ(planes.size(), 3U);
+  ASSERT_EQ(ring.size(), 1U);
+  EXPECT_EQ(planes[1].sectors, (std::vector{1, 4}));
+  EXPECT_EQ(ring[0].sectors.size(), 6U);
+  expect_same(*planes[1].paths, *ring[0].paths, 1e-12, 1e-12, 1e-12);
+  const auto delays = [](const GroundPaths& ground) {
+    double sum = 0.0;
+    for (std::size_t cell = 0; cell < ground.cells(); ++cell)
+      for (const GroundPath& path : ground.paths(cell)) sum += path.delay;
+    return sum;
+  };
+  EXPECT_NE(delays(*planes[0].paths), delays(*planes[2].paths));
+}
+
+// A flat sea floor with two nodes: every sector is that of the layered ocean. Both grids are
+// interpolated until range and delay are right to a hundredth of the spacing, 0.2 m: twice that and
+// c = 1496 m/s, 2.7e-4 s; seen from 150 m below the surface, 2.7e-3 rad. Amplitudes are slopes of
+// the interpolation: 1 %.
+TEST(Transect, ReverberationOverAFlatShapeIsThatOfTheLayeredOcean) {
+  Scenario flat = reverberant();
+  flat.environment.bottom.shape.reset();
+  Scenario shaped = flat;
+  shaped.environment.bottom.shape =
+      BoundaryShape(std::vector{-5000.0, 9000.0}, std::vector{900.0, 900.0},
+                    ShapeInterpolation::piecewise_linear);
+  const PropagationPaths a(flat.environment, flat.transect), b(shaped.environment, shaped.transect);
+  const auto ring = ground_of(flat, a), planes = ground_of(shaped, b);
+  for (const GroundSectors& plane : planes)
+    expect_same(*ring[0].paths, *plane.paths, 2.7e-4, 2.7e-3, 0.01);
+}
+
+// A surface that slopes by h′ along the transect, seen under β: sin(grazing) is |t·n| with the true
+// normal n = (h′, −1)/√(1 + h′²) in (x, z) and t = (cos θ cos β, cos θ sin β, −sin θ).
+TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {
+  Scenario s = reverberant();
+  const double slope = 0.1;
+  s.environment.surface.shape =
+      BoundaryShape(std::vector{-9000.0, 9000.0}, std::vector{-900.0, 900.0},
+                    ShapeInterpolation::piecewise_linear);
+  s.environment.bottom = {.depth = 2000.0, .material = FluidHalfSpace{}, .shape = {}};
+  s.environment.water = SoundSpeedProfile::isovelocity(1500.0);
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 0;
+  s.platform.start.position.z() += 900.0;
+  const PropagationPaths paths(s.environment, s.transect);
+  int compared = 0;
+  for (const GroundSectors& plane : ground_of(s, paths)) {
+    const double beta = 2.0 * pi * (plane.sectors[0] + 0.5) / 6.0;
+    if (plane.tilt.empty()) continue;
+    const auto found = patches(*plane.paths, NrlSurface{}, 4000.0, plane.tilt);
+    ASSERT_GT(found.size(), 50U);
+    for (const Patch& patch : found) {
+      const double theta = patch.launch_elevation;  // straight rays, no bounces
+      const double sine = std::abs(std::cos(theta) * std::cos(beta) * slope + std::sin(theta)) /
+                          std::hypot(1.0, slope);
+      EXPECT_NEAR(std::sin(patch.grazing_in), sine, 1e-6);
+      EXPECT_NEAR(patch.area, 2.0 * pi * patch.range * 20.0 * std::hypot(1.0, slope),
+                  1e-9 * patch.area);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 300);
+}
+
+/// Everything at once over a wedge.
+Scenario busy() {
+  Scenario s = wedge();
+  s.platform.start.velocity = {1.5, 2.0, 0.0};
+  s.targets[0].track.start.velocity = {7.0, -3.0, 0.0};
+  s.reverberation = {.enabled = true, .azimuths = 5};
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  s.pings = {.count = 4, .interval = 20.0, .recording_duration = 6.0};
+  return s;
+}
+
+// The same bits for 1, 2 and 7 threads, and for a ping alone.
+TEST(Transect, SameBitsForAnyThreads) {
+  const auto run = [](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const PingSimulator simulator(busy());
+    std::vector<PingRecord> records;
+    run_pings(simulator, [&](PingRecord&& record) { records.push_back(std::move(record)); });
+    return records;
+  };
+  const auto one = run(1);
+  ASSERT_EQ(one.size(), 4U);
+  EXPECT_FALSE(one[0].pressure == one[1].pressure);
+  for (const std::size_t threads : {2U, 7U}) {
+    const auto many = run(threads);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(many[i].pressure == one[i].pressure) << i;
+  }
+  EXPECT_TRUE(PingSimulator(busy()).simulate(3).pressure == one[2].pressure);
+}
+
 }  // namespace
 }  // namespace asdic

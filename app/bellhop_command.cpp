@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "app/provenance.h"
+#include "core/error.h"
+#include "io/bellhop/case_reader.h"
+#include "io/bellhop/results.h"
+
+namespace asdic::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string root, output;
+  bool like_bellhop = false, beams_as_written = false, quiet = false;
+  bellhop::Dialect dialect = bellhop::Dialect::fortran;
+  std::optional<int> threads;
+};
+
+/// Seconds from one call to the next.
+class StopWatch {
+ public:
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    const std::chrono::duration<double> passed = now - std::exchange(last_, now);
+    return passed.count();
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+/// ROOT of "ROOT" or "ROOT.env".
+std::filesystem::path root_of(const std::string& name) {
+  std::filesystem::path root = name;
+  if (root.extension() == ".env") root.replace_extension();
+  return root;
+}
+
+std::filesystem::path with(const std::filesystem::path& root, const char* extension) {
+  return root.string() + extension;
+}
+
+/// What is printed, and into ROOT.prt.
+class Report {
+ public:
+  void line(const std::string& text) { text_ += text + '\n'; }
+  void notes(const std::vector<std::string>& all) {
+    for (const std::string& note : all) line("note       " + note);
+  }
+  void file(const std::filesystem::path& path) {
+    line(fmt::format("written    {}, {}", path.string(),
+                     byte_count(static_cast<double>(std::filesystem::file_size(path)))));
+  }
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// The one beam wanted, of a ray run: the fan is that ray alone. \param notes  what is said of it
+/// else
+void choose_single_beam(PropagationCase& run_case, std::vector<std::string>& notes) {
+  if (!run_case.literal.single_beam) return;
+  if (run_case.task != Task::rays) {
+    notes.push_back("a single beam is asked for: only --like-bellhop obeys, here all are traced");
+    return;
+  }
+  BeamSettings& beams = run_case.beams;
+  const int n = run_case.literal.beams, i = *run_case.literal.single_beam - 1;  // by declination
+  double elevation = beams.highest;
+  if (beams.elevations.size() == std::size_t(n))
+    elevation = beams.elevations[std::size_t(n - 1 - i)];
+  else if (n > 1)
+    elevation = std::lerp(beams.highest, beams.lowest, double(i) / (n - 1));
+  beams.elevations = {elevation};
+  beams.count = 1;
+}
+
+/// As many beams as the file says, no more: asdic's rays, BELLHOP's fan.
+void fix_fan(PropagationCase& run_case) {
+  BeamSettings& beams = run_case.beams;
+  const int n = run_case.literal.beams;
+  if (!beams.elevations.empty() || n < 2) return;
+  for (int i = 0; i < n; ++i)
+    beams.elevations.push_back(std::lerp(beams.lowest, beams.highest, double(i) / (n - 1)));
+}
+
+PropagationResult search(const bellhop::Input& input, const Options& options) {
+  const Interrupt interrupt;
+  constexpr int steps = 100;
+  ProgressBar bar("hundredth", steps, !options.quiet);
+  const Progress progress = [&](double share) {
+    bar.done(static_cast<int>(std::clamp(share, 0.0, 1.0) * steps));
+    return !Interrupt::requested();
+  };
+  try {
+    return options.like_bellhop ? run_like_bellhop(input.run_case, progress)
+                                : run(input.run_case, progress);
+  } catch (const Interrupted&) {
+    throw RunError("interrupted; no result was written");
+  }
+}
+
+void write_results(const bellhop::Input& input, const PropagationResult& result,
+                   const Options& options, const std::filesystem::path& root, Report& report) {
+  const PropagationCase& run_case = input.run_case;
+  if (!result.field.empty()) {
+    bellhop::write_shade_file(with(root, ".shd"),
+                              bellhop::shade_file(run_case, result, options.dialect));
+    report.file(with(root, ".shd"));
+  }
+  if (run_case.task == Task::arrivals || run_case.task == Task::eigenrays_and_arrivals) {
+    bellhop::write_arrivals_file(
+        with(root, ".arr"),
+        bellhop::arrivals_file(run_case, result, input.binary_arrivals, options.dialect));
+    report.file(with(root, ".arr"));
+  }
+  if (run_case.task != Task::arrivals && run_case.task != Task::field) {
+    bellhop::write_ray_file(with(root, ".ray"), bellhop::ray_file(run_case, result));
+    report.file(with(root, ".ray"));
+  }
+}
+
+void run_case(const Options& options, const std::filesystem::path& root, Report& report) {
+  StopWatch watch;
+  bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
+  if (!options.like_bellhop) choose_single_beam(input.run_case, input.notes);
+  if (options.beams_as_written) fix_fan(input.run_case);
+  const double parse = watch.lap();
+  report.line(input.echo);
+  report.notes(input.notes);
+  report.line(options.like_bellhop ? "traced     as BELLHOP does it, step by step"
+                                   : "traced     by asdic's own tracer");
+
+  const PropagationResult result = search(input, options);
+  const double search_time = watch.lap();
+  report.notes(result.notes);
+  if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
+  if (!options.like_bellhop && input.run_case.task == Task::field)
+    report.line(fmt::format("error      more beams would change {:.2g} dB at 95 % of the receivers",
+                            result.beam_error_db));
+  report.line("");
+  write_results(input, result, options, root, report);
+  const double write = watch.lap();
+  report.line(fmt::format("time       parse {:.6f} s, search {:.6f} s, write {:.6f} s", parse,
+                          search_time, write));
+}
+
+int bellhop_command(const Options& options) {
+  const std::filesystem::path root =
+      root_of(options.output.empty() ? options.root : options.output);
+  check_output(with(root, ".prt"), {});
+  const int threads = options.threads.value_or(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  Report report;
+  const Provenance made = provenance(threads);
+  report.line(fmt::format("asdic {} ({}), {}", made.program_version, made.build,
+                          root_of(options.root).string() + ".env"));
+  report.line("");
+  try {
+    run_case(options, root, report);
+  } catch (const std::exception& error) {
+    // scripts around BELLHOP look for these words
+    report.line(fmt::format("FATAL ERROR: {}", error.what()));
+    write_text_file(with(root, ".prt"), report.text());
+    throw;
+  }
+  write_text_file(with(root, ".prt"), report.text());
+  if (!options.quiet) print(report.text());
+  return 0;
+}
+
+}  // namespace
+
+void add_bellhop_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "bellhop",
+      "Run a BELLHOP case: reads ROOT.env and its companions, writes ROOT.shd, ROOT.arr or\n"
+      "ROOT.ray, and ROOT.prt.");
+  command->add_option("root", options->root, "name of the case, with or without .env")
+      ->type_name("ROOT")
+      ->required();
+  command->add_flag("--like-bellhop", options->like_bellhop,
+                    "with BELLHOP's own steps, beams and merging, to compare with its files");
+  command->add_flag("--beams-as-written", options->beams_as_written,
+                    "exactly the beams of the file, where fields take as many as they need");
+  command
+      ->add_option("--dialect", options->dialect,
+                   "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
+      ->type_name("NAME")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, bellhop::Dialect>{{"fortran", bellhop::Dialect::fortran},
+                                                  {"wide", bellhop::Dialect::wide}},
+          CLI::ignore_case));
+  command->add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
+      ->type_name("ROOT");
+  command
+      ->add_option("--threads", options->threads,
+                   "that compute; default: one a core. The results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command->footer(
+      "Ctrl-C stops; nothing half-written is left.\n"
+      "Example:  asdic bellhop munk -o /tmp/munk\n");
+  command->callback(
+      [options, &action] { action = [options] { return bellhop_command(*options); }; });
+}
+
+}  // namespace asdic::app

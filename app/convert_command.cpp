@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "app/provenance.h"
+#include "core/error.h"
+#include "io/bellhop/case_writer.h"
+#include "io/result_file.h"
+#include "io/scenario/propagation.h"
+#include "io/scenario/writer.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  std::string input, output;
+  std::vector<std::string> overrides;
+  bool wide = false, binary = false, quiet = false;
+};
+
+std::string extension_of(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+bool is_hdf5_name(const std::string& extension) {
+  return extension == ".h5" || extension == ".hdf5" || extension == ".nc";
+}
+
+[[noreturn]] void refuse(const Options& options, const std::string& expected) {
+  throw InputError({.where = "convert",
+                    .got = fmt::format("\"{}\" to \"{}\"", options.input, options.output),
+                    .expected = expected});
+}
+
+std::vector<std::string> env_to_toml(const Options& options) {
+  const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.input));
+  write_text_file(options.output, to_toml(input.run_case));
+  return input.notes;
+}
+
+std::vector<std::string> toml_to_env(const Options& options) {
+  std::vector<std::string> notes;
+  const PropagationCase run_case = read_propagation_case(options.input, options.overrides, notes);
+  const bellhop::Written written = bellhop::write_case(run_case, options.binary);
+  std::filesystem::path root = options.output;
+  root.replace_extension();
+  for (const auto& [extension, text] : written.texts.companions)
+    check_output(root.string() + extension, options.input);
+  bellhop::write_case_files(root, written.texts);
+  notes.insert(notes.end(), written.notes.begin(), written.notes.end());
+  return notes;
+}
+
+/// A field, arrivals or rays from one kind of file to another.
+std::vector<std::string> convert_result(const Options& options, const std::string& to) {
+  PropagationFile result = read_result(options.input);
+  const auto dialect = options.wide ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
+  if (is_hdf5_name(to)) {
+    Hdf5Output output(options.output);
+    output.file().set_attribute("", "program_version", provenance(1).program_version);
+    write_hdf5_result(output.file(), result);
+    output.finish();
+  } else if (auto* field = std::get_if<bellhop::ShadeFile>(&result); field && to == ".shd") {
+    field->dialect = dialect;
+    write_shade_file(options.output, *field);
+  } else if (auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result);
+             arrivals && to == ".arr") {
+    arrivals->dialect = dialect;
+    arrivals->binary = options.binary;
+    write_arrivals_file(options.output, *arrivals);
+  } else if (const auto* rays = std::get_if<bellhop::RayFile>(&result); rays && to == ".ray") {
+    write_ray_file(options.output, *rays);
+  } else {
+    refuse(options, fmt::format("{} into .h5 or into their own kind of file (.shd, .arr, .ray)",
+                                kind_of(result)));
+  }
+  return {};
+}
+
+int convert(const Options& options) {
+  const std::string from = extension_of(options.input), to = extension_of(options.output);
+  check_output(options.output, options.input);
+  std::vector<std::string> notes;
+  if (from == ".env" && to == ".toml") {
+    notes = env_to_toml(options);
+  } else if (from == ".toml" && to == ".env") {
+    notes = toml_to_env(options);
+  } else if (from == ".env" || from == ".toml" || to == ".env" || to == ".toml") {
+    refuse(options, "a case (.env) to a scenario (.toml) or back");
+  } else {
+    notes = convert_result(options, to);
+  }
+  if (!options.quiet) {
+    for (const std::string& note : notes) print("note: " + note + '\n');
+    print(fmt::format("{}: {}\n", options.output,
+                      byte_count(static_cast<double>(std::filesystem::file_size(options.output)))));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "convert",
+      "Convert BELLHOP's files: a case (.env and companions) to a scenario (.toml) and back, a\n"
+      "field, arrivals or rays (.shd, .arr, .ray) to HDF5 (.h5) and back.");
+  command->add_option("input", options->input, "what to read; its ending tells what it is")
+      ->type_name("INPUT")
+      ->required();
+  command->add_option("output", options->output, "what to write; its ending tells what it becomes")
+      ->type_name("OUTPUT")
+      ->required();
+  command
+      ->add_option("--set", options->overrides,
+                   "of a scenario: replace a value, e.g. --set run.frequency=500")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--wide", options->wide,
+                    "numbers of 8 bytes in the head of .shd and .arr (the C++ port of BELLHOP)");
+  command->add_flag("--binary", options->binary, "arrivals as a binary .arr (run type a)");
+  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command->footer("Example:  asdic convert munk.env munk.toml");
+  command->callback([options, &action] { action = [options] { return convert(*options); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,81 @@
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/explanation.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "core/error.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  std::string root;
+  ExplainOptions finer;
+  std::optional<int> threads;
+  bool json = false, quiet = false;
+};
+
+int explain_case(const Options& options) {
+  const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
+  const tbb::global_control limit(
+      tbb::global_control::max_allowed_parallelism,
+      static_cast<std::size_t>(options.threads.value_or(tbb::info::default_concurrency())));
+  const Interrupt interrupt;
+  std::optional<ProgressBar> bar(std::in_place, "%", 100, !options.quiet);
+  const auto progress = [&](double share) {
+    bar->done(static_cast<int>(100.0 * share));
+    return !Interrupt::requested();
+  };
+  try {
+    const Explanation explanation = explain(input, options.root, options.finer, progress);
+    bar.reset();
+    print(options.json ? explanation_json(explanation) : explanation_table(explanation));
+  } catch (const Interrupted&) {
+    throw RunError("interrupted");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "explain", "A BELLHOP case as BELLHOP does it and as it should be, and why they differ.");
+  command->add_option("ROOT", options->root, "the case: ROOT.env and its companions")
+      ->required()
+      ->type_name("ROOT");
+  command
+      ->add_option("--finer-step", options->finer.finer_step,
+                   "by how much the step is divided to tell what it costs")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(CLI::Range(1.0, 1e4));
+  command
+      ->add_option("--denser-fan", options->finer.denser_fan,
+                   "by how much the number of beams is multiplied to tell what it costs")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(CLI::Range(1.0, 1e3));
+  command
+      ->add_option("--threads", options->threads,
+                   "that compute; default: one a core. The results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options->json, "print JSON (docs/theory/like-bellhop.md)");
+  command->add_flag("-q,--quiet", options->quiet, "no progress on standard error");
+  command->footer(
+      "The table splits the difference into what BELLHOP's step, number of beams, merging of\n"
+      "arrivals and single precision each change alone. A ROOT.shd, .arr or .ray beside the case\n"
+      "is compared as well.\n"
+      "Example:  asdic explain cases/munk");
+  command->callback([options, &action] { action = [options] { return explain_case(*options); }; });
+}
+
+}  // namespace asdic::app

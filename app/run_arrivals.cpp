@@ -1,0 +1,108 @@
+#include "app/run_arrivals.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/arrivals_output.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "core/error.h"
+#include "core/units.h"
+#include "io/bellhop/results.h"
+#include "io/result_file.h"
+#include "io/scenario/document.h"
+#include "io/scenario/propagation.h"
+#include "io/text/csv_table.h"
+
+namespace asdic::app {
+namespace {
+
+/// Calls see(source depth, receiver depth, range, arrivals) for every receiver, range fastest.
+template <class See>
+void each_receiver(const RunArrivals& all, const See& see) {
+  const ReceiverGrid& grid = all.run_case.receivers;
+  std::size_t i = 0;
+  for (const double source : all.run_case.source_depths)
+    for (std::size_t row = 0; row < grid.rows(); ++row)
+      for (std::size_t r = 0; r < grid.ranges.size(); ++r, ++i)
+        see(source, grid.depths[grid.irregular ? r : row], grid.ranges[r], all.result.arrivals[i]);
+}
+
+}  // namespace
+
+bool is_run_scenario(const ScenarioChoice& choice) {
+  const std::string text = read_text_file(choice.path, "a scenario file");
+  return scenario::read_document(text, choice.path, choice.overrides).find("platform") == nullptr;
+}
+
+RunArrivals find_run_arrivals(const ScenarioChoice& choice,
+                              const std::vector<std::string>& more_overrides) {
+  std::vector<std::string> overrides = choice.overrides;
+  overrides.insert(overrides.end(), more_overrides.begin(), more_overrides.end());
+  RunArrivals all;
+  all.run_case = read_propagation_case(choice.path, overrides, all.notes);
+  all.run_case.task = Task::arrivals;
+  all.origin = {.title = all.run_case.title,
+                .path = choice.path,
+                .text = read_text_file(choice.path, "a scenario file"),
+                .overrides = overrides};
+  const Interrupt interrupt;
+  ProgressBar bar("%", 100, true);
+  try {
+    all.result = run(all.run_case, [&](double share) {
+      bar.done(static_cast<int>(100.0 * share));
+      return !Interrupt::requested();
+    });
+  } catch (const Interrupted&) {
+    throw RunError("interrupted");
+  }
+  all.notes.insert(all.notes.end(), all.result.notes.begin(), all.result.notes.end());
+  return all;
+}
+
+std::string run_arrivals_table(const RunArrivals& all) {
+  std::string text;
+  each_receiver(all, [&](double source, double depth, double range, const Arrivals& arrivals) {
+    if (!text.empty()) text += '\n';
+    text += emphasised(fmt::format("from {} m to a receiver at {} km, {} m: {}", number(source, 1),
+                                   number(range / 1000.0, 3), number(depth, 1),
+                                   count_of(arrivals.size(), "path"))) +
+            '\n' + paths_table(arrivals);
+  });
+  return text + arrivals_legend(all.run_case.frequency);
+}
+
+std::string run_arrivals_json(const RunArrivals& all) {
+  using nlohmann::ordered_json;
+  ordered_json legs = ordered_json::array();
+  each_receiver(all, [&](double source, double depth, double range, const Arrivals& arrivals) {
+    legs.push_back({{"leg", "receiver"},
+                    {"source_depth", source},
+                    {"receiver_depth", depth},
+                    {"range", range},
+                    {"arrivals", ordered_json::parse(paths_json(arrivals))}});
+  });
+  const ordered_json json = {{"filetype", "asdic arrivals"},
+                             {"version", "1.0"},
+                             {"title", all.origin.title},
+                             {"scenario", all.origin.path},
+                             {"frequency_hz", all.run_case.frequency},
+                             {"legs", legs}};
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+void write_run_arrivals(const std::filesystem::path& path, const RunArrivals& all) {
+  const bellhop::ArrivalsFile arrivals = bellhop::arrivals_file(all.run_case, all.result, false);
+  if (path.extension() == ".arr") {
+    bellhop::write_arrivals_file(path, arrivals);
+    return;
+  }
+  Hdf5Output output(path);
+  write_hdf5_result(output.file(), arrivals);
+  write_root(output.file(), "asdic arrivals", all.origin);
+  output.finish();
+}
+
+}  // namespace asdic::app

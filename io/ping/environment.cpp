@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+
+#include "io/ping/scale.h"
+#include "io/ping/sections.h"
+#include "io/text/material_text.h"
+#include "io/text/toml_value.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/transmitter.h"
+
+namespace asdic::ping_file {
+namespace {
+
+std::string text_of(const Absorption& absorption) {
+  std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
+  if (const auto* law = std::get_if<FrancoisGarrison>(&absorption))
+    text += ", " + to_text(law->temperature) + " degC, " + to_text(law->salinity) + " psu, pH " +
+            to_text(law->ph) + ", " + to_text(law->depth) + " m";
+  return text;
+}
+
+std::string interpolation_of(const Environment& ocean) {
+  if (ocean.section) return "section";
+  if (const auto& munk = ocean.water.munk_parameters())
+    return "munk, axis " + to_text(munk->axis_speed) + " m/s at " + to_text(munk->axis_depth) +
+           " m, scale " + to_text(munk->scale_depth) + " m, perturbation " +
+           to_text(munk->perturbation);
+  if (ocean.water.depths().size() == 1) return "isovelocity";
+  return std::string(name(ocean.water.interpolation()));
+}
+
+template <class T>
+std::vector<T> vector_of(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
+/// The nodes of a boundary that is not flat. \param side  "surface" or "bottom"
+void write_shape(Hdf5File& file, const std::string& side, const BoundaryShape& shape) {
+  const std::string range = "environment/" + side + "_range",
+                    depth = "environment/" + side + "_depth";
+  write_scale(file, range, side + "_node", vector_of(shape.ranges()), "along the transect", "m");
+  file.write<double>(depth, vector_of(shape.depths()), {shape.depths().size()});
+  describe(file, depth, "of the " + side + " at its nodes, positive down", "m");
+  file.attach_scales(depth, {range});
+  file.set_attribute(depth, "interpolation", name(shape.interpolation()));
+  if (shape.materials().empty()) return;
+  std::vector<std::string> materials;
+  for (const BoundaryMaterial& material : shape.materials())
+    materials.push_back(material_text(material));
+  file.set_attribute(depth, "materials", materials);
+}
+
+void write_section(Hdf5File& file, const SoundSpeedSection& section) {
+  write_scale(file, "environment/section_range", "section_range", vector_of(section.ranges()),
+              "along the transect", "m");
+  write_scale(file, "environment/section_depth", "section_depth", vector_of(section.depths()),
+              "depth, positive down", "m");
+  file.write<double>("environment/section_sound_speed", vector_of(section.speeds()),
+                     {section.ranges().size(), section.depths().size()});
+  describe(file, "environment/section_sound_speed", "speed of sound", "m/s");
+  file.attach_scales("environment/section_sound_speed",
+                     {"environment/section_range", "environment/section_depth"});
+}
+
+/// All that varies along the transect, and where that lies.
+void write_transect(Hdf5File& file, const Scenario& scenario) {
+  const Environment& ocean = scenario.environment;
+  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return;
+  file.set_attribute("environment", "transect_x_m", scenario.transect.x);
+  file.set_attribute("environment", "transect_y_m", scenario.transect.y);
+  file.set_attribute("environment", "transect_bearing_deg",
+                     compass_degrees(scenario.transect.bearing));
+  if (ocean.section) write_section(file, *ocean.section);
+  if (ocean.surface.shape) write_shape(file, "surface", *ocean.surface.shape);
+  if (ocean.bottom.shape) write_shape(file, "bottom", *ocean.bottom.shape);
+}
+
+}  // namespace
+
+void write_environment(Hdf5File& file, const Scenario& scenario) {
+  const Environment& ocean = scenario.environment;
+  const PropagationPaths paths(ocean, scenario.transect);
+  Vec3 place = scenario.platform.at(0.0).position;
+  const double surface = paths.surface_depth(place), bottom = paths.bottom_depth(place);
+  constexpr std::size_t points = 501;
+  std::vector<double> depth, speed;
+  for (std::size_t i = 0; i < points; ++i) {
+    depth.push_back(surface + (bottom - surface) * static_cast<double>(i) / (points - 1.0));
+    speed.push_back(paths.speed_at({place.x(), place.y(), depth.back()}));
+  }
+  write_scale(file, "environment/depth", "depth", depth, "depth, positive down", "m");
+  file.write<double>("environment/sound_speed", speed, {points});
+  describe(file, "environment/sound_speed", "speed of sound at the platform's first place", "m/s");
+  file.attach_scales("environment/sound_speed", {"environment/depth"});
+
+  const std::string group = "environment";
+  file.set_attribute(group, "surface", material_text(ocean.surface.material));
+  file.set_attribute(group, "bottom", material_text(ocean.bottom.material));
+  file.set_attribute(group, "bottom_depth_m", bottom);
+  file.set_attribute(group, "wind_speed_mps", scenario.wind_speed);
+  file.set_attribute(group, "absorption", text_of(ocean.absorption));
+  file.set_attribute(group, "interpolation", interpolation_of(ocean));
+  write_transect(file, scenario);
+  std::visit(
+      [&](auto law) {
+        file.set_attribute(group, "scattering_model", law.name);
+        law.describe([&](const char* key, double value, const Range&) {
+          file.set_attribute(group, std::string("scattering_") + key, value);
+        });
+      },
+      scenario.reverberation.surface);
+  const double wavelength = paths.speed_at(place) / Pulse(scenario.pulse).centre_frequency();
+  file.set_attribute(group, "transmitter_line_length_m",
+                     BeamPattern(scenario.transmitter, wavelength).line_length());
+}
+
+}  // namespace asdic::ping_file

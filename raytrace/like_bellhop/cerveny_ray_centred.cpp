@@ -1,0 +1,44 @@
+#include <cmath>
+
+#include "raytrace/like_bellhop/cerveny.h"
+#include "raytrace/like_bellhop/depth_line.h"
+
+namespace asdic::like_bellhop {
+
+using Complex = std::complex<double>;
+
+void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const ReceiverBlock& block,
+                             BeamSink& sink) {
+  const double omega = beam.omega(), factor = beam.launch_factor();
+  const double wavelength = beam.source_speed / beam.frequency;
+  const Complex epsilon = beam_epsilon(beam, kind);
+  const double window = static_cast<double>(kind.window) * kind.window;
+  const auto q_of = [&](const LiteralPoint& y) { return y.q1 + epsilon * y.q2; };
+  const auto curvature_of = [&](const LiteralPoint& y) {  // M = p/q of the front
+    return (y.p1 + epsilon * y.p2) / q_of(y);
+  };
+  for_each_depth_line(block, [&](double depth, std::size_t row, const ReceiverBlock& line) {
+    for (int k = 0; k < kind.images; ++k) {
+      const Image image = image_of(beam, depth, k);
+      double branch = 1.0;
+      follow_depth_line(beam.ray, image.depth, line, [&](const LineSegment& s) {
+        const Complex qa = q_of(s.a), qb = q_of(s.b);
+        const Complex ma = curvature_of(s.a), mb = curvature_of(s.b);
+        s.over_columns([&](std::size_t column, double w) {
+          const Complex q = qa + w * (qb - qa), m = ma + w * (mb - ma);
+          const Complex tau = s.a.tau + w * (s.b.tau - s.a.tau);
+          const double n = s.na + w * (s.nb - s.na), c = s.a.c;
+          if (m.imag() > 0.0 || -0.5 * omega * m.imag() * n * n >= window) return;
+          const Complex phase = omega * (tau + 0.5 * m * n * n) - s.a.phase;
+          sink.take_pressure(row, column,
+                             image.sign * factor * s.b.amplitude * taper(std::abs(n), wavelength) *
+                                 next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q) *
+                                 std::exp(Complex(0.0, -1.0) * phase));
+        });
+        branch = next_branch(branch, qa, qb);
+      });
+    }
+  });
+}
+
+}  // namespace asdic::like_bellhop

@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""The 16 reference cases of BELLHOP run by asdic, and how far everything is from everything.
+
+    ASDIC=path/to/asdic scripts/compare_bellhop.sh [CASE ...]
+
+For each case of tests/data/bellhop: BELLHOP's default run against its converged one; asdic's own run
+of case.env against the converged one; asdic's rays with exactly the fan of converged/case.env against
+the converged one; and --like-bellhop against the default run. Everything by `asdic compare`. Prints
+Markdown. Exit code: 0, 1 when a run failed, 2 when there is nothing to run.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+DATA = ROOT / "tests" / "data" / "bellhop"
+ASDIC = os.environ.get("ASDIC", str(ROOT / "build" / "release" / "bin" / "asdic"))
+TIME_LIMIT = float(os.environ.get("ASDIC_TIME_LIMIT", "600"))  # of one run [s]
+
+
+class Failed(Exception):
+    pass
+
+
+def asdic(*words):
+    """→ what it printed. Raises Failed when it could not"""
+    try:
+        done = subprocess.run([ASDIC, *map(str, words)], capture_output=True, text=True,
+                              timeout=TIME_LIMIT)
+    except subprocess.TimeoutExpired:
+        raise Failed(f"asdic {words[0]}: not done after {TIME_LIMIT:g} s")
+    if done.returncode != 0:
+        raise Failed(done.stderr.strip() or f"asdic {words[0]}: exit {done.returncode}")
+    return done.stdout
+
+
+def compare(a, b, *options):
+    return json.loads(asdic("compare", a, b, "--json", *options))
+
+
+class Case:
+    """One case, and the runs of it that are there."""
+
+    def __init__(self, name, work):
+        self.name = name
+        self.folder = DATA / name
+        self.meta = json.loads((self.folder / "meta.json").read_text())
+        self.output = self.meta["output"].split(".")[-1]        # shd, arr or ray
+        self.work = work
+        self.faults = []
+        self.seconds = float("nan")
+
+    def run(self, which, *options, converged=False):
+        """Runs the case (or the converged one) → its output file, or None with a fault noted."""
+        folder = self.work / self.name / which
+        source = self.folder / "converged" if converged else self.folder
+        folder.mkdir(parents=True)
+        for file in [*self.folder.iterdir(), *source.iterdir()]:    # companions are with the case
+            if file.is_file() and file.suffix not in (".shd", ".arr", ".ray", ".json"):
+                shutil.copy(file, folder)
+        started = time.monotonic()
+        try:
+            asdic("bellhop", folder / "case", *options)
+        except Failed as fault:
+            self.faults.append(f"{self.name}, {which}: {fault}")
+            return None
+        self.seconds = time.monotonic() - started
+        return folder / f"case.{self.output}"
+
+    def against(self, a, b, *options):
+        """→ figures of two files, or None"""
+        if a is None or not a.exists():
+            return None
+        try:
+            return compare(a, b, *options)
+        except Failed as fault:
+            self.faults.append(f"{self.name}: {fault}")
+            return None
+
+    @property
+    def default(self):
+        return self.folder / f"case.{self.output}"
+
+    @property
+    def converged(self):
+        return self.folder / "converged" / f"case.{self.output}"
+
+
+def figure(value):
+    if value is None:
+        return "–"
+    if 0 < abs(value) < 1e-3:
+        return "< 0.001"
+    return f"{value:.2g}" if abs(value) < 10 else f"{value:.0f}"
+
+
+def pair(figures, key, first="median", second="p95"):
+    spread = figures and figures.get(key)
+    return "–" if not spread else f"{figure(spread[first])} / {figure(spread[second])}"
+
+
+def row(*cells):
+    return "| " + " | ".join(str(c) for c in cells) + " |"
+
+
+def table(head, rows):
+    return "\n".join([row(*head), row(*["---"] * len(head)), *rows])
+
+
+def field_row(case):
+    own = case.run("own")
+    seconds = case.seconds
+    fan = case.run("fan", "--beams-as-written", converged=True)
+    like = case.run("like", "--like-bellhop")
+    bellhop = case.against(case.default, case.converged)
+    mine = case.against(own, case.converged)
+    level = "–" if mine is None else f"{mine['level_db']:+.2f}"
+    return row(f"`{case.name}`", pair(bellhop, "tl_db"),
+               f"{case.meta['figures']['residual']['dtl_median']:.2g} / "
+               f"{case.meta['figures']['residual']['dtl_p95']:.2g}",
+               pair(mine, "tl_db"), level, pair(case.against(fan, case.converged), "tl_db"),
+               pair(case.against(like, case.default), "tl_db"), f"{seconds:.1f}")
+
+
+def arrival_cells(figures):
+    if figures is None:
+        return ["–"] * 4
+    strong = figures["strong_matched_pct"]
+    return [f"{figures['matched_pct']:.1f} ({strong:.1f})", pair(figures, "delay_us"),
+            pair(figures, "amplitude_db"), figure((figures["arrival_angle_deg"] or {}).get("p95"))]
+
+
+def arrival_rows(case):
+    own = case.run("own")
+    seconds = case.seconds
+    like = case.run("like", "--like-bellhop")
+    residual = case.meta["figures"]["residual"]
+    return [row(f"`{case.name}`", "BELLHOP's default against its converged",
+                *arrival_cells(case.against(case.default, case.converged)), ""),
+            row("", "residual of the converged", f"{residual['matched_pct']:.1f}",
+                f"{figure(residual.get('d_delay_us_median'))} / "
+                f"{figure(residual.get('d_delay_us_p95'))}",
+                f"{figure(residual.get('d_amp_db_median'))} / "
+                f"{figure(residual.get('d_amp_db_p95'))}",
+                figure(residual.get("d_rcv_deg_p95")), ""),
+            row("", "asdic against BELLHOP's converged",
+                *arrival_cells(case.against(own, case.converged)), f"{seconds:.2f}"),
+            row("", "like BELLHOP against its default",
+                *arrival_cells(case.against(like, case.default)), "")]
+
+
+def ray_cells(figures):
+    if figures is None:
+        return ["–"] * 3
+    inside = figures["inside_m"]
+    return [f"{figures['paired']} of {figures['rays_b']}",
+            "–" if not inside else f"{figure(inside['median'])} / {figure(inside['max'])}",
+            pair(figures, "end_m", "median", "max")]
+
+
+def ray_rows(case):
+    # exact eigenrays are other rays than those of a fan that come near the receiver
+    wide = ["--pair-deg", "0.2"] if case.meta["run"].startswith("E") else []
+    own, like = case.run("own"), case.run("like", "--like-bellhop")
+    return [row(f"`{case.name}`", "BELLHOP's default against its converged",
+                *ray_cells(case.against(case.default, case.converged))),
+            row("", "asdic against BELLHOP's converged",
+                *ray_cells(case.against(own, case.converged, *wide))),
+            row("", "like BELLHOP against its default",
+                *ray_cells(case.against(like, case.default)))]
+
+
+def main(names):
+    every = sorted(p.parent.name for p in DATA.glob("*/meta.json"))
+    names = names or every
+    if not every or not set(names) <= set(every):
+        print(f"compare_bellhop: no such case; there are {', '.join(every)}", file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory(prefix="asdic_bellhop_") as folder:
+        cases = [Case(name, Path(folder)) for name in names]
+        of = {kind: [c for c in cases if c.output == kind] for kind in ("shd", "arr", "ray")}
+        if of["shd"]:
+            print("Fields: |ΔTL| median / 95 % of the cells below 120 dB [dB]\n")
+            print(table(["case", "BELLHOP's default against its converged",
+                         "residual of the converged", "asdic against the converged",
+                         "its mean level, dB", "asdic with the converged fan",
+                         "like BELLHOP against its default", "asdic, s"],
+                        [field_row(c) for c in of["shd"]]))
+        if of["arr"]:
+            print("\nArrivals: paths joined, within 40 dB of the strongest; spreads as median / 95 %\n")
+            print(table(["case", "", "matched % (within 20 dB)", "delay µs", "amplitude dB",
+                         "angle °, 95 %", "s"], [r for c in of["arr"] for r in arrival_rows(c)]))
+        if of["ray"]:
+            print("\nRays: distance from the other's path, median / max over the rays [m]\n")
+            print(table(["case", "", "paired", "end points aside", "end points"],
+                        [r for c in of["ray"] for r in ray_rows(c)]))
+        faults = [fault for c in cases for fault in c.faults]
+    for fault in faults:
+        print(f"compare_bellhop: {fault}", file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,27 @@
+#pragma once
+#include "fuzz/fuzz_target.h"
+#include "io/bellhop/case_writer.h"
+
+namespace asdic::fuzz {
+
+/// Reads a case; one that is read can be written, and what is written can be read.
+inline void read_and_write(const bellhop::Texts& texts) {
+  bellhop::Input input;
+  if (refuses([&] { input = bellhop::read_case(texts, "case"); })) return;
+  bellhop::Written written;
+  if (refuses([&] { written = bellhop::write_case(input.run_case, input.binary_arrivals); }))
+    return;
+  insist(!refuses([&] { (void)bellhop::read_case(written.texts, "again"); }),
+         "a case that was written can be read");
+}
+
+/// A small case whose companions are what is tested.
+inline bellhop::Texts small_case(const char* top, const char* bottom, const char* run) {
+  return {.env = std::string("'x'\n100\n1\n'") + top +
+                 "'\n0 0 100\n0 1500 /\n50 1490 /\n100 1510 /\n'" + bottom +
+                 "' 0\n100 1700 0 1.8 0.5 /\n1\n30 /\n2\n10 90 /\n3\n0 1 /\n'" + run +
+                 "'\n21\n-40 40 /\n0 120 1.1\n",
+          .companions = {}};
+}
+
+}  // namespace asdic::fuzz

@@ -1,0 +1,10 @@
+#include "fuzz/bellhop_case.h"
+
+// .ssp, range-dependent water.
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  asdic::bellhop::Texts texts = asdic::fuzz::small_case("QVW", "A", "CG");
+  texts.companions.emplace_back(".ssp", asdic::fuzz::text(data, size));
+  asdic::fuzz::read_and_write(texts);
+  return 0;
+}

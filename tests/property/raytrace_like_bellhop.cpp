@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <complex>
+
+#include "raytrace/like_bellhop/like_bellhop.h"
+
+// Laws of the literal run: what it must keep however BELLHOP does it.
+
+namespace asdic {
+namespace {
+
+/// A deep channel over sand, 20 km long.
+PropagationCase channel() {
+  const double depth[] = {0.0, 300.0, 900.0, 2000.0, 4000.0};
+  const double speed[] = {1525.0, 1510.0, 1492.0, 1500.0, 1530.0};
+  PropagationCase c;
+  c.frequency = 150.0;
+  c.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  c.environment.bottom = {.depth = 4000.0, .material = FluidHalfSpace{}};
+  c.source_depths = {700.0};
+  for (int i = 0; i <= 20; ++i) c.receivers.depths.push_back(100.0 + 190.0 * i);
+  for (int i = 1; i <= 40; ++i) c.receivers.ranges.push_back(500.0 * i);
+  c.beams.lowest = radians(-30.0);
+  c.beams.highest = radians(30.0);
+  c.literal = {.step = 200.0, .beams = 801};
+  c.box_range = 21e3;
+  c.box_depth = 4500.0;
+  return c;
+}
+
+/// Uniform water without boundaries near.
+PropagationCase open_water(BeamKind kind) {
+  PropagationCase c;
+  c.frequency = 1000.0;
+  const double depth[] = {0.0, 10e3}, speed[] = {1500.0, 1500.0};
+  c.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  c.environment.bottom = {.depth = 10e3, .material = Vacuum{}};
+  c.source_depths = {5000.0};
+  c.receivers = {.depths = {4900.0, 5000.0, 5150.0}, .ranges = {400.0, 700.0, 1000.0, 1300.0}};
+  c.beams.kind = kind;
+  c.beams.lowest = radians(-40.0);
+  c.beams.highest = radians(40.0);
+  c.beams.cerveny = CervenyBeams{};
+  c.literal = {.step = 50.0, .beams = 2001};
+  c.box_range = 2000.0;
+  c.box_depth = 10e3;
+  return c;
+}
+
+TEST(LikeBellhop, BitsDoNotDependOnThreads) {
+  PropagationCase c = channel();
+  for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian, BeamKind::ray_centred_hat}) {
+    c.beams.kind = kind;
+    std::vector<std::complex<float>> alone;
+    {
+      const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+      alone = run_like_bellhop(c).field;
+    }
+    EXPECT_EQ(run_like_bellhop(c).field, alone);
+  }
+}
+
+// p = Σ A·exp(−iωτ): the arrivals, unmerged and in double precision, are the terms of the field.
+// 1e-6: the result is stored in float32.
+TEST(LikeBellhop, FieldIsTheSumOfItsArrivals) {
+  PropagationCase c = channel();
+  const LikeBellhopOptions options{.merge = false, .single_precision = false};
+  const auto field = run_like_bellhop(c, options).field;
+  c.task = Task::arrivals;
+  const auto arrivals = run_like_bellhop(c, options).arrivals;
+  ASSERT_EQ(field.size(), arrivals.size());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    std::complex<double> sum = 0.0;
+    double magnitudes = 0.0;
+    for (const Arrival& a : arrivals[i]) {
+      sum += a.amplitude * std::polar(1.0, -2.0 * pi * c.frequency * a.delay);
+      magnitudes += std::abs(a.amplitude);
+    }
+    EXPECT_NEAR(std::abs(sum - std::complex<double>(field[i])), 0.0, 1e-6 * magnitudes);
+  }
+}
+
+struct FreeSpace {
+  BeamKind kind;
+  double level_db, phase;  ///< how near to exp(−ikR)/R, or to what Gaussian beams make of it
+  bool gaussian = false;
+};
+
+class LikeBellhopOpenWater : public ::testing::TestWithParam<FreeSpace> {};
+
+// exp(−ikR)/R, and for Gaussian beams, whose fronts are plane,
+//   ∫ exp(−(Rα)²/2σ² + ikRα²/2) R dα/(σ√2π) = 1/√(1 − ikσ²/R)
+// of it, σ = πλ their least width. Hat beams interpolate linearly between rays: a part in 10⁴ in
+// level, k·(R·dα)²/8R of phase. Along a normal the delay lacks nothing here; over a hat's width it
+// does, of the same order. Červený's are paraxial: k·n⁴/8R³ at the edge of a beam of half-width 40
+// m. The last range is left out: BELLHOP leaves it out of its Cartesian Červený beams.
+TEST_P(LikeBellhopOpenWater, IsASphericalWave) {
+  const PropagationCase c = open_water(GetParam().kind);
+  const auto field = run_like_bellhop(c).field;
+  const double k = 2.0 * pi * c.frequency / 1500.0;
+  for (std::size_t row = 0; row < c.receivers.depths.size(); ++row)
+    for (std::size_t column = 0; column + 1 < c.receivers.ranges.size(); ++column) {
+      const double distance =
+          std::hypot(c.receivers.ranges[column], c.receivers.depths[row] - c.source_depths[0]);
+      const std::complex<double> p(field[row * c.receivers.ranges.size() + column]);
+      const double sigma = pi * 2.0 * pi / k;
+      const std::complex<double> expected =
+          GetParam().gaussian
+              ? 1.0 / std::sqrt(std::complex<double>(1.0, -k * sigma * sigma / distance))
+              : 1.0;
+      const std::complex<double> ratio = p * distance * std::polar(1.0, k * distance) / expected;
+      EXPECT_NEAR(db_from_amplitude(std::abs(ratio)), 0.0, GetParam().level_db)
+          << row << ' ' << column;
+      EXPECT_NEAR(std::arg(ratio), 0.0, GetParam().phase) << row << ' ' << column;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LikeBellhopOpenWater,
+                         ::testing::Values(FreeSpace{BeamKind::hat, 0.01, 0.01},
+                                           FreeSpace{BeamKind::gaussian, 0.01, 0.01, true},
+                                           FreeSpace{BeamKind::ray_centred_hat, 0.01, 0.01},
+                                           FreeSpace{BeamKind::ray_centred_gaussian, 0.01, 0.01,
+                                                     true},
+                                           FreeSpace{BeamKind::simple_gaussian, 0.01, 0.01},
+                                           FreeSpace{BeamKind::cerveny_cartesian, 0.1, 0.05},
+                                           FreeSpace{BeamKind::cerveny_ray_centred, 0.1, 0.05}));
+
+}  // namespace
+}  // namespace asdic

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/field_file.h"
+#include "io/result_file.h"
+#include "support/program.h"
+
+// asdic field, and asdic rays and arrivals of an ocean and a run without a sonar.
+
+namespace asdic {
+namespace {
+
+using nlohmann::json;
+using support::asdic;
+
+/// A half space of water without a floor in reach: only the direct path and its image over the
+/// surface arrive.
+constexpr const char* lloyd_mirror = R"(title = "under the surface"
+[environment]
+[environment.sound_speed]
+kind = "isovelocity"
+speed = 1500.0
+[environment.bottom]
+depth = 4000.0
+kind = "fluid"
+speed = 1500.0
+density = 1027.0
+attenuation_db_per_wavelength = 0.0
+[environment.absorption]
+kind = "none"
+[run]
+task = "field"
+frequency = 100.0
+[run.source]
+depth = 40.0
+[run.receivers]
+depth = [60.0, 100.0]
+range = { first = 500.0, last = 1500.0, count = 11 }
+[run.fan]
+lowest_deg = -60.0
+highest_deg = 60.0
+)";
+
+class FieldCommand : public ::testing::Test {
+ protected:
+  void SetUp() override { static_cast<void>(folder.write("mirror.toml", lloyd_mirror)); }
+  support::TemporaryDirectory folder;
+};
+
+/// e^{−ikr}/r from the source, less the same from its image.
+std::complex<double> mirror(double range, double depth) {
+  const double k = 2.0 * M_PI * 100.0 / 1500.0;
+  const double direct = std::hypot(range, depth - 40.0), image = std::hypot(range, depth + 40.0);
+  return std::polar(1.0 / direct, -k * direct) - std::polar(1.0 / image, -k * image);
+}
+
+// Straight rays: the sum of hat beams interpolates linearly between two rays, and the beams are doubled
+// until that costs less than 0.1 dB, 1.2 % of the pressure. No receiver is in a null.
+TEST_F(FieldCommand, WritesTheFieldOfTheScenario) {
+  const auto run = asdic(folder, "field mirror.toml -o mirror.h5 --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json summary = json::parse(run.out);
+  EXPECT_EQ(summary["receivers"], 22);
+  EXPECT_EQ(summary["beam_kind"], "hat");
+  EXPECT_GT(summary["beams"], 10);
+  const FieldData field = read_field(folder / "mirror.h5");
+  EXPECT_EQ(field.title, "under the surface");
+  ASSERT_EQ(field.pressure.size(), 22U);
+  for (std::size_t i = 0; i < 22; ++i) {
+    const std::complex<double> exact =
+        mirror(field.receivers.ranges[i % 11], field.receivers.depths[i / 11]);
+    EXPECT_LT(std::abs(std::complex<double>(field.pressure[i]) - exact), 0.012 * std::abs(exact));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "mirror.h5.part"));
+}
+
+TEST_F(FieldCommand, TheFileTellsOfItself) {
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q --set run.beams.kind=gaussian").status, 0);
+  const Hdf5File file = Hdf5File::open(folder / "mirror.h5");
+  EXPECT_EQ(file.attribute_text("", "filetype"), "asdic field");
+  EXPECT_EQ(file.attribute_text("", "beam_kind"), "gaussian");
+  EXPECT_EQ(file.attribute_text("", "overrides"), "run.beams.kind=gaussian");
+  EXPECT_EQ(file.read_text("scenario"), lloyd_mirror);
+  EXPECT_EQ(file.info("pressure").shape, (Shape{1, 2, 11, 2}));
+  for (const DatasetInfo& dataset : file.datasets())
+    EXPECT_TRUE(file.has_attribute(dataset.path, "long_name")) << dataset.path;
+  EXPECT_EQ(file.read<double>("environment/bottom_depth").front(), 4000.0);
+}
+
+TEST_F(FieldCommand, AShadeFileHoldsTheSameField) {
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q -o a.h5").status, 0);
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q -o a.shd").status, 0);
+  const auto run = asdic(folder, "compare a.h5 a.shd --max-p95 1e-9 --max-error 1e-6");
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+}
+
+TEST_F(FieldCommand, ThreadsDoNotChangeABit) {
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q -o one.h5 --threads 1").status, 0);
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q -o four.h5 --threads 4").status, 0);
+  EXPECT_EQ(read_field(folder / "one.h5").pressure, read_field(folder / "four.h5").pressure);
+}
+
+// Arrivals at every receiver; their sum at the frequency is the exact field.
+TEST_F(FieldCommand, ArrivalsOfARunAddUpToTheField) {
+  ASSERT_EQ(asdic(folder, "arrivals mirror.toml -o mirror.h5").status, 0);
+  ASSERT_EQ(asdic(folder, "arrivals mirror.toml -o mirror.arr").status, 0);
+  EXPECT_EQ(
+      asdic(folder, "compare mirror.h5 mirror.arr --min-matched 100 --max-delay-us 0.1").status, 0);
+  const auto file = std::get<bellhop::ArrivalsFile>(read_result(folder / "mirror.h5"));
+  ASSERT_EQ(file.arrivals.size(), 22U);
+  for (std::size_t i = 0; i < 22; ++i) {
+    std::complex<double> sum = 0.0;
+    for (const auto& a : file.arrivals[i])
+      sum += std::polar(a.amplitude, a.phase_deg * M_PI / 180.0 - 2.0 * M_PI * 100.0 * a.delay);
+    const std::complex<double> exact =
+        mirror(file.receiver_ranges[i % 11], file.receiver_depths[i / 11]);
+    EXPECT_LT(std::abs(sum - exact), 1e-6 * std::abs(exact));
+  }
+  const json one = json::parse(
+      asdic(folder, "arrivals mirror.toml --receiver-depth 60m --range 1km --json").out);
+  ASSERT_EQ(one["legs"].size(), 1U);
+  EXPECT_EQ(one["legs"][0]["arrivals"].size(), 2U);
+}
+
+TEST_F(FieldCommand, RaysOfARunAreItsOceans) {
+  const auto run = asdic(folder, "rays mirror.toml --elevations 30 --range 1km --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json ray = json::parse(run.out)["rays"][0];
+  EXPECT_NEAR(ray["surface_hits"][0].get<double>(), 40.0 / std::tan(M_PI / 6.0), 1e-6);
+  ASSERT_EQ(asdic(folder, "rays mirror.toml --count 5 --range 1km -o fan.ray").status, 0);
+  EXPECT_EQ(bellhop::read_ray_file(folder / "fan.ray").rays.size(), 5U);
+}
+
+TEST_F(FieldCommand, WrongInputIsToldInOneLine) {
+  for (const auto& [words, says] : std::vector<std::pair<std::string, std::string>>{
+           {"field none.toml", "none.toml"},
+           {"field mirror.toml --set run.source.depth=9000", "9000"},
+           {"field mirror.toml --set run.beams.kind=square", "run.beams.kind"},
+           {"field mirror.toml -o nowhere/x.h5", "--output"},
+           {"field mirror.toml -o mirror.toml", "--output"},
+           {"arrivals mirror.toml --leg target", "platform"}}) {
+    const auto run = asdic(folder, words);
+    EXPECT_EQ(run.status, 2) << words;
+    EXPECT_EQ(run.out, "") << words;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(says), std::string::npos) << run.err;
+  }
+}
+
+}  // namespace
+}  // namespace asdic

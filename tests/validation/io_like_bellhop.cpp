@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "io/bellhop/case_reader.h"
+#include "io/bellhop/results.h"
+#include "io/compare/arrivals.h"
+#include "io/compare/fields.h"
+#include "raytrace/like_bellhop/like_bellhop.h"
+
+// The literal run against BELLHOP's own outputs at its default settings (tests/data/bellhop). The
+// two do the same operations in the same order, so what is left is rounding: of pressures summed in
+// float32 (relative 6e-8, 5e-7 dB a rounding, three or four of which meet in a number), and of rays
+// in double, which boundaries magnify.
+
+namespace asdic {
+namespace {
+
+const std::filesystem::path data = ASDIC_TEST_DATA "/bellhop";
+
+struct FieldCase {
+  const char* name;
+  double median_db, p95_db, relative_error;
+};
+
+void PrintTo(const FieldCase& c, std::ostream* out) { *out << c.name; }
+
+/// The case's name as gtest takes it.
+const auto test_name = [](const auto& test) {
+  std::string name = ::testing::PrintToString(test.param);
+  std::string letters;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) letters += c;
+  return letters;
+};
+
+class LikeBellhopField : public ::testing::TestWithParam<FieldCase> {};
+
+TEST_P(LikeBellhopField, IsThatOfTheFile) {
+  const FieldCase& expected = GetParam();
+  const auto input = bellhop::read_case(data / expected.name / "case");
+  const auto field = bellhop::shade_file(input.run_case, run_like_bellhop(input.run_case));
+  const auto d =
+      compare::compare_fields(field, bellhop::read_shade_file(data / expected.name / "case.shd"));
+  EXPECT_LE(d.tl_db.median, expected.median_db);
+  EXPECT_LE(d.tl_db.p95, expected.p95_db);
+  EXPECT_LE(d.relative_error, expected.relative_error);
+  EXPECT_LE(d.one_sided_pct, 0.5);
+}
+
+// Rounding: 1e-5 dB and 1e-6 of the pressure leave room for another compiler's order of operations.
+// Grain size: the reference was computed with some coefficients of the regressions in float32, 2e-5
+// dB. Cerveny beams: a few beams at the ends of the receivers' ranges are counted otherwise.
+INSTANTIATE_TEST_SUITE_P(Cases, LikeBellhopField,
+                         ::testing::Values(FieldCase{"front-range-dependent", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"grain-semicoherent", 2e-5, 1e-4, 2e-6},
+                                           FieldCase{"munk-coherent-hat", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"munk-incoherent-gauss", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"pekeris-coherent", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"seamount-curved", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"swell-surface", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"tables-and-pattern", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"wedge-gauss", 1e-6, 1e-5, 1e-6},
+                                           FieldCase{"cerveny-cartesian", 1e-5, 1e-3, 5e-3},
+                                           FieldCase{"cerveny-raycentred", 1e-5, 1e-3, 1e-3}),
+                         test_name);
+
+class LikeBellhopArrivals : public ::testing::TestWithParam<std::string> {};
+
+// Row by row, in the order of the file: the same beams merged, the same float32 delay.
+TEST_P(LikeBellhopArrivals, AreThoseOfTheFile) {
+  const std::string& name = GetParam();
+  const auto input = bellhop::read_case(data / name / "case");
+  const auto ours = bellhop::arrivals_file(input.run_case, run_like_bellhop(input.run_case), false);
+  const auto file = bellhop::read_arrivals_file(data / name / "case.arr");
+  ASSERT_EQ(ours.arrivals.size(), file.arrivals.size());
+  std::size_t rows = 0, same_delay = 0;
+  for (std::size_t i = 0; i < file.arrivals.size(); ++i) {
+    ASSERT_EQ(ours.arrivals[i].size(), file.arrivals[i].size()) << "receiver " << i;
+    for (std::size_t k = 0; k < file.arrivals[i].size(); ++k) {
+      const auto &a = ours.arrivals[i][k], &b = file.arrivals[i][k];
+      ++rows;
+      same_delay += static_cast<float>(a.delay) == static_cast<float>(b.delay) ? 1 : 0;
+      EXPECT_NEAR(a.delay, b.delay, 5e-6);  // a unit or two of float32 below 64 s
+      EXPECT_NEAR(a.amplitude, b.amplitude, 1e-5 * b.amplitude);
+      EXPECT_NEAR(std::remainder(a.phase_deg - b.phase_deg, 360.0), 0.0, 1e-3);
+      EXPECT_NEAR(a.launch_angle_deg, b.launch_angle_deg, 1e-4);
+      EXPECT_NEAR(a.arrival_angle_deg, b.arrival_angle_deg, 1e-4);
+      EXPECT_EQ(a.surface_bounces, b.surface_bounces);
+      EXPECT_EQ(a.bottom_bounces, b.bottom_bounces);
+    }
+  }
+  // A delay of double precision that lies on the edge between two float32's may fall either way.
+  EXPECT_GE(static_cast<double>(same_delay), 0.99 * static_cast<double>(rows));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, LikeBellhopArrivals,
+                         ::testing::Values<std::string>("deep-source-arrivals",
+                                                        "deep-source-arrivals-pchip",
+                                                        "elastic-arrivals"),
+                         test_name);
+
+class LikeBellhopRays : public ::testing::TestWithParam<std::string> {};
+
+// Every step of every ray: 1 µm after hundreds of them is rounding.
+TEST_P(LikeBellhopRays, AreThoseOfTheFile) {
+  const std::string& name = GetParam();
+  const auto input = bellhop::read_case(data / name / "case");
+  const auto ours = bellhop::ray_file(input.run_case, run_like_bellhop(input.run_case));
+  const auto file = bellhop::read_ray_file(data / name / "case.ray");
+  ASSERT_EQ(ours.rays.size(), file.rays.size());
+  for (std::size_t i = 0; i < file.rays.size(); ++i) {
+    const auto &a = ours.rays[i], &b = file.rays[i];
+    EXPECT_NEAR(a.launch_angle_deg, b.launch_angle_deg, 1e-9);
+    EXPECT_EQ(a.surface_bounces, b.surface_bounces);
+    EXPECT_EQ(a.bottom_bounces, b.bottom_bounces);
+    ASSERT_EQ(a.range.size(), b.range.size()) << "ray " << i;
+    for (std::size_t k = 0; k < a.range.size(); ++k) {
+      EXPECT_NEAR(a.range[k], b.range[k], 1e-6);
+      EXPECT_NEAR(a.depth[k], b.depth[k], 1e-6);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, LikeBellhopRays,
+                         ::testing::Values<std::string>("eigenrays-channel", "rays-upslope"),
+                         test_name);
+
+}  // namespace
+}  // namespace asdic
