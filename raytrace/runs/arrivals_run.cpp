@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/units.h"
 #include "raytrace/runs/checks.h"
@@ -40,8 +41,10 @@ class ArrivalSearch {
 
   [[nodiscard]] const EigenraySolver& solver() const noexcept { return solver_; }
 
-  /// [receivers] arrivals of one source, finished.
-  std::vector<Arrivals> from(double source_depth) const {
+  /// [receivers] arrivals of one source, finished. \param notes  what the user should know
+  /// \param progress  told the share of this source
+  std::vector<Arrivals> from(double source_depth, const Progress& progress,
+                             std::vector<std::string>& notes) const {
     const BeamSettings& beams = case_.beams;
     std::vector<Arrivals> found;
     if (solver_.layered() && within_box(case_) && forward_only(beams)) {
@@ -63,8 +66,14 @@ class ArrivalSearch {
                              .max_depth = box.max_depth,
                              .min_range = box.min_range,
                              .max_range = box.max_range};
+      SearchWatch watch{.progress = progress};
       found = marching_eigenrays(*solver_.tracer(case_.frequency), 0.0, source_depth, receivers_,
-                                 limits);
+                                 limits, &watch);
+      if (watch.stopped) throw Interrupted();
+      if (watch.unfinished > 0)
+        notes.push_back("source at " + std::to_string(source_depth) +
+                        " m: rays part without end in " + std::to_string(watch.unfinished) +
+                        " of 256 parts of the fan; faint paths are missing there");
     }
     for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
     return found;
@@ -133,7 +142,10 @@ PropagationResult search(const PropagationCase& run_case, const Progress& progre
   const std::size_t sources = run_case.source_depths.size();
   for (std::size_t i = 0; i < sources; ++i) {
     const double depth = run_case.source_depths[i];
-    std::vector<Arrivals> found = paths.from(depth);
+    const auto part = [&](double share) {
+      return !progress || progress((double(i) + share) / double(sources));
+    };
+    std::vector<Arrivals> found = paths.from(depth, part, result.notes);
     if (with_rays)
       result.rays.push_back(
           drawn(run_case, *paths.solver().tracer(run_case.frequency), depth, found));

@@ -95,6 +95,10 @@ class CellSearch {
     return true;
   }
 
+  [[nodiscard]] double middle(const StrikingRay& a, const StrikingRay& b) const {
+    return 0.5 * (a.angle + b.angle);
+  }
+
   void search(const StrikingRay& a, const StrikingRay& b, std::vector<CellHit>& out) const {
     const std::size_t hits = std::min(a.hits.size(), b.hits.size());
     for (std::size_t i = 0; i < hits && a.hits[i].history == b.hits[i].history; ++i)

@@ -158,6 +158,8 @@ void digest(const RayTrajectory& ray, const Environment& environment,
     leg.to_boundary =
         last < segments.size() ? bounces(segments[last]) > bounces(tail) : at_boundary;
     if (leg.from_boundary && !out.legs.empty()) leg.d_begin = out.legs.back().d_end;
+    if (leg.from_boundary && static_cast<std::size_t>(bounces(head)) <= ray.bounces.size())
+      leg.begins_at = ray.bounces[static_cast<std::size_t>(bounces(head)) - 1].boundary;
     if (leg.to_boundary) {
       const auto bounce = static_cast<std::size_t>(bounces(head));
       const bool surface = bounce < ray.bounces.size()

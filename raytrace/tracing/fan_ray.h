@@ -56,8 +56,9 @@ struct RayLeg {
   double d_begin = 0.0, d_end = 0.0;  ///< how the ranges of its ends move along the boundaries when
                                       ///< the ray is launched a little higher, dr/dα [m/rad]
   double sign = -1.0;  ///< of the ray's normal: (−1)^(bounces + 1), so that ∂z/∂α = sign·q/(c·ξ)
-  double strength = 1.0;               ///< product of the reflections' magnitudes before it
-  bool from_boundary = false;          ///< begins there, rather than at the source
+  double strength = 1.0;       ///< product of the reflections' magnitudes before it
+  bool from_boundary = false;  ///< begins there, rather than at the source
+  BoundaryKind begins_at = BoundaryKind::surface;  ///< which boundary
   bool to_boundary = false;            ///< ends there, rather than at the limits of the trace
   int turns_begin = 0, turns_end = 0;  ///< turning points passed before and within
   std::uint32_t first_column = 0;  ///< crossings of columns first … last − 1, by increasing range

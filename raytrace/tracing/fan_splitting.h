@@ -1,11 +1,13 @@
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <iterator>
 #include <memory>
 #include <vector>
 
 #include "raytrace/tracing/parallel.h"
+#include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
 
@@ -16,6 +18,7 @@ namespace asdic {
 /// launch elevation) and Result, and has
 ///   void trace(double angle, Ray& out);
 ///   bool holds(const Ray& a, const Ray& m, const Ray& b);  m between a and b: is a–b known well?
+///   double middle(const Ray& a, const Ray& b);  where to split a–b
 ///   void search(const Ray& a, const Ray& b, std::vector<Result>& out);  a–b is known: take it
 template <class Work>
 class FanSplitting {
@@ -26,16 +29,22 @@ class FanSplitting {
 
   FanSplitting(double lowest, double highest) : lowest_(lowest), highest_(highest) {}
 
-  /// \param make_work  called once a thread \return results by increasing launch elevation
+  /// \param make_work  called once a thread   \param watch  see SearchWatch
+  /// \return results by increasing launch elevation; too few when it was stopped
   template <class MakeWork>
-  [[nodiscard]] std::vector<Result> run(const MakeWork& make_work) const {
+  [[nodiscard]] std::vector<Result> run(const MakeWork& make_work,
+                                        SearchWatch* watch = nullptr) const {
     struct Memory {
       Work work;
       std::deque<Ray> rays;  // two ends, then the middle of each depth of splitting
     };
     std::vector<std::unique_ptr<Memory>> memories(tracing::most_workers());
     std::vector<std::vector<Result>> results(first_intervals);
+    std::vector<int> left(first_intervals, most_rays);
+    std::atomic<int> done = 0;
+    std::atomic<bool> stopped = false;
     tracing::parallel(first_intervals, [&](std::size_t worker, int i) {
+      if (stopped) return;
       if (!memories[worker]) {
         memories[worker] = std::make_unique<Memory>(Memory{make_work(), {}});
         memories[worker]->rays.resize(2);
@@ -44,8 +53,16 @@ class FanSplitting {
       Ray &a = memory.rays[0], &b = memory.rays[1];
       memory.work.trace(first_angle(i), a);
       memory.work.trace(first_angle(i + 1), b);
-      split(memory.work, memory.rays, a, b, 2, results[static_cast<std::size_t>(i)]);
+      const auto slot = static_cast<std::size_t>(i);
+      split(memory.work, memory.rays, a, b, 2, left[slot], results[slot]);
+      if (watch != nullptr && watch->progress && !watch->progress(double(++done) / first_intervals))
+        stopped = true;
     });
+    if (watch != nullptr) {
+      watch->stopped = stopped;
+      watch->unfinished = static_cast<int>(
+          std::count_if(left.begin(), left.end(), [](int rays) { return rays <= 0; }));
+    }
     std::vector<Result> all;
     for (auto& some : results)
       all.insert(all.end(), std::make_move_iterator(some.begin()),
@@ -55,6 +72,7 @@ class FanSplitting {
 
  private:
   static constexpr std::size_t deepest = 60;
+  static constexpr int most_rays = 1 << 14;  // in one of the first intervals
 
   /// Twice denser about the middle of the fan, mostly the horizontal, where rays are bent most.
   [[nodiscard]] double first_angle(int i) const {
@@ -63,16 +81,18 @@ class FanSplitting {
     return lowest_ + 0.5 * (highest_ - lowest_) * (1.0 + v * (0.5 + 0.5 * v * v));
   }
 
+  /// \param left  rays that may still be traced
   static void split(Work& work, std::deque<Ray>& rays, const Ray& a, const Ray& b, std::size_t slot,
-                    std::vector<Result>& out) {
-    const double middle = 0.5 * (a.angle + b.angle);
+                    int& left, std::vector<Result>& out) {
+    double middle = slot % 4 == 0 ? 0.5 * (a.angle + b.angle) : work.middle(a, b);
+    if (!(middle > a.angle && middle < b.angle)) middle = 0.5 * (a.angle + b.angle);
     if (!(middle > a.angle && middle < b.angle)) return work.search(a, b, out);
     if (rays.size() <= slot) rays.emplace_back();  // a deque: references stay
     Ray& m = rays[slot];
     work.trace(middle, m);
-    if (slot < deepest && !work.holds(a, m, b)) {
-      split(work, rays, a, m, slot + 1, out);
-      split(work, rays, m, b, slot + 1, out);
+    if (--left > 0 && slot < deepest && !work.holds(a, m, b)) {
+      split(work, rays, a, m, slot + 1, left, out);
+      split(work, rays, m, b, slot + 1, left, out);
     } else {
       work.search(a, m, out);
       work.search(m, b, out);

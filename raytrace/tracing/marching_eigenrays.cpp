@@ -79,6 +79,9 @@ struct ColumnSearch {
   [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
     return test_.holds(a, m, b);
   }
+  [[nodiscard]] double middle(const FanRay& a, const FanRay& b) const {
+    return splitting_angle(a, b, tracer_.environment());
+  }
   void search(const FanRay& a, const FanRay& b, std::vector<Hit>& out) {
     roots_.search(a, b, max_turns_, [&](std::uint32_t receiver, Arrival&& path) {
       out.push_back({receiver, std::move(path)});
@@ -122,7 +125,7 @@ void raise(Arrival& path, double share) {
 std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_range,
                                          double source_depth,
                                          std::span<const ReceiverPoint> receivers,
-                                         const FanLimits& limits) {
+                                         const FanLimits& limits, SearchWatch* watch) {
   std::vector<Arrivals> found(receivers.size());
   if (receivers.empty()) return found;
   std::vector<ReceiverPoint> points(receivers.begin(), receivers.end());
@@ -132,9 +135,10 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
   const std::vector<ReceiverColumn> columns = make_columns(points);
   const TraceLimits trace = trace_limits(tracer.environment(), source_range, columns, limits);
   const FanSplitting<ColumnSearch> fan(limits.lowest, limits.highest);
-  for (Hit& hit : fan.run([&] {
-         return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);
-       })) {
+  const auto work = [&] {
+    return ColumnSearch(tracer, source_range, source_depth, trace, columns, limits.max_turns);
+  };
+  for (Hit& hit : fan.run(work, watch)) {
     const double offset = std::abs(receivers[hit.receiver].range - source_range);
     if (offset < least_range) raise(hit.path, offset / least_range);
     found[hit.receiver].push_back(std::move(hit.path));

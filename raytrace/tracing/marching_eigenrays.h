@@ -5,6 +5,7 @@
 #include "raytrace/arrivals.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "raytrace/tracing/receiver_columns.h"
+#include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
 
@@ -27,10 +28,12 @@ struct FanLimits {
 /// the same side, are refined by Newton's method on re-traced rays to a miss below a hundredth of a
 /// millimetre. docs/theory/eigenrays.md
 ///
-/// \param receivers  [n] \return [n] arrivals, each sorted by delay
+/// \param receivers  [n]   \param watch  progress, interruption, completeness
+/// \return [n] arrivals, each sorted by delay
 [[nodiscard]] std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_range,
                                                        double source_depth,
                                                        std::span<const ReceiverPoint> receivers,
-                                                       const FanLimits& limits = {});
+                                                       const FanLimits& limits = {},
+                                                       SearchWatch* watch = nullptr);
 
 }  // namespace asdic

@@ -27,6 +27,14 @@ bool stopped_by_limits(const FanRay& ray) noexcept {
          ray.ended == RayEnd::absorbed;
 }
 
+/// Rays whose tube has been spread so thin, or reflected so often, that they are 80 dB below
+/// spherical spreading are not followed into finer branches: over rough boundaries there is no end
+/// of them.
+bool too_faint(const RayLeg& leg, double widest) noexcept {
+  const double range = std::max(std::abs(leg.begin.range), 1.0);
+  return leg.strength * leg.strength * range < 1e-8 * widest;  // A²r² = R² r cos θ₀/|q|
+}
+
 bool finest_apart(double a, double b) noexcept {
   return std::abs(b - a) < finest + 4e-16 * std::abs(a);
 }
@@ -57,6 +65,29 @@ ColumnSpan columns_between(const FanRay& a, const FanRay& b, std::size_t leg,
   return span;
 }
 
+double splitting_angle(const FanRay& a, const FanRay& b, const Environment& environment) noexcept {
+  const double middle = 0.5 * (a.angle + b.angle);
+  const std::size_t legs = std::min(a.legs.size(), b.legs.size());
+  std::size_t i = 0;
+  while (i < legs && a.legs[i].history == b.legs[i].history) ++i;
+  if (i == legs) return middle;
+  const RayLeg &la = a.legs[i], &lb = b.legs[i];
+  if (!la.from_boundary || !lb.from_boundary || la.begins_at != lb.begins_at) return middle;
+  const Boundary& wall =
+      la.begins_at == BoundaryKind::surface ? environment.surface : environment.bottom;
+  if (!wall.shape) return middle;
+  const std::size_t fa = wall.shape->facet(la.begin.range), fb = wall.shape->facet(lb.begin.range);
+  if (fa == fb) return middle;
+  const double node = wall.shape->facet_begin((fa + fb + 1) / 2);
+  constexpr double too_far = 1.02;
+  const double from_a = too_far * (node - la.begin.range) / la.d_begin;
+  const double from_b = too_far * (node - lb.begin.range) / lb.d_begin;
+  const double width = b.angle - a.angle;
+  const bool good_a = from_a > 0.0 && from_a < width, good_b = from_b < 0.0 && from_b > -width;
+  if (good_a && (!good_b || from_a < -from_b)) return a.angle + from_a;
+  return good_b ? b.angle + from_b : middle;
+}
+
 bool NeighbourTest::holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
   const std::size_t legs = std::max({a.legs.size(), m.legs.size(), b.legs.size()});
   for (std::size_t i = 0; i < legs; ++i) {
@@ -72,6 +103,9 @@ bool NeighbourTest::holds(const FanRay& a, const FanRay& m, const FanRay& b) con
 bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
                               std::size_t i) const {
   const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
+  if (too_faint(la, std::min(std::abs(la.begin.q), std::abs(la.end.q))) &&
+      too_faint(lb, std::min(std::abs(lb.begin.q), std::abs(lb.end.q))))
+    return true;
   if (!ends_hold(a, m, b, i)) return false;
   const double width = b.angle - a.angle;
   const auto [first, last] = columns_between(a, b, i, columns_);
@@ -134,7 +168,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
                                     std::size_t i) const {
   if (finest_apart(a.angle, b.angle)) return false;
   double nearest = 1e300, farthest = -1e300, widest = 0.0;
-  bool same_boundary = true, turned_back = false;
+  bool same_boundary = true, turned_back = false, all_faint = true;
   for (const FanRay* ray : {&a, &m, &b}) {
     if (i >= ray->legs.size()) {
       if (stopped_by_limits(*ray)) return false;  // no more of the two than this one has
@@ -147,6 +181,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
       farthest = std::max({farthest, leg.begin.range, leg.end.range});
       widest = std::max({widest, std::abs(leg.begin.q), std::abs(leg.end.q)});
       turned_back |= leg.end.range < leg.begin.range;
+      all_faint &= too_faint(leg, std::min(std::abs(leg.begin.q), std::abs(leg.end.q)));
     }
   }
   const auto beyond =

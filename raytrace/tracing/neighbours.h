@@ -26,6 +26,12 @@ class NeighbourTest {
   std::span<const ReceiverColumn> columns_;
 };
 
+/// Where to split the interval between two neighbours: where they part at a node between two
+/// facets, just beyond the ray that strikes it (Newton's method from the nearer ray, a little too
+/// far, so that the node is soon enclosed from both sides); else in the middle.
+[[nodiscard]] double splitting_angle(const FanRay& a, const FanRay& b,
+                                     const Environment& environment) noexcept;
+
 /// The first and one past the last column that a leg may cross on some ray between two neighbours:
 /// those that either of the two crosses, and those that only rays between reach, where the place at
 /// which the leg begins or ends is turned around by a caustic.
