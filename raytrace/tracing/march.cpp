@@ -465,9 +465,7 @@ Tangent March::tangent_at(BoundaryKind kind) const noexcept {
   const std::size_t facet = kind == BoundaryKind::surface ? surface_facet_ : bottom_facet_;
   const BoundaryPoint point = wall.shape->at(y_.range, facet);
   const double length = std::hypot(1.0, point.slope);
-  return {.r = 1.0 / length,
-          .z = point.slope / length,
-          .curvature = point.curvature};
+  return {.r = 1.0 / length, .z = point.slope / length, .curvature = point.curvature};
 }
 
 bool March::reflect_at(BoundaryKind kind) {

@@ -78,9 +78,9 @@ TEST(LayeredCrossings, AreTheTracers) {
   }
 }
 
-// Single precision within a beam, 1e-6 or so of the field; and the plain way's delays are those of the
-// quintic above, 5e-8 s at worst and 1e-9 mostly: 1e-5 rad at 2 kHz. A receiver where a Gaussian is cut off
-// (at e⁻⁸) may be inside by one way and outside by the other.
+// Single precision within a beam, 1e-6 or so of the field; and the plain way's delays are those of
+// the quintic above, 5e-8 s at worst and 1e-9 mostly: 1e-5 rad at 2 kHz. A receiver where a
+// Gaussian is cut off (at e⁻⁸) may be inside by one way and outside by the other.
 TEST(FastFields, AreThePlainOnes) {
   for (unsigned seed = 1; seed <= 12; ++seed)
     for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
