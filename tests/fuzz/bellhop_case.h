@@ -8,6 +8,9 @@ namespace asdic::fuzz {
 inline void read_and_write(const bellhop::Texts& texts) {
   bellhop::Input input;
   if (refuses([&] { input = bellhop::read_case(texts, "case"); })) return;
+  const ReceiverGrid& grid = input.run_case.receivers;
+  constexpr std::size_t many = 10'000;  // more only take time to write
+  if (grid.depths.size() + grid.ranges.size() + input.run_case.source_depths.size() > many) return;
   bellhop::Written written;
   if (refuses([&] { written = bellhop::write_case(input.run_case, input.binary_arrivals); }))
     return;
