@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <vector>
 
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
@@ -126,6 +128,36 @@ TEST_P(LikeBellhopRays, AreThoseOfTheFile) {
 INSTANTIATE_TEST_SUITE_P(Cases, LikeBellhopRays,
                          ::testing::Values<std::string>("eigenrays-channel", "rays-upslope"),
                          test_name);
+
+// Why asdic and BELLHOP differ behind the seamount: BELLHOP's normals on a curvilinear bottom are
+// means of unit vectors and shorter than one; the slowness keeps the shorter length after a
+// reflection, and delays run off. The same engine with its normals made unit vectors agrees with
+// our own tracer at a small step (median 0.007 dB at 4000 beams and 10 m; 0.05 leaves room for 20
+// m), as it is it does not.
+TEST(LikeBellhopCurvilinear, UnitNormalsAreAllThatIsBetweenUs) {
+  PropagationCase run_case = bellhop::read_case(data / "seamount-curved/case").run_case;
+  constexpr int beams = 1000;
+  run_case.beams.elevations.clear();
+  for (int i = 0; i < beams; ++i)
+    run_case.beams.elevations.push_back(
+        std::lerp(run_case.beams.lowest, run_case.beams.highest, i / (beams - 1.0)));
+  const auto own = run(run_case).field;
+  run_case.beams.elevations.clear();
+  LikeBellhopOptions options{.step = 20.0, .beams = beams, .single_precision = false};
+  const auto as_it_is = run_like_bellhop(run_case, options).field;
+  options.unit_normals = true;
+  const auto unit = run_like_bellhop(run_case, options).field;
+  const auto median = [&](const auto& a, const auto& b) {
+    std::vector<double> off;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (std::abs(a[i]) > 1e-6F && std::abs(b[i]) > 1e-6F)
+        off.push_back(std::abs(20.0 * std::log10(double(std::abs(a[i])) / double(std::abs(b[i])))));
+    std::nth_element(off.begin(), off.begin() + std::ptrdiff_t(off.size() / 2), off.end());
+    return off[off.size() / 2];
+  };
+  EXPECT_LT(median(own, unit), 0.05);
+  EXPECT_GT(median(own, as_it_is), 1.0);
+}
 
 }  // namespace
 }  // namespace asdic
