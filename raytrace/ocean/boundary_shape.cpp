@@ -134,16 +134,18 @@ BoundaryShape BoundaryShape::along(double origin, double cosine) const {
       line.range_.push_back(range_.back() + 1.0);
       line.depth_.push_back(depth_.back());
       line.slope_.push_back(0.0);
+      line.tangent_.emplace_back(1.0, 0.0);
       line.material_.assign(material_.rbegin(), material_.rend());
       line.material_.push_back(material_.front());
     }
     std::reverse(line.range_.begin(), line.range_.end());
     std::reverse(line.depth_.begin(), line.depth_.end());
     std::reverse(line.slope_.begin(), line.slope_.end());
+    std::reverse(line.tangent_.begin(), line.tangent_.end());
   }
   for (double& range : line.range_) range = (range - origin) / cosine;
   for (double& slope : line.slope_) slope *= cosine;
-  line.bend_facets();
+  for (Vec2& tangent : line.tangent_) tangent.y() *= cosine;
   return line;
 }
 

@@ -57,7 +57,8 @@ std::complex<double> mirror(double range, double depth) {
 }
 
 // Straight rays: the sum of hat beams interpolates linearly between two rays, and the beams are
-// doubled until that costs less than 0.1 dB, 1.2 % of the pressure. No receiver is in a null.
+// doubled until that costs less than 0.2 dB (wanted_error_db), 2.3 % of the pressure. No receiver
+// is in a null.
 TEST_F(FieldCommand, WritesTheFieldOfTheScenario) {
   const auto run = asdic(folder, "field mirror.toml -o mirror.h5 --json");
   ASSERT_EQ(run.status, 0) << run.err;
@@ -71,7 +72,7 @@ TEST_F(FieldCommand, WritesTheFieldOfTheScenario) {
   for (std::size_t i = 0; i < 22; ++i) {
     const std::complex<double> exact =
         mirror(field.receivers.ranges[i % 11], field.receivers.depths[i / 11]);
-    EXPECT_LT(std::abs(std::complex<double>(field.pressure[i]) - exact), 0.012 * std::abs(exact));
+    EXPECT_LT(std::abs(std::complex<double>(field.pressure[i]) - exact), 0.023 * std::abs(exact));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "mirror.h5.part"));
 }
