@@ -171,8 +171,8 @@ TEST_P(LikeBellhopCurvilinear, UnitNormalsAreAllThatIsBetweenUs) {
 INSTANTIATE_TEST_SUITE_P(Cases, LikeBellhopCurvilinear,
                          ::testing::Values(Curvilinear{"seamount-curved", 20.0, 1.0},
                                            Curvilinear{"swell-surface", 2.0, 0.1}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& one) {
+                           std::string name = one.param.name;
                            std::erase(name, '-');
                            return name;
                          });
