@@ -2,7 +2,7 @@
 """The commands in the documentation run: every ```sh block under a line `<!-- test -->` in
 README.md and docs/guide/*.md.
 
-The blocks of one page run in order, in one working directory: a fresh copy of scenarios/, with
+The blocks of one page run in order, in one working directory: a fresh copy of scenarios/ (and tests/data/bellhop), with
 `asdic` on PATH. A block may end in a line `# exit 2`: then that is the exit code it must have.
 Lines of output are not compared.
 
@@ -54,6 +54,7 @@ def run_page(page, environment):
     with tempfile.TemporaryDirectory(prefix="asdic_docs_") as folder:
         if (ROOT / "scenarios").is_dir():
             shutil.copytree(ROOT / "scenarios", Path(folder) / "scenarios")
+            shutil.copytree(ROOT / "tests/data/bellhop", Path(folder) / "tests/data/bellhop")
         for line, commands in todo:
             try:
                 done = subprocess.run(["bash", "-euo", "pipefail", "-c", commands], cwd=folder,
