@@ -209,11 +209,7 @@ void add_bellhop_command(CLI::App& program, Action& action) {
           CLI::ignore_case));
   command->add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
       ->type_name("ROOT");
-  command
-      ->add_option("--threads", options->threads,
-                   "that compute; default: one a core. The results do not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer(
       "Ctrl-C stops; nothing half-written is left.\n"

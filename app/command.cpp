@@ -48,6 +48,14 @@ CLI::Option* add_length_option(CLI::App& command, const std::string& name,
       ->type_name("LENGTH");
 }
 
+void add_threads_option(CLI::App& command, std::optional<int>& threads) {
+  command
+      .add_option("--threads", threads,
+                  "that compute; default: one a core. The results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+}
+
 CLI::Validator above_zero() {
   return CLI::Validator(
       [](const std::string& text) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct ScenarioChoice {
 
 /// SCENARIO and --set, as every command that reads a scenario has them.
 void add_scenario_options(CLI::App& command, ScenarioChoice& choice);
+
+/// --threads, as every command that computes has it.
+void add_threads_option(CLI::App& command, std::optional<int>& threads);
 
 /// A check for numbers above zero that says just that.
 [[nodiscard]] CLI::Validator above_zero();

@@ -63,11 +63,7 @@ void add_explain_command(CLI::App& program, Action& action) {
       ->capture_default_str()
       ->type_name("N")
       ->check(CLI::Range(1.0, 1e3));
-  command
-      ->add_option("--threads", options->threads,
-                   "that compute; default: one a core. The results do not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "print JSON (docs/theory/like-bellhop.md)");
   command->add_flag("-q,--quiet", options->quiet, "no progress on standard error");
   command->footer(

@@ -90,11 +90,7 @@ void add_field_command(CLI::App& program, Action& action) {
           "file to write, HDF5 (docs/formats/field.md) or by its ending .shd; default: the "
           "scenario's name with .h5, in this folder")
       ->type_name("FILE");
-  command
-      ->add_option("--threads", options->threads,
-                   "that compute; default: one a core. The results do not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("--like-bellhop", options->like_bellhop,
                     "as BELLHOP does it, with its steps and beams; for comparison");
   command->add_flag("--json", options->json, "print a summary as JSON (docs/formats/field.md)");

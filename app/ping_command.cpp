@@ -106,11 +106,7 @@ void add_ping_command(CLI::App& program, Action& action) {
   command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
       ->type_name("S")
       ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--threads", options->threads,
-                   "that compute; default: one a core. The results do not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer(
       "Ctrl-C finishes the pings in hand and closes the file; a second one ends at once.\n"

@@ -14,8 +14,9 @@ enum class ShapeInterpolation {
   piecewise_linear,  ///< straight facets: the tangent jumps at a node
   smooth,  ///< a cubic through the nodes with continuous slope, at a node that of the line between
            ///< its neighbours: position, tangent and curvature are those of one curve
-  curvilinear,  ///< BELLHOP's: straight facets for the position; tangent and normal turn linearly
-                ///< from node to node, and a curvature goes with them
+  curvilinear,  ///< of BELLHOP's files: straight facets for the position; the tangent turns
+                ///< linearly from node to node, unit length, and the curvature is that with which
+                ///< it turns
 };
 
 [[nodiscard]] std::string_view name(ShapeInterpolation interpolation) noexcept;
