@@ -134,40 +134,73 @@ double next_term(const Environment& ocean, double frequency, double zs, double z
   return next / std::abs(sum);
 }
 
-// Sand: rays are valid where the next term of all images together is below 0.1 dB of the field
-// (0.0116); there terms beyond it and the hats (2e-4 rad) stay within the other 0.1 dB.
-TEST(WaveTheory, PekerisWaveguideWhereRaysAreValid) {
-  const support::Csv csv("physics-reference/field_pekeris_250Hz.csv");
-  PropagationCase run_case = start(csv, 250.0);
-  run_case.environment.water_density = 1000.0;
-  run_case.environment.bottom = {
-      .depth = 200.0,
-      .material =
-          FluidHalfSpace{.speed = 1700.0, .density = 1800.0, .attenuation_db_per_wavelength = 0.5}};
-  run_case.source_depths = {50.0};
-  run_case.receivers.depths = {100.0, 150.0};
-  fan(run_case, 86.0, 16'001);
-  const auto field = run_field(run_case).field;
-  const std::size_t columns = run_case.receivers.ranges.size();
-  std::size_t valid = 0;
-  std::vector<double> errors;
-  for (const std::size_t row : {0, 1}) {
-    const auto wave = truth(csv, row == 0 ? "zr100" : "zr150");
-    for (std::size_t i = 0; i < columns; ++i) {
-      const double error = std::abs(level_error_db(field[row * columns + i], wave[i]));
-      errors.push_back(error);
-      if (next_term(run_case.environment, 250.0, 50.0, run_case.receivers.depths[row],
-                    run_case.receivers.ranges[i]) > 0.0116)
-        continue;
-      ++valid;
-      EXPECT_LT(error, 0.2) << row << ' ' << run_case.receivers.ranges[i];
+/// Sand under 200 m of water, 250 Hz, a hat field beside the wavenumber integral.
+struct PekerisField {
+  explicit PekerisField(bool displacement) {
+    const support::Csv csv("physics-reference/field_pekeris_250Hz.csv");
+    run_case = start(csv, 250.0);
+    run_case.environment.water_density = 1000.0;
+    run_case.environment.bottom = {
+        .depth = 200.0,
+        .material = FluidHalfSpace{
+            .speed = 1700.0, .density = 1800.0, .attenuation_db_per_wavelength = 0.5}};
+    run_case.source_depths = {50.0};
+    run_case.receivers.depths = {100.0, 150.0};
+    run_case.beams.displacement = displacement;
+    fan(run_case, 86.0, 16'001);
+    const auto field = run_field(run_case).field;
+    for (const std::size_t row : {0, 1}) {
+      const auto wave = truth(csv, row == 0 ? "zr100" : "zr150");
+      const auto no_null = away_from_nulls(wave);
+      clear.insert(clear.end(), no_null.begin(), no_null.end());
+      for (std::size_t i = 0; i < wave.size(); ++i)
+        errors.push_back(std::abs(level_error_db(field[row * wave.size() + i], wave[i])));
     }
+  }
+  /// |error| that a share of the receivers stays below. \param everywhere  in nulls, too
+  [[nodiscard]] double share(double part, bool everywhere) const {
+    std::vector<double> sorted;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      if (everywhere || clear[i]) sorted.push_back(errors[i]);
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size()))];
+  }
+
+  PropagationCase run_case;
+  std::vector<double> errors;  // [2 × ranges] [dB]
+  std::vector<bool> clear;     // away from nulls
+};
+
+// Rays are valid where the next term of all images together is below 0.1 dB of the field (0.0116);
+// there terms beyond it and the hats (2e-4 rad) stay within the other 0.1 dB.
+TEST(WaveTheory, PekerisWaveguideWhereRaysAreValid) {
+  const PekerisField field(false);
+  const auto& grid = field.run_case.receivers;
+  const std::size_t columns = grid.ranges.size();
+  std::size_t valid = 0;
+  for (std::size_t i = 0; i < field.errors.size(); ++i) {
+    if (next_term(field.run_case.environment, 250.0, 50.0, grid.depths[i / columns],
+                  grid.ranges[i % columns]) > 0.0116)
+      continue;
+    ++valid;
+    EXPECT_LT(field.errors[i], 0.2) << i / columns << ' ' << grid.ranges[i % columns];
   }
   EXPECT_GT(valid, 8U);
   // everywhere: what rays are worth at 250 Hz in 200 m, reported in docs/theory/fields.md
-  std::sort(errors.begin(), errors.end());
-  EXPECT_LT(errors[errors.size() / 2], 0.25);
+  EXPECT_LT(field.share(0.5, true), 0.25);
   RecordProperty("valid", static_cast<int>(valid));
+}
+
+// Beams displaced by the phase of the coefficient have the saddle point where it is, φ′ and φ″
+// included: what remains of the next term is the slope of |R|, an imaginary displacement. The limit
+// that rays have without it, 0.2 dB in the valid region, then holds at 95 % of all receivers away
+// from nulls, up to 10 km; a reflection on the spot is three times that off.
+TEST(WaveTheory, PekerisWaveguideWithDisplacedBeams) {
+  const PekerisField displaced(true), on_the_spot(false);
+  EXPECT_LT(displaced.share(0.95, false), 0.2);
+  EXPECT_LT(displaced.share(0.5, true), 0.05);
+  EXPECT_GT(on_the_spot.share(0.95, false), 3.0 * displaced.share(0.95, false));
+  EXPECT_GT(on_the_spot.share(0.5, true), 3.0 * displaced.share(0.5, true));
 }
 
 /// |error| of the mean level of each kilometre where the wave is above −100 dB, at most 20 dB.
