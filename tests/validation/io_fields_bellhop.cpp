@@ -61,7 +61,8 @@ TEST_P(SameFan, GivesWhatBellhopConvergesTo) {
 
 // Gaps, named: seamount-curved (2.0 dB at the median; most of it is BELLHOP's normals, which are
 // not of unit length), swell-surface (0.29 dB, residual 0.11: open) and cerveny-raycentred (0.23
-// dB, residual 0.21: BELLHOP is of first order in its step there). docs/theory/fields.md
+// dB, residual 0.21: BELLHOP is of first order in its step there: LikeBellhopCervenyRayCentred).
+// docs/theory/fields.md
 INSTANTIATE_TEST_SUITE_P(Geometric, SameFan,
                          testing::Values(Case{"munk-coherent-hat", 0.02, 0.1},
                                          Case{"munk-incoherent-gauss", 0.02, 0.1},
