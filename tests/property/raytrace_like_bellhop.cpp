@@ -132,6 +132,29 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LikeBellhopOpenWater,
                                            FreeSpace{BeamKind::cerveny_cartesian, 0.1, 0.05},
                                            FreeSpace{BeamKind::cerveny_ray_centred, 0.1, 0.05}));
 
+// Components of Červený beams: the velocity of a spherical wave, times ρc, is p·dz/R and p·r/R; the
+// near field, 1/kR, is 6e-4 at most.
+TEST(LikeBellhop, CervenyComponentsAreTheVelocity) {
+  using Component = CervenyBeams::Component;
+  for (const BeamKind kind : {BeamKind::cerveny_cartesian, BeamKind::cerveny_ray_centred}) {
+    PropagationCase c = open_water(kind);
+    const auto pressure = run_like_bellhop(c).field;
+    for (const Component component : {Component::vertical, Component::horizontal}) {
+      c.beams.cerveny->component = component;
+      const auto velocity = run_like_bellhop(c).field;
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column) {  // BELLHOP leaves the last range out
+          const double r = c.receivers.ranges[column];
+          const double dz = c.receivers.depths[row] - c.source_depths[0];
+          const double share = (component == Component::vertical ? dz : r) / std::hypot(r, dz);
+          const std::size_t i = row * c.receivers.ranges.size() + column;
+          const auto ratio = std::complex<double>(velocity[i]) / std::complex<double>(pressure[i]);
+          EXPECT_NEAR(std::abs(ratio - share), 0.0, 1e-3) << r << ' ' << dz;
+        }
+    }
+  }
+}
+
 // Displaced beams: no output of BELLHOP's is at hand, so the literal run is held to asdic's own
 // rays over a slope in isovelocity water, where its steps are exact: the same ends within rounding,
 // and with the same hats the same field where rays are spread alike. Cells beside the bottom
