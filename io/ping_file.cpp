@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "io/arrival_table.h"
+#include "io/hdf5/scale.h"
 #include "io/ping/growing_table.h"
-#include "io/ping/scale.h"
 #include "io/ping/sections.h"
 #include "sonar/stream.h"
 
@@ -155,7 +155,7 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   file.make_scale("time", "sample");
   const std::size_t channels = channels_of(scenario);
   if (recording.is_complex()) {
-    ping_file::write_scale<std::int32_t>(file, "iq", "iq", {0, 1}, "0 real part, 1 imaginary part");
+    write_scale<std::int32_t>(file, "iq", "iq", {0, 1}, "0 real part, 1 imaginary part");
     file.create_growing<float>("pressure", {channels, samples, 2}, Shape{1, 1, samples, 2});
     describe(file, "pressure", "acoustic pressure, complex baseband", "Pa");
     file.attach_scales("pressure", {"ping", "channel", "time", "iq"});

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "io/ping/growing_table.h"
-#include "io/ping/scale.h"
 #include "sonar/sampling.h"
 
 namespace asdic::ping_file {

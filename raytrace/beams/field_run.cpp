@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/runs/checks.h"
 
 namespace asdic {
 
@@ -225,8 +227,10 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
     for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
     return sum_parts(work, parts);
   }
-  const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
-                                              source_depth, run_case.receivers.ranges, work.limits);
+  std::optional<LayeredCrossings> layered;
+  if (!run_case.beams.displacement)
+    layered = LayeredCrossings::make(run_case.environment, run_case.frequency, source_depth,
+                                     run_case.receivers.ranges, work.limits);
   std::vector<FastPart> parts;
   for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
   return sum_parts(work, parts);
@@ -234,7 +238,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
 
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
   check(run_case);
-  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const RayTracer tracer = tracer_of(run_case);
   PropagationResult result;
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {

@@ -320,6 +320,7 @@ bool March::reflect_at(BoundaryKind kind) {
     return end(RayEnd::bounces);
   const Local water = local(ocean_.cell(row_, column_), y_);
   Tangent tangent = tangent_at(kind);
+  const RayState in = y_;
   RayState out = y_;
   double grazing = reflect(out, water, tangent);
   if (wall.shape && wall.shape->interpolation() == ShapeInterpolation::curvilinear) {
@@ -341,16 +342,18 @@ bool March::reflect_at(BoundaryKind kind) {
     const std::size_t facet = surface ? surface_facet_ : bottom_facet_;
     material = &wall.shape->materials()[facet == 0 ? 0 : facet - 1];
   }
-  const std::complex<double> coefficient = reflection_coefficient(
-      *material, grazing,
-      {.speed = water.c, .density = ocean_.environment.water_density.at(y_.depth)});
+  const WaterAtBoundary beside{.speed = water.c,
+                               .density = ocean_.environment.water_density.at(y_.depth)};
+  const std::complex<double> coefficient = reflection_coefficient(*material, grazing, beside);
   out_.bounces.push_back({.boundary = kind, .grazing = grazing, .range = y_.range - source_range_});
   history_.reflection *= coefficient;
   history_.reflection_phase += std::arg(coefficient);
   const double left = std::abs(history_.reflection);
   if (left == 0.0) return end(RayEnd::absorbed);
   if (left < limits_.faintest) return end(RayEnd::faint);
-  return true;
+  if (ocean_.reflection == Reflection::on_the_spot) return true;
+  return displace_along(kind, in, water, tangent,
+                        beam_displacement(*material, grazing, beside, ocean_.frequency));
 }
 
 }  // namespace asdic::tracing

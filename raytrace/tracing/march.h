@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "raytrace/tracing/jumps.h"
+#include "raytrace/tracing/displace.h"
 #include "raytrace/tracing/ocean.h"
 
 namespace asdic::tracing {
@@ -48,6 +48,8 @@ class March {
   void record();
   [[nodiscard]] bool answer();
   [[nodiscard]] bool reflect_at(BoundaryKind kind);
+  [[nodiscard]] bool displace_along(BoundaryKind kind, const RayState& in, const Local& water,
+                                    const Tangent& hit, const BeamDisplacement& moved);
   [[nodiscard]] Tangent tangent_at(BoundaryKind kind) const noexcept;
   [[nodiscard]] const Boundary& boundary(BoundaryKind kind) const noexcept {
     return kind == BoundaryKind::surface ? ocean_.environment.surface : ocean_.environment.bottom;

@@ -35,7 +35,8 @@ std::vector<double> lines_of(const Environment& ocean, const DepthFunction& alph
 
 }  // namespace
 
-RayTracer::Ocean::Ocean(const Environment& given, double frequency) : environment(given) {
+RayTracer::Ocean::Ocean(const Environment& given, double at_frequency, Reflection how)
+    : environment(given), frequency(at_frequency), reflection(how) {
   const DepthFunction alpha = attenuation_np_per_m(environment, frequency);
   const std::vector<double> lines = lines_of(environment, alpha);
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) {

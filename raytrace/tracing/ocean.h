@@ -8,7 +8,7 @@ namespace asdic {
 
 /// The environment prepared for marching: rows, columns and losses looked up once.
 struct RayTracer::Ocean {
-  Ocean(const Environment& environment, double frequency);
+  Ocean(const Environment& environment, double frequency, Reflection reflection);
 
   /// The cell of a row and a column. Valid as long as the ocean.
   [[nodiscard]] tracing::Cell cell(std::size_t row, std::size_t column) const noexcept;
@@ -27,6 +27,8 @@ struct RayTracer::Ocean {
   }
 
   Environment environment;
+  double frequency;  ///< [Hz]
+  Reflection reflection;
   std::vector<tracing::Row> rows;  ///< from top to bottom, without gaps
 };
 

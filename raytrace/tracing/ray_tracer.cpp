@@ -5,8 +5,8 @@
 
 namespace asdic {
 
-RayTracer::RayTracer(const Environment& environment, double frequency)
-    : ocean_(std::make_unique<const Ocean>(environment, frequency)) {}
+RayTracer::RayTracer(const Environment& environment, double frequency, Reflection reflection)
+    : ocean_(std::make_unique<const Ocean>(environment, frequency, reflection)) {}
 RayTracer::~RayTracer() = default;
 RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;

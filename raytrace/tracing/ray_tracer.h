@@ -15,6 +15,12 @@ struct TraceLimits {
   int max_segments = 1'000'000;
 };
 
+/// Where a ray leaves a boundary.
+enum class Reflection : unsigned char {
+  on_the_spot,
+  displaced,  ///< carried along by the phase of the coefficient (ocean/beam_displacement.h)
+};
+
 /// Marches rays through any ocean: closed forms in cells where they exist (c linear: arcs of
 /// circles; 1/c² linear: parabolas), a high-order step with error control elsewhere, and events
 /// (grid lines of the water, nodes and facets of the boundaries, turning points) located to
@@ -24,7 +30,8 @@ struct TraceLimits {
 class RayTracer {
  public:
   /// \param frequency  sets attenuation and reflection [Hz]
-  RayTracer(const Environment& environment, double frequency);
+  RayTracer(const Environment& environment, double frequency,
+            Reflection reflection = Reflection::on_the_spot);
   ~RayTracer();
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
