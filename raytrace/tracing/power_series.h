@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "raytrace/tracing/cell.h"
+
+namespace asdic::tracing {
+
+/// The first terms of a power series in travel time.
+struct Series {
+  static constexpr std::size_t order = 12;
+  std::array<double, order + 1> a{};
+
+  struct ValueSlope {
+    double value, slope;
+  };
+  [[nodiscard]] double value(double h) const noexcept {
+    double v = a[order];
+    for (std::size_t i = order; i-- > 0;) v = a[i] + h * v;
+    return v;
+  }
+  [[nodiscard]] ValueSlope value_and_slope(double h) const noexcept {
+    double v = a[order], d = 0.0;
+    for (std::size_t i = order; i-- > 0;) {
+      d = v + h * d;
+      v = a[i] + h * v;
+    }
+    return {v, d};
+  }
+};
+
+/// A ray and its beam as power series in the travel time t from where it is. With the unit tangent
+/// (t_r, t_z) and P = c·p the equations of docs/theory/rays.md are polynomial,
+///
+///   ṙ = c·t_r   ż = c·t_z   ṫ_r = c_n·t_z   ṫ_z = −c_n·t_r   q̇ = c·P   Ṗ = c_s·P − c_nn·q   ṡ = c,
+///
+/// so that each coefficient follows from those before it by sums of products (Cauchy's rule);
+/// Taylor's method, as in Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I
+/// (1993), §I.8.
+struct PowerSeries {
+  Series range, depth;  ///< less those of the begin [m]
+  Series tr, tz;
+  Series q, growth, q_plane, growth_plane;  ///< growth: P
+  Series length, nepers;                    ///< less those of the begin
+  double reach = 0.0;                       ///< up to where all of it is right [s]
+
+  void expand(const Cell& cell, const RayState& y, const Local& here) noexcept;
+};
+
+/// Error accepted at the end of one segment [m], and of the quintics of state_at within it [m].
+inline constexpr double position_tolerance = 1e-8, quintic_tolerance = 1e-6;
+
+}  // namespace asdic::tracing
