@@ -61,10 +61,7 @@ struct Cell {
                 .c_zz = 2.0 * a[2] + 6.0 * a[3] * t};
       case Law::bilinear: {
         const double u = range - r0, c_r = b[0] + b[1] * t;
-        return {.c = a[0] + a[1] * t + u * c_r,
-                .c_r = c_r,
-                .c_z = a[1] + u * b[1],
-                .c_rz = b[1]};
+        return {.c = a[0] + a[1] * t + u * c_r, .c_r = c_r, .c_z = a[1] + u * b[1], .c_rz = b[1]};
       }
       case Law::munk:
         break;

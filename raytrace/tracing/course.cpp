@@ -12,10 +12,10 @@ constexpr double small = 0.2;  // arguments up to which the series below are exa
 double sinc(double x) noexcept {
   if (std::abs(x) > small) return std::sin(x) / x;
   const double y = x * x;
-  return 1.0 -
-         y / 6.0 *
-             (1.0 - y / 20.0 *
-                        (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0 * (1.0 - y / 156.0)))));
+  return 1.0 - y / 6.0 *
+                   (1.0 - y / 20.0 *
+                              (1.0 - y / 42.0 *
+                                         (1.0 - y / 72.0 * (1.0 - y / 110.0 * (1.0 - y / 156.0)))));
 }
 
 /// cos(x). Series to x¹²: the next term is 2e-21 at 0.2.
@@ -82,11 +82,10 @@ void Course::begin(const Cell& cell, const RayState& y, const Local& here) noexc
   }
 }
 
-/// Arc: the direction's angle from the line, ψ, turns evenly, ψ′ = k, and the distance F = F₀ + ∫sin
-/// ψ ds = F₀ + (cos ψ₀ − cos ψ)/k. At F = 0: cos ψ₁ = cos ψ₀ + kF₀, sin²ψ₁ = sin²ψ₀ − kF₀(cos ψ₀ +
-/// cos ψ₁), without cancellation; the chord is what has been covered across the line, F₀, and along
-/// it, (sin ψ₁ − sin ψ₀)/k.
-/// Parabola: F = F₀ + S·w + Q·w².
+/// Arc: the direction's angle from the line, ψ, turns evenly, ψ′ = k, and the distance F = F₀ +
+/// ∫sin ψ ds = F₀ + (cos ψ₀ − cos ψ)/k. At F = 0: cos ψ₁ = cos ψ₀ + kF₀, sin²ψ₁ = sin²ψ₀ − kF₀(cos
+/// ψ₀ + cos ψ₁), without cancellation; the chord is what has been covered across the line, F₀, and
+/// along it, (sin ψ₁ − sin ψ₀)/k. Parabola: F = F₀ + S·w + Q·w².
 double Course::to_line(const Line& line) const noexcept {
   const double f = line.distance(y_.range, y_.depth);
   if (cell_->law == Law::parabola) {
@@ -115,11 +114,20 @@ double Course::to_line(const Line& line) const noexcept {
 }
 
 double Course::to_turn() const noexcept {
-  if (cell_->law == Law::parabola)
-    return y_.zeta * bend_ < 0.0 ? -2.0 * y_.zeta / bend_ : never;
+  if (cell_->law == Law::parabola) return y_.zeta * bend_ < 0.0 ? -2.0 * y_.zeta / bend_ : never;
   // the direction's angle is atan(t_z/|t_r|), and it turns by |k| towards the horizon
   if (!(y_.zeta * bend_ * y_.xi < 0.0) || std::abs(tz_) > 0.3) return never;
   return std::asin(std::abs(tz_)) / std::abs(bend_);
+}
+
+double Course::to_range(double range, const RaySegment& segment) const noexcept {
+  const double sense = segment.end.range >= segment.begin.range ? -1.0 : 1.0;
+  const Line line{.range = range, .nr = sense, .nz = 0.0};
+  if (closed_) return to_line(line);
+  return falling_root(0.0, segment.end.time - segment.begin.time, [&](double h) {
+    const auto r = series_.range.value_and_slope(h);
+    return Series::ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
+  });
 }
 
 Place Course::at(double h) const noexcept {
@@ -186,10 +194,9 @@ RayState Course::end_of_arc(double s) const noexcept {
     b.nepers = y.nepers + s * row.alpha_top;
   } else {
     const double half = 0.5 * x, sinc_half = sinc(half), cos_half = cosine(half);
-    const double middle =
-        y.depth + 0.5 * s * sinc_half * (tz_ * cos_half + tr_ * half * sinc_half);
-    b.nepers = y.nepers +
-               s / 6.0 * (row.alpha(y.depth) + 4.0 * row.alpha(middle) + row.alpha(b.depth));
+    const double middle = y.depth + 0.5 * s * sinc_half * (tz_ * cos_half + tr_ * half * sinc_half);
+    b.nepers =
+        y.nepers + s / 6.0 * (row.alpha(y.depth) + 4.0 * row.alpha(middle) + row.alpha(b.depth));
   }
   b.length = y.length + s;
   return b;
@@ -222,8 +229,7 @@ RayState Course::end_of_parabola(double w) const noexcept {
   const Row& row = *cell_->row;
   b.length = y.length + length;
   b.nepers = y.nepers + row.alpha(y.depth) * length +
-             row.alpha_slope * w *
-                 ((n[0] * dz[0] + n[1] * dz[1]) + (n[2] * dz[2] + n[3] * dz[3]));
+             row.alpha_slope * w * ((n[0] * dz[0] + n[1] * dz[1]) + (n[2] * dz[2] + n[3] * dz[3]));
   // δx₀ = q·n, δ(slowness) = p·n + (c/2)·N_n·q·t; both projected on the end's n and t
   const double er = cb * b.xi, ez = cb * b.zeta;
   const auto carry = [&](double q, double p, double& q_end, double& p_end) {

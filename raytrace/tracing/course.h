@@ -42,6 +42,9 @@ class Course {
   /// Up to where a power series is as good as its error bound.
   [[nodiscard]] double reach() const noexcept { return series_.reach; }
 
+  /// Where a segment of it crosses a range between those of its ends.
+  [[nodiscard]] double to_range(double range, const RaySegment& segment) const noexcept;
+
   [[nodiscard]] Place at(double h) const noexcept;
   /// Sine and cosine of the angle below the horizon, and their derivatives; power series only.
   [[nodiscard]] Series::ValueSlope rise(double h) const noexcept {

@@ -83,8 +83,7 @@ bool March::meets(BoundaryKind kind, double heading) const {
   if (sense * (y_.depth - shape.depth_at(y_.range, i)) > 1e-12) return false;
   const Line& line = wall(kind).facets[i].line;
   // of the position, which for a curvilinear shape is not that of the tangent
-  const double slope =
-      wall(kind).straight ? -line.nr / line.nz : shape.at(y_.range, i).slope;
+  const double slope = wall(kind).straight ? -line.nr / line.nz : shape.at(y_.range, i).slope;
   return sense * (y_.zeta - slope * y_.xi) < 0.0;
 }
 

@@ -86,8 +86,8 @@ class March {
   bool creeping_ = false;  // along a line of the water that bends the ray back to it
   RayHistory history_;
   double source_range_ = 0.0;
-  double sense_ = 1.0;          // sign of q since the last caustic
-  double step_ = 0.0;           // h of the step being taken
+  double sense_ = 1.0;  // sign of q since the last caustic
+  double step_ = 0.0;   // h of the step being taken
   Event event_ = Event::none;
   int touches_ = 0;  // reflections without way between them
 };

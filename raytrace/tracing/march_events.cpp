@@ -19,8 +19,8 @@ void March::plan() {
   const bool down = y_.zeta > 0.0 || (y_.zeta == 0.0 && here_.c_z < 0.0);
   const double bend = std::abs(-here_.c_r * y_.zeta + here_.c_z * y_.xi);  // |c_n|/c
   const double longest =
-      course_.per_metre() * (bend * longest_segment > widest_turn ? widest_turn / bend
-                                                                  : longest_segment);
+      course_.per_metre() *
+      (bend * longest_segment > widest_turn ? widest_turn / bend : longest_segment);
   if (course_.closed())
     plan_closed(down, longest);
   else
@@ -166,8 +166,8 @@ double March::hit(BoundaryKind kind, std::size_t facet, double in, double out) c
   }
   if (passes) return hit_between(kind, facet, in, out);
   // down and up again: by the tangents at its ends it stays above this
-  const double cut = (end.value - begin.value + begin.slope * in - end.slope * out) /
-                     (begin.slope - end.slope);
+  const double cut =
+      (end.value - begin.value + begin.slope * in - end.slope * out) / (begin.slope - end.slope);
   if (begin.value + begin.slope * (cut - in) > 0.0) return never;
   double low = in, high = out;
   for (int i = 0; i < 60 && high - low > 1e-9 * out; ++i) {  // where it comes nearest

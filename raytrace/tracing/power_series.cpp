@@ -109,15 +109,13 @@ void expand_in(Law law, const Row& row, PowerSeries& y) noexcept {
     y.tr.a[k + 1] = share * product(c_n, y.tz.a, k);
     y.tz.a[k + 1] = -share * product(c_n, y.tr.a, k);
     y.q.a[k + 1] = share * product(w.c, y.growth.a, k);
-    y.growth.a[k + 1] =
-        share * (product(c_s, y.growth.a, k) - product(w.c_nn, y.q.a, k));
+    y.growth.a[k + 1] = share * (product(c_s, y.growth.a, k) - product(w.c_nn, y.q.a, k));
     y.q_plane.a[k + 1] = share * product(w.c, y.growth_plane.a, k);
     y.growth_plane.a[k + 1] =
         share * (product(c_s, y.growth_plane.a, k) - product(w.c_nn, y.q_plane.a, k));
     y.length.a[k + 1] = share * w.c[k];
-    y.nepers.a[k + 1] =
-        share * (row.alpha_top * w.c[k] +
-                 (lossy ? row.alpha_slope * product(w.c, y.depth.a, k) : 0.0));
+    y.nepers.a[k + 1] = share * (row.alpha_top * w.c[k] +
+                                 (lossy ? row.alpha_slope * product(w.c, y.depth.a, k) : 0.0));
   }
 }
 
@@ -157,9 +155,9 @@ void PowerSeries::expand(const Cell& cell, const RayState& y, const Local& here)
   const double q_size = 1.0 + std::abs(y.q), plane_size = 1.0 + std::abs(y.q_plane);
   const double last = largest({range.a[n], depth.a[n], 1e3 * tr.a[n], 1e3 * tz.a[n],
                                10.0 * q.a[n] / q_size, 10.0 * q_plane.a[n] / plane_size});
-  const double before = 0.1 * largest({range.a[n - 1], depth.a[n - 1], 1e3 * tr.a[n - 1],
-                                       1e3 * tz.a[n - 1], 10.0 * q.a[n - 1] / q_size,
-                                       10.0 * q_plane.a[n - 1] / plane_size});
+  const double before =
+      0.1 * largest({range.a[n - 1], depth.a[n - 1], 1e3 * tr.a[n - 1], 1e3 * tz.a[n - 1],
+                     10.0 * q.a[n - 1] / q_size, 10.0 * q_plane.a[n - 1] / plane_size});
   const double sixth =
       largest({range.a[6], depth.a[6], q.a[6] / q_size, q_plane.a[6] / plane_size}) / 64.0;
   reach = std::min({within(last, n, position_tolerance), within(before, n - 1, position_tolerance),

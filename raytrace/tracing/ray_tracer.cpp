@@ -18,4 +18,17 @@ void RayTracer::trace(double source_range, double source_depth, double launch_el
   tracing::March(*ocean_, limits, out).run(source_range, source_depth, launch_elevation);
 }
 
+RayState RayTracer::state_at_range(const RaySegment& segment, double range) const {
+  const RayState &y = segment.begin, &end = segment.end;
+  const bool along_a_line = y.depth == end.depth && y.zeta == 0.0 && end.zeta == 0.0;
+  if (along_a_line) return state_at(segment, arc_at_range(segment, range));
+  const tracing::Cell cell = ocean_->cell(ocean_->row(0.5 * (y.depth + end.depth)),
+                                          ocean_->column(0.5 * (y.range + end.range)));
+  tracing::Course course;
+  course.begin(cell, y, tracing::local(cell, y));
+  RayState there = course.end(course.to_range(range, segment));
+  there.range = range;
+  return there;
+}
+
 }  // namespace asdic

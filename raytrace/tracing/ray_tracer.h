@@ -36,6 +36,10 @@ class RayTracer {
   void trace(double source_range, double source_depth, double launch_elevation,
              const TraceLimits& limits, RayTrajectory& out) const;
 
+  /// The state where one segment of a ray of this tracer crosses a range between those of its ends:
+  /// as exact as its ends, where state_at interpolates.
+  [[nodiscard]] RayState state_at_range(const RaySegment& segment, double range) const;
+
   struct Ocean;  ///< what is prepared once (ocean.h)
 
  private:
