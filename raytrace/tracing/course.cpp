@@ -78,7 +78,6 @@ void Course::begin(const Cell& cell, const RayState& y, const Local& here) noexc
     case Law::munk:
       closed_ = false;
       per_metre_ = 1.0 / here.c;
-      series_.expand(cell, y, here);
   }
 }
 
@@ -125,8 +124,8 @@ double Course::to_range(double range, const RaySegment& segment) const noexcept 
   const Line line{.range = range, .nr = sense, .nz = 0.0};
   if (closed_) return to_line(line);
   return falling_root(0.0, segment.end.time - segment.begin.time, [&](double h) {
-    const auto r = series_.range.value_and_slope(h);
-    return Series::ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
+    const auto r = series_.value_and_slope(series_.range, h);
+    return ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
   });
 }
 
@@ -151,7 +150,8 @@ Place Course::at(double h) const noexcept {
     case Law::munk:
       break;
   }
-  const auto r = series_.range.value_and_slope(h), z = series_.depth.value_and_slope(h);
+  const auto r = series_.value_and_slope(series_.range, h),
+             z = series_.value_and_slope(series_.depth, h);
   return {y_.range + r.value, y_.depth + z.value, r.slope, z.slope};
 }
 
@@ -248,21 +248,21 @@ RayState Course::end_of_parabola(double w) const noexcept {
 RayState Course::end_of_series(double time) const noexcept {
   const RayState& y = y_;
   RayState b = y;
-  b.range = y.range + series_.range.value(time);
-  b.depth = y.depth + series_.depth.value(time);
+  b.range = y.range + series_.value(series_.range, time);
+  b.depth = y.depth + series_.value(series_.depth, time);
   const double c = cell_->speed(b.range, b.depth).c;
-  const double tr = series_.tr.value(time), tz = series_.tz.value(time);
+  const double tr = series_.value(series_.tr, time), tz = series_.value(series_.tz, time);
   // |slowness| = 1/c, come what may
   const double unit = 1.0 / (c * std::sqrt(tr * tr + tz * tz));
   b.xi = tr * unit;
   b.zeta = tz * unit;
   b.time = y.time + time;
-  b.q = series_.q.value(time);
-  b.p = series_.growth.value(time) / c;
-  b.q_plane = series_.q_plane.value(time);
-  b.p_plane = series_.growth_plane.value(time) / c;
-  b.length = y.length + series_.length.value(time);
-  b.nepers = y.nepers + series_.nepers.value(time);
+  b.q = series_.value(series_.q, time);
+  b.p = series_.value(series_.growth, time) / c;
+  b.q_plane = series_.value(series_.q_plane, time);
+  b.p_plane = series_.value(series_.growth_plane, time) / c;
+  b.length = y.length + series_.value(series_.length, time);
+  b.nepers = y.nepers + series_.value(series_.nepers, time);
   return b;
 }
 

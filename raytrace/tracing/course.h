@@ -29,6 +29,9 @@ class Course {
  public:
   /// \param here  of the cell, at y. The cell has to outlive the course
   void begin(const Cell& cell, const RayState& y, const Local& here) noexcept;
+  /// To be called before anything else is asked of a course that is not closed. \param wanted  how
+  /// far it will be needed at most [s]; see reach()
+  void expand(double wanted) noexcept { series_.expand(*cell_, y_, here_, wanted); }
 
   /// dh/ds where the course begins.
   [[nodiscard]] double per_metre() const noexcept { return per_metre_; }
@@ -39,7 +42,7 @@ class Course {
   [[nodiscard]] double to_line(const Line& line) const noexcept;
   /// Where it next turns (ζ = 0), likewise.
   [[nodiscard]] double to_turn() const noexcept;
-  /// Up to where a power series is as good as its error bound.
+  /// Up to where a power series is as good as its error bound: what was wanted, or less.
   [[nodiscard]] double reach() const noexcept { return series_.reach; }
 
   /// Where a segment of it crosses a range between those of its ends.
@@ -47,11 +50,11 @@ class Course {
 
   [[nodiscard]] Place at(double h) const noexcept;
   /// Sine and cosine of the angle below the horizon, and their derivatives; power series only.
-  [[nodiscard]] Series::ValueSlope rise(double h) const noexcept {
-    return series_.tz.value_and_slope(h);
+  [[nodiscard]] ValueSlope rise(double h) const noexcept {
+    return series_.value_and_slope(series_.tz, h);
   }
-  [[nodiscard]] Series::ValueSlope advance(double h) const noexcept {
-    return series_.tr.value_and_slope(h);
+  [[nodiscard]] ValueSlope advance(double h) const noexcept {
+    return series_.value_and_slope(series_.tr, h);
   }
   [[nodiscard]] RayState end(double h) const noexcept;
 

@@ -30,10 +30,6 @@ class March {
     greatest_range,
     greatest_depth,
   };
-  /// A function of a course's parameter, and its derivative.
-  struct ValueSlope {
-    double value = 0.0, slope = 0.0;
-  };
 
   void enter(double depth);
   void enter_cell(std::size_t row, std::size_t column);
@@ -41,7 +37,8 @@ class March {
   void creep();
   void plan();
   void plan_closed(bool down, double longest);
-  void plan_series(double longest);
+  void plan_series(bool down, double longest);
+  [[nodiscard]] double guess(bool down) const;
   void strike(BoundaryKind kind);
   [[nodiscard]] double hit(BoundaryKind kind, std::size_t facet, double in, double out) const;
   [[nodiscard]] double hit_between(BoundaryKind kind, std::size_t facet, double in,

@@ -24,7 +24,7 @@ void March::plan() {
   if (course_.closed())
     plan_closed(down, longest);
   else
-    plan_series(longest);
+    plan_series(down, longest);
   if (near_surface_) strike(BoundaryKind::surface);
   if (near_bottom_) strike(BoundaryKind::bottom);
   next_ = course_.end(step_);
@@ -59,10 +59,26 @@ void March::plan_closed(bool down, double longest) {
     take(Event::greatest_depth, course_.to_line({.depth = limits_.max_depth, .nz = -1.0}));
 }
 
+/// The travel time to the row's line or the turning point ahead, by the ray's present bend; in
+/// range no further than where the column or the ray ends.
+double March::guess(bool down) const {
+  const double c = here_.c, tr = c * y_.xi, tz = c * y_.zeta;
+  const double bend = (here_.c_r * tz - here_.c_z * tr) / c * tr;  // z″ = −(c_n/c)·t_r
+  const double dz = (down ? cell_.row->bottom : cell_.row->top) - y_.depth;
+  const double square = tz * tz + 2.0 * bend * dz;
+  double way = square < 0.0 ? -tz / bend : 2.0 * dz / (tz + std::copysign(std::sqrt(square), dz));
+  if (!(way >= 0.0)) way = longest_segment;
+  const double wall = tr > 0.0 ? std::min(limits_.max_range, ocean_.column_end(column_))
+                               : std::max(limits_.min_range, ocean_.column_begin(column_));
+  if (tr != 0.0) way = std::min(way, (wall - y_.range) / tr);
+  return (way + 1.0) / c;
+}
+
 /// A power series tells where it is: what it has passed at the end of the step, it met before.
-void March::plan_series(double longest) {
+void March::plan_series(bool down, double longest) {
   const Row& row = *cell_.row;
-  step_ = std::min(longest, course_.reach());
+  course_.expand(std::min(longest, 1.2 * guess(down)));
+  step_ = course_.reach();
   const double sense = y_.zeta > 0.0 ? 1.0 : -1.0;
   if (y_.zeta != 0.0 && sense * course_.rise(step_).value < 0.0) {
     event_ = Event::turn;
@@ -142,7 +158,7 @@ void March::strike(BoundaryKind kind) {
 }
 
 /// Distance from a facet along its normal; of a smooth one, in depth.
-March::ValueSlope March::clearance(BoundaryKind kind, std::size_t facet, double h) const {
+ValueSlope March::clearance(BoundaryKind kind, std::size_t facet, double h) const {
   const Place p = course_.at(h);
   const Line& line = wall(kind).facets[facet].line;
   if (wall(kind).straight)

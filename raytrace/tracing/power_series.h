@@ -6,28 +6,13 @@
 
 namespace asdic::tracing {
 
-/// The first terms of a power series in travel time.
-struct Series {
-  static constexpr std::size_t order = 12;
-  std::array<double, order + 1> a{};
-
-  struct ValueSlope {
-    double value, slope;
-  };
-  [[nodiscard]] double value(double h) const noexcept {
-    double v = a[order];
-    for (std::size_t i = order; i-- > 0;) v = a[i] + h * v;
-    return v;
-  }
-  [[nodiscard]] ValueSlope value_and_slope(double h) const noexcept {
-    double v = a[order], d = 0.0;
-    for (std::size_t i = order; i-- > 0;) {
-      d = v + h * d;
-      v = a[i] + h * v;
-    }
-    return {v, d};
-  }
+/// Value and derivative.
+struct ValueSlope {
+  double value = 0.0, slope = 0.0;
 };
+
+/// The first coefficients of a power series in travel time.
+using Series = std::array<double, 13>;
 
 /// A ray and its beam as power series in the travel time t from where it is. With the unit tangent
 /// (t_r, t_z) and P = c·p the equations of docs/theory/rays.md are polynomial,
@@ -42,9 +27,25 @@ struct PowerSeries {
   Series tr, tz;
   Series q, growth, q_plane, growth_plane;  ///< growth: P
   Series length, nepers;                    ///< less those of the begin
+  std::size_t order = 0;                    ///< of the last term
   double reach = 0.0;                       ///< up to where all of it is right [s]
 
-  void expand(const Cell& cell, const RayState& y, const Local& here) noexcept;
+  /// \param wanted  how far it is needed [s]: no more terms are made than that asks for
+  void expand(const Cell& cell, const RayState& y, const Local& here, double wanted) noexcept;
+
+  [[nodiscard]] double value(const Series& a, double h) const noexcept {
+    double v = a[order];
+    for (std::size_t i = order; i-- > 0;) v = a[i] + h * v;
+    return v;
+  }
+  [[nodiscard]] ValueSlope value_and_slope(const Series& a, double h) const noexcept {
+    double v = a[order], d = 0.0;
+    for (std::size_t i = order; i-- > 0;) {
+      d = v + h * d;
+      v = a[i] + h * v;
+    }
+    return {v, d};
+  }
 };
 
 /// Error accepted at the end of one segment [m], and of the quintics of state_at within it [m].

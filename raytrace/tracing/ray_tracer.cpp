@@ -26,6 +26,7 @@ RayState RayTracer::state_at_range(const RaySegment& segment, double range) cons
                                           ocean_->column(0.5 * (y.range + end.range)));
   tracing::Course course;
   course.begin(cell, y, tracing::local(cell, y));
+  if (!course.closed()) course.expand(end.time - y.time);
   RayState there = course.end(course.to_range(range, segment));
   there.range = range;
   return there;
