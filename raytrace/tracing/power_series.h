@@ -49,6 +49,6 @@ struct PowerSeries {
 };
 
 /// Error accepted at the end of one segment [m], and of the quintics of state_at within it [m].
-inline constexpr double position_tolerance = 1e-8, quintic_tolerance = 1e-5;
+inline constexpr double position_tolerance = 1e-7, quintic_tolerance = 1e-5;
 
 }  // namespace asdic::tracing
