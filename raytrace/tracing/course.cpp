@@ -119,11 +119,11 @@ double Course::to_turn() const noexcept {
   return std::asin(std::abs(tz_)) / std::abs(bend_);
 }
 
-double Course::to_range(double range, const RaySegment& segment) const noexcept {
-  const double sense = segment.end.range >= segment.begin.range ? -1.0 : 1.0;
+double Course::to_range(double range, double begin, double end, double last) const noexcept {
+  const double sense = end >= begin ? -1.0 : 1.0;
   const Line line{.range = range, .nr = sense, .nz = 0.0};
   if (closed_) return to_line(line);
-  return falling_root(0.0, segment.end.time - segment.begin.time, [&](double h) {
+  return falling_root(0.0, last, [&](double h) {
     const auto r = series_.value_and_slope(series_.range, h);
     return ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
   });

@@ -45,8 +45,8 @@ class Course {
   /// Up to where a power series is as good as its error bound: what was wanted, or less.
   [[nodiscard]] double reach() const noexcept { return series_.reach; }
 
-  /// Where a segment of it crosses a range between those of its ends.
-  [[nodiscard]] double to_range(double range, const RaySegment& segment) const noexcept;
+  /// Where it crosses a range between those where it begins and where, at h = `last`, it ends.
+  [[nodiscard]] double to_range(double range, double begin, double end, double last) const noexcept;
 
   [[nodiscard]] Place at(double h) const noexcept;
   /// Sine and cosine of the angle below the horizon, and their derivatives; power series only.

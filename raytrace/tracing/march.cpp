@@ -90,7 +90,7 @@ bool March::meets(BoundaryKind kind, double heading) const {
 /// Looks at where the ray is and deals with what happens on the spot; false when the ray has ended.
 bool March::begin_step() {
   for (;;) {
-    if (out_.segments.size() >= std::size_t(limits_.max_segments)) return end(RayEnd::trapped);
+    if (segments_ >= limits_.max_segments) return end(RayEnd::trapped);
     here_ = local(cell_, y_);
     if (near_surface_) surface_facet_ = facet_ahead(BoundaryKind::surface);
     if (near_bottom_) bottom_facet_ = facet_ahead(BoundaryKind::bottom);
@@ -121,13 +121,18 @@ void March::creep() {
     if (!forward) event_ = ends ? Event::least_range : Event::column_begin;
   }
   here_.c_r = here_.c_z = here_.c_nn = 0.0;
-  next_ = y_;
-  next_.range += std::copysign(step_, y_.xi);
-  next_.time += step_ / here_.c;
-  next_.q += y_.p * here_.c * step_;
-  next_.q_plane += y_.p_plane * here_.c * step_;
-  next_.nepers += cell_.row->alpha(y_.depth) * step_;
-  next_.length += step_;
+  next_ = crept(step_);
+}
+
+RayState March::crept(double way) const {
+  RayState y = y_;
+  y.range += std::copysign(way, y_.xi);
+  y.time += way / here_.c;
+  y.q += y_.p * here_.c * way;
+  y.q_plane += y_.p_plane * here_.c * way;
+  y.nepers += cell_.row->alpha(y_.depth) * way;
+  y.length += way;
+  return y;
 }
 
 /// Puts the ray exactly on what it met.
@@ -173,6 +178,19 @@ void March::snap() {
 
 void March::record() {
   there_ = creeping_ ? here_ : local(cell_, next_);
+  ++segments_;
+  if (visitor_ == nullptr)
+    store();
+  else
+    tell_ranges();
+  if (next_.q * sense_ < 0.0) {  // a caustic
+    ++history_.caustics;
+    sense_ = -sense_;
+  }
+  if (next_.length - y_.length > 1e-6) touches_ = 0;
+}
+
+void March::store() {
   RaySegment& s = out_.segments.emplace_back();
   s.begin = y_;
   s.end = next_;
@@ -187,11 +205,35 @@ void March::record() {
   s.c_nn_end = there_.c_nn;
   s.alpha_begin = cell_.row->alpha(y_.depth);
   s.alpha_end = cell_.row->alpha(next_.depth);
-  if (next_.q * sense_ < 0.0) {  // a caustic
-    ++history_.caustics;
-    sense_ = -sense_;
+}
+
+/// A segment owns its begin, not its end.
+void March::tell_ranges() {
+  const double from = y_.range, to = next_.range;
+  if (from == to) return;
+  const auto tell = [&](std::size_t i) {
+    const RayState y = passing(ranges_[i]);
+    RayHistory history = history_;
+    if (y.q * sense_ < 0.0) ++history.caustics;
+    visitor_->pass(i, y, history);
+  };
+  std::size_t& i = next_range_;
+  if (to > from) {
+    while (i > 0 && ranges_[i - 1] >= from) --i;
+    while (i < ranges_.size() && ranges_[i] < from) ++i;
+    while (i < ranges_.size() && ranges_[i] < to) tell(i++);
+  } else {
+    while (i > 0 && ranges_[i - 1] > from) --i;
+    while (i < ranges_.size() && ranges_[i] <= from) ++i;
+    while (i > 0 && ranges_[i - 1] > to) tell(--i);
   }
-  if (next_.length - y_.length > 1e-6) touches_ = 0;
+}
+
+RayState March::passing(double range) const {
+  RayState y = creeping_ ? crept(std::abs(range - y_.range))
+                         : course_.end(course_.to_range(range, y_.range, next_.range, step_));
+  y.range = range;
+  return y;
 }
 
 /// What follows from the event; false when the ray has ended.

@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "raytrace/tracing/jumps.h"
 #include "raytrace/tracing/ocean.h"
 
@@ -13,6 +15,11 @@ class March {
   March(const RayTracer::Ocean& ocean, const TraceLimits& limits, RayTrajectory& out) noexcept
       : ocean_(ocean), limits_(limits), out_(out) {}
 
+  /// Segments are not stored, but told where they pass ranges.
+  void tell(std::span<const double> ranges, RangeVisitor& visitor) noexcept {
+    ranges_ = ranges;
+    visitor_ = &visitor;
+  }
   void run(double source_range, double source_depth, double launch_elevation);
 
  private:
@@ -35,6 +42,7 @@ class March {
   void enter_cell(std::size_t row, std::size_t column);
   [[nodiscard]] bool begin_step();
   void creep();
+  [[nodiscard]] RayState crept(double way) const;
   void plan();
   void plan_closed(bool down, double longest);
   void plan_series(bool down, double longest);
@@ -48,6 +56,9 @@ class March {
   [[nodiscard]] bool meets(BoundaryKind kind, double heading) const;
   void snap();
   void record();
+  void store();
+  void tell_ranges();
+  [[nodiscard]] RayState passing(double range) const;
   [[nodiscard]] bool answer();
   [[nodiscard]] bool reflect_at(BoundaryKind kind);
   [[nodiscard]] Tangent tangent_at(BoundaryKind kind) const noexcept;
@@ -86,6 +97,10 @@ class March {
   double sense_ = 1.0;  // sign of q since the last caustic
   double step_ = 0.0;   // h of the step being taken
   Event event_ = Event::none;
+  std::span<const double> ranges_;
+  RangeVisitor* visitor_ = nullptr;
+  std::size_t next_range_ = 0;  // the first not below y_
+  int segments_ = 0;
   int touches_ = 0;  // reflections without way between them
 };
 
