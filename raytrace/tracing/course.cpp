@@ -123,7 +123,7 @@ double Course::to_range(double range, double begin, double end, double last) con
   const double sense = end >= begin ? -1.0 : 1.0;
   const Line line{.range = range, .nr = sense, .nz = 0.0};
   if (closed_) return to_line(line);
-  return falling_root(0.0, last, [&](double h) {
+  return falling_root(0.0, last, (range - begin) / (end - begin) * last, [&](double h) {
     const auto r = series_.value_and_slope(series_.range, h);
     return ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
   });

@@ -75,14 +75,19 @@ class Course {
 
 /// \returns f = 0 where f changes from ≥ 0 at `low` to < 0 at `high`.
 template <class F>
-double falling_root(double low, double high, F&& f) noexcept {
-  double x = high;
+double falling_root(double low, double high, double guess, F&& f) noexcept {
+  double x = guess;
   for (int i = 0; i < 100; ++i) {
     const auto [value, slope] = f(x);
     (value >= 0.0 ? low : high) = x;
     double next = slope < 0.0 ? x - value / slope : low;
-    if (std::abs(next - x) <= 4e-16 * (std::abs(x) + high)) return next;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (!(next > low && next < high)) {
+      if (value == 0.0) return x;
+      next = 0.5 * (low + high);
+    } else if (std::abs(next - x) <= 1e-9 * high) {
+      return next;  // Newton's next step would be of the order of the square of this one
+    }
+
     if (next == x) return x;
     x = next;
   }

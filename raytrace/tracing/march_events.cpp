@@ -82,7 +82,7 @@ void March::plan_series(bool down, double longest) {
   const double sense = y_.zeta > 0.0 ? 1.0 : -1.0;
   if (y_.zeta != 0.0 && sense * course_.rise(step_).value < 0.0) {
     event_ = Event::turn;
-    step_ = falling_root(0.0, step_, [&](double h) {
+    step_ = falling_root(0.0, step_, step_, [&](double h) {
       const auto rise = course_.rise(h);
       return ValueSlope{sense * rise.value, sense * rise.slope};
     });
@@ -91,7 +91,7 @@ void March::plan_series(bool down, double longest) {
     const double dr = course_.at(0.0).dr, sign = std::copysign(1.0, dr);
     if (std::abs(dr) > 1e-9 * here_.c && sign * course_.at(step_).dr < 0.0) {
       event_ = Event::none;
-      step_ = falling_root(0.0, step_, [&](double h) {
+      step_ = falling_root(0.0, step_, step_, [&](double h) {
         const auto advance = course_.advance(h);
         return ValueSlope{sign * advance.value, sign * advance.slope};
       });
@@ -101,7 +101,7 @@ void March::plan_series(bool down, double longest) {
   const auto take = [&](Event event, const Line& line) {
     if (line.distance(end.range, end.depth) >= 0.0) return;
     event_ = event;
-    step_ = falling_root(0.0, step_, [&](double h) {
+    step_ = falling_root(0.0, step_, step_, [&](double h) {
       const Place p = course_.at(h);
       return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
     });
@@ -123,7 +123,7 @@ void March::plan_series(bool down, double longest) {
 double March::step_to_range(double range, bool forward) const {
   const Line line{.range = range, .nr = forward ? -1.0 : 1.0, .nz = 0.0};
   if (course_.closed()) return course_.to_line(line);
-  return falling_root(0.0, step_, [&](double h) {
+  return falling_root(0.0, step_, step_, [&](double h) {
     const Place p = course_.at(h);
     return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr};
   });
@@ -205,7 +205,7 @@ double March::hit_between(BoundaryKind kind, std::size_t facet, double in, doubl
       if (clearance(kind, facet, low).value > 0.0) break;
       out = low;
     }
-  return falling_root(low, out, [&](double h) { return clearance(kind, facet, h); });
+  return falling_root(low, out, out, [&](double h) { return clearance(kind, facet, h); });
 }
 
 }  // namespace asdic::tracing
