@@ -102,6 +102,7 @@ struct Work {
   const FieldCheck& also;
   std::vector<double> level;        // [ranges] of TubeError
   std::vector<double>& tube_share;  // [beams − 1]
+  double* end_share;                // [2] of the first and the last ray
 
   [[nodiscard]] BeamLaunch launch(std::size_t i, double source_speed) const {
     const double elevation = fan.elevation[i];
@@ -218,6 +219,9 @@ class FastPart {
     if (work_.also.half && i % 2 == 0) sum_[1].add(launch, here_.crossings);
     if (work_.also.bound && i > 0)
       work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
+    if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))
+      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
+          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
     last_ = i;
   }
   void finish() { tubes_->finish(); }
@@ -280,6 +284,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                       const BeamFan& fan, const Progress& progress, FieldMethod method,
                       const FieldCheck& also) {
   std::vector<double> tube_share(also.bound ? fan.elevation.size() - 1 : 0);
+  double end_share[2] = {0.0, 0.0};
   const Work work{run_case,
                   tracer,
                   source_depth,
@@ -289,7 +294,8 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                   field_limits(run_case),
                   also,
                   tube_level(run_case, also),
-                  tube_share};
+                  tube_share,
+                  end_share};
   const std::size_t cells = run_case.receivers.size();
   const bool fast = method == FieldMethod::fast && has_error_bound(run_case);
   // A packet of beams costs as much as a share of the grid: fewer parts for fewer beams.
@@ -306,6 +312,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
   std::vector<FastPart> parts;
   for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
   FanField result = sum_parts(work, parts);
+  if (also.bound) tube_share.front() += end_share[0], tube_share.back() += end_share[1];
   result.tube_share = std::move(tube_share);
   return result;
 }

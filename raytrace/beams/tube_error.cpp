@@ -111,8 +111,7 @@ TubeError::Bound TubeError::bound(const RayAtColumns& a, std::size_t i, const Ra
   Bound result;
   result.tube = {torn ? std::min(between, both) : smooth,
                  torn ? low : std::min(low, std::min(end_a, end_b)),
-                 torn ? high : std::max(high, std::max(end_a, end_b)),
-                 torn ? 0.0 : std::max(sigma_a, sigma_b)};
+                 torn ? high : std::max(high, std::max(end_a, end_b)), std::max(sigma_a, sigma_b)};
   result.lower = {part * fa.amplitude, std::min(za, end_a), std::max(za, end_a), sigma_a};
   result.higher = {part * fb.amplitude, std::min(zb, end_b), std::max(zb, end_b), sigma_b};
   return result;
@@ -169,6 +168,15 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
     for (; left >= 0; left = next_[static_cast<std::size_t>(left)])
       share += put(b.column[j], alone(higher, static_cast<std::size_t>(left), width),
                    level[b.column[j]]);
+  }
+  return share;
+}
+
+double TubeError::add_end(const RayAtColumns& ray, double width, std::span<const double> level) {
+  double share = 0.0;
+  for (std::size_t i = 0; i < ray.crossings.size(); ++i) {
+    const std::size_t column = ray.crossings.column[i];
+    share += put(column, alone(ray, i, width), level[column]);
   }
   return share;
 }

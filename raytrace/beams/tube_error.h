@@ -29,6 +29,9 @@ class TubeError {
   double add(const RayAtColumns& lower, const RayAtColumns& higher, double width,
              std::span<const double> level);
 
+  /// Adds what the fan's first or last ray brings: its beam stands for rays beyond it too.
+  double add_end(const RayAtColumns& ray, double width, std::span<const double> level);
+
   /// To be called once, after the last tube: at(column, row) is the majorant from then on, of the
   /// pressure, or of the intensity, before field_scale.
   void finish();

@@ -152,11 +152,12 @@ TEST(GradedFans, AreEvenOnesIfTheirTubesAre) {
 TEST(GradedFans, DivideWhereTheErrorIs) {
   const BeamFan even = even_fan(-1.0, 1.0, 5);
   const BeamFan fan = graded_fan(even, {0.0, 1.0, 4.0, 0.0}, 11);
-  EXPECT_EQ(fan.elevation.size(), 11U);  // 1 + 3 + 5 … parts: as √S, in whole numbers
+  EXPECT_EQ(fan.elevation.size(), 12U);  // 1, 3, 6, 1 parts: as √S; 1, 2, 5, 1 were too few
   for (const double e : even.elevation)
     EXPECT_NE(std::find(fan.elevation.begin(), fan.elevation.end(), e), fan.elevation.end());
   EXPECT_TRUE(std::is_sorted(fan.elevation.begin(), fan.elevation.end()));
   EXPECT_DOUBLE_EQ(fan.elevation[1], -0.5);
+  EXPECT_DOUBLE_EQ(fan.elevation[5], 0.5 / 6.0);
 }
 
 /// How a field's bound stands against a fan eight times as dense.
@@ -182,7 +183,7 @@ Held held(const PropagationCase& run_case, const BeamFan& fan, const BeamFan& de
 
 // The bound is one: at 95 % of the receivers for every ocean, kind of beam and of sum, and receiver
 // by receiver but for those beside a caustic or an edge inside a torn tube, where rays do not end
-// where their neighbours do.
+// where their neighbours do: less than the 5 % that a figure at 95 % leaves out.
 TEST(ErrorBound, HoldsOverRandomOceans) {
   for (unsigned seed = 1; seed <= 30; ++seed)
     for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
@@ -198,7 +199,7 @@ TEST(ErrorBound, HoldsOverRandomOceans) {
           SCOPED_TRACE(testing::Message() << "seed " << seed << " kind " << int(kind) << " field "
                                           << int(field) << " beams " << beams);
           EXPECT_LE(h.error_db, h.bound_db);
-          EXPECT_LE(h.beyond, 0.02);
+          EXPECT_LE(h.beyond, 0.05);
         }
       }
 }
