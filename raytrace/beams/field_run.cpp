@@ -117,19 +117,22 @@ struct Work {
   }
 };
 
-/// Sums the fan in `parts`, which take turns at packets of neighbouring rays. Each has add(i) for
-/// ray i and at(column, row, half).
-template <class Part>
-FanField sum_parts(const Work& work, std::vector<Part>& parts) {
+/// Sums the fan in `count` parts, which take turns at packets of neighbouring rays. Each is made
+/// from `work` and `more` by the thread that fills it, and has add(i) for ray i and at(column, row,
+/// half).
+template <class Part, class... More>
+FanField sum_parts(const Work& work, std::size_t count, const More&... more) {
   constexpr std::size_t packet = 16;
+  std::vector<std::optional<Part>> parts(count);
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    parts[p].emplace(work, more...);
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
       const std::size_t last = std::min(first + packet, beams);
-      for (std::size_t i = first; i < last; ++i) parts[p].add(i);
+      for (std::size_t i = first; i < last; ++i) parts[p]->add(i);
       const std::size_t n = done += last - first;
       if (work.progress && !work.progress(double(n) / double(beams))) stopped = true;
     }
@@ -140,27 +143,34 @@ FanField sum_parts(const Work& work, std::vector<Part>& parts) {
   FanField result;
   const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
     field.resize(grid.size());
-    tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
-      const double scale = field_scale(work.setting, grid.ranges[j]);
-      for (std::size_t k = 0; k < rows; ++k) {
-        std::complex<double> sum = 0.0;
-        for (const Part& part : parts) sum += part.at(j, k, half);
-        field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
-      }
+    // a few columns at a time, since the field has its ranges side by side
+    constexpr std::size_t block = 8;
+    tbb::parallel_for(std::size_t{0}, (columns + block - 1) / block, [&](std::size_t b) {
+      const std::size_t from = b * block, to = std::min(from + block, columns);
+      double scale[block];
+      for (std::size_t j = from; j < to; ++j)
+        scale[j - from] = field_scale(work.setting, grid.ranges[j]);
+      for (std::size_t k = 0; k < rows; ++k)
+        for (std::size_t j = from; j < to; ++j) {
+          std::complex<double> sum = 0.0;
+          for (const auto& part : parts) sum += part->at(j, k, half);
+          field[k * columns + j] =
+              scale[j - from] * (work.setting.coherent ? sum : std::sqrt(sum.real()));
+        }
     });
   };
   collect(false, result.field);
   if (work.also.half) collect(true, result.half);
   if constexpr (requires(Part part) { part.bound_at(0, 0); }) {
     if (work.also.bound) {
-      for (Part& part : parts) part.finish();
+      for (auto& part : parts) part->finish();
       result.bound.resize(grid.size());
       for (std::size_t j = 0; j < columns; ++j) {
         double scale = field_scale(work.setting, grid.ranges[j]);
         if (!work.setting.coherent) scale *= scale;
         for (std::size_t k = 0; k < rows; ++k) {
           double sum = 0.0;
-          for (const Part& part : parts) sum += part.bound_at(j, k);
+          for (const auto& part : parts) sum += part->bound_at(j, k);
           result.bound[k * columns + j] = scale * sum;
         }
       }
@@ -302,16 +312,10 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
   const std::size_t few =
       std::clamp<std::size_t>(fan.elevation.size() / (fast ? 1024 : 64), 1, most_parts);
   const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
-  if (!fast) {
-    std::vector<PlainPart> parts;
-    for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
-    return sum_parts(work, parts);
-  }
+  if (!fast) return sum_parts<PlainPart>(work, count);
   const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
                                               source_depth, run_case.receivers.ranges, work.limits);
-  std::vector<FastPart> parts;
-  for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
-  FanField result = sum_parts(work, parts);
+  FanField result = sum_parts<FastPart>(work, count, layered ? &*layered : nullptr);
   if (also.bound) tube_share.front() += end_share[0], tube_share.back() += end_share[1];
   result.tube_share = std::move(tube_share);
   return result;
