@@ -100,11 +100,18 @@ void ColumnSum::find_rows(const Crossings& x) {
 /// Rows on one side of each ray; one at the ray itself belongs to the higher half.
 void ColumnSum::find_rows_of_half(const Crossings& x) {
   const bool higher = half_ == Half::higher;
+  const auto rows = static_cast<double>(depths_.size());
   const auto first_not_above = [&](double z) {
+    if (spacing_ > 0.0)
+      return static_cast<std::int32_t>(
+          std::clamp(std::ceil((z - first_depth_) * per_spacing_), 0.0, rows));
     return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
                                      depths_.begin());
   };
   const auto first_below = [&](double z) {
+    if (spacing_ > 0.0)
+      return static_cast<std::int32_t>(
+          std::clamp(std::floor((z - first_depth_) * per_spacing_) + 1.0, 0.0, rows));
     return static_cast<std::int32_t>(std::upper_bound(depths_.begin(), depths_.end(), z) -
                                      depths_.begin());
   };

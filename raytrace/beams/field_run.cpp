@@ -11,7 +11,6 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/convergence.h"
-#include "raytrace/beams/geometric.h"
 #include "raytrace/beams/layered_crossings.h"
 #include "raytrace/beams/tube_error.h"
 
@@ -250,7 +249,7 @@ class FastPart {
       find_crossings(ray_, work_.run_case.receivers.ranges, out.crossings);
     }
     const BeamLaunch launch = work_.launch(i, out.crossings.source_speed);
-    out.launched = beams::launch_factor(work_.setting, launch);
+    if (work_.also.bound) out.foretell(work_.setting, launch);
     return launch;
   }
 

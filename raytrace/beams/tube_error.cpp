@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/beams/geometric.h"
 #include "raytrace/beams/lanes.h"
 
 namespace asdic {
@@ -11,23 +12,50 @@ namespace {
 
 const double root_of_two_pi = std::sqrt(2.0 * pi);
 
-/// To the nearest whole number of turns.
-inline double within_half_a_turn(double angle) noexcept {
-  return angle - 2.0 * pi * std::floor(angle / (2.0 * pi) + 0.5);
-}
-
-/// What one ray foretells: how far its beam reaches along the column, and its neighbour.
-struct Foretold {
-  double amplitude;  ///< of its beam at the ray (squared where intensities are added)
-  double power;      ///< amplitude² × |q|/cos θ of the ray itself
-  double sigma;      ///< least half-width of a Gaussian along the column [m]
-  double reach;      ///< of a hat along the column [m], ≥ 0
-  double weight;     ///< of its hat at the neighbour: 0 if that is where it was expected
-  double phase;      ///< at the neighbour [rad]
-  bool astray;       ///< the neighbour is not on its side, or behind a caustic
-};
+inline double larger(double a, double b) noexcept { return a > b ? a : b; }
+inline double smaller(double a, double b) noexcept { return a < b ? a : b; }
 
 }  // namespace
+
+void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch) {
+  const std::size_t n = crossings.size();
+  for (auto* array :
+       {&size, &growth, &cosine, &higher, &amplitude, &power, &phase, &wave_number, &least})
+    array->resize(n);
+  const double launched = beams::launch_factor(setting, launch);
+  const double launched2 = launched * launched / crossings.source_speed;
+  const double f = setting.frequency, omega = 2.0 * pi * f;
+  const bool coherent = setting.coherent;
+  const double width = setting.kind == BeamKind::hat ? 0.0 : 1.0;
+  const double *q = crossings.q.data(), *cos_in = crossings.cosine.data(),
+               *sine = crossings.sine.data(), *dq_ds = crossings.dq_ds.data(),
+               *c = crossings.speed.data(), *time = crossings.time.data(),
+               *level = crossings.level.data(), *turned = crossings.phase.data(),
+               *mirror = crossings.mirror.data();
+  double *size_to = size.data(), *growth_to = growth.data(), *cosine_to = cosine.data(),
+         *higher_to = higher.data(), *amplitude_to = amplitude.data(), *power_to = power.data(),
+         *phase_to = phase.data(), *number_to = wave_number.data(), *least_to = least.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const double along = std::abs(cos_in[i]), sign = q[i] < 0.0 ? -1.0 : 1.0;
+    const double intensity = launched2 * level[i] * level[i] * c[i];  // · |q|
+    size_to[i] = larger(std::abs(q[i]), 1e-9);
+    growth_to[i] = sign * dq_ds[i] * sine[i];
+    cosine_to[i] = along;
+    higher_to[i] = q[i] * cos_in[i] * mirror[i] > 0.0 ? -1.0 : 1.0;
+    amplitude_to[i] = intensity / size_to[i];
+    power_to[i] = intensity / along;
+    phase_to[i] = turned[i] - omega * time[i];
+    number_to[i] = -omega * sine[i] / c[i];
+    least_to[i] = width * smaller(0.2 * f * time[i], pi * c[i] / f);
+  }
+  if (coherent)
+    for (std::size_t i = 0; i < n; ++i) amplitude_to[i] = std::sqrt(amplitude_to[i]);
+}
+
+void TubeError::Pieces::resize(std::size_t n) {
+  for (auto* array : {&error, &from, &to, &sigma}) array->resize(n);
+}
 
 TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
                      std::size_t columns)
@@ -42,90 +70,105 @@ TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
   if (even) per_spacing_ = 1.0 / step;
 }
 
-/// `dz` is where the neighbour is, `side` where it should be: ±1 towards higher rays or lower ones.
-static inline Foretold foretell(const BeamSetting& setting, const RayAtColumns& ray, std::size_t i,
-                                double dz, double side, double width) noexcept {
-  const Crossings& x = ray.crossings;
-  const double q = x.q[i], cosine = std::abs(x.cosine[i]), sine = x.sine[i], c = x.speed[i];
-  const double omega = 2.0 * pi * setting.frequency;
-  const double toward = (q * x.cosine[i] * x.mirror[i] > 0.0 ? -1.0 : 1.0) * side;
-  const double size = std::max(std::abs(q), 1e-9);
-  const double growth = (q < 0.0 ? -1.0 : 1.0) * x.dq_ds[i] * sine;  // of |q| downwards
-  const double there = size + growth * dz;                           // |q| at the neighbour's foot
-  Foretold f;
-  f.astray = dz * toward < 0.0 || there <= 0.0;
-  f.weight = there > 0.0 ? 1.0 - std::abs(dz) * cosine / (there * width) : 1.0;
-  // n < L: |dz|·cos θ < (|q| + growth·dz)·Δα; no further than twice as far as without growth
-  const double narrowed = cosine - toward * growth * width;
-  f.reach = size * width / (narrowed > 0.5 * cosine ? narrowed : 0.5 * cosine);
-  f.phase = x.phase[i] - omega * (x.time[i] + dz * sine / c);
-  const double intensity = ray.launched * ray.launched * x.level[i] * x.level[i] * c /
-                           x.source_speed;  // · W² / |q|, of the ray
-  const double least_a = 0.2 * setting.frequency * x.time[i], least_b = pi * c / setting.frequency;
-  const double across = std::max(size * width, least_a < least_b ? least_a : least_b);
-  f.sigma = across / cosine;
-  f.power = intensity / cosine;
-  const double share =
-      setting.kind == BeamKind::hat ? 1.0 : size * width / (across * root_of_two_pi);
-  f.amplitude = setting.coherent ? share * std::sqrt(intensity / size) : share * intensity / size;
-  return f;
+/// From crossing i of the lower ray and j of the higher one on, `count` pairs.
+/// docs/theory/fields.md, eq. (1) to (3)
+template <bool hat, bool coherent>
+void TubeError::bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtColumns& b,
+                              std::size_t j, std::size_t count, double width) {
+  const double *higher_a = a.higher.data() + i, *size_a = a.size.data() + i,
+               *growth_a = a.growth.data() + i, *cosine_a = a.cosine.data() + i,
+               *turned_a = a.crossings.phase.data() + i, *mirror_a = a.crossings.mirror.data() + i,
+               *phase_a = a.phase.data() + i, *number_a = a.wave_number.data() + i,
+               *least_a = a.least.data() + i, *amplitude_a = a.amplitude.data() + i,
+               *power_a = a.power.data() + i, *depth_a = a.crossings.depth.data() + i;
+  const double *higher_b = b.higher.data() + j, *size_b = b.size.data() + j,
+               *growth_b = b.growth.data() + j, *cosine_b = b.cosine.data() + j,
+               *turned_b = b.crossings.phase.data() + j, *mirror_b = b.crossings.mirror.data() + j,
+               *phase_b = b.phase.data() + j, *number_b = b.wave_number.data() + j,
+               *least_b = b.least.data() + j, *amplitude_b = b.amplitude.data() + j,
+               *power_b = b.power.data() + j, *depth_b = b.crossings.depth.data() + j;
+  double *tube_error = tube_.error.data(), *tube_from = tube_.from.data(),
+         *tube_to = tube_.to.data(), *tube_sigma = tube_.sigma.data(),
+         *lower_error = lower_.error.data(), *lower_from = lower_.from.data(),
+         *lower_to = lower_.to.data(), *lower_sigma = lower_.sigma.data(),
+         *higher_error = higher_.error.data(), *higher_from = higher_.from.data(),
+         *higher_to = higher_.to.data(), *higher_sigma = higher_.sigma.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t k = 0; k < count; ++k) {
+    const double za = depth_a[k], zb = depth_b[k], dz = zb - za;
+    const double apart = std::abs(dz), side_a = higher_a[k], side_b = -higher_b[k];
+    // |q| of each ray's beam at the other; its hat's weight there, 0 if that is where it was
+    // foretold
+    const double there_a = size_a[k] + growth_a[k] * dz, there_b = size_b[k] - growth_b[k] * dz;
+    const double weight_a = 1.0 - apart * cosine_a[k] / (there_a * width);
+    const double weight_b = 1.0 - apart * cosine_b[k] / (there_b * width);
+    const double weight = larger(std::abs(weight_a), std::abs(weight_b));
+    // The phase that each foretells for the other; reflections and caustics to the nearest turn.
+    const double turns = turned_a[k] - turned_b[k];
+    const double whole = 2.0 * pi * std::floor(turns / (2.0 * pi) + 0.5);
+    const double ahead = phase_a[k] - phase_b[k] - whole;
+    const double phase =
+        coherent ? larger(std::abs(ahead + number_a[k] * dz), std::abs(ahead + number_b[k] * dz))
+                 : 0.0;
+    // The beams: reach of a hat, σ of a Gaussian along the column, amplitude at the ray.
+    const double open_a = cosine_a[k] - side_a * growth_a[k] * width;
+    const double open_b = cosine_b[k] - side_b * growth_b[k] * width;
+    const double reach_a = hat ? size_a[k] * width / larger(open_a, 0.5 * cosine_a[k]) : 0.0;
+    const double reach_b = hat ? size_b[k] * width / larger(open_b, 0.5 * cosine_b[k]) : 0.0;
+    const double across_a = larger(size_a[k] * width, least_a[k]);
+    const double across_b = larger(size_b[k] * width, least_b[k]);
+    const double share_a = hat ? 1.0 : size_a[k] * width / (across_a * root_of_two_pi);
+    const double share_b = hat ? 1.0 : size_b[k] * width / (across_b * root_of_two_pi);
+    const double sigma_a = hat ? 0.0 : across_a / cosine_a[k];
+    const double sigma_b = hat ? 0.0 : across_b / cosine_b[k];
+    const double amp_a = share_a * amplitude_a[k], amp_b = share_b * amplitude_b[k];
+    const double most = larger(amp_a, amp_b), both = amp_a + amp_b,
+                 change = std::abs(amp_a - amp_b);
+    const double smooth = hat ? most * (weight + 0.25 * phase) + 0.5 * change
+                              : 0.5 * (most * (weight + phase) + change);
+    // Torn: on the wrong side, behind a caustic, mirrored once more, or not foretold at all. The
+    // power of the rays in between is that of the two, on the average.
+    const double ordered = smaller(smaller(dz * side_a, -dz * side_b), smaller(there_a, there_b));
+    const double mirrored = std::abs(mirror_a[k] - mirror_b[k]);
+    const double torn = (ordered < 0.0 ? 1.0 : 0.0) + mirrored + (smooth > both ? 1.0 : 0.0) +
+                        (there_a * there_b == 0.0 ? 1.0 : 0.0);
+    const double mean = larger(power_a[k], power_b[k]) * width / larger(apart, 1e-9);
+    const double between = smaller(coherent ? std::sqrt(mean) : mean, both);
+    const double part = torn > 0.0 ? (hat ? 1.0 : 0.5) : 0.0;
+    const double end_a = za + side_a * reach_a, end_b = zb + side_b * reach_b;
+    const double low = smaller(za, zb), high = larger(za, zb);
+    tube_error[k] = torn > 0.0 ? between : smooth;
+    tube_from[k] = torn > 0.0 ? low : smaller(low, smaller(end_a, end_b));
+    tube_to[k] = torn > 0.0 ? high : larger(high, larger(end_a, end_b));
+    tube_sigma[k] = larger(sigma_a, sigma_b);
+    lower_error[k] = part * amp_a;
+    lower_from[k] = smaller(za, end_a);
+    lower_to[k] = larger(za, end_a);
+    lower_sigma[k] = sigma_a;
+    higher_error[k] = part * amp_b;
+    higher_from[k] = smaller(zb, end_b);
+    higher_to[k] = larger(zb, end_b);
+    higher_sigma[k] = sigma_b;
+  }
 }
 
-TubeError::Bound TubeError::bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b,
-                                  std::size_t j, double width) const noexcept {
-  const double za = a.crossings.depth[i], zb = b.crossings.depth[j];
-  const Foretold fa = foretell(setting_, a, i, zb - za, 1.0, width);
-  const Foretold fb = foretell(setting_, b, j, za - zb, -1.0, width);
-  const bool hat = setting_.kind == BeamKind::hat;
-  const double larger = std::max(fa.amplitude, fb.amplitude), both = fa.amplitude + fb.amplitude;
-  const double weight = std::max(std::abs(fa.weight), std::abs(fb.weight));
-  double phase = 0.0;
-  if (setting_.coherent) {
-    // each foretells the other's phase there, where that one is sure of it
-    const double omega = 2.0 * pi * setting_.frequency;
-    const double at_a = a.crossings.phase[i] - omega * a.crossings.time[i];
-    const double at_b = b.crossings.phase[j] - omega * b.crossings.time[j];
-    const double turns = a.crossings.phase[i] - b.crossings.phase[j];
-    const double whole = turns - within_half_a_turn(turns);
-    phase = std::max(std::abs(fa.phase - at_b - whole), std::abs(fb.phase - at_a + whole));
-  }
-  const double change = std::abs(fa.amplitude - fb.amplitude);
-  const bool astray = fa.astray || fb.astray || a.crossings.mirror[i] != b.crossings.mirror[j];
-  const double smooth = hat ? larger * (weight + 0.25 * phase) + 0.5 * change
-                            : 0.5 * (larger * (weight + phase) + change);
-  const double toward_a =
-      a.crossings.q[i] * a.crossings.cosine[i] * a.crossings.mirror[i] > 0.0 ? -1.0 : 1.0;
-  const double toward_b =
-      b.crossings.q[j] * b.crossings.cosine[j] * b.crossings.mirror[j] > 0.0 ? 1.0 : -1.0;
-  const double end_a = hat ? za + toward_a * fa.reach : za;
-  const double end_b = hat ? zb + toward_b * fb.reach : zb;
-  const bool torn = astray || smooth > both;
-  // Torn: the power of all rays in between is that of the two, √(Δα/H) for 1/√|q|; its mean.
-  const double apart =
-      std::max(std::abs(zb - za), 1e-9) / std::max(width, 1e-12);  // as a |q|/cos θ
-  const double mean = std::max(fa.power, fb.power) / apart;
-  const double between = setting_.coherent ? std::sqrt(mean) : mean;
-  const double part = torn ? (hat ? 1.0 : 0.5) : 0.0;
-  const double low = std::min(za, zb), high = std::max(za, zb);
-  const double sigma_a = hat ? 0.0 : fa.sigma, sigma_b = hat ? 0.0 : fb.sigma;
-  Bound result;
-  result.tube = {torn ? std::min(between, both) : smooth,
-                 torn ? low : std::min(low, std::min(end_a, end_b)),
-                 torn ? high : std::max(high, std::max(end_a, end_b)), std::max(sigma_a, sigma_b)};
-  result.lower = {part * fa.amplitude, std::min(za, end_a), std::max(za, end_a), sigma_a};
-  result.higher = {part * fb.amplitude, std::min(zb, end_b), std::max(zb, end_b), sigma_b};
-  return result;
+void TubeError::bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+                      std::size_t count, double width) {
+  const bool hat = setting_.kind == BeamKind::hat, coherent = setting_.coherent;
+  if (hat && coherent) return bound_of_kind<true, true>(a, i, b, j, count, width);
+  if (hat) return bound_of_kind<true, false>(a, i, b, j, count, width);
+  if (coherent) return bound_of_kind<false, true>(a, i, b, j, count, width);
+  bound_of_kind<false, false>(a, i, b, j, count, width);
 }
 
 /// A ray without a neighbour: all that it brings is unsure.
-TubeError::Bound TubeError::alone(const RayAtColumns& a, std::size_t i,
-                                  double width) const noexcept {
-  const Foretold f = foretell(setting_, a, i, 0.0, 1.0, width);
-  const double z = a.crossings.depth[i];
+double TubeError::put_alone(const RayAtColumns& ray, std::size_t i, double width, double level) {
   const bool hat = setting_.kind == BeamKind::hat;
-  const double reach = hat ? f.reach : 0.0;
-  return {
-      .tube = {f.amplitude, z - reach, z + reach, hat ? 0.0 : f.sigma}, .lower = {}, .higher = {}};
+  const double across = larger(ray.size[i] * width, ray.least[i]), z = ray.crossings.depth[i];
+  const double reach = hat ? across / ray.cosine[i] : 0.0;
+  const double share = hat ? 1.0 : ray.size[i] * width / (across * root_of_two_pi);
+  return put(ray.crossings.column[i], share * ray.amplitude[i], z - reach, z + reach,
+             hat ? 0.0 : across / ray.cosine[i], level);
 }
 
 double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, double width,
@@ -138,15 +181,15 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
   };
   double share = 0.0;
   if (simple(a) && simple(b)) {  // each column once, in order
-    bounds_.resize(n);
-    ASDIC_INDEPENDENT
-    for (std::size_t i = 0; i < n; ++i) bounds_[i] = bound(lower, i, higher, i, width);
-    for (std::size_t i = 0; i < n; ++i) share += put(i, bounds_[i], level[i]);
-    for (std::size_t i = n; i < a.size(); ++i) share += put(i, alone(lower, i, width), level[i]);
-    for (std::size_t i = n; i < b.size(); ++i) share += put(i, alone(higher, i, width), level[i]);
+    for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(n);
+    bound(lower, 0, higher, 0, n, width);
+    for (std::size_t i = 0; i < n; ++i) share += put_tube(i, i, level[i]);
+    for (std::size_t i = n; i < a.size(); ++i) share += put_alone(lower, i, width, level[i]);
+    for (std::size_t i = n; i < b.size(); ++i) share += put_alone(higher, i, width, level[i]);
     return share;
   }
   // The first crossing of a column belongs to the neighbour's first, the second to its second, …
+  for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(1);
   next_.assign(b.size(), -1);
   for (std::size_t j = b.size(); j-- > 0;) {
     next_[j] = head_[b.column[j]];
@@ -156,18 +199,18 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
     const std::size_t column = a.column[i];
     const std::int32_t j = head_[column];
     if (j < 0) {
-      share += put(column, alone(lower, i, width), level[column]);
+      share += put_alone(lower, i, width, level[column]);
       continue;
     }
     const auto k = static_cast<std::size_t>(j);
     head_[column] = next_[k];
-    share += put(column, bound(lower, i, higher, k, width), level[column]);
+    bound(lower, i, higher, k, 1, width);
+    share += put_tube(column, 0, level[column]);
   }
   for (std::size_t j = 0; j < b.size(); ++j) {
     std::int32_t& left = head_[b.column[j]];
     for (; left >= 0; left = next_[static_cast<std::size_t>(left)])
-      share += put(b.column[j], alone(higher, static_cast<std::size_t>(left), width),
-                   level[b.column[j]]);
+      share += put_alone(higher, static_cast<std::size_t>(left), width, level[b.column[j]]);
   }
   return share;
 }
@@ -175,33 +218,34 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
 double TubeError::add_end(const RayAtColumns& ray, double width, std::span<const double> level) {
   double share = 0.0;
   for (std::size_t i = 0; i < ray.crossings.size(); ++i) {
-    const std::size_t column = ray.crossings.column[i];
-    share += put(column, alone(ray, i, width), level[column]);
+    share += put_alone(ray, i, width, level[ray.crossings.column[i]]);
   }
   return share;
 }
 
-double TubeError::put(std::size_t column, const Bound& bound, double level) {
-  double share = put(column, bound.tube, level);
-  if (bound.lower.error > 0.0) share += put(column, bound.lower, level);
-  if (bound.higher.error > 0.0) share += put(column, bound.higher, level);
+double TubeError::put_tube(std::size_t column, std::size_t n, double level) {
+  const auto one = [&](const Pieces& p) {
+    return put(column, p.error[n], p.from[n], p.to[n], p.sigma[n], level);
+  };
+  double share = one(tube_);
+  if (lower_.error[n] > 0.0 || higher_.error[n] > 0.0) share += one(lower_) + one(higher_);
   return share;
 }
 
-double TubeError::put(std::size_t column, const Piece& piece, double level) {
+double TubeError::put(std::size_t column, double error, double from, double to, double sigma,
+                      double level) {
   double receivers;
-  if (piece.sigma == 0.0) {
-    receivers = put_between(column, piece.error, piece.from, piece.to);
+  if (sigma == 0.0) {
+    receivers = put_between(column, error, from, to);
   } else {  // a staircase over e^(−u²/2): steps at whole u
     constexpr double step[4] = {1.0 - 0.60653066, 0.60653066 - 0.13533528, 0.13533528 - 0.011108997,
                                 0.011108997};
     receivers = 0.0;
     for (int u = 1; u <= 4; ++u)
       receivers +=
-          step[u - 1] * put_between(column, step[u - 1] * piece.error, piece.from - u * piece.sigma,
-                                    piece.to + u * piece.sigma);
+          step[u - 1] * put_between(column, step[u - 1] * error, from - u * sigma, to + u * sigma);
   }
-  return receivers * std::min(piece.error / level, 1.0);
+  return receivers * std::min(error / level, 1.0);
 }
 
 double TubeError::put_between(std::size_t column, double error, double from, double to) {

@@ -9,10 +9,20 @@
 
 namespace asdic {
 
-/// One ray of a fan where it crosses the columns, and its beam's launch_factor.
+/// One ray of a fan where it crosses the columns, and what it foretells of its neighbours there.
 struct RayAtColumns {
-  double launched = 1.0;
   Crossings crossings;
+  std::vector<double> size, growth;  ///< [n] |q| and its change downwards along the column
+  std::vector<double> cosine;        ///< [n] |cos θ|
+  std::vector<double> higher;        ///< [n] +1: higher rays are deeper, −1: shallower
+  std::vector<double> amplitude;     ///< [n] of the ray, squared where intensities are added
+  std::vector<double> power;         ///< [n] amplitude² × |q|/cos θ
+  std::vector<double> phase;         ///< [n] reflections, caustics and −ωτ [rad]
+  std::vector<double> wave_number;   ///< [n] dφ/dz [rad/m]
+  std::vector<double> least;         ///< [n] least σ of a Gaussian [m]; 0: a hat
+
+  /// Fills all but the crossings out of these.
+  void foretell(const BeamSetting& setting, const BeamLaunch& launch);
 };
 
 /// A majorant of the error that comes of a fan's being finite, receiver by receiver, for hat and
@@ -40,20 +50,20 @@ class TubeError {
   }
 
  private:
-  /// An error between two depths, where it falls off like a Gaussian of width `sigma` beyond them.
-  struct Piece {
-    double error, from, to, sigma;
+  /// An error between two depths, falling off like a Gaussian of width `sigma` beyond them; an
+  /// array for each, of one tube.
+  struct Pieces {
+    std::vector<double> error, from, to, sigma;
+    void resize(std::size_t n);
   };
-  /// The bound of one tube at one column: all over it or, where its rays do not foretell each
-  /// other, also what each of the two brings.
-  struct Bound {
-    Piece tube, lower, higher;
-  };
-  [[nodiscard]] Bound bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b,
-                            std::size_t j, double width) const noexcept;
-  [[nodiscard]] Bound alone(const RayAtColumns& a, std::size_t i, double width) const noexcept;
-  double put(std::size_t column, const Bound& bound, double level);
-  double put(std::size_t column, const Piece& piece, double level);
+  void bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+             std::size_t count, double width);
+  template <bool hat, bool coherent>
+  void bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+                     std::size_t count, double width);
+  double put_alone(const RayAtColumns& ray, std::size_t i, double width, double level);
+  double put_tube(std::size_t column, std::size_t n, double level);
+  double put(std::size_t column, double error, double from, double to, double sigma, double level);
   double put_between(std::size_t column, double error, double from, double to);
 
   BeamSetting setting_;
@@ -61,7 +71,8 @@ class TubeError {
   double first_depth_ = 0.0, per_spacing_ = 0.0;  // of evenly spaced depths, else 0
   std::size_t stride_ = 0;
   std::vector<double> sum_;                // [columns × (rows + 1)] changes from row to row
-  std::vector<Bound> bounds_;              // of one tube, [crossings]
+  Pieces tube_;                            // bounds of one tube, [crossings]: all over it
+  Pieces lower_, higher_;                  // and where it is torn also what its two rays bring
   std::vector<std::int32_t> head_, next_;  // of crossings of the same column
 };
 
