@@ -34,6 +34,24 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
+constexpr double most_bound_db = 99.0;  // where the bound is as large as the field
+
+/// |ΔTL| that a bound allows [dB], of the cells where field or bound is above the floor.
+std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
+                              const std::vector<double>& bound, bool coherent) {
+  const double faintest = faintest_of(field), factor = coherent ? 20.0 : 10.0;
+  std::vector<double> unsure;
+  unsure.reserve(field.size());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double p = std::abs(field[i]), x = coherent ? p : p * p;
+    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest) continue;
+    unsure.push_back(bound[i] < x
+                         ? std::min(most_bound_db, -factor * std::log10(1.0 - bound[i] / x))
+                         : most_bound_db);
+  }
+  return unsure;
+}
+
 /// Root mean square over depth (mean intensity if not coherent) of each column.
 std::vector<double> column_levels(const std::vector<std::complex<double>>& field,
                                   std::size_t columns, bool coherent) {
@@ -44,9 +62,13 @@ std::vector<double> column_levels(const std::vector<std::complex<double>>& field
   return level;
 }
 
-std::string how_unsure(std::size_t beams, const char* about, double error_db) {
-  return "the field is not sure of its number of beams: " + std::to_string(beams) +
-         " leave an error of " + about + std::to_string(error_db) + " dB at 95 % of the receivers";
+std::string percent(double share) {
+  return std::to_string(static_cast<int>(std::floor(100.0 * share))) + " %";
+}
+
+std::string decimals(double value) {
+  std::string text = std::to_string(value);
+  return text.substr(0, text.find('.') + 3);
 }
 
 /// Until the bound is what is wanted.
@@ -65,16 +87,25 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
                           .bounded = true};
     if (answer.error_db <= wanted_bound_db) return answer;
     if (count >= most) {
-      answer.note = how_unsure(count, "up to ", answer.error_db);
+      const auto unsure = unsure_db(answer.field, pass.bound, coherent);
+      const auto sure = std::count_if(unsure.begin(), unsure.end(),
+                                      [](double db) { return db <= wanted_bound_db; });
+      answer.note = std::to_string(count) + " beams leave the field sure to " +
+                    decimals(wanted_bound_db) + " dB at " +
+                    percent(static_cast<double>(sure) / static_cast<double>(unsure.size())) +
+                    " of the receivers" +
+                    (answer.error_db < most_bound_db
+                         ? ", to " + decimals(answer.error_db) + " dB at 95 %"
+                         : std::string(", and less than 95 % of them to any number"));
       return answer;
     }
     level = column_levels(answer.field, run_case.receivers.ranges.size(), coherent);
     // The bound falls with the number or a little faster.
     const double factor = std::clamp(1.05 * answer.error_db / wanted_bound_db, 1.25, 2.0);
     const auto next = std::min(static_cast<std::size_t>(factor * static_cast<double>(count)), most);
-    fan = beams.kind == BeamKind::hat && !circle
-              ? graded_fan(fan, pass.tube_share, next)
-              : even_fan(beams.lowest, beams.highest, static_cast<int>(next));
+    if (beams.kind == BeamKind::hat && !circle) fan = graded_fan(fan, pass.tube_share, next);
+    if (fan.elevation.size() <= count)  // Gaussians, or no tube that stands out
+      fan = even_fan(beams.lowest, beams.highest, static_cast<int>(std::max(next, count + 1)));
   }
 }
 
@@ -82,17 +113,7 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
 
 double bound_db(const std::vector<std::complex<double>>& field, const std::vector<double>& bound,
                 bool coherent, double share) {
-  constexpr double most_db = 99.0;
-  const double faintest = faintest_of(field);
-  const double factor = coherent ? 20.0 : 10.0;
-  std::vector<double> unsure;
-  unsure.reserve(field.size());
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    const double p = std::abs(field[i]), x = coherent ? p : p * p;
-    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest) continue;
-    unsure.push_back(bound[i] < x ? std::min(most_db, -factor * std::log10(1.0 - bound[i] / x))
-                                  : most_db);
-  }
+  std::vector<double> unsure = unsure_db(field, bound, coherent);
   return quantile(unsure, share);
 }
 
@@ -137,7 +158,9 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
                           .error_db = change / (std::exp2(p) - 1.0)};
     if (answer.error_db <= wanted_error_db) return answer;
     if (count >= most) {
-      answer.note = how_unsure(answer.beams, "about ", answer.error_db);
+      answer.note =
+          "the field is not sure of its number of beams: " + std::to_string(answer.beams) +
+          " leave an error of about " + decimals(answer.error_db) + " dB at 95 % of the receivers";
       return answer;
     }
     last_change = change;
