@@ -53,8 +53,8 @@ std::string transect_text(const PingSimulator& simulator) {
       "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
       "it, over {:.0f} m\n",
       s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
-      simulator.paths().along(s.platform.at(0.0).position) / 1000.0,
-      simulator.paths().bottom_depth(s.platform.at(0.0).position));
+      simulator.paths().along(s.platforms[0].track.at(0.0).position) / 1000.0,
+      simulator.paths().bottom_depth(s.platforms[0].track.at(0.0).position));
 }
 
 std::string depth_of_water(const Environment& ocean) {
@@ -92,28 +92,29 @@ std::string environment_text(const Environment& ocean, double f, std::optional<d
 
 std::string sonar_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
-  const Kinematics platform = s.platform.at(0.0);
+  const Kinematics platform = s.platforms[0].track.at(0.0);
   const Pulse& pulse = simulator.pulse();
   constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
   constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
   std::string text =
       fmt::format("platform   {}, {}\n", position(platform.position), motion(platform.velocity));
   text +=
-      s.transmitter.taper == Taper::omnidirectional
-          ? fmt::format("projector  {:g} dB, omnidirectional\n", s.transmitter.source_level_db)
+      s.transmitters[0].taper == Taper::omnidirectional
+          ? fmt::format("projector  {:g} dB, omnidirectional\n", s.transmitters[0].source_level_db)
           : fmt::format("projector  {:g} dB, elevation {:g} deg, beamwidth {:g} deg\n",
-                        s.transmitter.source_level_db, degrees(simulator.transmitter(1).elevation),
-                        degrees(s.transmitter.beamwidth));
+                        s.transmitters[0].source_level_db,
+                        degrees(simulator.transmitter(1).elevation),
+                        degrees(s.transmitters[0].beamwidth));
   text +=
       fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
                   kinds[static_cast<int>(s.pulse.kind)], pulse.centre_frequency(), pulse.duration(),
                   windows[static_cast<int>(s.pulse.window)], pulse.bandwidth_40db());
   double aperture = 0.0;
-  for (const Vec3& a : s.array.phones)
-    for (const Vec3& b : {s.array.phones.front(), s.array.phones.back()})
+  for (const Vec3& a : s.arrays[0].phones)
+    for (const Vec3& b : {s.arrays[0].phones.front(), s.arrays[0].phones.back()})
       aperture = std::max(aperture, (a - b).norm());
-  text += fmt::format("array      {}, {:g} m across\n", count_of(s.array.phones.size(), "phone"),
-                      aperture);
+  text +=
+      fmt::format("array      {}, {:g} m across\n", count_of(channels_of(s), "phone"), aperture);
   for (const Target& target : s.targets) {
     const Kinematics k = target.track.at(0.0);
     const Separation way = separation(platform.position, k.position);
@@ -137,7 +138,7 @@ std::string sonar_text(const PingSimulator& simulator) {
 std::string size_text(const Scenario& s) {
   const PingSchedule& p = s.pings;
   const double samples = std::round(p.recording_duration * p.sample_rate);
-  const double bytes = 4.0 * samples * static_cast<double>(s.array.phones.size()) * p.count +
+  const double bytes = 4.0 * samples * static_cast<double>(channels_of(s)) * p.count +
                        8.0 * samples;  // the pressure and its time axis; tables are small beside it
   return fmt::format(
       "recording  {}, {:g} s apart, each {:g} s at {:g} Hz: {:.0f} samples a phone; "

@@ -112,7 +112,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<double>("elevation_deg", "elevation of the transmitter's beam, positive up", "degree");
   growing<double>("platform_position", "platform at the start of the ping", "m", {"xyz"}, {3});
   growing<double>("platform_velocity", "velocity of the platform", "m/s", {"xyz"}, {3});
-  const std::size_t channels = scenario.array.phones.size(), targets = scenario.targets.size();
+  const std::size_t channels = channels_of(scenario), targets = scenario.targets.size();
   growing<double>("phone_position", "phones at the start of the ping", "m", {"channel", "xyz"},
                   {channels, 3});
   for (const char* name : {"rays", "eigenrays", "patches", "synthesis", "noise", "write"})
@@ -146,7 +146,7 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   file.write<double>("time", time, {samples});
   describe(file, "time", "after the start of the ping", "s");
   file.make_scale("time", "sample");
-  const std::size_t channels = scenario.array.phones.size();
+  const std::size_t channels = channels_of(scenario);
   file.create_growing<float>("pressure", {channels, samples}, Shape{1, 1, samples});
   describe(file, "pressure", "acoustic pressure", "Pa");
   file.attach_scales("pressure", {"ping", "channel", "time"});
@@ -282,7 +282,7 @@ void PingFileWriter::write_rays(const RayPaths& rays) {
 void PingFileWriter::append(const PingRecord& record) {
   const auto begin = std::chrono::steady_clock::now();
   Impl& to = *impl_;
-  const std::size_t channels = to.scenario.array.phones.size();
+  const std::size_t channels = channels_of(to.scenario);
   if (record.phones.size() != channels || record.targets.size() != to.scenario.targets.size() ||
       record.pressure.size() != channels * record.recording.samples)
     throw std::logic_error("a ping record of another shape than its scenario");

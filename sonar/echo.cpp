@@ -56,18 +56,20 @@ class EchoFinder {
   EchoFinder(const EchoContext& context, int target)
       : context_(context),
         scenario_(context.scenario),
+        array_(scenario_.arrays[static_cast<std::size_t>(context.array)]),
+        array_track_(scenario_.platforms[static_cast<std::size_t>(array_.platform)].track),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target) {}
 
   TargetEchoes find() {
-    const Kinematics source = scenario_.platform.at(context_.ping_time);
+    const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);
     const Way out =
         way(source.position, 0.0, target_.track, Vec3::Zero(), Leg::Kind::source_to_target);
     TargetEchoes result;
     result.legs.push_back(out.leg);
     if (out.leg.arrivals.empty()) return result;
     if (scenario_.propagation.exact_per_phone) {
-      for (std::size_t n = 0; n < scenario_.array.phones.size(); ++n)
+      for (std::size_t n = 0; n < array_.phones.size(); ++n)
         pair_up(source, out, static_cast<int>(n), result);
     } else {
       pair_up(source, out, -1, result);
@@ -161,17 +163,18 @@ class EchoFinder {
 
   void pair_up(const Kinematics& source, const Way& out, int channel, TargetEchoes& result) const {
     const Vec3 offset =
-        scenario_.array.offset +
-        (channel < 0 ? Vec3::Zero() : scenario_.array.phones[static_cast<std::size_t>(channel)]);
-    Way back = way(out.end.at_reference.position, out.end.reference_time, scenario_.platform,
-                   offset, Leg::Kind::target_to_array);
+        array_.offset +
+        (channel < 0 ? Vec3::Zero() : array_.phones[static_cast<std::size_t>(channel)]);
+    Way back = way(out.end.at_reference.position, out.end.reference_time, array_track_, offset,
+                   Leg::Kind::target_to_array);
     back.leg.channel = channel;
+    back.leg.array = context_.array;
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
       const Settled there =
           settle(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
       const Kinematics struck = target_.track.at(context_.ping_time + there.time);
       const bool moved = struck.position != out.end.at_reference.position;
-      const Way home = moved ? way(struck.position, there.time, scenario_.platform, offset,
+      const Way home = moved ? way(struck.position, there.time, array_track_, offset,
                                    Leg::Kind::target_to_array, back.leg.arrivals)
                              : back;
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
@@ -180,7 +183,7 @@ class EchoFinder {
         if (path == nullptr) continue;  // by then it is gone
         EchoPath echo =
             pair(source, there, struck,
-                 settle(struck.position, there.time, scenario_.platform, offset, home, *path));
+                 settle(struck.position, there.time, array_track_, offset, home, *path));
         echo.outgoing = static_cast<int>(i);
         echo.returning = static_cast<int>(j);
         echo.heard.channel = channel < 0 ? Return::all_channels : channel;
@@ -207,6 +210,7 @@ class EchoFinder {
 
     EchoPath echo;
     echo.target = index_;
+    echo.array = context_.array;
     echo.heard.delay = home.time;
     echo.heard.amplitude = there.path.amplitude * home.path.amplitude *
                            context_.pattern(there.path.launch_elevation) *
@@ -215,12 +219,15 @@ class EchoFinder {
                                       {target.velocity, out_of_target}, {phone.velocity, at_phone});
     echo.heard.slowness = at_phone;
     echo.level_db =
-        scenario_.transmitter.source_level_db + db_from_amplitude(std::abs(echo.heard.amplitude));
+        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
+        db_from_amplitude(std::abs(echo.heard.amplitude));
     return echo;
   }
 
   const EchoContext& context_;
   const Scenario& scenario_;
+  const ReceiverArray& array_;
+  const Track& array_track_;
   const Target& target_;
   int index_;
 };

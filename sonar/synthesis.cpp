@@ -121,6 +121,16 @@ Baseband Synthesizer::baseband(std::span<const Return> returns,
   return result;
 }
 
+void append_channels(Baseband& all, Baseband&& more) {
+  if (all.channels == 0) {
+    all = std::move(more);
+    return;
+  }
+  assert(all.samples == more.samples && all.carrier == more.carrier && all.start == more.start);
+  all.values.insert(all.values.end(), more.values.begin(), more.values.end());
+  all.channels += more.channels;
+}
+
 void Synthesizer::add_passband(const Baseband& baseband, double scale,
                                std::span<float> pressure) const {
   const Plan& plan = plan_.front();

@@ -34,6 +34,9 @@ struct Baseband {
   }
 };
 
+/// Puts the channels of another array under those that are there. Both of one synthesizer.
+void append_channels(Baseband& all, Baseband&& more);
+
 /// Turns sparse returns into phones' time series: band-limited impulse responses, convolved with
 /// the pulse by FFT in complex baseband, Doppler by a low-rank (Chebyshev) expansion over the span
 /// of factors; passband by FFT interpolation at the end. Built once per pulse, recording and band

@@ -47,7 +47,7 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
   file.write_text("scenario", scenario.text);
   describe(file, "scenario", "the scenario file, verbatim");
 
-  std::vector<std::int32_t> channels(scenario.array.phones.size());
+  std::vector<std::int32_t> channels(channels_of(scenario));
   std::iota(channels.begin(), channels.end(), 0);
   write_scale(file, "channel", "channel", channels, "number of the phone, from 0");
   write_scale<std::int32_t>(file, "xyz", "xyz", {0, 1, 2}, "0 east, 1 north, 2 depth");
@@ -82,7 +82,7 @@ void write_replica(Hdf5File& file, const Scenario& scenario) {
   file.set_attribute("replica", "bandwidth_hz", pulse.bandwidth_40db());
   file.set_attribute("replica", "duration_s", pulse.duration());
   file.set_attribute("replica", "window", text_of(scenario.pulse.window));
-  file.set_attribute("replica", "source_level_db", scenario.transmitter.source_level_db);
+  file.set_attribute("replica", "source_level_db", scenario.transmitters[0].source_level_db);
 }
 
 void write_rays(Hdf5File& file, const RayPaths& rays) {

@@ -53,11 +53,11 @@ TEST(ScenarioReader, ReadsWhatStandsThere) {
   EXPECT_EQ(s.environment.bottom.depth, 5000.0);
   EXPECT_TRUE(std::holds_alternative<Rigid>(s.environment.bottom.material));
   EXPECT_TRUE(std::holds_alternative<Thorp>(s.environment.absorption));
-  EXPECT_EQ(s.platform.start.position.z(), 4500.0);
-  EXPECT_DOUBLE_EQ(s.transmitter.elevation, radians(8.0));
-  EXPECT_EQ(s.transmitter.taper, Taper::hann);
+  EXPECT_EQ(s.platforms[0].track.start.position.z(), 4500.0);
+  EXPECT_DOUBLE_EQ(s.transmitters[0].elevation, radians(8.0));
+  EXPECT_EQ(s.transmitters[0].taper, Taper::hann);
   EXPECT_EQ(s.pulse.window, PulseWindow::hann);
-  EXPECT_EQ(s.array.phones.size(), 16U);
+  EXPECT_EQ(s.arrays[0].phones.size(), 16U);
   ASSERT_EQ(s.targets.size(), 1U);
   EXPECT_NEAR((s.targets[0].track.start.position - Vec3(25000.0, 0.0, 125.0)).norm(), 0.0, 1e-9);
   EXPECT_EQ(s.pings.count, 2);
@@ -77,7 +77,7 @@ TEST(ScenarioReader, OverridesReplaceAddAndIndex) {
                                            "target.0.name=a bare phrase",
                                            R"(environment.bottom={kind="vacuum", depth=5200})"};
   const Scenario s = parse_scenario(small_scenario, "small.toml", overrides);
-  EXPECT_DOUBLE_EQ(s.transmitter.elevation, radians(12.0));
+  EXPECT_DOUBLE_EQ(s.transmitters[0].elevation, radians(12.0));
   EXPECT_EQ(s.targets[0].strength_db, 20.5);
   EXPECT_EQ(s.targets[0].name, "a bare phrase");
   EXPECT_EQ(s.pulse.window, PulseWindow::none);
