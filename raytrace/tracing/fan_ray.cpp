@@ -205,10 +205,10 @@ void digest(const RayTrajectory& ray, const Environment& environment,
   }
 }
 
-std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const Environment& environment,
+std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const RayTracer& tracer,
                                           std::size_t leg, std::uint64_t history, double range) {
   thread_local std::vector<LegOfRay> parts;
-  split_into_legs(ray, environment, parts);
+  split_into_legs(ray, tracer.environment(), parts);
   if (leg >= parts.size() || parts[leg].history != history) return {};
   const std::span<const RaySegment> segments(ray.segments.data() + parts[leg].first,
                                              parts[leg].last - parts[leg].first);
@@ -235,7 +235,7 @@ std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const Enviro
     const RaySegment& s = *std::find_if(segments.begin(), segments.end(), [&](const RaySegment& x) {
       return onward ? range < x.end.range : range > x.end.range;
     });
-    const RayState y = state_at(s, arc_at_range(s, range));
+    const RayState y = tracer.state_at_range(s, range);
     found.state = y;
     found.history = s.history;
     found.c = 1.0 / std::hypot(y.xi, y.zeta);

@@ -2,9 +2,29 @@
 #include <vector>
 
 #include "raytrace/tracing/cell.h"
+#include "raytrace/tracing/course.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
+
+namespace tracing {
+
+/// A facet of a shaped boundary, ready to be met.
+struct Facet {
+  double begin = 0.0, end = 0.0;  ///< ranges [m], ∓infinity for the outer ones
+  double extreme = 0.0;           ///< how far it reaches into the water at most: a depth [m]
+  Line line;                      ///< through its ends, the normal pointing into the water
+};
+
+/// A shaped boundary, facet by facet; empty for a flat one.
+struct Wall {
+  std::vector<Facet> facets;
+  bool straight = true;  ///< the facets are their lines
+
+  Wall(const Boundary& boundary, BoundaryKind kind);
+};
+
+}  // namespace tracing
 
 /// The environment prepared for marching: rows, columns and losses looked up once.
 struct RayTracer::Ocean {
@@ -30,6 +50,7 @@ struct RayTracer::Ocean {
   double frequency;  ///< [Hz]
   Reflection reflection;
   std::vector<tracing::Row> rows;  ///< from top to bottom, without gaps
+  tracing::Wall surface, bottom;
 };
 
 }  // namespace asdic

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 
 #include "raytrace/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
@@ -19,6 +20,16 @@ struct TraceLimits {
 enum class Reflection : unsigned char {
   on_the_spot,
   displaced,  ///< carried along by the phase of the coefficient (ocean/beam_displacement.h)
+};
+
+/// Told where a ray passes ranges.
+class RangeVisitor {
+ public:
+  /// \param range  index of it   \param y  there   \param history  up to there, caustics included
+  virtual void pass(std::size_t range, const RayState& y, const RayHistory& history) = 0;
+
+ protected:
+  ~RangeVisitor() = default;
 };
 
 /// Marches rays through any ocean: closed forms in cells where they exist (c linear: arcs of
@@ -42,6 +53,17 @@ class RayTracer {
   /// \param out  its memory is reused
   void trace(double source_range, double source_depth, double launch_elevation,
              const TraceLimits& limits, RayTrajectory& out) const;
+
+  /// The same ray without storing it: the visitor is told the exact state at each range that the
+  /// ray passes, in the order in which it does; a turn on a range may be told once or not at all.
+  /// \param ranges  increasing [m]   \return c₀, the speed at the source [m/s]
+  double trace_past(std::span<const double> ranges, double source_range, double source_depth,
+                    double launch_elevation, const TraceLimits& limits,
+                    RangeVisitor& visitor) const;
+
+  /// The state where one segment of a ray of this tracer crosses a range between those of its ends:
+  /// as exact as its ends, where state_at interpolates.
+  [[nodiscard]] RayState state_at_range(const RaySegment& segment, double range) const;
 
   struct Ocean;  ///< what is prepared once (ocean.h)
 
