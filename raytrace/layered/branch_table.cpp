@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
 
 namespace asdic {
@@ -93,24 +94,27 @@ void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
   for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
                        &interval.d_up, &interval.d_middle, &interval.d_down})
     values->reserve(nodes.size());
-  for (const double sigma : nodes) {
-    const RayParameter ray(c_slow, sigma);
-    const ColumnSums sums = column_.sums(ray);
-    const double chain = ray.slowness_per_sigma();
-    const double cycle = sums.up.range + sums.middle.range + sums.down.range;
-    const double slope = (sums.up.d_range + sums.middle.d_range + sums.down.d_range) * chain;
-    // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
-    // receiver and fainter than anything.
-    if (!std::isfinite(cycle) || !std::isfinite(slope)) continue;
-    interval.sigma.push_back(sigma);
-    interval.up.push_back(sums.up.range);
-    interval.middle.push_back(sums.middle.range);
-    interval.down.push_back(sums.down.range);
-    interval.d_up.push_back(sums.up.d_range * chain);
-    interval.d_middle.push_back(sums.middle.d_range * chain);
-    interval.d_down.push_back(sums.down.d_range * chain);
-    interval.turns_above = sums.turns_above;
-    interval.turns_below = sums.turns_below;
+  for (std::size_t begin = 0; begin < nodes.size(); begin += rays_at_once) {
+    const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
+    const RayLanes rays(c_slow, sigmas);
+    const auto& [up, middle, down, turns_above, turns_below] = walk_sums(column_, rays);
+    const Rays chain = -rays.sigma * rays.per_c2 / rays.slowness;  // dξ/dσ
+    const Rays cycle = rays.slowness * (up.per_slowness + middle.per_slowness + down.per_slowness);
+    const Rays slope = chain * (up.d_range + middle.d_range + down.d_range);
+    interval.turns_above = turns_above;
+    interval.turns_below = turns_below;
+    for (std::size_t i = 0; i < std::min(rays_at_once, nodes.size() - begin); ++i) {
+      // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
+      // receiver and fainter than anything.
+      if (!std::isfinite(cycle[i]) || !std::isfinite(slope[i])) continue;
+      interval.sigma.push_back(sigmas[i]);
+      interval.up.push_back(rays.slowness[i] * up.per_slowness[i]);
+      interval.middle.push_back(rays.slowness[i] * middle.per_slowness[i]);
+      interval.down.push_back(rays.slowness[i] * down.per_slowness[i]);
+      interval.d_up.push_back(chain[i] * up.d_range[i]);
+      interval.d_middle.push_back(chain[i] * middle.d_range[i]);
+      interval.d_down.push_back(chain[i] * down.d_range[i]);
+    }
   }
   if (interval.sigma.size() < 2) return;
   limit_by_loss(interval);
