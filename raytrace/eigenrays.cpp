@@ -189,38 +189,38 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
     return marching_eigenrays(*tracer(frequency), 0.0, source_depth, points, fan_of(limits));
   }
   if (ranges.empty()) return {};
-  struct Wanted {
-    double range;
-    std::size_t receiver;
-  };
-  std::vector<Wanted> wanted(ranges.size());  // by range
-  for (std::size_t i = 0; i < ranges.size(); ++i) wanted[i] = {std::max(ranges[i], least_range), i};
-  std::sort(wanted.begin(), wanted.end(), [](const Wanted& a, const Wanted& b) {
-    return a.range != b.range ? a.range < b.range : a.receiver < b.receiver;
-  });
+  std::vector<std::size_t> order(ranges.size());  // by range
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return ranges[a] < ranges[b]; });
+  std::vector<double> wanted;
+  wanted.reserve(ranges.size());
+  for (const std::size_t i : order) wanted.push_back(std::max(ranges[i], least_range));
 
   const BranchTable fan = table(source_depth, receiver_depth, limits);
   const PathBuilder builder(environment_, fan.column(), frequency);
   std::vector<RootTask> tasks;
   std::vector<std::size_t> expected(ranges.size(), 0);
-  fan.for_each_stretch(
-      wanted.front().range, wanted.back().range, [&](const MonotoneStretch& stretch) {
-        const double low = std::min(stretch.range_begin, stretch.range_end),
-                     high = std::max(stretch.range_begin, stretch.range_end);
-        // A stretch owns its slow end, so that a root on a common end is found once.
-        auto it = std::partition_point(wanted.begin(), wanted.end(),
-                                       [&](const Wanted& w) { return w.range < low; });
-        for (; it != wanted.end() && it->range <= high; ++it) {
-          tasks.push_back({.interval = stretch.interval,
-                           .branch = stretch.branch,
-                           .receiver = it->receiver,
-                           .range = it->range,
-                           .cell = stretch.cell,
-                           .begin = {stretch.sigma_begin, stretch.range_begin, stretch.slope_begin},
-                           .end = {stretch.sigma_end, stretch.range_end, stretch.slope_end}});
-          ++expected[it->receiver];
-        }
-      });
+  fan.for_each_stretch(wanted, [&](const MonotoneStretch& stretch) {
+    const auto [low, high] = std::minmax(stretch.range_begin, stretch.range_end);
+    const HermiteNode begin{stretch.sigma_begin, stretch.range_begin, stretch.slope_begin},
+        end{stretch.sigma_end, stretch.range_end, stretch.slope_end};
+    const bool steep = stretch.sigma_begin > steep_sigma;
+    // A stretch owns its slow end, so that a root on a common end is found once.
+    const auto first = std::lower_bound(wanted.begin(), wanted.end(), low);
+    for (auto it = first; it != wanted.end() && *it <= high; ++it) {
+      const std::size_t receiver = order[static_cast<std::size_t>(it - wanted.begin())];
+      tasks.push_back({.interval = stretch.interval,
+                       .branch = stretch.branch,
+                       .receiver = receiver,
+                       .range = *it,
+                       .cell = stretch.cell,
+                       .steep = steep,
+                       .begin = steep ? in_cosine(begin) : begin,
+                       .end = steep ? in_cosine(end) : end});
+      ++expected[receiver];
+    }
+  });
 
   std::vector<Arrivals> found(ranges.size());
   for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(expected[i]);
@@ -234,7 +234,6 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
         });
     begin = end;
   }
-  std::vector<std::size_t> order;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (ranges[i] < least_range)
       for (Arrival& path : found[i]) raise(path, ranges[i] / least_range, fan.column());

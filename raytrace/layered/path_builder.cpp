@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/layered/reflection_lanes.h"
 
 namespace asdic {
 namespace {
@@ -66,7 +67,7 @@ double PathBuilder::spreading(const RayParameter& ray, double range,
   return std::sqrt(column_.receiver_speed() * ray.slowness / (range * q));
 }
 
-PathBuilder::PathLanes PathBuilder::path_lanes(const TaskLanes& tasks,
+PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, const TaskLanes& tasks,
                                                const FoundRays& roots) const noexcept {
   const auto& [traced, legs] = roots;
   const auto& [up, middle, down, turns_above, turns_below] = legs;
@@ -97,8 +98,19 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const TaskLanes& tasks,
   const auto angle_at = [&](double c) { return angle_of(rays.sine(c), rays.slowness * c); };
   p.launch = angle_at(column_.source_speed());
   p.arrival = angle_at(column_.receiver_speed());
-  p.surface_grazing = angle_at(column_.surface_speed());
-  p.bottom_grazing = angle_at(column_.bottom_speed());
+  const double c_surface = column_.surface_speed(), c_bottom = column_.bottom_speed();
+  p.surface_grazing = interval.turns_above ? Rays(0.0) : angle_at(c_surface);
+  p.bottom_grazing = interval.turns_below ? Rays(0.0) : angle_at(c_bottom);
+  std::array<int, rays_at_once> tops{}, bottoms{};
+  for (std::size_t i = 0; i < rays_at_once; ++i) {
+    if (!interval.turns_above) tops[i] = tasks.task[i]->branch.top_vertices();
+    if (!interval.turns_below) bottoms[i] = tasks.task[i]->branch.bottom_vertices();
+  }
+  p.reflection =
+      reflections_of(environment_.surface.material, water_at_surface_, rays.sine(c_surface),
+                     rays.slowness * c_surface, p.surface_grazing, tops) *
+      reflections_of(environment_.bottom.material, water_at_bottom_, rays.sine(c_bottom),
+                     rays.slowness * c_bottom, p.bottom_grazing, bottoms);
 
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   p.q = abs(p.range_per_slowness) * rays.sine(column_.source_speed()) / column_.source_speed() *
@@ -122,27 +134,14 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const TaskLanes& tasks,
   return p;
 }
 
-std::complex<double> PathBuilder::reflections(const FanInterval& interval, const Branch& branch,
-                                              const PathLanes& lanes, std::size_t i) const {
-  std::complex<double> product = 1.0;
-  if (!interval.turns_above && branch.top_vertices() > 0)
-    product = integer_power(reflection_coefficient(environment_.surface.material,
-                                                   lanes.surface_grazing[i], water_at_surface_),
-                            branch.top_vertices());
-  if (!interval.turns_below && branch.bottom_vertices() > 0)
-    product *= integer_power(reflection_coefficient(environment_.bottom.material,
-                                                    lanes.bottom_grazing[i], water_at_bottom_),
-                             branch.bottom_vertices());
-  return product;
-}
-
 void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
                         double faintest, std::span<Arrivals> found) const {
-  const PathLanes lanes = path_lanes(tasks, roots);
+  const PathLanes lanes = path_lanes(interval, tasks, roots);
+  const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * lanes.length;
   for (std::size_t i = 0; i < tasks.count; ++i) {
     const Branch& branch = tasks.task[i]->branch;
     if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
-    const std::complex<double> reflection = reflections(interval, branch, lanes, i);
+    const std::complex<double> reflection(lanes.reflection.real[i], lanes.reflection.imag[i]);
     if (std::norm(reflection) < faintest * faintest) continue;
 
     Arrival& path = found[tasks.task[i]->receiver].emplace_back();
@@ -160,8 +159,8 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     path.q = path.caustics % 2 == 0 ? lanes.q[i] : -lanes.q[i];
     path.path_length = lanes.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
-    path.amplitude = path.spreading * amplitude_from_db(-path.absorption_db) * reflection *
-                     caustic_phase(path.caustics);
+    path.amplitude =
+        path.spreading * std::exp(-nepers[i]) * reflection * caustic_phase(path.caustics);
 
     // Vertices that are bounces are recorded.
     const double first = branch.starts_up ? lanes.first_up[i] : lanes.first_down[i];

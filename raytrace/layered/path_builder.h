@@ -4,6 +4,7 @@
 #include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
+#include "raytrace/layered/reflection_lanes.h"
 #include "raytrace/layered/root_search.h"
 
 namespace asdic {
@@ -36,12 +37,11 @@ class PathBuilder {
   struct PathLanes {
     Rays slowness, range_per_slowness, q, spreading, delay, length;
     Rays launch, arrival, surface_grazing, bottom_grazing;  // angles from the horizontal
-    Rays first_up, first_down, half_cycle;                  // ranges of vertices
+    ComplexLanes reflection;
+    Rays first_up, first_down, half_cycle;  // ranges of vertices
   };
-  [[nodiscard]] PathLanes path_lanes(const TaskLanes& tasks, const FoundRays& roots) const noexcept;
-  [[nodiscard]] std::complex<double> reflections(const FanInterval& interval, const Branch& branch,
-                                                 const PathLanes& lanes, std::size_t i) const;
-
+  [[nodiscard]] PathLanes path_lanes(const FanInterval& interval, const TaskLanes& tasks,
+                                     const FoundRays& roots) const noexcept;
   const Environment& environment_;
   const Column& column_;
   double absorption_db_per_metre_;

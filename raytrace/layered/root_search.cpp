@@ -11,11 +11,12 @@ Rays gather(const TaskLanes& tasks, const Field& field) noexcept {
   return Rays([&](auto i) { return field(*tasks.task[i]); });
 }
 
-/// The cubic through both ends of each task's stretch, over t from 0 to 1.
+/// The cubic through both ends of each task's stretch, over t from 0 to 1, in its variable x.
 class CubicLanes {
  public:
   explicit CubicLanes(const TaskLanes& tasks) noexcept
-      : low_(gather(tasks, [](const RootTask& t) { return t.begin.x; })),
+      : steep_(gather(tasks, [](const RootTask& t) { return t.steep ? 1.0 : 0.0; }) > 0.5),
+        low_(gather(tasks, [](const RootTask& t) { return t.begin.x; })),
         high_(gather(tasks, [](const RootTask& t) { return t.end.x; })),
         a0_(gather(tasks, [](const RootTask& t) { return t.begin.value; })) {
     const Rays h = high_ - low_;
@@ -33,28 +34,51 @@ class CubicLanes {
     }
   }
 
-  [[nodiscard]] const Rays& low() const noexcept { return low_; }
-  [[nodiscard]] const Rays& high() const noexcept { return high_; }
+  [[nodiscard]] Rays low() const noexcept { return sigma(low_); }
+  [[nodiscard]] Rays high() const noexcept { return sigma(high_); }
+  [[nodiscard]] Rays root() const noexcept { return sigma(low_ + t_ * (high_ - low_)); }
   [[nodiscard]] Rays::mask_type rises() const noexcept { return rise_ > 0.0; }
-  [[nodiscard]] Rays root() const noexcept { return low_ + t_ * (high_ - low_); }
-  /// |r″| at the root.
+  [[nodiscard]] Rays::mask_type steep() const noexcept { return steep_; }
+  /// |d²r/dx²| at the root.
   [[nodiscard]] Rays bend() const noexcept {
     const Rays h = high_ - low_;
     return abs(2.0 * a2_ + 6.0 * t_ * a3_) / (h * h);
   }
 
  private:
+  [[nodiscard]] Rays sigma(const Rays& x) const noexcept {
+    Rays s = x;
+    where(steep_, s) = sqrt((1.0 - x) * (1.0 + x));
+    return s;
+  }
+
+  Rays::mask_type steep_;
   Rays low_, high_, a0_, a1_, a2_, a3_, rise_, t_;
 };
 
-/// One step of Newton's method for r(σ) = range, in the smaller of σ = sin θ and k = ξ·c_ref = cos
-/// θ: near the vertical r goes like k. dr/dσ = −σ·(dr/dξ)/(ξc_ref²), dr/dk = (dr/dξ)/c_ref.
-Rays step(const RayLanes& rays, const Rays& miss, const Rays& slope, const Rays& d_range) noexcept {
-  Rays next = rays.sigma - miss / slope;
-  const Rays k = rays.reference_speed * (rays.slowness - miss / d_range);
-  where(rays.sigma > 0.7, next) = sqrt(max((1.0 - k) * (1.0 + k), Rays(0.0)));
-  return next;
-}
+/// One step of Newton's method for r(x) = range, x = σ = sin θ or, of steep rays, −k = −ξ·c_ref =
+/// −cos θ. dr/dσ = −σ·(dr/dξ)/(ξc_ref²), dr/dk = (dr/dξ)/c_ref.
+struct Step {
+  Rays next;             ///< σ
+  Rays::mask_type last;  ///< it leaves less than 0.1 mm, and less than 1e-8 of the slope
+
+  Step(const RayLanes& rays, const Rays& miss, const Rays& d_range, const Rays::mask_type& steep,
+       const Rays& bend) noexcept {
+    const double c_ref = rays.reference_speed;
+    Rays slope = -rays.sigma * d_range * rays.per_c2 / rays.slowness;
+    where(steep, slope) = -d_range / c_ref;
+    const Rays by = -miss / slope;
+    // What a step leaves is ½r″δ², seen on the cubic; its share of the step, r″δ/2r′, squared, is
+    // that of the slope's error.
+    const Rays left = 2.0 * bend * by * by;
+    last = left < 1e-4 && left * bend < 1e-8 * slope * slope;
+    next = rays.sigma + by;
+    if (none_of(steep)) return;
+    const Rays x = by - c_ref * rays.slowness;
+    where(steep, next) = sqrt(max((1.0 - x) * (1.0 + x), Rays(0.0)));
+    where(steep && abs(by) > 1e-3 * c_ref * rays.slowness, last) = Rays::mask_type(false);
+  }
+};
 
 }  // namespace
 
@@ -77,6 +101,7 @@ FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series
   const Rays bend = cubic.bend();
   const auto rises = cubic.rises();
   Rays low = cubic.low(), high = cubic.high(), sigma = cubic.root();
+  Rays::mask_type done(false);
   for (int i = 0; i < 100; ++i) {
     const RayLanes rays(c_ref, sigma);
     const ColumnLanes legs = series != nullptr ? series->sums(rays) : walk_sums(column, rays);
@@ -84,18 +109,16 @@ FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series
     const Rays miss = rays.slowness * tasks.of(legs.up.per_slowness, legs.middle.per_slowness,
                                                legs.down.per_slowness) -
                       tasks.range;
-    const Rays slope = -sigma * d_range * rays.per_c2 / rays.slowness;
     const auto short_of = (miss < 0.0) == rises;
     where(short_of, low) = sigma;
     where(!short_of, high) = sigma;
-    Rays next = step(rays, miss, slope, d_range);
-    where(!(next > low && next < high), next) = 0.5 * (low + high);
-    // near the vertical, where r goes like k, no cubic tells what a step leaves
-    const auto near_enough = abs(miss) < 1e-3 && abs(miss) < 3e-4 * tasks.range &&
-                             bend * abs(miss) < 1e-8 * slope * slope;
-    const auto done = abs(miss) < 1e-5 || near_enough || high - low < 1e-16 * high || next == sigma;
+    Step step(rays, miss, d_range, cubic.steep(), bend);
+    const auto outside = !(step.next > low && step.next < high);
+    where(outside, step.next) = 0.5 * (low + high);
+    where(abs(miss) < 1e-5 || high - low < 1e-16 * high, step.next) = sigma;
+    where(!done, sigma) = step.next;
+    done = done || (step.last && !outside) || step.next == rays.sigma;
     if (all_of(done)) break;
-    where(!done, sigma) = next;
   }
   const RayLanes rays(c_ref, sigma);
   return {rays, series != nullptr ? series->all(rays) : walk_all(column, rays)};

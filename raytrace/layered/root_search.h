@@ -18,7 +18,8 @@ struct RootTask {
   std::size_t receiver = 0;  ///< whose it is
   double range = 0.0;        ///< [m]
   std::size_t cell = 0;      ///< of the interval
-  HermiteNode begin, end;    ///< σ, r, dr/dσ at the ends of the stretch
+  bool steep = false;        ///< −cos θ is the variable x of the next two, else σ
+  HermiteNode begin, end;    ///< x, r, dr/dx at the ends of the stretch
 };
 
 /// As many tasks as lanes, side by side; the last one fills what is left.
@@ -42,9 +43,9 @@ struct FoundRays {
 };
 
 /// The roots: from the cubic through the stretch's ends by Newton's method, kept inside a shrinking
-/// bracket, until what is missed is below 0.01 mm, or below a millimetre where one more step of
-/// Newton's method (path_builder.cpp) leaves the slope right to 1e-8.
-/// \param series  that holds between the tasks' ends, or nullptr: the column itself is walked
+/// bracket, until what is missed is below 0.01 mm, or what the next step would leave is below 0.1
+/// mm and 1e-8 of the slope; path_builder.cpp sees to the rest. \param series  that holds between
+/// the tasks' ends, or nullptr: the column itself is walked
 [[nodiscard]] FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series,
                                    const TaskLanes& tasks) noexcept;
 
