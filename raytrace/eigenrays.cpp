@@ -156,12 +156,17 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth,
   for (std::size_t i = 0; i < receivers.size(); ++i) rows[receivers[i].depth].push_back(i);
   const std::vector<std::pair<double, std::vector<std::size_t>>> work(rows.begin(), rows.end());
   std::vector<Arrivals> found(receivers.size());
-  tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t row) {
+  const auto search = [&](std::size_t row) {
     std::vector<double> ranges;
     for (const std::size_t i : work[row].second) ranges.push_back(receivers[i].range);
     std::vector<Arrivals> here = find(source_depth, work[row].first, ranges, frequency, limits);
     for (std::size_t i = 0; i < here.size(); ++i) found[work[row].second[i]] = std::move(here[i]);
-  });
+  };
+  // A row takes less time than waking threads.
+  if (work.size() == 1)
+    search(0);
+  else
+    tbb::parallel_for(std::size_t{0}, work.size(), search);
   return found;
 }
 

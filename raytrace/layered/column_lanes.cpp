@@ -71,8 +71,8 @@ void cross_smooth(const Layer& layer, const RayLanes& rays, const Rays& top, con
         3.0 * std::abs(layer.c_top - layer.c_bottom) * (layer.c_top + layer.c_bottom) * rays.per_c2;
     const double flat = hmin(min(top, bottom));
     const double x = flat * flat / steepest_rise;
-    if (x > 7.0) return cross_cubic<4, detailed>(layer, rays, leg);  // ρ ≥ 30: 30⁻⁸ = 2e-12
-    if (x > 2.0) return cross_cubic<6, detailed>(layer, rays, leg);  // ρ ≥ 9.9: 9.9⁻¹² = 1e-12
+    if (x > 16.0) return cross_cubic<4, detailed>(layer, rays, leg);  // ρ ≥ 30: 30⁻⁸ = 2e-12
+    if (x > 4.0) return cross_cubic<6, detailed>(layer, rays, leg);  // ρ ≥ 9.9: 9.9⁻¹² = 1e-12
     if (x > 0.7) return cross_cubic<8, detailed>(layer, rays, leg);  // ρ ≥ 4.6: 4.6⁻¹⁶ = 2e-11
   }
   one_by_one<detailed>(

@@ -215,7 +215,10 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
     return arc(c_edge, c_turn, sine, 0.0, std::abs(turn_z - edge), std::abs(gradient),
                ray.slowness);
   };
-  if (layer.law == Layer::Law::c_linear) return circle(layer.gradient);
+  if (layer.law == Layer::Law::c_linear) {  // τ = atanh(s)/|g|, ℓ = asin(s)/(ξ|g|)
+    const double per_g = sine / std::abs(layer.gradient);
+    return {.time = per_g * atanh_over(sine), .length = per_g * asin_over(sine) / ray.slowness};
+  }
   if (layer.law == Layer::Law::n2_linear)
     return parabola(c_edge, c_turn, sine / c_edge, 0.0, std::abs(turn_z - edge),
                     -std::abs(layer.gradient), ray.slowness);

@@ -8,7 +8,7 @@
 namespace asdic {
 namespace {
 
-constexpr double range_error = 1e-6, time_error = 1e-12, slope_error = 3e-8;
+constexpr double range_error = 1e-7, time_error = 1e-13, slope_error = 1e-8;
 
 }  // namespace
 
@@ -98,7 +98,7 @@ IntervalSeries::IntervalSeries(const Column& column, double c_ref, const std::ve
   const double ratio = slower > 0.0 ? c_ref / slower : 2.0, a2 = ratio * ratio - 1.0;
   for (std::size_t cell = 0; cell + 1 < nodes.size(); ++cell) {
     const double from = pieces_.empty() ? 0.0 : nodes[pieces_.back().first];
-    if (!pieces_.empty() && nodes[cell + 1] - from <= 1.5 * std::sqrt(a2 + from * from))
+    if (!pieces_.empty() && nodes[cell + 1] - from <= 0.7 * std::sqrt(a2 + from * from))
       pieces_.back().last = cell + 1;
     else
       pieces_.push_back({cell, cell + 1});
