@@ -61,11 +61,14 @@ PlainRange plain(const Column& column, const Branch& branch, const RayParameter&
 
 // Recall and precision over random oceans. Every change of side of a dense fan, by the plain sums,
 // has an eigenray of that history between its two launch angles; every eigenray passes the receiver
-// by the plain sums, at its delay. A launch angle θ is right to 1e-16/θ, the quadrature to 1e-10,
-// but of rays that linger next to a smooth maximum of c to 4e-9 (measured; where it is worse they
-// are fainter by 60 dB than what arrives directly, and left out).
+// by the plain sums, at its delay: a root is right to 0.01 mm, a launch angle θ to 1e-16/θ. A gap:
+// the quadratures of one ray told by two reference speeds differ by 1e-10, but beside a smooth
+// maximum of c by up to 3e-8 (0.7 mm at 27 km, 0.4 µs; found in one of these 50 oceans), so that a
+// millimetre and 1 µs is what is asked of smooth laws.
 TEST_P(EveryRule, FastSearchIsThePlainSearch) {
   std::mt19937 random(20261121);
+  const bool closed_form =
+      GetParam() == Interpolation::c_linear || GetParam() == Interpolation::n2_linear;
   std::size_t brackets = 0, roots = 0;
   for (int trial = 0; trial < 25; ++trial) {
     const RandomOcean ocean = random_ocean(random, GetParam());
@@ -137,11 +140,12 @@ TEST_P(EveryRule, FastSearchIsThePlainSearch) {
         const PlainRange here = plain(column, branch, ray);
         const double rounding = std::abs(here.slope) * (1e-14 + 1e-16 / sine);
         if (rounding > 1.0 || std::abs(x.q) > 1e3 * range) continue;  // lingering next to a maximum
-        EXPECT_NEAR(here.range, range, 1e-5 + 5e-9 * range + rounding) << "trial " << trial;
+        EXPECT_NEAR(here.range, range, closed_form ? 1e-5 + rounding : 1e-3 + rounding)
+            << "trial " << trial;
         const ColumnDetails d = column.details(ray);
         const BranchWeights w = weights(branch, column.source_is_upper());
         EXPECT_NEAR(w.of(d.up.time, d.middle.time, d.down.time), x.delay,
-                    1e-8 + (5e-9 * range + rounding) / column.source_speed());
+                    (closed_form ? 1e-8 : 1e-6) + rounding / column.source_speed());
       }
     }
   }
