@@ -24,12 +24,12 @@ void arrivals(benchmark::State& state, const char* name, double bellhop_seconds)
 void BM_DeepSourceCLinear(benchmark::State& state) {
   arrivals(state, "deep-source-arrivals", 4.55);
 }
-BENCHMARK(BM_DeepSourceCLinear)->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_DeepSourceCLinear)->Unit(benchmark::kMicrosecond);
 
 void BM_DeepSourcePchip(benchmark::State& state) {
   arrivals(state, "deep-source-arrivals-pchip", 4.57);
 }
-BENCHMARK(BM_DeepSourcePchip)->UseRealTime()->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_DeepSourcePchip)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace asdic
