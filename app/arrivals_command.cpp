@@ -35,7 +35,8 @@ Leg to_receiver(const PingSimulator& simulator, const Options& options) {
                       .got = "nothing",
                       .expected = "a length: --receiver-depth and --range go together"});
   const Scenario& scenario = simulator.scenario();
-  const Vec3 platform = scenario.platform.at((options.ping - 1) * scenario.pings.interval).position;
+  const Vec3 platform =
+      scenario.platforms[0].track.at((options.ping - 1) * scenario.pings.interval).position;
   const PropagationPaths& paths = simulator.paths();
   const double bearing = options.bearing   ? radians(*options.bearing)
                          : paths.layered() ? 0.0
@@ -72,7 +73,7 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
   const double time = (options.ping - 1) * scenario.pings.interval;
   const Transmitter transmitter = simulator.transmitter(options.ping);
   const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
-  const double c = simulator.paths().speed_at(scenario.platform.at(time).position);
+  const double c = simulator.paths().speed_at(scenario.platforms[0].track.at(time).position);
   const BeamPattern pattern(transmitter, c / frequency);
   const EchoContext context{.paths = simulator.paths(),
                             .scenario = scenario,
@@ -131,7 +132,8 @@ int arrivals(const Options& options) {
       .receiver_depth = options.receiver_depth.value_or(0.0),
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
   const double time = (options.ping - 1) * scenario.pings.interval;
-  result.source_depth = options.source_depth.value_or(scenario.platform.at(time).position.z());
+  result.source_depth =
+      options.source_depth.value_or(scenario.platforms[0].track.at(time).position.z());
   for (const Target& target : scenario.targets) result.targets.push_back(target.name);
   if (!options.output.empty()) {
     check_output(options.output, options.scenario.path);

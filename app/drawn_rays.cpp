@@ -54,7 +54,7 @@ RayPaths::Line line(const Boundary& boundary, double extent) {
 
 /// Towards the first target that is there; else along the transect.
 double bearing_of_fan(const Scenario& scenario) {
-  const Vec3 source = scenario.platform.at(0.0).position;
+  const Vec3 source = scenario.platforms[0].track.at(0.0).position;
   for (const Target& target : scenario.targets)
     if (target.first_ping <= 1 && target.last_ping >= 1)
       return separation(source, target.track.at(0.0).position).bearing;
@@ -66,7 +66,7 @@ double bearing_of_fan(const Scenario& scenario) {
 RayPaths drawn_rays(const PingSimulator& simulator) {
   const Scenario& scenario = simulator.scenario();
   const PropagationPaths& paths = simulator.paths();
-  const Vec3 source = scenario.platform.at(0.0).position;
+  const Vec3 source = scenario.platforms[0].track.at(0.0).position;
   const PropagationSettings& limits = scenario.propagation;
   const int bounces = limits.max_surface_bounces + limits.max_bottom_bounces;
   const double one_way = 0.5 * (scenario.pings.recording_start + scenario.pings.recording_duration);

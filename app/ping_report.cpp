@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "sonar/sampling.h"
 
 namespace asdic::app {
 namespace {
@@ -60,8 +61,8 @@ std::string PingReport::text(double wall) const {
   for (const std::string& note : scenario_.notes) result += fmt::format("note: {}\n", note);
   const PingSchedule& p = scenario_.pings;
   result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
-                        count_of(scenario_.array.phones.size(), "phone"), p.recording_duration,
-                        p.sample_rate);
+                        count_of(channels_of(scenario_), "phone"), p.recording_duration,
+                        recorded_rate(scenario_));
   if (scenario_.targets.empty()) {
     result += "no targets\n";
   } else {

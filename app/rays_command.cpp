@@ -58,7 +58,7 @@ Environment plane_along(const Options& options, double bearing) {
                       .got = fmt::format("{} deg and a run without a platform", bearing),
                       .expected = "a sonar scenario, whose platform is somewhere on the map"});
   const Scenario scenario = read_scenario(options.scenario.path, options.scenario.overrides);
-  const Vec3 platform = scenario.platform.at(0.0).position;
+  const Vec3 platform = scenario.platforms[0].track.at(0.0).position;
   return slice(scenario.environment, scenario.transect.range_of(platform.x(), platform.y()),
                std::cos(radians(bearing) - scenario.transect.bearing));
 }

@@ -1,5 +1,7 @@
 #include "io/scenario_reader.h"
 
+#include <algorithm>
+
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
@@ -32,14 +34,21 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& path
   scenario.title = root.text("title", "");
   scenario.seed = static_cast<std::uint64_t>(
       root.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
-  scenario::read_pulse(root.table("pulse"), folder, scenario);
+  std::vector<TomlTable> transmitters = root.one_or_more("transmitter");
+  const bool own_pulses = std::all_of(transmitters.begin(), transmitters.end(),
+                                      [](TomlTable& table) { return table.has("pulse"); });
+  if (!own_pulses || root.has("pulse"))
+    scenario.pulse = scenario::read_pulse(root.table("pulse"), folder);
+  else
+    scenario.pulse = scenario::read_pulse(transmitters[0].table("pulse"), folder);
   const double frequency = Pulse(scenario.pulse).centre_frequency();
   scenario::read_environment(root.table("environment"), folder, frequency, scenario);
-  scenario::read_platform(root.table("platform"), scenario);
-  TomlTable transmitter = root.table("transmitter");
-  const bool has_elevation = transmitter.has("elevation_deg");
-  scenario::read_transmitter(std::move(transmitter), scenario);
-  scenario::read_array(root.table("array"), scenario);
+  scenario::read_platforms(root.one_or_more("platform"), scenario);
+  const bool has_elevation = std::any_of(
+      transmitters.begin(), transmitters.end(),
+      [](TomlTable& table) { return table.has("elevation_deg") || table.has("elevations_deg"); });
+  scenario::read_transmitters(std::move(transmitters), folder, scenario);
+  scenario::read_arrays(root.one_or_more("array"), scenario);
   scenario::read_targets(root.tables("target"), scenario);
   scenario::read_noise(root.table("noise"), scenario);
   scenario::read_reverberation(root.table("reverberation"), scenario);
@@ -49,7 +58,7 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& path
     PropagationCase run;
     run.environment = scenario.environment;
     run.frequency = frequency;
-    run.source_depths = {scenario.platform.at(0.0).position.z()};
+    run.source_depths = {scenario.platforms[0].track.at(0.0).position.z()};
     scenario::read_run(root.table("run"), run);
   }
   root.finish();

@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "core/units.h"
@@ -10,6 +11,8 @@ namespace asdic {
 struct ReceiverArray {
   std::vector<Vec3> phones;    ///< [n] offsets from the reference point [m]
   Vec3 offset = Vec3::Zero();  ///< of the reference point from the platform [m]
+  std::string name = "array";
+  int platform = 0;  ///< that carries it, an index
 };
 
 /// A straight line of n phones around its centre.

@@ -13,8 +13,10 @@ struct EchoContext {
   const PropagationPaths& paths;
   const Scenario& scenario;
   const BeamPattern& pattern;
-  double frequency;  ///< centre of the pulse [Hz]
-  double ping_time;  ///< since the start of the scenario [s]
+  double frequency;     ///< centre of the pulse [Hz]
+  double ping_time;     ///< since the start of the scenario [s]
+  int transmitter = 0;  ///< that pings, an index
+  int array = 0;        ///< that hears it
 };
 
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them.

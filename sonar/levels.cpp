@@ -97,7 +97,9 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
       row.echo_level_db = strongest->level_db;
       row.reverberation_db = reverberation_db(strongest->heard.delay +
                                               0.5 * pulse.duration() / strongest->heard.doppler);
-      row.echo_peak_db = peak_of_sum_db(heard, pulse, scenario.transmitter.source_level_db);
+      row.echo_peak_db = peak_of_sum_db(
+          heard, pulse,
+          scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
     }

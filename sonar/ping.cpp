@@ -12,17 +12,20 @@
 
 #include "core/error.h"
 #include "reverb/patches.h"
+#include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
 #include "sonar/noise.h"
+#include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/sampling.h"
+#include "sonar/stream.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
 namespace {
 
 constexpr std::size_t most_patch_rows = 2000;
-constexpr double finest_ground = 1.0;  // [m]
 
 /// Wall time since it was made or last read [s].
 class Stopwatch {
@@ -36,146 +39,109 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-double fastest(const Track& track) {
-  double speed = track.waypoints.empty() ? track.start.velocity.norm() : 0.0;
-  for (std::size_t i = 0; i + 1 < track.waypoints.size(); ++i) {
-    const Waypoint &a = track.waypoints[i], &b = track.waypoints[i + 1];
-    speed = std::max(speed, (b.position - a.position).norm() / (b.time - a.time));
-  }
-  return speed;
-}
-
-/// A bound on |η − 1| over everything in the scenario: each of source, target (twice) and receiver
-/// contributes at most v/c.
-double doppler_bound(const Scenario& scenario) {
-  double target = 0.0;
-  for (const Target& t : scenario.targets) target = std::max(target, fastest(t.track));
-  const double platform = fastest(scenario.platform);
-  constexpr double slowest_sea = 1300.0;
-  return 2.2 * (platform + target) / slowest_sea;
-}
-
-/// At the surface over the platform's first place [m/s].
-double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {
-  Vec3 place = scenario.platform.at(0.0).position;
-  place.z() = paths.surface_depth(place);
-  return paths.speed_at(place);
-}
-
-double fastest_water(const Environment& ocean) {
-  double fastest = 0.0;
-  if (ocean.section) {
-    for (const double c : ocean.section->speeds()) fastest = std::max(fastest, c);
-    return fastest;
-  }
-  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  for (double z = 0.0; z <= bottom; z += 50.0) fastest = std::max(fastest, ocean.water.at(z).c);
-  return fastest;
-}
-
-/// By default from the pulse's bandwidth; a surface with a shape is sampled facet by facet.
-double ground_grid(const Scenario& scenario, const Pulse& pulse, const PropagationPaths& paths) {
-  if (scenario.reverberation.ground_spacing) return *scenario.reverberation.ground_spacing;
-  const double by_pulse =
-      asdic::ground_spacing(pulse.bandwidth_40db(), speed_at_surface(scenario, paths));
-  const auto& shape = scenario.environment.surface.shape;
-  if (!shape || shape->ranges().size() < 2) return by_pulse;
-  const double facet = (shape->ranges().back() - shape->ranges().front()) /
-                       static_cast<double>(shape->ranges().size() - 1);
-  return std::min(by_pulse, std::max(facet, finest_ground));
-}
-
-SurfaceGround::Settings ground_settings(const Scenario& scenario, const Pulse& pulse,
-                                        const PropagationPaths& paths) {
-  const PingSchedule& pings = scenario.pings;
-  return {.azimuths = scenario.reverberation.azimuths,
-          .spacing = ground_grid(scenario, pulse, paths),
-          .max_range = 0.5 * fastest_water(scenario.environment) *
-                       (pings.recording_start + pings.recording_duration),
-          .frequency = pulse.centre_frequency(),
-          .limits = limits_of(scenario.propagation)};
-}
-
 }  // namespace
 
 PingSimulator::PingSimulator(Scenario scenario)
     : scenario_(std::move(scenario)),
-      pulse_(scenario_.pulse),
+      transmissions_(asdic::transmissions(scenario_)),
       paths_(scenario_.environment, scenario_.transect),
-      ground_(paths_, ground_settings(scenario_, pulse_, paths_)),
       max_doppler_(doppler_bound(scenario_)) {
+  for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
+    pulses_.emplace_back(pulse_of(scenario_, static_cast<int>(t)));
+  const auto wider = [](const Pulse& a, const Pulse& b) {
+    return a.bandwidth_40db() < b.bandwidth_40db();
+  };
+  ground_ = std::make_unique<SurfaceGround>(
+      paths_,
+      ground_settings(scenario_, *std::max_element(pulses_.begin(), pulses_.end(), wider), paths_));
   set_sea(scenario_.reverberation.surface, scenario_.wind_speed,
           speed_at_surface(scenario_, paths_));
 }
 
 Transmitter PingSimulator::transmitter(int ping) const {
-  Transmitter transmitter = scenario_.transmitter;
-  const auto& sweep = scenario_.pings.elevations;
-  if (!sweep.empty())
-    transmitter.elevation = sweep[static_cast<std::size_t>(ping - 1) % sweep.size()];
-  return transmitter;
+  return projector_of(scenario_, transmission(ping));
 }
 
-double PingSimulator::ground_spacing() const { return ground_.settings().spacing; }
+double PingSimulator::ground_spacing() const { return ground_->settings().spacing; }
 
-std::vector<SectorPatches> PingSimulator::surface_patches(const Vec3& platform,
+std::vector<SectorPatches> PingSimulator::surface_patches(const Vec3& platform, double frequency,
                                                           Timings& timings) const {
   Stopwatch watch;
-  const auto planes = ground_.around(platform);
-  timings.rays = watch.lap();
+  const auto planes = ground_->around(platform);
+  timings.rays += watch.lap();
   std::vector<SectorPatches> found(planes->size());
   tbb::parallel_for(std::size_t{0}, planes->size(), [&](std::size_t i) {
     const GroundSectors& plane = (*planes)[i];
-    found[i] = {.patches = patches(*plane.paths, scenario_.reverberation.surface,
-                                   pulse_.centre_frequency(), plane.tilt),
-                .sectors = plane.sectors};
+    found[i] = {
+        .patches = patches(*plane.paths, scenario_.reverberation.surface, frequency, plane.tilt),
+        .sectors = plane.sectors};
   });
   return found;
 }
 
-PingRecord PingSimulator::simulate(int ping) const {
-  Stopwatch watch;
+PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
   const PingSchedule& schedule = scenario_.pings;
-  const double ping_time = (ping - 1) * schedule.interval;
-  const Transmitter projector = transmitter(ping);
-
   PingRecord record;
   record.ping = ping;
-  record.start_time = ping_time;
-  record.elevation = projector.elevation;
-  record.platform = scenario_.platform.at(ping_time);
+  record.transmitter = sent.transmitter;
+  record.start_time = sent.time;
+  record.elevation = sent.elevation;
+  record.platform = transmitter_at(scenario_, sent.transmitter, sent.time);
   for (const Target& target : scenario_.targets)
-    record.targets.push_back(target.track.at(ping_time));
-  for (const Vec3& phone : scenario_.array.phones)
-    record.phones.push_back(record.platform.position + scenario_.array.offset + phone);
-  record.recording = {.sample_rate = schedule.sample_rate,
-                      .start = schedule.recording_start,
-                      .samples = static_cast<std::size_t>(
-                          std::llround(schedule.recording_duration * schedule.sample_rate))};
+    record.targets.push_back(target.track.at(sent.time));
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    const Vec3 reference = array_at(scenario_, static_cast<int>(a), sent.time).position;
+    for (const Vec3& phone : scenario_.arrays[a].phones) record.phones.push_back(reference + phone);
+  }
+  record.recording = recording_of(scenario_);
+  if (schedule.continuous) record.recording.epoch = sent.time;
+  record.pressure.assign(
+      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
+  return record;
+}
 
-  const double local_speed = paths_.speed_at(record.platform.position);
-  const BeamPattern pattern(projector, local_speed / pulse_.centre_frequency());
-
-  // Echoes: source → target × target → array.
-  Returns echo_returns;
-  const EchoContext echo_context{.paths = paths_,
-                                 .scenario = scenario_,
-                                 .pattern = pattern,
-                                 .frequency = pulse_.centre_frequency(),
-                                 .ping_time = ping_time};
+/// Echoes, source → target × target → array, and the ping itself on its way to arrays elsewhere.
+Returns PingSimulator::sparse_returns(const EchoContext& context, PingRecord& record) const {
+  Returns returns;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
     const Target& target = scenario_.targets[i];
-    if (ping < target.first_ping || ping > target.last_ping) continue;
-    TargetEchoes found = target_echoes(echo_context, static_cast<int>(i));
+    if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
+    TargetEchoes found = target_echoes(context, static_cast<int>(i));
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
-      echo_returns.push_back(echo.heard);
+      returns.push_back(echo.heard);
       record.echoes.push_back(echo);
     }
   }
-  record.timings.eigenrays = watch.lap();
+  const auto platform_of = [](const auto& list, int i) {
+    return list[static_cast<std::size_t>(i)].platform;
+  };
+  if (scenario_.propagation.direct_blast &&
+      platform_of(scenario_.transmitters, context.transmitter) !=
+          platform_of(scenario_.arrays, context.array)) {
+    DirectBlast blast = direct_blast(context);
+    for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
+    returns.insert(returns.end(), blast.heard.begin(), blast.heard.end());
+  }
+  return returns;
+}
 
-  // Reverberation: source → patch → array.
+PingRecord PingSimulator::sound(int ping) const {
+  Stopwatch watch;
+  const Transmission& sent = transmission(ping);
+  const Transmitter projector = projector_of(scenario_, sent);
+  const Pulse& sent_pulse = pulse(sent.transmitter);
+  const double frequency = sent_pulse.centre_frequency();
+  PingRecord record = blank_record(ping, sent);
+
+  const double local_speed = paths_.speed_at(record.platform.position);
+  const BeamPattern pattern(projector, local_speed / frequency);
+  const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
+                               micropascal;  // at 1 m [Pa]
+  const Synthesizer synthesizer(sent_pulse, record.recording, max_doppler_);
+  record.timings.synthesis = watch.lap();
+
+  // Reverberation: source → patch → the arrays on the transmitter's platform.
   const ReverberationContext reverberation{
       .scenario = scenario_,
       .pattern = pattern,
@@ -186,48 +152,91 @@ PingRecord PingSimulator::simulate(int ping) const {
   std::vector<SectorPatches> rings;
   Returns patch_returns;
   if (scenario_.reverberation.enabled) {
-    rings = surface_patches(record.platform.position, record.timings);
+    rings = surface_patches(record.platform.position, frequency, record.timings);
     patch_returns = reverberation_returns(reverberation, rings);
     record.patches = patch_rows(reverberation, rings, most_patch_rows).rows;
   }
   record.timings.patches = watch.lap() - record.timings.rays;
 
-  // Time series.
-  const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
-                               micropascal;  // at 1 m [Pa]
-  record.pressure.assign(scenario_.array.phones.size() * record.recording.samples, 0.0F);
-  const Synthesizer synthesizer(pulse_, record.recording, max_doppler_);
   LevelMeter levels(record.recording);
-  Baseband heard = synthesizer.baseband(echo_returns, scenario_.array.phones);
+  Baseband heard, reverberated;  // of all channels
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    const EchoContext context{.paths = paths_,
+                              .scenario = scenario_,
+                              .pattern = pattern,
+                              .frequency = frequency,
+                              .ping_time = sent.time,
+                              .transmitter = sent.transmitter,
+                              .array = static_cast<int>(a)};
+    const Returns sparse = sparse_returns(context, record);
+    record.timings.eigenrays += watch.lap();
+    append_channels(heard, synthesizer.baseband(sparse, scenario_.arrays[a].phones));
+    append_channels(reverberated, synthesizer.baseband(patch_returns, scenario_.arrays[a].phones));
+    record.timings.synthesis += watch.lap();
+  }
   levels.add_echo(heard, peak_pressure);
-  {
-    const Baseband reverberated = synthesizer.baseband(patch_returns, scenario_.array.phones);
-    levels.add_reverberation(reverberated, peak_pressure);
-    std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
-                   heard.values.begin(), std::plus<>{});
-  }
-  synthesizer.add_passband(heard, peak_pressure, record.pressure);
-  record.timings.synthesis = watch.lap();
+  levels.add_reverberation(reverberated, peak_pressure);
+  std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
+                 heard.values.begin(), std::plus<>{});
+  synthesizer.add_samples(heard, peak_pressure, record.pressure);
+  record.timings.synthesis += watch.lap();
 
-  double noise_variance = 0.0;
-  if (scenario_.noise.spectral_level_db) {
-    add_white_noise(record.pressure, scenario_.array.phones.size(),
-                    *scenario_.noise.spectral_level_db, schedule.sample_rate, scenario_.seed,
-                    static_cast<std::uint32_t>(ping));
-    noise_variance = white_noise_variance(*scenario_.noise.spectral_level_db, schedule.sample_rate);
-  }
-  levels.add_noise(noise_variance);
+  if (scenario_.noise.spectral_level_db)
+    levels.add_noise(
+        white_noise_variance(*scenario_.noise.spectral_level_db, scenario_.pings.sample_rate));
   record.levels = levels.series();
-  record.summary = summarise(record, scenario_, pulse_, [&](double t) {
-    return expected_reverberation_db(reverberation, rings, pulse_, t);
+  record.summary = summarise(record, scenario_, sent_pulse, [&](double t) {
+    return expected_reverberation_db(reverberation, rings, sent_pulse, t);
   });
   record.timings.noise = watch.lap();
   return record;
 }
 
+void PingSimulator::complete(PingRecord& record) const {
+  Stopwatch watch;
+  const double rate = record.recording.sample_rate;
+  if (scenario_.noise.spectral_level_db && !record.pressure.empty()) {
+    const double level = *scenario_.noise.spectral_level_db;
+    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate)
+                                                          : white_noise_variance(level, rate);
+    add_white_noise(record.pressure, record.phones.size(), variance, scenario_.seed,
+                    static_cast<std::uint32_t>(record.ping));
+  }
+  if (scenario_.pings.blanking) blank(record);
+  record.timings.noise += watch.lap();
+}
+
+/// Nothing is heard on the transmitter's own platform until the pulse has left.
+void PingSimulator::blank(PingRecord& record) const {
+  const Recording& recording = record.recording;
+  const double sent = pulse(record.transmitter).duration() - recording.start;
+  const auto deaf = static_cast<std::ptrdiff_t>(
+      recording.components() *
+      std::min(recording.samples,
+               static_cast<std::size_t>(std::ceil(std::max(0.0, sent * recording.sample_rate)))));
+  const int carrier = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)].platform;
+  const std::size_t row = recording.samples * recording.components();
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    if (scenario_.arrays[a].platform != carrier) continue;
+    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
+    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
+      const auto begin = record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
+      std::fill(begin, begin + deaf, 0.0F);
+    }
+  }
+}
+
+PingRecord PingSimulator::simulate(int ping) const {
+  PingRecord record = sound(ping);
+  complete(record);
+  return record;
+}
+
 int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
               const PingOptions& options) {
-  const int count = simulator.scenario().pings.count;
+  const int count = simulator.pings();
+  const bool continuous = simulator.scenario().pings.continuous;
+  Stream stream(simulator.scenario());
   int next = 1, done = 0;
   // Two pings in flight a thread keep the writer fed; more would only cost memory.
   const auto in_flight =
@@ -244,9 +253,16 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
                                   }) &
           tbb::make_filter<int, std::shared_ptr<PingRecord>>(
               tbb::filter_mode::parallel,
-              [&](int ping) { return std::make_shared<PingRecord>(simulator.simulate(ping)); }) &
+              [&](int ping) {
+                return std::make_shared<PingRecord>(continuous ? simulator.sound(ping)
+                                                               : simulator.simulate(ping));
+              }) &
           tbb::make_filter<std::shared_ptr<PingRecord>, void>(
               tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
+                if (continuous) {
+                  stream.take(*record);
+                  simulator.complete(*record);
+                }
                 sink(std::move(*record));
                 ++done;
                 if (options.progress) options.progress(done);

@@ -1,14 +1,17 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <stop_token>
 
 #include "raytrace/eigenrays.h"
+#include "sonar/echo.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
 #include "sonar/surface_ground.h"
+#include "sonar/transmission.h"
 
 namespace asdic {
 
@@ -20,25 +23,44 @@ class PingSimulator {
   /// \throws InputError naming the key at fault ("pings.sample_rate", "pulse.duration", …)
   explicit PingSimulator(Scenario scenario);
 
-  /// \param ping  counted from 1
+  /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
+  /// counted from 1
   [[nodiscard]] PingRecord simulate(int ping) const;
+  /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
+  /// add these up (sonar/stream.h) and complete() the sum.
+  [[nodiscard]] PingRecord sound(int ping) const;
+  /// Adds what does not come of a ping: noise, then blanking.
+  void complete(PingRecord& record) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
   [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_.along_transect(); }
   [[nodiscard]] const PropagationPaths& paths() const noexcept { return paths_; }
-  [[nodiscard]] const Pulse& pulse() const noexcept { return pulse_; }
+  [[nodiscard]] const Pulse& pulse(int transmitter = 0) const noexcept {
+    return pulses_[static_cast<std::size_t>(transmitter)];
+  }
+  [[nodiscard]] int pings() const noexcept {
+    return static_cast<int>(transmissions_.size());
+  }  ///< of all transmitters
+  /// \param ping  counted from 1
+  [[nodiscard]] const Transmission& transmission(int ping) const noexcept {
+    return transmissions_[static_cast<std::size_t>(ping - 1)];
+  }
   [[nodiscard]] Transmitter transmitter(int ping) const;  ///< with the elevation of that ping
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
 
  private:
-  [[nodiscard]] std::vector<SectorPatches> surface_patches(const Vec3& platform,
+  [[nodiscard]] std::vector<SectorPatches> surface_patches(const Vec3& platform, double frequency,
                                                            Timings& timings) const;
+  [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
+  [[nodiscard]] Returns sparse_returns(const EchoContext& context, PingRecord& record) const;
+  void blank(PingRecord& record) const;
 
   Scenario scenario_;
-  Pulse pulse_;
+  std::vector<Transmission> transmissions_;
+  std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
-  SurfaceGround ground_;
+  std::unique_ptr<SurfaceGround> ground_;
   double max_doppler_ = 0.0;
 };
 

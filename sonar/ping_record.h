@@ -14,7 +14,8 @@ struct Leg {
   enum class Kind { source_to_target, target_to_array, source_to_array, source_to_receiver };
   Kind kind = Kind::source_to_target;
   int target = -1;  ///< index in the scenario, −1 for source_to_array (there and back, no target)
-  int channel = -1;      ///< the phone, −1 for the array's reference point
+  int array = -1;   ///< index in the scenario, −1 for legs that end elsewhere
+  int channel = -1;      ///< its phone, −1 for the array's reference point
   double bearing = 0.0;  ///< direction of travel, clockwise from north [rad]
   double range = 0.0;    ///< horizontal [m]
   Arrivals arrivals;
@@ -23,6 +24,7 @@ struct Leg {
 /// One echo: one path out, one path back.
 struct EchoPath {
   int target = 0;
+  int array = 0;
   int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
@@ -46,7 +48,8 @@ struct PatchRow {
       0.0;  ///< expected level of that area by this pair, pulse not windowed [dB re 1 µPa]
 };
 
-/// Mean-square pressure over the phones against time, with the parts told apart. [n] each [Pa²]
+/// Mean-square pressure over the phones against time, with the parts told apart: what comes of this
+/// ping alone, whatever of others is heard in its record. [n] each [Pa²]
 struct LevelSeries {
   double time_step = 0.05;  ///< [s]
   std::vector<float> echo, reverberation, noise;
@@ -74,13 +77,14 @@ struct Timings {
 /// Everything about one ping: what the phones heard, and the truth behind it.
 struct PingRecord {
   int ping = 1;             ///< counted from 1
+  int transmitter = 0;      ///< that sent it, an index
   double start_time = 0.0;  ///< of the ping in the scenario [s]
   double elevation = 0.0;   ///< of the transmitter [rad]
-  Kinematics platform;
+  Kinematics platform;      ///< the transmitter's
   std::vector<Kinematics> targets;
-  std::vector<Vec3> phones;  ///< [channels] positions at the ping's start [m]
+  std::vector<Vec3> phones;  ///< [channels] of all arrays, positions at the ping's start [m]
   Recording recording;
-  std::vector<float> pressure;  ///< [channels × samples] [Pa]
+  std::vector<float> pressure;  ///< [channels × samples × components of the recording] [Pa]
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
   std::vector<PatchRow> patches;

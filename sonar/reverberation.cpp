@@ -149,7 +149,7 @@ double expected_reverberation_db(const ReverberationContext& context,
   double power = 0.0;
   for (const SectorPatches& piece : pieces)
     power += share_of(context, piece) * expected_power(context, piece.patches, pulse, t);
-  return context.scenario.transmitter.source_level_db + db_from_power(power);
+  return context.scenario.transmitters[0].source_level_db + db_from_power(power);
 }
 
 PatchRows patch_rows(const ReverberationContext& context, std::span<const SectorPatches> pieces,
@@ -178,7 +178,7 @@ PatchRows patch_rows(const ReverberationContext& context, std::span<const Sector
                              .launch_elevation = patch.launch_elevation,
                              .arrival_elevation = -patch.return_elevation,
                              .scattering_strength_db = db_from_power(patch.cross_section),
-                             .level_db = context.scenario.transmitter.source_level_db +
+                             .level_db = context.scenario.transmitters[0].source_level_db +
                                          db_from_amplitude(beamed) + db_from_power(share)});
     }
   }

@@ -1,57 +1,28 @@
 #pragma once
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "raytrace/environment.h"
-#include "reverb/scattering/models.h"
 #include "sonar/array.h"
+#include "sonar/noise_settings.h"
+#include "sonar/ping_schedule.h"
+#include "sonar/platform.h"
 #include "sonar/pulse.h"
-#include "sonar/track.h"
+#include "sonar/reverberation_settings.h"
+#include "sonar/target.h"
 #include "sonar/transect.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
-
-struct Target {
-  std::string name = "target";
-  Track track;
-  double strength_db = 10.0;                        ///< TS [dB]
-  int first_ping = 1;                               ///< the target is there from this ping …
-  int last_ping = std::numeric_limits<int>::max();  ///< … to this one
-};
-
-/// Surface reverberation as scattering patches on one ground grid.
-struct ReverberationSettings {
-  bool enabled = true;
-  AnySurfaceScattering surface =
-      NrlSurface{};   ///< wind and surface sound speed are filled in from the environment
-  int azimuths = 36;  ///< sectors of a ring, each with its own bearing and weight
-  std::optional<double> ground_spacing;  ///< of the grid [m]; by default from the pulse's bandwidth
-};
-
-struct NoiseSettings {
-  std::optional<double> spectral_level_db;  ///< NL [dB re 1 µPa²/Hz]; none: no noise
-};
 
 /// What is searched for. A path is kept when it is within all the limits.
 struct PropagationSettings {
   int max_surface_bounces = 3;
   int max_bottom_bounces = 3;
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
+  bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
   bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
-};
-
-struct PingSchedule {
-  int count = 1;
-  double interval = 60.0;            ///< from ping to ping [s]
-  std::vector<double> elevations;    ///< transmitter elevation of each ping [rad], repeated as
-                                     ///< needed; empty: the transmitter's own
-  double recording_duration = 60.0;  ///< after the start of each ping [s]
-  double recording_start = 0.0;      ///< [s]
-  double sample_rate = 16000.0;      ///< [Hz]
 };
 
 /// All that a simulation needs, as plain data. Times in s, lengths in m, angles in rad.
@@ -59,12 +30,12 @@ struct Scenario {
   std::string title;
   std::uint64_t seed = 1;
   Environment environment;
-  Transect transect;         ///< where its range axis lies on the map
-  double wind_speed = 10.0;  ///< at 10 m [m/s]
-  Track platform;            ///< carries transmitter and array
-  Transmitter transmitter;
-  PulseSettings pulse;
-  ReceiverArray array;
+  Transect transect;                             ///< where its range axis lies on the map
+  double wind_speed = 10.0;                      ///< at 10 m [m/s]
+  std::vector<Platform> platforms = {{}};        ///< carry transmitters and arrays
+  std::vector<Transmitter> transmitters = {{}};  ///< [n ≥ 1]
+  PulseSettings pulse;                           ///< of the transmitters without one of their own
+  std::vector<ReceiverArray> arrays = {{}};      ///< [n ≥ 1]
   std::vector<Target> targets;
   NoiseSettings noise;
   ReverberationSettings reverberation;
@@ -76,5 +47,17 @@ struct Scenario {
   std::vector<std::string> overrides;  ///< "key.path=value" that changed the text's values
   std::vector<std::string> notes;      ///< what the reader did that the user should know
 };
+
+/// Where a transmitter is and how it moves. \param transmitter  index   \param time  since the
+/// start of the scenario [s]
+[[nodiscard]] Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time);
+/// The same of an array's reference point.
+[[nodiscard]] Kinematics array_at(const Scenario& scenario, int array, double time);
+/// The pulse that a transmitter sends: its own or the scenario's.
+[[nodiscard]] const PulseSettings& pulse_of(const Scenario& scenario, int transmitter);
+/// Phones of all arrays, one after the other: the channels of a record.
+[[nodiscard]] std::size_t channels_of(const Scenario& scenario);
+/// The channel of an array's first phone.
+[[nodiscard]] std::size_t first_channel(const Scenario& scenario, int array);
 
 }  // namespace asdic

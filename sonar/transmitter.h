@@ -1,5 +1,10 @@
 #pragma once
-#include <string_view>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/units.h"
+#include "sonar/pulse.h"
 
 namespace asdic {
 
@@ -13,6 +18,14 @@ struct Transmitter {
   double elevation = 0.0;                  ///< of the beam's axis, positive up [rad]
   double beamwidth = 0.10471975511965978;  ///< full −3 dB width of the unsteered line [rad]
   Taper taper = Taper::hann;
+  std::string name = "transmitter";
+  int platform = 0;                    ///< that carries it, an index
+  Vec3 offset = Vec3::Zero();          ///< from the platform [m]
+  std::optional<PulseSettings> pulse;  ///< none: the scenario's
+  double first_ping_time = 0.0;        ///< since the start of the scenario [s]
+  std::optional<double> interval;      ///< from ping to ping [s]; none: the schedule's
+  std::vector<double> elevations;      ///< of each ping [rad], repeated as needed; empty: the
+                                       ///< schedule's, and without those `elevation`
 };
 
 /// Far-field amplitude pattern of a continuous vertical line, 1 on its axis; real, with the side

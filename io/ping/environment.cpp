@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/ping/scale.h"
+#include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
 #include "io/text/material_text.h"
 #include "io/text/toml_value.h"
@@ -80,7 +80,7 @@ void write_transect(Hdf5File& file, const Scenario& scenario) {
 void write_environment(Hdf5File& file, const Scenario& scenario) {
   const Environment& ocean = scenario.environment;
   const PropagationPaths paths(ocean, scenario.transect);
-  Vec3 place = scenario.platform.at(0.0).position;
+  Vec3 place = scenario.platforms[0].track.at(0.0).position;
   const double surface = paths.surface_depth(place), bottom = paths.bottom_depth(place);
   constexpr std::size_t points = 501;
   std::vector<double> depth, speed;
@@ -111,7 +111,7 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
       scenario.reverberation.surface);
   const double wavelength = paths.speed_at(place) / Pulse(scenario.pulse).centre_frequency();
   file.set_attribute(group, "transmitter_line_length_m",
-                     BeamPattern(scenario.transmitter, wavelength).line_length());
+                     BeamPattern(scenario.transmitters[0], wavelength).line_length());
 }
 
 }  // namespace asdic::ping_file

@@ -1,7 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "io/scenario/sections.h"
+#include "sonar/ping_bounds.h"
+#include "sonar/sampling.h"
+#include "sonar/stream.h"
+#include "sonar/transmission.h"
 
 namespace asdic::scenario {
 namespace {
@@ -58,16 +63,6 @@ std::vector<Moment> moments(const Scenario& scenario, const Track& track, const 
   return result;
 }
 
-double fastest(const Track& track) {
-  if (track.waypoints.empty()) return track.start.velocity.norm();
-  double speed = 0.0;
-  for (std::size_t i = 1; i < track.waypoints.size(); ++i) {
-    const Waypoint &a = track.waypoints[i - 1], &b = track.waypoints[i];
-    speed = std::max(speed, (b.position - a.position).norm() / (b.time - a.time));
-  }
-  return speed;
-}
-
 std::string at_time(double time) { return " at " + to_text(time) + " s"; }
 
 /// The water over one place of the map.
@@ -95,108 +90,137 @@ class WaterColumn {
   double x_, top_, bottom_;
 };
 
-/// End of the last record [s].
-double end_of(const PingSchedule& pings, int last_ping) {
-  return (last_ping - 1) * pings.interval + pings.recording_start + pings.recording_duration;
+/// When a run's ping is sent, and when its record ends [s].
+struct PingTimes {
+  double sent, end;
+};
+std::vector<PingTimes> ping_times(const Scenario& scenario) {
+  std::vector<PingTimes> times;
+  for (const Transmission& sent : transmissions(scenario))
+    times.push_back({sent.time, sent.time + scenario.pings.recording_start +
+                                    scenario.pings.recording_duration});
+  return times;
 }
 
-void check_platform(TomlTable& root, const Scenario& scenario) {
-  TomlTable platform = root.table("platform"), array = root.table("array");
-  const double end = end_of(scenario.pings, scenario.pings.count);
-  for (const Moment& moment :
-       moments(scenario, scenario.platform, Vec3::Zero(), platform, 0.0, end)) {
-    const Vec3 place = scenario.platform.at(moment.time).position;
+/// Something that a platform carries, `offset` from it, stays in the water.
+void check_carried(
+    const Scenario& scenario, int platform, const Vec3& offset, double end,
+    TomlTable& platform_table,
+    const std::function<InputError(const Moment&, const WaterColumn&, double)>& fault) {
+  const Track& track = scenario.platforms[static_cast<std::size_t>(platform)].track;
+  for (const Moment& moment : moments(scenario, track, offset, platform_table, 0.0, end)) {
+    const Vec3 place = track.at(moment.time).position + offset;
     const WaterColumn water(scenario, place);
-    if (!water.holds(place.z()))
-      throw platform.fault(moment.key, water.expected(),
-                           "depth " + to_text(place.z()) + " m" + at_time(moment.time));
+    if (!water.holds(place.z())) throw fault(moment, water, place.z());
   }
-  for (std::size_t i = 0; i < scenario.array.phones.size(); ++i) {
-    const Vec3 offset = scenario.array.offset + scenario.array.phones[i];
-    for (const Moment& moment : moments(scenario, scenario.platform, offset, platform, 0.0, end)) {
-      const Vec3 phone = scenario.platform.at(moment.time).position + offset;
-      const WaterColumn water(scenario, phone);
-      if (!water.holds(phone.z()))
-        throw array.fault(array.has("positions") ? "positions" : "phones", water.expected(),
-                          "phone " + std::to_string(i) + " at depth " + to_text(phone.z()) + " m" +
-                              at_time(moment.time));
-    }
+}
+
+std::string depth_at_time(double depth, double time) {
+  return "depth " + to_text(depth) + " m" + at_time(time);
+}
+
+void check_platforms(TomlTable& root, const Scenario& scenario) {
+  std::vector<TomlTable> platforms = root.one_or_more("platform"),
+                         transmitters = root.one_or_more("transmitter"),
+                         arrays = root.one_or_more("array");
+  double end = 0.0;
+  for (const PingTimes& ping : ping_times(scenario)) end = std::max(end, ping.end);
+  for (std::size_t i = 0; i < transmitters.size(); ++i) {
+    const Transmitter& transmitter = scenario.transmitters[i];
+    TomlTable& carrier = platforms[static_cast<std::size_t>(transmitter.platform)];
+    check_carried(scenario, transmitter.platform, transmitter.offset, end, carrier,
+                  [&](const Moment& moment, const WaterColumn& water, double depth) {
+                    const std::string got = depth_at_time(depth, moment.time);
+                    return transmitters[i].has("offset")
+                               ? transmitters[i].fault("offset", water.expected(), got)
+                               : carrier.fault(moment.key, water.expected(), got);
+                  });
+  }
+  for (std::size_t i = 0; i < arrays.size(); ++i) {
+    const ReceiverArray& array = scenario.arrays[i];
+    for (std::size_t n = 0; n < array.phones.size(); ++n)
+      check_carried(scenario, array.platform, array.offset + array.phones[n], end,
+                    platforms[static_cast<std::size_t>(array.platform)],
+                    [&](const Moment& moment, const WaterColumn& water, double depth) {
+                      return arrays[i].fault(arrays[i].has("positions") ? "positions" : "phones",
+                                             water.expected(),
+                                             "phone " + std::to_string(n) + " at " +
+                                                 depth_at_time(depth, moment.time));
+                    });
   }
 }
 
 void check_targets(TomlTable& root, const Scenario& scenario) {
   auto tables = root.tables("target");
+  const std::vector<PingTimes> times = ping_times(scenario);
+  const std::vector<Transmission> sent = transmissions(scenario);
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const Target& target = scenario.targets[i];
-    if (target.first_ping > scenario.pings.count) continue;
-    const int last = std::min(target.last_ping, scenario.pings.count);
-    const double from = (target.first_ping - 1) * scenario.pings.interval;
+    if (target.first_ping > std::ssize(times)) continue;
+    const int last = std::min(target.last_ping, static_cast<int>(times.size()));
+    const double from = times[static_cast<std::size_t>(target.first_ping - 1)].sent;
     for (const Moment& moment : moments(scenario, target.track, Vec3::Zero(), tables[i], from,
-                                        end_of(scenario.pings, last))) {
+                                        times[static_cast<std::size_t>(last - 1)].end)) {
       const Vec3 place = target.track.at(moment.time).position;
       const WaterColumn water(scenario, place);
       if (!water.holds(place.z()))
-        throw tables[i].fault(moment.key, water.expected(),
-                              "depth " + to_text(place.z()) + " m" + at_time(moment.time));
+        throw tables[i].fault(moment.key, water.expected(), depth_at_time(place.z(), moment.time));
     }
     for (int ping = target.first_ping; ping <= last; ++ping) {
-      const double time = (ping - 1) * scenario.pings.interval;
-      const double distance =
-          (target.track.at(time).position - scenario.platform.at(time).position).norm();
+      const Transmission& one = sent[static_cast<std::size_t>(ping - 1)];
+      const Vec3 source = transmitter_at(scenario, one.transmitter, one.time).position;
+      const double distance = (target.track.at(one.time).position - source).norm();
       if (distance < 1.0)  // levels refer to 1 m
         throw tables[i].fault(
             moments(scenario, target.track, Vec3::Zero(), tables[i], from, from)[0].key,
-            "a target at least 1 m from the platform", to_text(distance) + " m" + at_time(time));
+            "a target at least 1 m from the " +
+                std::string(scenario.transmitters.size() > 1 ? "transmitter" : "platform"),
+            to_text(distance) + " m" + at_time(one.time));
     }
   }
-}
-
-double slowest_water(const Environment& ocean) {
-  double slowest = infinity;
-  if (ocean.section) {
-    for (const double c : ocean.section->speeds()) slowest = std::min(slowest, c);
-    return slowest;
-  }
-  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  for (int i = 0; i <= 100; ++i) slowest = std::min(slowest, ocean.water.at(bottom * i / 100).c);
-  return slowest;
 }
 
 /// fs > 2·(f_c + B/2)·η_max, B the width outside which the pulse's spectrum is 40 dB down: what the
 /// synthesizer asks for as well.
-void check_sampling(TomlTable& root, const Scenario& scenario) {
-  const PulseSettings& settings = scenario.pulse;
+void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettings& settings) {
+  const double rate = recorded_rate(scenario);
+  TomlTable pings = root.table("pings");
+  if (scenario.pings.samples == Samples::baseband) {
+    const Band band = heard_band(scenario, Pulse(settings));
+    const double carrier = recorded_carrier(scenario);
+    const double needed = 2.0 * std::max(band.highest - carrier, carrier - band.lowest);
+    if (rate < needed)
+      throw pings.fault(pings.has("baseband_rate") ? "baseband_rate" : "carrier",
+                        "a baseband rate of at least " + to_text(std::ceil(needed)) +
+                            " Hz: the pulse's band with its Doppler shift about a carrier of " +
+                            to_text(std::round(10.0 * carrier) / 10.0) + " Hz",
+                        to_text(rate) + " Hz");
+    return;
+  }
   double highest = settings.kind == PulseKind::cw ? settings.frequency
                    : settings.kind == PulseKind::file
                        ? 0.0
                        : std::max(settings.start_frequency, settings.end_frequency);
-  if (scenario.pings.sample_rate > 2.0 * highest) {  // else it is too slow without a spectrum
-    const Pulse pulse(settings);
-    highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
-  }
-  double target_speed = 0.0;
-  for (const Target& target : scenario.targets)
-    target_speed = std::max(target_speed, fastest(target.track));
-  const double slowest_sound = slowest_water(scenario.environment);
-  // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
-  const double doppler = 1.0 + 2.0 * (target_speed + fastest(scenario.platform)) / slowest_sound;
-  const double needed = 2.0 * highest * doppler;
-  TomlTable pings = root.table("pings");
-  if (!(scenario.pings.sample_rate > needed))
+  highest *= 1.0 + doppler_bound(scenario);
+  if (rate > 2.0 * highest)  // else it is too slow without a spectrum
+    highest = heard_band(scenario, Pulse(settings)).highest;
+  if (!(rate > 2.0 * highest))
     throw pings.fault("sample_rate",
-                      "a sample rate above " + to_text(std::ceil(needed)) +
+                      "a sample rate above " + to_text(std::ceil(2.0 * highest)) +
                           " Hz: twice the highest frequency of the pulse with its Doppler shift",
-                      to_text(scenario.pings.sample_rate) + " Hz");
+                      to_text(rate) + " Hz");
 }
 
 void check_size(TomlTable& root, const Scenario& scenario) {
   constexpr double limit = 2147483648.0;  // 2 GiB
-  const double samples = scenario.pings.recording_duration * scenario.pings.sample_rate;
+  const double rate = recorded_rate(scenario);
+  const std::size_t longest = scenario.pings.continuous ? Stream::longest_part(scenario) : 0;
+  const double samples =
+      std::max(scenario.pings.recording_duration * rate, static_cast<double>(longest));
   TomlTable pings = root.table("pings");
   if (samples < 2.0)
     throw pings.fault("recording_duration", "at least two samples",
-                      to_text(scenario.pings.recording_duration) + " s at " +
-                          to_text(scenario.pings.sample_rate) + " Hz");
+                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz");
   const double end = scenario.pings.recording_start + scenario.pings.recording_duration;
   if (scenario.pulse.duration > end) {
     TomlTable pulse = root.table("pulse");
@@ -204,23 +228,24 @@ void check_size(TomlTable& root, const Scenario& scenario) {
                       "a pulse no longer than the record, " + to_text(end) + " s",
                       to_text(scenario.pulse.duration) + " s");
   }
-  const auto phones = scenario.array.phones.size();
-  const double bytes = samples * static_cast<double>(phones) * sizeof(float);
+  const std::size_t phones = channels_of(scenario);
+  const double bytes = samples * static_cast<double>(phones) * sizeof(float) *
+                       (scenario.pings.samples == Samples::baseband ? 2.0 : 1.0);
   if (bytes > limit)
     throw pings.fault("recording_duration", "at most 2 GiB of pressure a ping",
-                      to_text(scenario.pings.recording_duration) + " s at " +
-                          to_text(scenario.pings.sample_rate) + " Hz on " + std::to_string(phones) +
-                          " phones, " + to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) +
-                          " GiB a ping");
+                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz on " +
+                          std::to_string(phones) + " phones, " +
+                          to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) + " GiB a ping");
 }
 
 }  // namespace
 
 void check_scenario(TomlTable& root, const Scenario& scenario) {
-  check_platform(root, scenario);
+  check_platforms(root, scenario);
   check_targets(root, scenario);
   check_size(root, scenario);
-  check_sampling(root, scenario);
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
+    check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));
 }
 
 }  // namespace asdic::scenario

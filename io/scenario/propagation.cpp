@@ -35,7 +35,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
 PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
                          std::vector<std::string>& notes) {
   notes.insert(notes.end(), scenario.notes.begin(), scenario.notes.end());
-  const Vec3 platform = scenario.platform.at(0.0).position;
+  const Vec3 platform = scenario.platforms[0].track.at(0.0).position;
   PropagationCase run;
   run.title = scenario.title;
   run.environment =

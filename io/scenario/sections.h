@@ -12,10 +12,12 @@ namespace asdic::scenario {
 /// \param frequency  at which attenuations per metre are meant [Hz]
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario);
-void read_platform(TomlTable table, Scenario& scenario);
-void read_transmitter(TomlTable table, Scenario& scenario);
-void read_pulse(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
-void read_array(TomlTable table, Scenario& scenario);
+[[nodiscard]] PulseSettings read_pulse(TomlTable table, const std::filesystem::path& folder);
+void read_platforms(std::vector<TomlTable> tables, Scenario& scenario);
+/// After the platforms, which they name.
+void read_transmitters(std::vector<TomlTable> tables, const std::filesystem::path& folder,
+                       Scenario& scenario);
+void read_arrays(std::vector<TomlTable> tables, Scenario& scenario);
 void read_targets(std::vector<TomlTable> tables, Scenario& scenario);
 void read_noise(TomlTable table, Scenario& scenario);
 void read_reverberation(TomlTable table, Scenario& scenario);
@@ -26,6 +28,9 @@ void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scena
 /// a ping fits in memory. \param root  the document, for the places of faults
 void check_scenario(TomlTable& root, const Scenario& scenario);
 
+inline const Quantity level_quantity{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};
+inline const Quantity elevation_quantity{
+    .noun = "elevation", .unit = "degrees", .low = -90.0, .high = 90.0};
 inline const Quantity depth_quantity{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
 inline const Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
 inline const Quantity velocity_component{

@@ -270,6 +270,13 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
   return result;
 }
 
+std::vector<TomlTable> TomlTable::one_or_more(const std::string& key) {
+  std::vector<TomlTable> result;
+  if (is_array(key)) result = tables(key);
+  if (result.empty()) result.push_back(table(key));
+  return result;
+}
+
 void TomlTable::finish() const {
   for (const TomlEntry& entry : std::get<TomlValue::Table>(table_->data)) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;

@@ -58,6 +58,9 @@ class TomlTable {
   TomlTable table(const std::string& key);
   /// An array of tables; absent: none.
   std::vector<TomlTable> tables(const std::string& key);
+  /// [key], or [[key]] as often as it stands there. \return at least one; an absent one reads as
+  /// empty
+  std::vector<TomlTable> one_or_more(const std::string& key);
 
   /// \throws InputError naming the first key that nobody asked for, with the nearest known name
   void finish() const;

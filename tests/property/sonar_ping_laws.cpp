@@ -12,9 +12,9 @@ namespace {
 Scenario busy() {
   Scenario s = support::thesis(SoundSpeedProfile::munk());
   s.environment.bottom = {.depth = 5000.0, .material = FluidHalfSpace{}};
-  s.platform.start.position = {0.0, 0.0, 400.0};
-  s.platform.start.velocity = {1.5, 2.0, 0.0};
-  s.array = line_array(4, 0.1875, 0.3, 0.1);
+  s.platforms[0].track.start.position = {0.0, 0.0, 400.0};
+  s.platforms[0].track.start.velocity = {1.5, 2.0, 0.0};
+  s.arrays[0] = line_array(4, 0.1875, 0.3, 0.1);
   s.targets = {support::target({3000.0, 800.0, 125.0}, 20.0, {-7.0, 2.0, 0.0})};
   s.pulse.duration = 0.2;
   s.noise.spectral_level_db = 40.0;
@@ -56,10 +56,10 @@ TEST(PingLaws, SameBitsForAnyThreadsAndAloneOrInASequence) {
 // the target's place hears it as the target at the vehicle's would.
 TEST(PingLaws, Reciprocity) {
   Scenario s = busy();
-  s.platform.start.velocity.setZero();
+  s.platforms[0].track.start.velocity.setZero();
   s.targets[0].track.start.velocity.setZero();
   const PingRecord there = PingSimulator(s).simulate(1);
-  std::swap(s.platform.start.position, s.targets[0].track.start.position);
+  std::swap(s.platforms[0].track.start.position, s.targets[0].track.start.position);
   const PingRecord back = PingSimulator(s).simulate(1);
   ASSERT_EQ(there.echoes.size(), back.echoes.size());
   ASSERT_GE(there.echoes.size(), 9U);
@@ -86,7 +86,7 @@ TEST(PingLaws, Reciprocity) {
 TEST(PingLaws, TheRecordHoldsThePulsesEnergy) {
   for (const PulseKind kind : {PulseKind::cw, PulseKind::lfm, PulseKind::hfm}) {
     Scenario s = support::thesis(SoundSpeedProfile::isovelocity(1500.0));
-    s.array = line_array(1, 0.1875, 0.0, 0.0);
+    s.arrays[0] = line_array(1, 0.1875, 0.0, 0.0);
     s.pulse.kind = kind;
     s.targets = {support::target({3000.0, 0.0, 4500.0}, 30.0)};
     s.pings.recording_start = 3.0;
@@ -126,7 +126,7 @@ TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
     ASSERT_GE(record.echoes.size(), 9U);
     ASSERT_EQ(record.legs.size(), 2U);
     const double start = record.start_time;
-    const Vec3 source = s.platform.at(start).position;
+    const Vec3 source = s.platforms[0].track.at(start).position;
     for (const EchoPath& echo : record.echoes) {
       const Arrival& out = record.legs[0].arrivals[static_cast<std::size_t>(echo.outgoing)];
       const Arrival& home = record.legs[1].arrivals[static_cast<std::size_t>(echo.returning)];
@@ -139,7 +139,7 @@ TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
       }
       at = s.targets[0].track.at(start + struck).position;
       for (int i = 0; i < 8; ++i) {
-        const Vec3 phone = s.platform.at(start + heard).position;
+        const Vec3 phone = s.platforms[0].track.at(start + heard).position;
         heard = struck + delay_of(simulator.ocean(), at.z(), phone.z(), range(at, phone), home);
       }
       EXPECT_NEAR(echo.heard.delay, heard, 1e-6);

@@ -45,11 +45,11 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
   record.ping = ping;
   record.start_time = (ping - 1) * scenario.pings.interval;
   record.elevation = radians(8.0);
-  record.platform = scenario.platform.at(record.start_time);
+  record.platform = scenario.platforms[0].track.at(record.start_time);
   for (const Target& target : scenario.targets)
     record.targets.push_back(target.track.at(record.start_time));
-  for (const Vec3& phone : scenario.array.phones)
-    record.phones.push_back(record.platform.position + scenario.array.offset + phone);
+  for (const Vec3& phone : scenario.arrays[0].phones)
+    record.phones.push_back(record.platform.position + scenario.arrays[0].offset + phone);
   record.recording = {.sample_rate = scenario.pings.sample_rate,
                       .start = scenario.pings.recording_start,
                       .samples = static_cast<std::size_t>(std::lround(

@@ -10,9 +10,9 @@ inline Scenario thesis(SoundSpeedProfile water) {
   Scenario s;
   s.environment.water = std::move(water);
   s.environment.bottom = {.depth = 5400.0, .material = Rigid{}};
-  s.platform.start.position = {0.0, 0.0, 4500.0};
-  s.transmitter = {.source_level_db = 230.0, .taper = Taper::omnidirectional};
-  s.array = line_array(16, 0.1875, 0.0, 0.0);
+  s.platforms[0].track.start.position = {0.0, 0.0, 4500.0};
+  s.transmitters[0] = {.source_level_db = 230.0, .taper = Taper::omnidirectional};
+  s.arrays[0] = line_array(16, 0.1875, 0.0, 0.0);
   s.reverberation.enabled = false;
   s.propagation.max_surface_bounces = 0;
   s.propagation.max_bottom_bounces = 0;

@@ -13,8 +13,8 @@ using support::Csv;
 /// reverb_isovelocity.csv: 4500 m, 1500 m/s, 4 kHz, U = 10 m/s, rectangular 0.1 s, 220 dB, omni.
 Scenario reference() {
   Scenario s = support::thesis(SoundSpeedProfile::isovelocity(1500.0));
-  s.transmitter.source_level_db = 220.0;
-  s.array.phones = {Vec3::Zero()};
+  s.transmitters[0].source_level_db = 220.0;
+  s.arrays[0].phones = {Vec3::Zero()};
   s.pulse = {.duration = 0.1, .window = PulseWindow::none};
   s.reverberation.enabled = true;
   s.reverberation.azimuths = 12;
@@ -43,7 +43,7 @@ class Sea {
  public:
   explicit Sea(const Scenario& s)
       : simulator_(s),
-        pattern_(s.transmitter, 1500.0 / 4000.0),
+        pattern_(s.transmitters[0], 1500.0 / 4000.0),
         rings_(patches(ground_paths(simulator_.ocean(), 4500.0, BoundaryKind::surface,
                                     simulator_.ground_spacing(), 750.0 * s.pings.recording_duration,
                                     4000.0, {0, 0}),
@@ -62,8 +62,8 @@ class Sea {
 
   [[nodiscard]] Baseband hear(std::uint32_t ping) const {
     const Scenario& s = simulator_.scenario();
-    const ReverberationContext context{s, pattern_, s.platform.at(0.0), 1500.0, ping};
-    return synthesizer_.baseband(reverberation_returns(context, rings_), s.array.phones);
+    const ReverberationContext context{s, pattern_, s.platforms[0].track.at(0.0), 1500.0, ping};
+    return synthesizer_.baseband(reverberation_returns(context, rings_), s.arrays[0].phones);
   }
 
  private:
@@ -82,9 +82,9 @@ class Sea {
 TEST(Reverberation, EnsembleMeanIsTheAnnulusIntegral) {
   const Csv csv("physics-reference/reverb_isovelocity.csv");
   Scenario s = reference();
-  s.array.phones.clear();
-  for (int i = 0; i < 8; ++i) s.array.phones.emplace_back(3.1 * i, 7.3 * (i % 3), 0.0);
-  for (Vec3& phone : s.array.phones) phone -= Vec3(10.85, 7.3, 0.0);
+  s.arrays[0].phones.clear();
+  for (int i = 0; i < 8; ++i) s.arrays[0].phones.emplace_back(3.1 * i, 7.3 * (i % 3), 0.0);
+  for (Vec3& phone : s.arrays[0].phones) phone -= Vec3(10.85, 7.3, 0.0);
   const Sea sea(s);
   std::vector<double> sum(csv.rows()), count(csv.rows());
   for (std::uint32_t ping = 1; ping <= 20; ++ping) {

@@ -58,7 +58,7 @@ TEST_P(ThesisHorizontalArray, PeakIsWhereSinAzTimesCosElSays) {
   const double expected = std::sin(bearing) * std::cos(back[0].arrival_elevation);
   const double c = s.environment.water.at(4500.0).c;
   const double sine =
-      loudest_sine(support::demodulate(record, 4000.0, 60.0), s.array.phones, c, 33.5, 35.0,
+      loudest_sine(support::demodulate(record, 4000.0, 60.0), s.arrays[0].phones, c, 33.5, 35.0,
                    [](double u) { return look_direction(0.5 * pi - std::asin(u), 0.0); });
   EXPECT_NEAR(sine, expected, 5e-4);
   RecordProperty("error_in_sine", std::to_string(sine - expected));
@@ -74,12 +74,13 @@ TEST_P(ThesisHorizontalArray, TheSurfaceMovesThePeakLittle) {
   const double bearing = radians(GetParam());
   Scenario s = table_5_5(bearing);
   s.propagation.max_surface_bounces = 1;
-  s.transmitter = {.source_level_db = 230.0, .elevation = radians(2.0)};  // 6°, Hann
+  s.transmitters[0] = {.source_level_db = 230.0, .elevation = radians(2.0)};  // 6°, Hann
   s.noise.spectral_level_db = 40.0;
   const PingRecord record = PingSimulator(s).simulate(1);
-  const double sine = loudest_sine(
-      support::demodulate(record, 4000.0, 60.0), s.array.phones, s.environment.water.at(4500.0).c,
-      33.5, 35.0, [](double u) { return look_direction(0.5 * pi - std::asin(u), 0.0); });
+  const double sine = loudest_sine(support::demodulate(record, 4000.0, 60.0), s.arrays[0].phones,
+                                   s.environment.water.at(4500.0).c, 33.5, 35.0, [](double u) {
+                                     return look_direction(0.5 * pi - std::asin(u), 0.0);
+                                   });
   EXPECT_NEAR(sine, std::sin(bearing) * std::cos(radians(4.5)), 0.0114);
 }
 
@@ -136,9 +137,9 @@ TEST_P(ThesisVerticalArray, BeamsOfThePingPeakAtTheEigenrays) {
   s.environment.bottom.depth = 4620.0;
   s.propagation.max_surface_bounces = 1;
   s.propagation.max_bottom_bounces = 1;
-  s.array = line_array(20, 0.15, 0.0, 0.5 * pi);
+  s.arrays[0] = line_array(20, 0.15, 0.0, 0.5 * pi);
   s.pulse.duration = 0.002;
-  s.transmitter.source_level_db = 240.0;
+  s.transmitters[0].source_level_db = 240.0;
   s.targets = {support::target({0.0, GetParam().range, 125.0}, 40.0)};
   const PathLimits limits{.max_surface_bounces = 1, .max_bottom_bounces = 1};
   const EigenraySolver solver(s.environment);
@@ -158,7 +159,7 @@ TEST_P(ThesisVerticalArray, BeamsOfThePingPeakAtTheEigenrays) {
         if (j != i || k != i) gap = std::min(gap, std::abs(back[j].delay + back[k].delay - time));
     const double moveout = 2.0 * 1.425 * std::abs(std::sin(back[i].arrival_elevation)) / c;
     if (gap < 0.0012 + moveout) continue;
-    const double sine = loudest_sine(heard, s.array.phones, c, time + 0.0008, time + 0.0012,
+    const double sine = loudest_sine(heard, s.arrays[0].phones, c, time + 0.0008, time + 0.0012,
                                      [](double u) { return look_direction(0.0, std::asin(u)); });
     EXPECT_NEAR(sine, std::sin(-back[i].arrival_elevation), 0.057) << "path " << i;
     ++checked;

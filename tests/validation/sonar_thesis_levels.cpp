@@ -12,7 +12,7 @@ using support::Csv;
 /// One row of Tables 5.1 and 5.2: isovelocity, one straight path at the vehicle's depth.
 Scenario sonar_equation(double source_level, double strength, double range) {
   Scenario s = support::thesis(SoundSpeedProfile::isovelocity(1500.0));
-  s.transmitter.source_level_db = source_level;
+  s.transmitters[0].source_level_db = source_level;
   s.targets = {support::target({range, 0.0, 4500.0}, strength)};
   s.noise.spectral_level_db = 40.0;
   s.pings.recording_start = std::floor(2.0 * range / 1500.0) - 1.0;

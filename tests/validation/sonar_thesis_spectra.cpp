@@ -9,7 +9,7 @@ namespace {
 /// An echo over one straight path, no noise: 3 km, heard from 4.0 to 5.0 s.
 PingRecord straight_echo(PulseSettings pulse) {
   Scenario s = support::thesis(SoundSpeedProfile::isovelocity(1500.0));
-  s.array = line_array(1, 0.1875, 0.0, 0.0);
+  s.arrays[0] = line_array(1, 0.1875, 0.0, 0.0);
   s.targets = {support::target({3000.0, 0.0, 4500.0}, 30.0)};
   s.pulse = std::move(pulse);
   s.pings.recording_start = 3.5;
@@ -48,7 +48,7 @@ class ThesisDoppler : public testing::TestWithParam<double> {};
 TEST_P(ThesisDoppler, TheEchoIsShiftedTheReverberationIsNot) {
   const double v = GetParam();  // towards the vehicle
   Scenario s = support::thesis(SoundSpeedProfile::munk());
-  s.array = line_array(1, 0.1875, 0.0, 0.0);
+  s.arrays[0] = line_array(1, 0.1875, 0.0, 0.0);
   s.targets = {support::target({30000.0, 0.0, 125.0}, 60.0, {-v, 0.0, 0.0})};
   s.reverberation.enabled = true;
   s.pings.recording_duration = 44.0;
