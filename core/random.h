@@ -11,6 +11,9 @@ enum class Draw : std::uint32_t {
   surface_weight = 2,
   bottom_weight = 3,
   volume_weight = 4,
+  target_fluctuation = 20,
+  element_gain = 21,
+  element_phase = 22,
 };
 
 /// Philox's key of all streams of one seed and purpose.
