@@ -34,6 +34,7 @@ class GroundPaths {
   [[nodiscard]] std::span<const GroundPath> paths(std::size_t cell) const noexcept {
     return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
+  [[nodiscard]] std::span<const GroundPath> all() const noexcept { return paths_; }
   [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
 
  private:

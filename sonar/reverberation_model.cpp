@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/ping_bounds.h"
+#include "sonar/reverberation.h"
+
+namespace asdic {
+namespace {
+
+/// The law of a boundary out of the scenario's shorter lists.
+template <class... Model>
+ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
+  return std::visit([](const auto& model) { return ScatteringSheet::Law(model); }, law);
+}
+
+/// Sectors so narrow that neither an array nor its Doppler tells them apart: λ/(2L) for a length L,
+/// and 1/T of Doppler, 2v/λ·Δφ, for a platform's speed v.
+int resolved_sectors(const Scenario& scenario, const ReverberationContext& context, double speed,
+                     double sound_speed) {
+  double length = 0.0;
+  const auto& phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones;
+  for (const Vec3& phone : phones)
+    length = std::max(length, 2.0 * (phone - phones.front()).head<2>().norm());
+  const double wavelength = sound_speed / context.pulse.centre_frequency();
+  const double by_array = 2.0 * pi * length / wavelength;
+  const double by_doppler = 2.0 * pi * 2.0 * speed / wavelength * context.pulse.duration();
+  constexpr double most = 3600.0;
+  return static_cast<int>(std::ceil(std::min(most, std::max(by_array, by_doppler))));
+}
+
+}  // namespace
+
+ReverberationModel::ReverberationModel(const Scenario& scenario, const PropagationPaths& paths,
+                                       const Pulse& widest)
+    : scenario_(scenario),
+      paths_(paths),
+      fans_(paths),
+      spacing_(asdic::ground_spacing(scenario, widest, paths)),
+      fastest_water_(asdic::fastest_water(scenario.environment)) {}
+
+ScatteringField ReverberationModel::boundary(BoundaryKind kind,
+                                             const ReverberationContext& context) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  const bool surface = kind == BoundaryKind::surface;
+  const ScattererField& field = surface ? settings.surface_field : settings.bottom_field;
+  const auto id = static_cast<std::uint64_t>(kind);
+  const SheetEnds ends = {.source = transmitter_at(scenario_, context.transmitter, context.time),
+                          .receiver = array_at(scenario_, context.array, context.time),
+                          .source_speed = 0.0,
+                          .receiver_speed = 0.0,
+                          .frequency = context.pulse.centre_frequency(),
+                          .latest = context.latest};
+
+  // Around the middle of the two platforms.
+  const auto middle = [&](double time) -> Vec2 {
+    const auto platform = [&](int i) -> Vec2 {
+      return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
+    };
+    return 0.5 *
+           (platform(
+                scenario_.transmitters[static_cast<std::size_t>(context.transmitter)].platform) +
+            platform(scenario_.arrays[static_cast<std::size_t>(context.array)].platform));
+  };
+  const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
+  const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
+                                  field.motion.current, reach / 8.0, id);
+  const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
+  const double moved = ends.receiver.velocity.norm() * context.latest;
+  const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
+  const double apart = (source - receiver).norm() + moved;
+
+  BoundaryFans::Settings fan = {.sectors = settings.azimuths,
+                                .spacing = spacing_,
+                                // in steps, so that a slow drift finds what is kept
+                                .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
+                                .frequency = ends.frequency,
+                                .limits = limits_of(scenario_.propagation)};
+  SheetEnds here = ends;
+  here.source_speed = paths_.speed_at(ends.source.position);
+  here.receiver_speed = paths_.speed_at(ends.receiver.position);
+  auto law = surface ? law_of(settings.surface) : law_of(*settings.bottom);
+  std::visit(
+      [&]<class Model>(Model& model) {
+        if constexpr (SurfaceScatteringModel<Model>) {
+          model.wind_speed = scenario_.wind_speed;
+          model.sound_speed = speed_at_surface(scenario_, paths_);
+        }
+      },
+      law);
+  int azimuths = settings.azimuths;
+  if (settings.resolve_azimuth) {
+    const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
+    azimuths = std::max(azimuths, resolved_sectors(scenario_, context, speed, here.receiver_speed));
+  }
+  const Vec3& under = ends.source.position;
+  return {.sheet = ScatteringSheet(fans_.around(ends.source.position, kind, fan),
+                                   fans_.around(ends.receiver.position, kind, fan), std::move(law),
+                                   surface ? -1.0 : 1.0, here, context.pattern),
+          .grid = {.anchor = anchor.place,
+                   .identity = anchor.identity,
+                   .spacing = spacing_,
+                   .azimuths = azimuths,
+                   .per_cell = settings.scatterers_per_cell,
+                   .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
+                   .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
+          .field = field,
+          .weights = surface ? Draw::surface_weight : Draw::bottom_weight,
+          .boundary = id,
+          .depth = surface ? paths_.surface_depth(under) : paths_.bottom_depth(under)};
+}
+
+PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  std::vector<ScatteringField> fields;
+  if (settings.enabled && settings.surface_scatters)
+    fields.push_back(boundary(BoundaryKind::surface, context));
+  if (settings.enabled && settings.bottom)
+    fields.push_back(boundary(BoundaryKind::bottom, context));
+  return {scenario_, context, std::move(fields)};
+}
+
+}  // namespace asdic
