@@ -25,6 +25,18 @@ std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const Gro
   return tilt;
 }
 
+/// \param speed  of sound at the fan's source [m/s]
+std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
+  std::vector<PathEnds> ends;
+  ends.reserve(paths.size());
+  for (const GroundPath& p : paths.all())
+    ends.push_back({.launch_level = std::cos(p.launch_elevation) / speed,
+                    .launch_down = -std::sin(p.launch_elevation) / speed,
+                    .sine = std::sin(p.grazing),
+                    .down = p.downward * p.horizontal_slowness * std::tan(p.grazing)});
+  return ends;
+}
+
 }  // namespace
 
 const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
@@ -43,12 +55,12 @@ BoundaryFans::BoundaryFans(const PropagationPaths& paths) : paths_(paths) {}
 
 BoundaryFans::~BoundaryFans() = default;
 
-std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, BoundaryKind boundary,
+std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const GroundLevel& level,
                                                         const Settings& settings) const {
   const bool layered = paths_.layered();
-  const Key key(static_cast<int>(boundary), layered ? 0.0 : paths_.plane(place, 0.0).origin,
-                place.z(), settings.frequency, settings.spacing, settings.max_range,
-                layered ? 0 : settings.sectors);
+  const Key key(level.boundary ? static_cast<int>(*level.boundary) : -1, level.depth,
+                layered ? 0.0 : paths_.plane(place, 0.0).origin, place.z(), settings.frequency,
+                settings.spacing, settings.max_range, layered ? 0 : settings.sectors);
   std::shared_ptr<Entry> entry;
   {
     const std::scoped_lock lock(lock_);
@@ -62,19 +74,22 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, Bound
       entry = kept;
     }
   }
-  tbb::collaborative_call_once(entry->traced,
-                               [&] { entry->fan = trace(place, boundary, settings); });
+  tbb::collaborative_call_once(entry->traced, [&] { entry->fan = trace(place, level, settings); });
   return {entry, &entry->fan};
 }
 
-BoundaryFan BoundaryFans::trace(const Vec3& place, BoundaryKind boundary,
+BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                                 const Settings& settings) const {
   const auto ground = [&](const EigenraySolver& solver) {
-    return std::make_shared<const GroundPaths>(ground_paths(solver, place.z(), boundary,
+    return std::make_shared<const GroundPaths>(ground_paths(solver, place.z(), level,
                                                             settings.spacing, settings.max_range,
                                                             settings.frequency, settings.limits));
   };
-  if (paths_.layered()) return {.planes = {{ground(paths_.along_transect()), {}}}};
+  const double speed = paths_.speed_at(place);
+  if (paths_.layered()) {
+    const auto paths = ground(paths_.along_transect());
+    return {.planes = {{.paths = paths, .ends = ends_of(*paths, speed), .tilt = {}}}};
+  }
   const int n = settings.sectors;
   BoundaryFan fan{.planes = std::vector<FanPlane>(static_cast<std::size_t>((n + 1) / 2)),
                   .first_bearing = paths_.transect_bearing(),
@@ -86,8 +101,10 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, BoundaryKind boundary,
     const auto solver = paths_.solver(plane);
     const Environment& ocean = solver->environment();
     fan.planes[i].paths = ground(*solver);
-    fan.planes[i].tilt = tilts(boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
-                               plane.cos_beta, *fan.planes[i].paths);
+    fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
+    fan.planes[i].tilt =
+        tilts(level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
+              plane.cos_beta, *fan.planes[i].paths);
   });
   return fan;
 }

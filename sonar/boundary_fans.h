@@ -18,9 +18,18 @@ struct CellTilt {
   double area = 1.0;  ///< of the sloping facet over its horizontal projection: √(1 + h′²)
 };
 
+/// What is asked of a path's ends again and again.
+struct PathEnds {
+  double launch_level = 0.0;  ///< horizontal slowness at the launch, cos(elevation)/c [s/m]
+  double launch_down = 0.0;   ///< vertical slowness there, positive down [s/m]
+  double sine = 0.0;          ///< of the grazing angle
+  double down = 0.0;          ///< vertical slowness at the boundary, positive down [s/m]
+};
+
 /// The paths to a boundary in one vertical plane.
 struct FanPlane {
   std::shared_ptr<const GroundPaths> paths;
+  std::vector<PathEnds> ends;  ///< [paths->all()]
   std::vector<CellTilt> tilt;  ///< [cells], empty where the boundary is level
 };
 
@@ -52,14 +61,15 @@ class BoundaryFans {
   explicit BoundaryFans(const PropagationPaths& paths);
   ~BoundaryFans();
 
-  [[nodiscard]] std::shared_ptr<const BoundaryFan> around(const Vec3& place, BoundaryKind boundary,
+  [[nodiscard]] std::shared_ptr<const BoundaryFan> around(const Vec3& place,
+                                                          const GroundLevel& level,
                                                           const Settings& settings) const;
 
  private:
   struct Entry;
-  [[nodiscard]] BoundaryFan trace(const Vec3& place, BoundaryKind boundary,
+  [[nodiscard]] BoundaryFan trace(const Vec3& place, const GroundLevel& level,
                                   const Settings& settings) const;
-  using Key = std::tuple<int, double, double, double, double, double, int>;
+  using Key = std::tuple<int, double, double, double, double, double, double, int>;
 
   const PropagationPaths& paths_;
   mutable std::mutex lock_;

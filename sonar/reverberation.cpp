@@ -154,7 +154,8 @@ void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t 
                              .copy = copy};
       const std::uint64_t entity = key.entity(grid.identity);
       const Scatterer scatterer = place_scatterer(grid, key, entity, scenario_.seed);
-      field.sheet.pairs_at(scatterer.place, scratch, &limits_, ring_of);
+      field.sheet.pairs_at(scatterer.place, scratch, &limits_, ring_of,
+                           (scatterer.depth_share - 0.5) * field.thickness);
       if (scratch.empty()) continue;
       const std::complex<double> weight = std::sqrt(scatterer.area * scratch.front().area) *
                                           texture_amplitude(field.field.statistics, scatterer.place,

@@ -35,7 +35,8 @@ struct ScatteringField {
   ScattererField field;  ///< motion and statistics
   Draw weights;          ///< purpose of their draws
   std::uint64_t boundary = 0;
-  double depth = 0.0;  ///< near the ends [m]
+  double depth = 0.0;      ///< near the ends [m]
+  double thickness = 0.0;  ///< of a sheet of the volume [m]
 };
 
 /// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
@@ -90,8 +91,17 @@ class ReverberationModel {
   [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
 
  private:
-  [[nodiscard]] ScatteringField boundary(BoundaryKind kind,
-                                         const ReverberationContext& context) const;
+  /// Of a boundary or a layer: what scatters, and where.
+  struct Part {
+    GroundLevel level;
+    ScatteringSheet::Law law;
+    const ScattererField& field;
+    Draw weights;
+    std::uint64_t id;
+    double thickness = 0.0;
+  };
+  [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
+  [[nodiscard]] std::vector<Part> parts() const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;

@@ -38,12 +38,36 @@ ReverberationModel::ReverberationModel(const Scenario& scenario, const Propagati
       spacing_(asdic::ground_spacing(scenario, widest, paths)),
       fastest_water_(asdic::fastest_water(scenario.environment)) {}
 
-ScatteringField ReverberationModel::boundary(BoundaryKind kind,
-                                             const ReverberationContext& context) const {
+std::vector<ReverberationModel::Part> ReverberationModel::parts() const {
   const ReverberationSettings& settings = scenario_.reverberation;
-  const bool surface = kind == BoundaryKind::surface;
-  const ScattererField& field = surface ? settings.surface_field : settings.bottom_field;
-  const auto id = static_cast<std::uint64_t>(kind);
+  std::vector<Part> found;
+  if (!settings.enabled) return found;
+  if (settings.surface_scatters) {
+    AnySurfaceScattering law = settings.surface;
+    set_sea(law, scenario_.wind_speed, speed_at_surface(scenario_, paths_));
+    found.push_back({BoundaryKind::surface, law_of(law), settings.surface_field,
+                     Draw::surface_weight, std::uint64_t{0}});
+  }
+  if (settings.bottom)
+    found.push_back({BoundaryKind::bottom, law_of(*settings.bottom), settings.bottom_field,
+                     Draw::bottom_weight, std::uint64_t{1}});
+  std::uint64_t id = 2;
+  for (const VolumeLayer& layer : settings.volume) {
+    const double height = layer.bottom - layer.top;
+    const int sheets =
+        layer.sheets.value_or(std::max(1, static_cast<int>(std::ceil(height / 50.0))));
+    const double thickness = height / sheets;
+    for (int i = 0; i < sheets; ++i)
+      found.push_back({GroundLevel(layer.top + (i + 0.5) * thickness),
+                       VolumeSheet{layer.strength_db, thickness}, layer.field, Draw::volume_weight,
+                       id++, thickness});
+  }
+  return found;
+}
+
+ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  const ScattererField& field = part.field;
   const SheetEnds ends = {.source = transmitter_at(scenario_, context.transmitter, context.time),
                           .receiver = array_at(scenario_, context.array, context.time),
                           .source_speed = 0.0,
@@ -63,7 +87,7 @@ ScatteringField ReverberationModel::boundary(BoundaryKind kind,
   };
   const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
   const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
-                                  field.motion.current, reach / 8.0, id);
+                                  field.motion.current, reach / 8.0, part.id);
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
   const double moved = ends.receiver.velocity.norm() * context.latest;
   const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
@@ -78,24 +102,19 @@ ScatteringField ReverberationModel::boundary(BoundaryKind kind,
   SheetEnds here = ends;
   here.source_speed = paths_.speed_at(ends.source.position);
   here.receiver_speed = paths_.speed_at(ends.receiver.position);
-  auto law = surface ? law_of(settings.surface) : law_of(*settings.bottom);
-  std::visit(
-      [&]<class Model>(Model& model) {
-        if constexpr (SurfaceScatteringModel<Model>) {
-          model.wind_speed = scenario_.wind_speed;
-          model.sound_speed = speed_at_surface(scenario_, paths_);
-        }
-      },
-      law);
   int azimuths = settings.azimuths;
   if (settings.resolve_azimuth) {
     const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
     azimuths = std::max(azimuths, resolved_sectors(scenario_, context, speed, here.receiver_speed));
   }
-  const Vec3& under = ends.source.position;
-  return {.sheet = ScatteringSheet(fans_.around(ends.source.position, kind, fan),
-                                   fans_.around(ends.receiver.position, kind, fan), std::move(law),
-                                   surface ? -1.0 : 1.0, here, context.pattern),
+  const auto depth = [&](const Vec3& place) {
+    if (!part.level.boundary) return part.level.depth;
+    return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
+                                                         : paths_.bottom_depth(place);
+  };
+  return {.sheet = ScatteringSheet(fans_.around(ends.source.position, part.level, fan),
+                                   fans_.around(ends.receiver.position, part.level, fan),
+                                   std::move(part.law), here, context.pattern),
           .grid = {.anchor = anchor.place,
                    .identity = anchor.identity,
                    .spacing = spacing_,
@@ -104,18 +123,15 @@ ScatteringField ReverberationModel::boundary(BoundaryKind kind,
                    .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
                    .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
           .field = field,
-          .weights = surface ? Draw::surface_weight : Draw::bottom_weight,
-          .boundary = id,
-          .depth = surface ? paths_.surface_depth(under) : paths_.bottom_depth(under)};
+          .weights = part.weights,
+          .boundary = part.id,
+          .depth = depth(ends.source.position),
+          .thickness = part.thickness};
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
-  const ReverberationSettings& settings = scenario_.reverberation;
   std::vector<ScatteringField> fields;
-  if (settings.enabled && settings.surface_scatters)
-    fields.push_back(boundary(BoundaryKind::surface, context));
-  if (settings.enabled && settings.bottom)
-    fields.push_back(boundary(BoundaryKind::bottom, context));
+  for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
   return {scenario_, context, std::move(fields)};
 }
 

@@ -3,17 +3,30 @@
 #include <algorithm>
 
 #include "reverb/scattering/motion.h"
-#include "sonar/doppler.h"
 
 namespace asdic {
+namespace {
+
+/// From a cell's centre on: the delay's Taylor series to the second order, whose last term is held
+/// where a caustic makes it large.
+double delay_beyond(const GroundPath& path, double beyond) noexcept {
+  const double bend = std::clamp(0.5 * path.slowness_slope * beyond,
+                                 -0.1 * path.horizontal_slowness, 0.1 * path.horizontal_slowness);
+  return path.delay + (path.horizontal_slowness + bend) * beyond;
+}
+
+double grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt* tilt) noexcept {
+  return tilt ? std::asin(std::min(1.0, ends.sine * tilt->grazing)) : path.grazing;
+}
+
+}  // namespace
 
 ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
-                                 std::shared_ptr<const BoundaryFan> back, Law law, double side,
+                                 std::shared_ptr<const BoundaryFan> back, Law law,
                                  const SheetEnds& ends, const TransmitPattern& pattern)
     : out_(std::move(out)),
       back_(std::move(back)),
       law_(std::move(law)),
-      side_(side),
       ends_(ends),
       pattern_(pattern),
       all_round_pattern_(pattern.all_round() && out_->planes.size() == 1),
@@ -46,16 +59,12 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
   found.beyond = range - paths.range(cell);
   if (!plane.tilt.empty()) found.tilt = &plane.tilt[cell];
   found.first = static_cast<std::size_t>(found.paths.data() - paths.all().data());
+  found.ends = plane.ends.data() + found.first;
   return found;
 }
 
-double ScatteringSheet::grazing(const Leg& leg, const GroundPath& path) const noexcept {
-  if (!leg.tilt) return path.grazing;
-  return std::asin(std::min(1.0, std::sin(path.grazing) * leg.tilt->grazing));
-}
-
 void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
-                               const AudibleLimits* limits, double ring) const {
+                               const AudibleLimits* limits, double ring, double below) const {
   constexpr double strongest = 2.0;  // [1/sr] no law says more
   pairs.clear();
   const Leg out = leg(*out_, ends_.source.position.head<2>(), place, !all_round_pattern_);
@@ -72,45 +81,48 @@ void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
     if (back.paths.empty()) return;
   }
   const Vec2 coming = -back.direction;
-  // Towards the scatterer [m/s]: the way back changes by −closing·(t − heard).
+  // Towards the scatterer [m/s]: the way back shrinks by closing·(t − heard).
   const double closing = ends_.receiver.velocity.head<2>().dot(back.direction);
+  const double sinking = ends_.receiver.velocity.z();
   const double turn = std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
     const GroundPath& a = out.paths[i];
+    const PathEnds& a_ends = out.ends[i];
     const std::complex<double> beam = all_round_pattern_
                                           ? beam_[out.first + i]
                                           : pattern_.towards(out.bearing, a.launch_elevation);
     const std::complex<double> sent = a.amplitude * beam;
-    const double there = a.delay + a.horizontal_slowness * out.beyond;
-    const double in = grazing(out, a);
-    for (const GroundPath& b : back.paths) {
-      double delay = there + b.delay + b.horizontal_slowness * back.beyond;
+    const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
+    for (std::size_t j = 0; j < back.paths.size(); ++j) {
+      const GroundPath& b = back.paths[j];
+      const PathEnds& b_ends = back.ends[j];
+      double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
       if (receiver_moves_) {
-        // t = τ_out + τ_back − ξ·closing·(t − heard) + s_z·v_z·t, solved for t.
+        // t = τ_out + τ_back − ξ·closing·(t − heard) + s_z·v_z·t, solved for t. The sound arrives
+        // against the direction in which b was launched: s_z is minus its vertical slowness.
         const double along = b.horizontal_slowness * closing;
-        const double down =
-            std::sin(b.launch_elevation) / ends_.receiver_speed * ends_.receiver.velocity.z();
+        const double down = -b_ends.launch_down * sinking;
         delay = (delay + along * heard) / (1.0 + along - down);
       }
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
       const double power = std::norm(sent) * std::norm(b.amplitude) * ring;
       if (limits && power * strongest < least) continue;
-      const double home = grazing(back, b);
+      const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
+                                     .grazing_out = grazing_of(b, b_ends, back.tilt),
+                                     .azimuth = turn};
       const double sigma = std::visit(
-          [&](const auto& law) {
-            return law.cross_section({.grazing_in = in, .grazing_out = home, .azimuth = turn},
-                                     ends_.frequency);
-          },
-          law_);
+          [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
       if (sigma <= 0.0 || (limits && power * sigma < least)) continue;
       pairs.push_back({.out = &a,
                        .back = &b,
+                       .out_ends = &a_ends,
+                       .back_ends = &b_ends,
                        .delay = delay,
                        .amplitude = sent * b.amplitude * std::sqrt(sigma),
                        .cross_section = sigma,
-                       .grazing_in = in,
-                       .grazing_out = home,
+                       .grazing_in = geometry.grazing_in,
+                       .grazing_out = geometry.grazing_out,
                        .area = out.tilt ? out.tilt->area : 1.0,
                        .leaving = out.direction,
                        .coming = coming});
@@ -119,28 +131,26 @@ void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
 }
 
 Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
-  const double level = std::cos(pair.back->launch_elevation) / ends_.receiver_speed;
-  return {level * pair.coming.x(), level * pair.coming.y(),
-          std::sin(pair.back->launch_elevation) / ends_.receiver_speed};
+  const double level = pair.back_ends->launch_level;
+  return {level * pair.coming.x(), level * pair.coming.y(), -pair.back_ends->launch_down};
 }
 
 double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
                                 double bragg) const noexcept {
   double factor = 1.0;
   if (moving_) {
-    const double level = std::cos(pair.out->launch_elevation) / ends_.source_speed;
+    const double level = pair.out_ends->launch_level;
     const Vec3 leaving(level * pair.leaving.x(), level * pair.leaving.y(),
-                       -std::sin(pair.out->launch_elevation) / ends_.source_speed);
-    factor = leg_doppler({ends_.source.velocity, leaving}, {}) *
-             leg_doppler({}, {ends_.receiver.velocity, arriving(pair)});
+                       pair.out_ends->launch_down);
+    factor = (1.0 - ends_.receiver.velocity.dot(arriving(pair))) /
+             (1.0 - ends_.source.velocity.dot(leaving));
   }
   const Vec2 in = pair.out->horizontal_slowness * pair.leaving;
   const Vec2 home = pair.back->horizontal_slowness * pair.coming;
-  if (!velocity.isZero()) {
-    // Slowness at the scatterer: down to the bottom and up again, or up to the surface and down.
-    const Vec3 comes(in.x(), in.y(), side_ * in.norm() * std::tan(pair.out->grazing));
-    const Vec3 goes(home.x(), home.y(), -side_ * home.norm() * std::tan(pair.back->grazing));
-    factor *= leg_doppler({}, {velocity, comes}) * leg_doppler({velocity, goes}, {});
+  if (!velocity.isZero()) {  // slowness at the scatterer; what came down goes up again
+    const Vec3 comes(in.x(), in.y(), pair.out_ends->down);
+    const Vec3 goes(home.x(), home.y(), -pair.back_ends->down);
+    factor *= (1.0 - velocity.dot(comes)) / (1.0 - velocity.dot(goes));
   }
   if (bragg != 0.0)
     factor *= 1.0 + bragg * bragg_shift(scattering_wavenumber(in, home, ends_.frequency)) /

@@ -19,7 +19,9 @@ namespace asdic {
 /// A way for sound to take from the source to a scatterer and on to the receiver.
 struct PathPair {
   const GroundPath* out = nullptr;
-  const GroundPath* back = nullptr;      ///< as launched from the receiver
+  const GroundPath* back = nullptr;  ///< as launched from the receiver
+  const PathEnds* out_ends = nullptr;
+  const PathEnds* back_ends = nullptr;
   double delay = 0.0;                    ///< of the leading edge when it is heard [s]
   std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
   double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
@@ -53,18 +55,18 @@ struct SheetEnds {
 class ScatteringSheet {
  public:
   /// Every law there is, as one list.
-  using Law =
-      std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert, EllisCrowe>;
+  using Law = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert,
+                           EllisCrowe, VolumeSheet>;
 
-  /// \param side  +1 where sound comes to the boundary downwards (the bottom), −1 the surface
   ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
-                  Law law, double side, const SheetEnds& ends, const TransmitPattern& pattern);
+                  Law law, const SheetEnds& ends, const TransmitPattern& pattern);
 
   /// All pairs of paths through a place, in the order of the tables, heard before the record ends.
   /// Nothing is allocated once `pairs` is long enough. \param limits  pairs that are fainter are
   /// left out; null: none   \param ring  area of the whole ring around [m²]
+  /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
   void pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
-                const AudibleLimits* limits = nullptr, double ring = 0.0) const;
+                const AudibleLimits* limits = nullptr, double ring = 0.0, double below = 0.0) const;
 
   /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
   /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
@@ -83,6 +85,7 @@ class ScatteringSheet {
   /// One leg at one place.
   struct Leg {
     std::span<const GroundPath> paths;
+    const PathEnds* ends = nullptr;  // [paths]
     const CellTilt* tilt = nullptr;
     Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
     double bearing = 0.0;           // of it, where a table has bearings
@@ -91,11 +94,9 @@ class ScatteringSheet {
   };
   [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
                         bool bearing) const noexcept;
-  [[nodiscard]] double grazing(const Leg& leg, const GroundPath& path) const noexcept;
 
   std::shared_ptr<const BoundaryFan> out_, back_;
   Law law_;
-  double side_;
   SheetEnds ends_;
   const TransmitPattern& pattern_;
   bool all_round_pattern_, receiver_moves_, moving_;

@@ -91,6 +91,7 @@ VolumeLayer read_layer(TomlTable& table) {
   layer.top = depth[0];
   layer.bottom = depth[1];
   layer.strength_db = table.number("strength_db", strength);
+  if (table.has("sheets")) layer.sheets = static_cast<int>(table.integer("sheets", 1, 1000));
   read_field(table, true, layer.field);
   table.finish();
   return layer;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/runs/checks.h"
 
 namespace asdic {
 
@@ -167,6 +169,30 @@ class PlainPart {
   FieldSum field_[2];
 };
 
+/// The crossings of a ray as it is marched.
+class MarchedCrossings final : public RangeVisitor {
+ public:
+  explicit MarchedCrossings(Crossings& out) : out_(out) { out_.resize(0); }
+
+  void pass(std::size_t column, const RayState& y, const RayHistory& history) override {
+    const double c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
+    out_.column.push_back(static_cast<std::uint32_t>(column));
+    out_.depth.push_back(y.depth);
+    out_.cosine.push_back(c * y.xi);
+    out_.sine.push_back(c * y.zeta);
+    out_.speed.push_back(c);
+    out_.time.push_back(y.time);
+    out_.q.push_back(y.q);
+    out_.dq_ds.push_back(c * y.p);
+    out_.level.push_back(std::abs(history.reflection) * std::exp(-y.nepers));
+    const double turns = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
+    out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
+  }
+
+ private:
+  Crossings& out_;
+};
+
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:
@@ -180,8 +206,10 @@ class FastPart {
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
-      work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
-      find_crossings(ray_, work_.run_case.receivers.ranges, crossings_);
+      MarchedCrossings marched(crossings_);
+      crossings_.source_speed =
+          work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
+                                  elevation, work_.limits, marched);
     }
     const BeamLaunch launch = work_.launch(elevation, crossings_.source_speed);
     sum_[0].add(launch, crossings_);
@@ -196,7 +224,6 @@ class FastPart {
   const LayeredCrossings* layered_;
   LayeredCrossings::Workspace workspace_;
   Crossings crossings_;
-  RayTrajectory ray_;
   std::vector<ColumnSum> sum_;
 };
 
@@ -225,8 +252,10 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
     for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
     return sum_parts(work, parts);
   }
-  const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
-                                              source_depth, run_case.receivers.ranges, work.limits);
+  std::optional<LayeredCrossings> layered;
+  if (!run_case.beams.displacement)
+    layered = LayeredCrossings::make(run_case.environment, run_case.frequency, source_depth,
+                                     run_case.receivers.ranges, work.limits);
   std::vector<FastPart> parts;
   for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
   return sum_parts(work, parts);
@@ -234,7 +263,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
 
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
   check(run_case);
-  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const RayTracer tracer = tracer_of(run_case);
   PropagationResult result;
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "reverb/scattering/nrl_surface.h"
 #include "reverb/scattering/ogden_erskine.h"
 #include "reverb/scattering/table.h"
+#include "reverb/scattering/volume.h"
 
 namespace asdic {
 
