@@ -69,8 +69,8 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
 
 std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
   if (field.sheet.all_round()) return {0};
-  constexpr int most = 12;
-  const int n = std::min(most, field.grid.azimuths);
+  const auto rings = static_cast<int>(std::max(1U, field.grid.rings));
+  const int n = std::min(std::clamp(400'000 / rings, 12, 36), field.grid.azimuths);
   std::vector<int> sectors;
   for (int i = 0; i < n; ++i) sectors.push_back(i * field.grid.azimuths / n);
   return sectors;
@@ -78,6 +78,7 @@ std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field)
 
 void PingReverberation::find_limits() {
   constexpr double left_out = 1e-5;  // of the power in a stretch
+  constexpr double faintest = 1e-8;  // of the loudest pair of a place
   limits_.stretch = 0.25 * context_.pulse.duration();
   struct Found {
     Sample sample;
@@ -94,12 +95,17 @@ void PingReverberation::find_limits() {
           for (std::uint32_t i = 0; i < count; ++i) {
             field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
             const double share = 1.0 / count, area = ring_area(field.grid, ring);
+            double loudest = 0.0;
             for (const PathPair& pair : pairs)
+              loudest = std::max(loudest, std::norm(pair.amplitude));
+            for (const PathPair& pair : pairs) {
+              if (std::norm(pair.amplitude) < faintest * loudest) continue;
               out.push_back({{.place = first_place + ring * count + i,
                               .delay = pair.delay,
                               .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
                              std::norm(pair.amplitude) * area,
                              share});
+            }
           }
         });
     first_place += field.grid.rings * count;

@@ -65,6 +65,17 @@ std::vector<ReverberationModel::Part> ReverberationModel::parts() const {
   return found;
 }
 
+namespace {
+
+/// A sheet through the very depth of a platform has no paths but along it: moved aside.
+GroundLevel off(const GroundLevel& level, double thickness, double depth) {
+  const double aside = 0.1 * thickness;
+  if (level.boundary || std::abs(level.depth - depth) >= 0.5 * aside) return level;
+  return GroundLevel(depth + (level.depth < depth ? -aside : aside));
+}
+
+}  // namespace
+
 ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   const ScattererField& field = part.field;
@@ -102,6 +113,8 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
   SheetEnds here = ends;
   here.source_speed = paths_.speed_at(ends.source.position);
   here.receiver_speed = paths_.speed_at(ends.receiver.position);
+  part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
+                   ends.receiver.position.z());
   int azimuths = settings.azimuths;
   if (settings.resolve_azimuth) {
     const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());

@@ -92,6 +92,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
                                           ? beam_[out.first + i]
                                           : pattern_.towards(out.bearing, a.launch_elevation);
     const std::complex<double> sent = a.amplitude * beam;
+    if (sent == 0.0) continue;
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t j = 0; j < back.paths.size(); ++j) {
       const GroundPath& b = back.paths[j];

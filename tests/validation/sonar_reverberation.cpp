@@ -1,23 +1,19 @@
 #include <gtest/gtest.h>
 
-#include "sonar/reverberation.h"
 #include "support/csv.h"
-#include "support/listen.h"
-#include "support/thesis.h"
+#include "support/reverberant_sea.h"
 
 namespace asdic {
 namespace {
 
 using support::Csv;
 
+using Sea = support::ReverberantSea;
+
 /// reverb_isovelocity.csv: 4500 m, 1500 m/s, 4 kHz, U = 10 m/s, rectangular 0.1 s, 220 dB, omni.
 Scenario reference() {
-  Scenario s = support::thesis(SoundSpeedProfile::isovelocity(1500.0));
-  s.transmitters[0].source_level_db = 220.0;
-  s.arrays[0].phones = {Vec3::Zero()};
+  Scenario s = support::even_sea();
   s.pulse = {.duration = 0.1, .window = PulseWindow::none};
-  s.reverberation.enabled = true;
-  s.reverberation.azimuths = 12;
   s.pings.recording_duration = 47.0;
   return s;
 }
@@ -38,50 +34,6 @@ double mean_intensity(const AnySurfaceScattering& model, double t, double durati
   return 2.0 * pi * sum * (to - from) / n / 3.0;
 }
 
-/// The reverberation alone of many pings.
-class Sea {
- public:
-  explicit Sea(Scenario s)
-      : scenario_(std::move(s)),
-        paths_(scenario_.environment, scenario_.transect),
-        pulse_(scenario_.pulse),
-        pattern_(scenario_.transmitters[0], 1500.0 / 4000.0),
-        model_((set_sea(scenario_.reverberation.surface, scenario_.wind_speed, 1500.0), scenario_),
-               paths_, pulse_),
-        synthesizer_(pulse_,
-                     {.sample_rate = scenario_.pings.sample_rate,
-                      .samples = static_cast<std::size_t>(scenario_.pings.recording_duration *
-                                                          scenario_.pings.sample_rate)},
-                     0.0) {}
-
-  [[nodiscard]] const AnySurfaceScattering& model() const {
-    return scenario_.reverberation.surface;
-  }
-  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
-  [[nodiscard]] double spacing() const { return model_.ground_spacing(); }
-
-  [[nodiscard]] Returns returns(std::uint32_t ping) const {
-    return model_
-        .ping({.pattern = pattern_,
-               .pulse = pulse_,
-               .ping = ping,
-               .latest = scenario_.pings.recording_duration})
-        .returns();
-  }
-  [[nodiscard]] Baseband hear(std::span<const Return> returns) const {
-    return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
-  }
-  [[nodiscard]] Baseband hear(std::uint32_t ping) const { return hear(returns(ping)); }
-
- private:
-  Scenario scenario_;
-  PropagationPaths paths_;
-  Pulse pulse_;
-  BeamPattern pattern_;
-  ReverberationModel model_;
-  Synthesizer synthesizer_;
-};
-
 // Mean over an ensemble against the closed form and against reverb_isovelocity.csv, ±0.5 dB at each
 // of its times. Intensities are divided by the mean at their own time and averaged over ±0.75 s:
 // 1.5/0.1 independent samples (a rectangular pulse forgets after its length) of each of 20 pings
@@ -101,7 +53,7 @@ TEST(Reverberation, EnsembleMeanIsTheAnnulusIntegral) {
     for (std::size_t row = 0; row < csv.rows(); ++row) {
       const double t = csv["t_s"][row], half = row == 0 ? 0.3 : 0.75;
       for (double u = t - half; u < t + half; u += 0.02) {
-        const double mean = mean_intensity(sea.model(), u, 0.1);
+        const double mean = mean_intensity(sea.scenario().reverberation.surface, u, 0.1);
         const auto i = static_cast<std::size_t>(std::lround(u * heard.sample_rate));
         for (std::size_t n = 0; n < heard.channels; ++n)
           sum[row] += static_cast<double>(std::norm(heard.channel(n)[i])) / mean;
@@ -111,7 +63,8 @@ TEST(Reverberation, EnsembleMeanIsTheAnnulusIntegral) {
   }
   double worst = 0.0;
   for (std::size_t row = 0; row < csv.rows(); ++row) {
-    const double closed = 220.0 + db_from_power(mean_intensity(sea.model(), csv["t_s"][row], 0.1));
+    const double closed = 220.0 + db_from_power(mean_intensity(sea.scenario().reverberation.surface,
+                                                               csv["t_s"][row], 0.1));
     EXPECT_NEAR(closed, csv["RL_nrl_dB"][row], 0.01);  // two hands, one integral
     const double level = closed + db_from_power(sum[row] / count[row]);
     EXPECT_NEAR(level, csv["RL_nrl_dB"][row], 0.5) << "at " << csv["t_s"][row] << " s";
@@ -131,7 +84,7 @@ std::vector<double> independent(const Scenario& s, int pings, std::complex<doubl
       const auto i = static_cast<std::size_t>(std::lround(t * heard.sample_rate));
       const double exact = double(i) / heard.sample_rate;
       const auto b = std::complex<double>(heard.channel(0)[i]) /
-                     std::sqrt(mean_intensity(sea.model(), exact, 0.1));
+                     std::sqrt(mean_intensity(sea.scenario().reverberation.surface, exact, 0.1));
       samples.push_back(std::norm(b * std::sqrt(1.0 - std::norm(constant)) + constant));
     }
   }
@@ -188,7 +141,7 @@ double fence(const Scenario& s, double spacing, bool snap) {
   double total = 0.0, n = 0.0;
   std::complex<double> tone = 0.0;
   for (std::uint32_t ping = 1; ping <= 6; ++ping) {
-    Returns returns = sea.returns(ping);
+    Returns returns = sea.ping(ping).returns();
     if (snap)
       for (Return& r : returns) {
         const double slant = 750.0 * r.delay;
@@ -208,7 +161,8 @@ double fence(const Scenario& s, double spacing, bool snap) {
       }
       const double slant = 750.0 * t, grazing = std::asin(4500.0 / slant);
       const double sigma = scattering_cross_section(
-          sea.model(), {.grazing_in = grazing, .grazing_out = grazing, .azimuth = pi}, 4000.0);
+          sea.scenario().reverberation.surface,
+          {.grazing_in = grazing, .grazing_out = grazing, .azimuth = pi}, 4000.0);
       const double intensity = std::norm(filtered) * slant * slant * slant / sigma;
       total += intensity;
       const double range = std::sqrt(slant * slant - 4500.0 * 4500.0);
