@@ -83,6 +83,7 @@ void PingReverberation::find_limits() {
   struct Found {
     Sample sample;
     double ring_power, share;  // of a whole ring like this place; how much of it that stands for
+    double scatterers;         // of that ring
   };
   std::vector<Found> all;
   std::uint32_t first_place = 0;
@@ -104,7 +105,8 @@ void PingReverberation::find_limits() {
                               .delay = pair.delay,
                               .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
                              std::norm(pair.amplitude) * area,
-                             share});
+                             share,
+                             double(field.grid.azimuths) * copies_of(field, ring, sectors[i])});
             }
           }
         });
@@ -136,53 +138,72 @@ void PingReverberation::find_limits() {
     limits_.least.back() = entries[std::min(first, end - 1)].power;
   }
   for (const Found& f : all)
-    if (f.ring_power >= limits_.at(f.sample.delay)) samples_.push_back(f.sample);
+    if (f.ring_power >= limits_.at(f.sample.delay)) {
+      samples_.push_back(f.sample);
+      expected_returns_ += f.share * f.scatterers;
+    }
+}
+
+std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::uint32_t ring,
+                                           int sector) const {
+  // A cell is seen from source and receiver under no more than twice the angle of a sector: near
+  // them, far from the anchor, it is divided.
+  auto copies = static_cast<std::uint32_t>(field.grid.per_cell);
+  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
+  const double range = (ring + 0.5) * field.grid.spacing;
+  for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
+  return copies;
+}
+
+PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
+                                               const ScattererKey& key, std::uint64_t entity,
+                                               std::vector<PathPair>& pairs) const {
+  const ScattererMotion& motion = field.field.motion;
+  const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
+  field.sheet.pairs_at(scatterer.place, pairs, &limits_, ring_area(field.grid, key.ring),
+                       (scatterer.depth_share - 0.5) * field.thickness);
+  Met met;
+  if (pairs.empty()) return met;
+  const Vec2 in_water = scatterer.place - motion.current * context_.time;
+  met.strength =
+      std::sqrt(scatterer.area * pairs.front().area) *
+      texture_amplitude(field.field.statistics, in_water, field.boundary, scenario_.seed);
+  met.velocity = {motion.current.x(), motion.current.y(), 0.0};
+  if (motion.kind == ScattererMotion::Kind::bragg)
+    met.bragg = scatterer.fate < motion.receding_share ? -1.0 : 1.0;
+  else if (motion.kind == ScattererMotion::Kind::spread)
+    met.velocity += own_velocity(motion.speed_rms, entity, scenario_.seed);
+  return met;
+}
+
+Return PingReverberation::heard(const ScatteringField& field, const PathPair& pair, const Met& met,
+                                std::complex<double> weight) const {
+  return {.delay = pair.delay,
+          .amplitude = pair.amplitude * met.strength * weight,
+          .doppler = field.sheet.doppler(pair, met.velocity, met.bragg),
+          .slowness = field.sheet.arriving(pair)};
 }
 
 void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t ring,
                                     const ScattererWeights& weights, std::vector<PathPair>& scratch,
                                     Returns& returns) const {
-  const ScattererGrid& grid = field.grid;
-  const ScattererMotion& motion = field.field.motion;
-  const double ring_of = ring_area(grid, ring);
-  const double range = (ring + 0.5) * grid.spacing;
-  const Vec3 drift(motion.current.x(), motion.current.y(), 0.0);
-  for (int sector = 0; sector < grid.azimuths; ++sector) {
-    // A cell is seen from source and receiver under no more than twice the angle of a sector: near
-    // them, far from the anchor, it is divided.
-    auto copies = static_cast<std::uint32_t>(grid.per_cell);
-    const double nearest = field.sheet.nearest_end(centre(grid, ring, sector), field.depth);
-    for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
+  for (int sector = 0; sector < field.grid.azimuths; ++sector) {
+    const std::uint32_t copies = copies_of(field, ring, sector);
     for (std::uint32_t copy = 0; copy < copies; ++copy) {
       const ScattererKey key{.ring = ring,
                              .sector = static_cast<std::uint32_t>(sector),
                              .copies = copies,
                              .copy = copy};
-      const std::uint64_t entity = key.entity(grid.identity);
-      const Scatterer scatterer = place_scatterer(grid, key, entity, scenario_.seed);
-      field.sheet.pairs_at(scatterer.place, scratch, &limits_, ring_of,
-                           (scatterer.depth_share - 0.5) * field.thickness);
+      const std::uint64_t entity = key.entity(field.grid.identity);
+      const Met met = meet(field, key, entity, scratch);
       if (scratch.empty()) continue;
-      const std::complex<double> weight = std::sqrt(scatterer.area * scratch.front().area) *
-                                          texture_amplitude(field.field.statistics, scatterer.place,
-                                                            field.boundary, scenario_.seed) *
-                                          weights(entity);
-      double bragg = 0.0;
-      Vec3 velocity = drift;
-      if (motion.kind == ScattererMotion::Kind::bragg)
-        bragg = scatterer.fate < motion.receding_share ? -1.0 : 1.0;
-      else if (motion.kind == ScattererMotion::Kind::spread)
-        velocity += own_velocity(motion.speed_rms, entity, scenario_.seed);
-      for (const PathPair& pair : scratch)
-        returns.push_back({.delay = pair.delay,
-                           .amplitude = pair.amplitude * weight,
-                           .doppler = field.sheet.doppler(pair, velocity, bragg),
-                           .slowness = field.sheet.arriving(pair)});
+      const std::complex<double> weight = weights(entity);
+      for (const PathPair& pair : scratch) returns.push_back(heard(field, pair, met, weight));
     }
   }
 }
 
-Returns PingReverberation::returns() const {
+Returns PingReverberation::plain_returns() const {
   Returns all;
   for (const ScatteringField& field : fields_) {
     const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
@@ -197,6 +218,11 @@ Returns PingReverberation::returns() const {
       all.insert(all.end(), found.begin(), found.end());
   }
   return all;
+}
+
+Returns PingReverberation::returns() const {
+  const auto most = static_cast<double>(scenario_.reverberation.most_returns);
+  return expected_returns_ > most ? sector_returns() : plain_returns();
 }
 
 double PingReverberation::expected_db(double t) const {

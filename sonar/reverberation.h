@@ -49,8 +49,18 @@ class PingReverberation {
                     std::vector<ScatteringField> fields);
 
   /// What the array's reference point hears. The weakest pairs are left out as long as all that is
-  /// left out stays 50 dB below what is heard at its time.
+  /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
+  /// are replaced by those of sectors.
   [[nodiscard]] Returns returns() const;
+  /// One return for every scatterer and pair of paths.
+  [[nodiscard]] Returns plain_returns() const;
+  /// The statistical equivalent: the scatterers of a sector, heard within one bin of delay out of
+  /// the same range of elevations, are one return with the power of all, a Gaussian weight of its
+  /// own, and delay, direction and Doppler factor of one of them, chosen with the chances of their
+  /// powers. Reciprocal pairs share a weight. docs/theory/reverberation.md
+  [[nodiscard]] Returns sector_returns() const;
+  /// How many plain_returns() are, more or less.
+  [[nodiscard]] double expected_returns() const noexcept { return expected_returns_; }
 
   /// Expected level at time t since the ping [dB re 1 µPa, peak envelope/√2]: SL + 10·log₁₀ Σ_cells
   /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
@@ -63,6 +73,21 @@ class PingReverberation {
 
  private:
   void find_limits();
+  /// A scatterer of a cell with what belongs to it alone.
+  struct Met {
+    std::complex<double> strength = 0.0;  // √(area·texture), times the weight if asked for
+    double bragg = 0.0;
+    Vec3 velocity = Vec3::Zero();
+  };
+  [[nodiscard]] std::uint32_t copies_of(const ScatteringField& field, std::uint32_t ring,
+                                        int sector) const;
+  /// Its pairs of paths into `pairs`; nothing if there are none.
+  Met meet(const ScatteringField& field, const ScattererKey& key, std::uint64_t entity,
+           std::vector<PathPair>& pairs) const;
+  [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
+                             std::complex<double> weight) const;
+  void add_sector(const ScatteringField& field, int sector, double bin,
+                  const ScattererWeights& weights, Returns& returns) const;
   void add_returns(const ScatteringField& field, std::uint32_t ring,
                    const ScattererWeights& weights, std::vector<PathPair>& scratch,
                    Returns& returns) const;
@@ -79,6 +104,7 @@ class PingReverberation {
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
   };
   std::vector<Sample> samples_;
+  double expected_returns_ = 0.0;
 };
 
 /// Makes the reverberation of any ping at any array of a scenario. Built once; shared by threads.

@@ -117,6 +117,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
       if (sigma <= 0.0 || (limits && power * sigma < least)) continue;
       pairs.push_back({.out = &a,
                        .back = &b,
+                       .out_index = static_cast<std::uint32_t>(i),
+                       .back_index = static_cast<std::uint32_t>(j),
                        .out_ends = &a_ends,
                        .back_ends = &b_ends,
                        .delay = delay,

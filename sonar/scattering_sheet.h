@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <variant>
@@ -19,7 +20,8 @@ namespace asdic {
 /// A way for sound to take from the source to a scatterer and on to the receiver.
 struct PathPair {
   const GroundPath* out = nullptr;
-  const GroundPath* back = nullptr;  ///< as launched from the receiver
+  const GroundPath* back = nullptr;             ///< as launched from the receiver
+  std::uint32_t out_index = 0, back_index = 0;  ///< among the paths of their cells
   const PathEnds* out_ends = nullptr;
   const PathEnds* back_ends = nullptr;
   double delay = 0.0;                    ///< of the leading edge when it is heard [s]
@@ -78,6 +80,8 @@ class ScatteringSheet {
   /// Distance of a place on the sheet from the nearer of source and receiver, depth included [m].
   [[nodiscard]] double nearest_end(const Vec2& place, double depth) const noexcept;
   [[nodiscard]] const SheetEnds& ends() const noexcept { return ends_; }
+  /// Source and receiver share a fan: the paths of a cell are the same out and back.
+  [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }
   /// The same at every bearing around the grid's middle.
   [[nodiscard]] bool all_round() const noexcept;
 

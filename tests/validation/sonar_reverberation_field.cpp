@@ -434,6 +434,72 @@ TEST(ReverberationField, SuccessivePingsForgetAsTheLawSays) {
   EXPECT_NEAR(correlation(fresh.hear(1, 0.0), fresh.hear(2, 1.0)), 0.0, 0.2);
 }
 
+// Sectors in place of scatterers: the same mean, covariance between phones and Doppler spectrum. A
+// vehicle that moves under Bragg waves, paths by the bottom (so that reciprocal pairs add
+// coherently), 100 pings of 16 samples. Power to √(2/1600) = 3.5 %, 4.9 sigma 17 %; coherences to
+// 4.9·√(2/3200) = 0.12; of the spectrum (bins of 1 Hz, 400 windows) every bin above a tenth of the
+// largest to 4.9·√(2/400) = 35 % of the largest.
+TEST(ReverberationField, SectorsAreTheScatterersStatistically) {
+  Scenario s = support::even_sea();
+  s.environment.bottom = {.depth = 1000.0, .material = FluidHalfSpace{}};
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  s.platforms[0].track.start = {.position = {0.0, 0.0, 300.0}, .velocity = {5.0, 2.0, 0.0}};
+  s.reverberation.surface_field.motion.kind = ScattererMotion::Kind::bragg;
+  s.reverberation.azimuths = 36;
+  s.pulse = {.frequency = 1500.0, .duration = 0.25};
+  s.arrays[0].phones = {Vec3::Zero(), Vec3(0.15, 0.1, 0.0), Vec3(0.0, 0.0, 0.2)};
+  s.pings.sample_rate = 4000.0;
+  s.pings.recording_start = 3.0;
+  s.pings.recording_duration = 4.1;
+  const Sea sea(s);
+  std::vector<double> frequencies;
+  for (double f = -14.0; f <= 14.0; f += 1.0) frequencies.push_back(f);
+  struct Statistics {
+    double power = 0.0;
+    std::complex<double> across = 0.0, down = 0.0;
+    std::vector<double> spectrum;
+    std::size_t returns = 0;
+  };
+  const auto observe = [&](bool sectors) {
+    Statistics found{.spectrum = std::vector<double>(frequencies.size())};
+    const std::complex<double> one = 1.0;
+    for (std::uint32_t number = 1; number <= 100; ++number) {
+      const PingReverberation ping = sea.ping(number);
+      const Returns returns = sectors ? ping.sector_returns() : ping.plain_returns();
+      found.returns = returns.size();
+      const Baseband heard = sea.hear(returns);
+      for (double t = 3.1; t < 7.0; t += 0.25) {
+        const auto a = at(heard, 0, t), b = at(heard, 1, t), c = at(heard, 2, t);
+        const double weight = std::pow(t, 4.0);
+        found.power += weight * std::norm(a);
+        found.across += weight * std::conj(a) * b;
+        found.down += weight * std::conj(a) * c;
+      }
+      for (double from = 3.0; from < 7.0; from += 1.0) {
+        const auto more = spectrum(heard, {&one, 1}, from, from + 1.0, frequencies);
+        for (std::size_t k = 0; k < more.size(); ++k)
+          found.spectrum[k] += more[k] * std::pow(from + 0.5, 4.0);
+      }
+    }
+    return found;
+  };
+  const Statistics plain = observe(false), fast = observe(true);
+  EXPECT_LT(fast.returns, plain.returns / 2);
+  EXPECT_NEAR(fast.power / plain.power, 1.0, 0.17);
+  EXPECT_LT(std::abs(fast.across / fast.power - plain.across / plain.power), 0.12);
+  EXPECT_LT(std::abs(fast.down / fast.power - plain.down / plain.power), 0.12);
+  const double most = *std::max_element(plain.spectrum.begin(), plain.spectrum.end());
+  for (std::size_t k = 0; k < frequencies.size(); ++k)
+    EXPECT_NEAR(fast.spectrum[k] / most, plain.spectrum[k] / most, 0.35) << frequencies[k];
+  // The limit switches.
+  Scenario limited = s;
+  limited.reverberation.most_returns = plain.returns / 2;
+  const Sea other(limited);
+  EXPECT_NEAR(other.ping(1).expected_returns(), double(plain.returns),
+              0.05 * double(plain.returns));
+  EXPECT_LE(other.ping(1).returns().size(), plain.returns / 2);
+}
+
 // Moving ends, Bragg lines, all boundaries, arrays: the fast synthesis against every pulse
 // evaluated at every sample, for a few hundred of the scatterers. Error below −80 dB of the
 // strongest sample.
