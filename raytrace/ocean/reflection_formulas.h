@@ -2,6 +2,7 @@
 // Plane-wave reflection coefficients of the half spaces, for numbers and for jets alike.
 #include <cmath>
 #include <complex>
+#include <type_traits>
 
 #include "raytrace/ocean/boundary.h"
 
@@ -13,8 +14,9 @@ using Complex = std::complex<double>;
 /// Leibniz, so that a formula written for numbers gives its own derivatives.
 struct Jet {
   Complex f, d = 0.0, dd = 0.0;
-  Jet(Complex value = 0.0, Complex first = 0.0, Complex second = 0.0)  // NOLINT: numbers are jets
+  Jet(Complex value, Complex first = 0.0, Complex second = 0.0)  // NOLINT: numbers are jets
       : f(value), d(first), dd(second) {}
+  Jet(double value) : f(value) {}  // NOLINT
 };
 inline Jet operator+(const Jet& a, const Jet& b) { return {a.f + b.f, a.d + b.d, a.dd + b.dd}; }
 inline Jet operator-(const Jet& a, const Jet& b) { return {a.f - b.f, a.d - b.d, a.dd - b.dd}; }
@@ -35,12 +37,12 @@ inline Complex with_root(const Complex& /*square*/, Complex root) { return root;
 inline const Complex& value(const Complex& x) { return x; }
 inline const Complex& value(const Jet& x) { return x.f; }
 
-/// sin and cos of a grazing angle, as numbers or as functions of it.
-template <class Number>
+/// sin and cos of a grazing angle: numbers, or functions of it.
+template <class Real>
 struct Grazing {
-  Number sine, cosine;
+  Real sine, cosine;
 };
-inline Grazing<Complex> numbers(double angle) { return {std::sin(angle), std::cos(angle)}; }
+inline Grazing<double> numbers(double angle) { return {std::sin(angle), std::cos(angle)}; }
 inline Grazing<Jet> jets(double angle) {
   const double s = std::sin(angle), c = std::cos(angle);
   return {{s, c, -s}, {c, -s, -c}};
@@ -56,44 +58,45 @@ inline Complex refraction_index(double speed, double db_per_wavelength,
 /// s = k₂z/k₁ = √(n² − cos²θ). The principal root has Re s ≥ 0; with Im s² ≤ 0 it lies in the
 /// fourth quadrant, and e^{+i(ωt − k·s·z)} then decays away from the boundary. A lossless medium
 /// below critical has s² < 0 exactly: choose Im s < 0 there, too.
-template <class Number>
-Number vertical_index(const Complex& index, const Number& cosine) {
-  const Number square = Number(index * index) - cosine * cosine;
+template <class Real>
+auto vertical_index(const Complex& index, const Real& cosine) {
+  const auto square = index * index - cosine * cosine;
   const Complex s = std::sqrt(value(square));
   return with_root(square, s.imag() > 0.0 ? -s : s);
 }
 
-/// R = (incident − s)/(incident + s)
+/// R = (incident − s)/(incident + s), of complex numbers or jets
 template <class Number>
 Number mismatch(const Number& incident, const Number& s) {
-  if (value(incident) + value(s) == 0.0)
-    return Number(-1.0);  // equal speeds at grazing incidence: 0/0, its limit
+  if (value(incident) + value(s) == 0.0) return -1.0;  // equal speeds at grazing incidence: 0/0
   return (incident - s) / (incident + s);
 }
 
-template <class Number>
-Number coefficient(const FluidHalfSpace& fluid, const Grazing<Number>& at,
-                   const WaterAtBoundary& water) {
-  const Number m = Complex(fluid.density / water.density);
+template <class Real>
+auto coefficient(const FluidHalfSpace& fluid, const Grazing<Real>& at,
+                 const WaterAtBoundary& water) {
+  const double m = fluid.density / water.density;
   const Complex n = refraction_index(fluid.speed, fluid.attenuation_db_per_wavelength, water);
-  return mismatch<Number>(m * at.sine, vertical_index(n, at.cosine));
+  const auto s = vertical_index(n, at.cosine);
+  return mismatch<std::decay_t<decltype(s)>>(m * at.sine, s);
 }
 
-template <class Number>
-Number coefficient(const ElasticHalfSpace& solid, const Grazing<Number>& at,
-                   const WaterAtBoundary& water) {
-  const Number m = Complex(solid.density / water.density);
+template <class Real>
+auto coefficient(const ElasticHalfSpace& solid, const Grazing<Real>& at,
+                 const WaterAtBoundary& water) {
+  const double m = solid.density / water.density;
   const Complex n = refraction_index(solid.speed, solid.attenuation_db_per_wavelength, water);
-  const Number& k = at.cosine;  // horizontal slowness, of all waves alike, times c₁
-  const Number s = vertical_index(n, k);
+  const Real& k = at.cosine;  // horizontal slowness, of all waves alike, times c₁
+  const auto s = vertical_index(n, k);
+  using Number = std::decay_t<decltype(s)>;
   if (!(solid.shear_speed > 0.0)) return mismatch<Number>(m * at.sine, s);
   const Complex shear =
       refraction_index(solid.shear_speed, solid.shear_attenuation_db_per_wavelength, water);
-  const Number s_shear = vertical_index(shear, k);
+  const auto s_shear = vertical_index(shear, k);
   const Complex shear2 = shear * shear;
   // G = cos²2θ_s + (s/s_s)·sin²2θ_s, θ_s the shear wave's angle: cos 2θ_s = 1 − 2k²/n_s²
-  const Number split = Number(1.0) - Number(2.0) * k * k / Number(shear2);
-  const Number g = split * split + Number(4.0) * k * k * s * s_shear / Number(shear2 * shear2);
+  const auto split = 1.0 - 2.0 * k * k / shear2;
+  const auto g = split * split + 4.0 * k * k * s * s_shear / (shear2 * shear2);
   return mismatch<Number>(m * at.sine * g, s);
 }
 

@@ -230,8 +230,10 @@ void March::tell_ranges() {
 }
 
 RayState March::passing(double range) const {
-  RayState y = creeping_ ? crept(std::abs(range - y_.range))
-                         : course_.end(course_.to_range(range, y_.range, next_.range, step_));
+  RayState y =
+      creeping_
+          ? crept(std::abs(range - y_.range))
+          : course_.end(std::min(course_.to_range(range, y_.range, next_.range, step_), step_));
   y.range = range;
   return y;
 }

@@ -37,7 +37,10 @@ RayState RayTracer::state_at_range(const RaySegment& segment, double range) cons
   tracing::Course course;
   course.begin(cell, y, tracing::local(cell, y));
   if (!course.closed()) course.expand(end.time - y.time);
-  RayState there = course.end(course.to_range(range, y.range, end.range, end.time - y.time));
+  const double h = course.to_range(range, y.range, end.range, end.time - y.time);
+  // straight up and down rounding may have it miss the range
+  if (!(h < tracing::never)) return state_at(segment, arc_at_range(segment, range));
+  RayState there = course.end(h);
   there.range = range;
   return there;
 }
