@@ -43,7 +43,7 @@ int run(int argc, char** argv) {
                     app::add_validate_command, app::add_info_command, app::add_plot_command,
                     app::add_export_command, app::add_ocean_command, app::add_bellhop_command,
                     app::add_convert_command, app::add_explain_command, app::add_compare_command,
-                    app::add_field_command})
+                    app::add_field_command, app::add_process_command})
     add(program, action);
   for (CLI::App* command : program.get_subcommands({}))
     command->set_version_flag("--version", app::version_text());

@@ -41,15 +41,16 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     const Detection& d = detections[i];
     double loudest = -infinity;
     for (const TrueEcho& echo : echoes) {
-      const double along_ridge = resolution.delay_per_doppler * (d.doppler - echo.doppler);
+      const double off = std::isnan(echo.doppler) ? 0.0 : d.doppler - echo.doppler;
+      const double along_ridge = resolution.delay_per_doppler * off;
       if (std::abs(d.time - echo.time - along_ridge) > resolution.time ||
-          std::abs(d.doppler - echo.doppler) > resolution.doppler ||
+          std::abs(off) > resolution.doppler ||
           off_direction(d, echo, shape) > resolution.direction || echo.level_db <= loudest)
         continue;
       loudest = echo.level_db;
       score.owner[i] = echo.target;
     }
-    if (score.owner[i] < 0) ++score.false_alarms;
+    if (score.owner[i] == -1) ++score.false_alarms;
   }
   for (const TrueTarget& target : targets) {
     TargetScore row{.target = target.target,

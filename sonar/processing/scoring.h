@@ -9,9 +9,12 @@
 
 namespace asdic {
 
+/// In the place of a target: the transmitter's own sound, straight to the array.
+inline constexpr int direct_sound = -2;
+
 /// One path pair of a target, as the simulation knows it.
 struct TrueEcho {
-  int target = 0;
+  int target = 0;               ///< index, or direct_sound
   double time = 0.0;            ///< of its leading edge [s]
   double doppler = 1.0;         ///< factor
   double level_db = 0.0;        ///< [dB re 1 µPa]
@@ -48,7 +51,7 @@ struct TargetScore {
 
 struct PingScore {
   std::vector<TargetScore> targets;
-  std::vector<int> owner;  ///< [detections] target, −1: a false alarm
+  std::vector<int> owner;  ///< [detections] target, direct_sound, or −1: a false alarm
   int hits = 0, misses = 0, false_alarms = 0;
 };
 
