@@ -150,8 +150,9 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   report.notes(result.notes);
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
   if (!options.like_bellhop && input.run_case.task == Task::field)
-    report.line(fmt::format("error      more beams would change {:.2g} dB at 95 % of the receivers",
-                            result.beam_error_db));
+    report.line(
+        fmt::format("error      more beams would change {} {:.2g} dB at 95 % of the receivers",
+                    result.beam_error_bounded ? "no more than" : "about", result.beam_error_db));
   report.line("");
   write_results(input, result, options, root, report);
   const double write = watch.lap();

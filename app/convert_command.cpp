@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -18,7 +19,8 @@ namespace {
 struct Options {
   std::string input, output;
   std::vector<std::string> overrides;
-  bool wide = false, binary = false, quiet = false;
+  std::optional<bool> wide, binary;  // none: as the input has it
+  bool quiet = false;
 };
 
 std::string extension_of(const std::string& name) {
@@ -46,7 +48,7 @@ std::vector<std::string> env_to_toml(const Options& options) {
 std::vector<std::string> toml_to_env(const Options& options) {
   std::vector<std::string> notes;
   const PropagationCase run_case = read_propagation_case(options.input, options.overrides, notes);
-  const bellhop::Written written = bellhop::write_case(run_case, options.binary);
+  const bellhop::Written written = bellhop::write_case(run_case, options.binary.value_or(false));
   std::filesystem::path root = options.output;
   root.replace_extension();
   for (const auto& [extension, text] : written.texts.companions)
@@ -59,19 +61,22 @@ std::vector<std::string> toml_to_env(const Options& options) {
 /// A field, arrivals or rays from one kind of file to another.
 std::vector<std::string> convert_result(const Options& options, const std::string& to) {
   PropagationFile result = read_result(options.input);
-  const auto dialect = options.wide ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
+  const auto dialect = [&](bellhop::Dialect as_it_is) {
+    if (!options.wide) return as_it_is;
+    return *options.wide ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
+  };
   if (is_hdf5_name(to)) {
     Hdf5Output output(options.output);
     output.file().set_attribute("", "program_version", provenance(1).program_version);
     write_hdf5_result(output.file(), result);
     output.finish();
   } else if (auto* field = std::get_if<bellhop::ShadeFile>(&result); field && to == ".shd") {
-    field->dialect = dialect;
+    field->dialect = dialect(field->dialect);
     write_shade_file(options.output, *field);
   } else if (auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result);
              arrivals && to == ".arr") {
-    arrivals->dialect = dialect;
-    arrivals->binary = options.binary;
+    arrivals->dialect = dialect(arrivals->dialect);
+    arrivals->binary = options.binary.value_or(arrivals->binary);
     write_arrivals_file(options.output, *arrivals);
   } else if (const auto* rays = std::get_if<bellhop::RayFile>(&result); rays && to == ".ray") {
     write_ray_file(options.output, *rays);
@@ -122,9 +127,20 @@ void add_convert_command(CLI::App& program, Action& action) {
                    "of a scenario: replace a value, e.g. --set run.frequency=500")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command->add_flag("--wide", options->wide,
-                    "numbers of 8 bytes in the head of .shd and .arr (the C++ port of BELLHOP)");
-  command->add_flag("--binary", options->binary, "arrivals as a binary .arr (run type a)");
+  const auto either = [&](std::optional<bool>& choice, const char* yes, const char* what_yes,
+                          const char* no, const char* what_no) {
+    CLI::Option* one = command->add_flag_callback(
+        yes, [&choice] { choice = true; }, what_yes);
+    command
+        ->add_flag_callback(
+            no, [&choice] { choice = false; }, what_no)
+        ->excludes(one);
+  };
+  either(options->wide, "--wide",
+         "numbers of 8 bytes in the head of .shd and .arr (the C++ port of BELLHOP)", "--fortran",
+         "numbers of 4 bytes there; by default as the input had it");
+  either(options->binary, "--binary", "arrivals as a binary .arr (run type a)", "--ascii",
+         "arrivals as text; by default as the input had them");
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer("Example:  asdic convert munk.env munk.toml");
   command->callback([options, &action] { action = [options] { return convert(*options); }; });

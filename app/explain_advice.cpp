@@ -117,6 +117,22 @@ bool same(const Comparison& difference) {
   return rays.paired == rays.rays_b && rays.inside_m.max <= 0.01;
 }
 
+/// Whose file it is and whether it is of this input.
+std::string about_file(const Explanation::OnDisk& old) {
+  using Writer = Explanation::OnDisk::Writer;
+  if (old.writer == Writer::asdic)
+    return old.file + " is asdic's own (its .prt says so): nothing here is about BELLHOP's file";
+  std::string whose;
+  if (old.writer == Writer::unknown) whose = " (taken for BELLHOP's: no .prt tells)";
+  if (old.writer == Writer::asdic_like_bellhop) whose = " (written by asdic --like-bellhop)";
+  if (same(old.like_bellhop))
+    return old.file + whose + " is what BELLHOP makes of this input: all of this is true of it";
+  return old.file + whose +
+         " is not what BELLHOP (2022 in its repaired Fortran) makes of this input: another "
+         "version, "
+         "or another input";
+}
+
 }  // namespace
 
 std::vector<std::string> advice_on(const Explanation& e) {
@@ -138,15 +154,7 @@ std::vector<std::string> advice_on(const Explanation& e) {
     out.push_back(
         fmt::format("with BELLHOP, a step of about {} m would bring its share below {:g} {}",
                     rounded(e.step * std::sqrt(small / error)), small, arrivals ? "us" : "m"));
-  if (e.on_disk) {
-    out.push_back(same(e.on_disk->like_bellhop)
-                      ? e.on_disk->file +
-                            " is what BELLHOP makes of this input: all of this is true "
-                            "of it"
-                      : e.on_disk->file +
-                            " is not what BELLHOP (2022 in its repaired Fortran) makes "
-                            "of this input: another version, or another input");
-  }
+  if (e.on_disk) out.push_back(about_file(*e.on_disk));
   return out;
 }
 

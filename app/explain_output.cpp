@@ -114,6 +114,8 @@ std::string explanation_json(const Explanation& e) {
   if (e.rest) all["rest"] = json_of(*e.rest);
   if (e.on_disk) {
     all["on_disk"]["file"] = e.on_disk->file;
+    constexpr const char* writers[] = {"unknown", "BELLHOP", "asdic", "asdic --like-bellhop"};
+    all["on_disk"]["written_by"] = writers[static_cast<int>(e.on_disk->writer)];
     all["on_disk"]["against_bellhop"] = json_of(e.on_disk->like_bellhop);
     all["on_disk"]["against_truth"] = json_of(e.on_disk->truth);
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <string>
 
 #include "core/error.h"
 #include "io/bellhop/results.h"
@@ -121,6 +123,22 @@ double step_of(const PropagationCase& c) {
   return 0.1 * (c.environment.bottom.depth - c.environment.surface.depth);
 }
 
+/// Who wrote the results that a .prt goes with: asdic signs the first line of its own.
+Explanation::OnDisk::Writer writer_of(const std::filesystem::path& prt) {
+  using Writer = Explanation::OnDisk::Writer;
+  std::string head(4096, '\0');
+  std::ifstream stream(prt, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  if (head.empty()) return Writer::unknown;
+  if (!head.starts_with("asdic ")) return Writer::bellhop;
+  std::string line;  // the echo of the case may be long: look at every line
+  for (stream.clear(), stream.seekg(0); std::getline(stream, line);)
+    if (line.starts_with("traced") && line.find("as BELLHOP does") != std::string::npos)
+      return Writer::asdic_like_bellhop;
+  return Writer::asdic;
+}
+
 }  // namespace
 
 Explanation explain(const bellhop::Input& input, const std::filesystem::path& root,
@@ -173,8 +191,9 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
   if (std::filesystem::exists(file)) {
     try {
       const PropagationFile old = read_result(file);
-      e.on_disk = Explanation::OnDisk{file.string(), compare_files(old, asked, c.task),
-                                      compare_files(old, truth, c.task)};
+      e.on_disk =
+          Explanation::OnDisk{file.string(), writer_of(stem.string() + ".prt"),
+                              compare_files(old, asked, c.task), compare_files(old, truth, c.task)};
     } catch (const InputError& error) {
       e.notes.push_back(fmt::format("{}: not compared: {}", file.string(), error.what()));
     } catch (const std::bad_variant_access&) {

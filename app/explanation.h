@@ -29,6 +29,8 @@ struct Explanation {
   std::optional<Effect> rest;   ///< BELLHOP with all of them improved, against the truth
   struct OnDisk {
     std::string file;
+    /// By what ROOT.prt beside it says; without one a file is taken for BELLHOP's.
+    enum class Writer { unknown, bellhop, asdic, asdic_like_bellhop } writer = Writer::unknown;
     Comparison like_bellhop;  ///< the file against BELLHOP as asked, run here
     Comparison truth;         ///< the file against the truth
   };

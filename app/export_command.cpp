@@ -24,6 +24,10 @@ int export_wav(const Options& options) {
     throw InputError({.where = "--ping",
                       .got = std::to_string(*options.ping),
                       .expected = fmt::format("a ping from 1 to {}", file.pings())});
+  if (file.is_complex())
+    throw InputError({.where = options.file,
+                      .got = "complex baseband",
+                      .expected = "pressure: pings.samples = \"pressure\" in the scenario"});
   if (file.pings() == 0)
     throw InputError({.where = options.file, .got = "no ping", .expected = "at least one"});
   std::error_code error;

@@ -46,9 +46,9 @@ int info(const std::string& path) {
                     byte_count(static_cast<double>(std::filesystem::file_size(path))),
                     completeness(file)));
   const double rate = file.channels() > 0 && file.file().has("pressure") ? file.sample_rate() : 0.0;
-  print(fmt::format("holds        {}, {}, {} samples at {:g} Hz: {:g} s\n",
+  print(fmt::format("holds        {}, {}, {} {}samples at {:g} Hz: {:g} s\n",
                     count_of(file.pings(), "ping"), count_of(file.channels(), "phone"),
-                    file.samples(), rate,
+                    file.samples(), file.is_complex() ? "complex " : "", rate,
                     rate > 0.0 ? static_cast<double>(file.samples()) / rate : 0.0));
   const auto pulse = [&](const std::string& key) { return attribute(file, "replica", key); };
   print(fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",

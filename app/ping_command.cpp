@@ -56,7 +56,7 @@ int ping(const Options& options) {
                                   static_cast<std::size_t>(threads));
   const Interrupt interrupt;
   const PingSimulator simulator(std::move(scenario));
-  const int count = simulator.scenario().pings.count;
+  const int count = simulator.pings();
   PingReport report(simulator.scenario());
   PingFileWriter writer(output, simulator.scenario(), provenance(threads));
   int done = 0;
@@ -100,7 +100,9 @@ void add_ping_command(CLI::App& program, Action& action) {
       ->add_option("-o,--output", options->output,
                    "file to write; default: the scenario's name with .h5, in this folder")
       ->type_name("FILE.h5");
-  command->add_option("--pings", options->pings, "number of pings, instead of pings.count")
+  command
+      ->add_option("--pings", options->pings,
+                   "number of pings of each transmitter, instead of pings.count")
       ->type_name("N")
       ->check(above_zero());
   command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/units.h"
+#include "sonar/sampling.h"
 
 namespace asdic::app {
 namespace {
@@ -59,9 +60,9 @@ std::string PingReport::text(double wall) const {
       fmt::format("{}\n", emphasised(scenario_.title.empty() ? scenario_.path : scenario_.title));
   for (const std::string& note : scenario_.notes) result += fmt::format("note: {}\n", note);
   const PingSchedule& p = scenario_.pings;
-  result +=
-      fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
-                  count_of(channels_of(scenario_), "phone"), p.recording_duration, p.sample_rate);
+  result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
+                        count_of(channels_of(scenario_), "phone"), p.recording_duration,
+                        recorded_rate(scenario_));
   if (scenario_.targets.empty()) {
     result += "no targets\n";
   } else {

@@ -12,6 +12,8 @@
 #include "io/text/material_text.h"
 #include "sonar/geometry.h"
 #include "sonar/ping.h"
+#include "sonar/sampling.h"
+#include "sonar/stream.h"
 
 namespace asdic::app {
 namespace {
@@ -90,31 +92,65 @@ std::string environment_text(const Environment& ocean, double f, std::optional<d
   return text + "bottom     " + boundary_text(ocean.bottom) + "\n";
 }
 
+/// "transmitter" or, where there are several, "transmitter NAME on PLATFORM".
+template <class Carried>
+std::string carried(const Scenario& s, std::string_view what, const Carried& one,
+                    std::size_t count) {
+  if (count == 1 && s.platforms.size() == 1) return fmt::format("{:<10} ", what);
+  return fmt::format("{:<10} {} on {}: ", what, one.name,
+                     s.platforms[static_cast<std::size_t>(one.platform)].name);
+}
+
+std::string pulse_text(const Scenario& s, int transmitter) {
+  constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
+  constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
+  const PulseSettings& settings = pulse_of(s, transmitter);
+  const Pulse pulse(settings);
+  return fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
+                     kinds[static_cast<int>(settings.kind)], pulse.centre_frequency(),
+                     pulse.duration(), windows[static_cast<int>(settings.window)],
+                     pulse.bandwidth_40db());
+}
+
+std::string transmitter_text(const PingSimulator& simulator, std::size_t t) {
+  const Scenario& s = simulator.scenario();
+  const Transmitter& one = s.transmitters[t];
+  const std::string who = carried(s, "projector", one, s.transmitters.size());
+  if (one.taper == Taper::omnidirectional)
+    return who + fmt::format("{:g} dB, omnidirectional\n", one.source_level_db);
+  double elevation = one.elevation;
+  for (int ping = 1; ping <= simulator.pings(); ++ping) {
+    if (simulator.transmission(ping).transmitter != static_cast<int>(t)) continue;
+    elevation = simulator.transmission(ping).elevation;  // of its first ping
+    break;
+  }
+  return who + fmt::format("{:g} dB, elevation {:g} deg, beamwidth {:g} deg\n", one.source_level_db,
+                           degrees(elevation), degrees(one.beamwidth));
+}
+
+std::string array_text(const Scenario& s, const ReceiverArray& array) {
+  double aperture = 0.0;
+  for (const Vec3& a : array.phones)
+    for (const Vec3& b : {array.phones.front(), array.phones.back()})
+      aperture = std::max(aperture, (a - b).norm());
+  return carried(s, "array", array, s.arrays.size()) +
+         fmt::format("{}, {:g} m across\n", count_of(array.phones.size(), "phone"), aperture);
+}
+
 std::string sonar_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   const Kinematics platform = s.platforms[0].track.at(0.0);
-  const Pulse& pulse = simulator.pulse();
-  constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
-  constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
-  std::string text =
-      fmt::format("platform   {}, {}\n", position(platform.position), motion(platform.velocity));
-  text +=
-      s.transmitters[0].taper == Taper::omnidirectional
-          ? fmt::format("projector  {:g} dB, omnidirectional\n", s.transmitters[0].source_level_db)
-          : fmt::format("projector  {:g} dB, elevation {:g} deg, beamwidth {:g} deg\n",
-                        s.transmitters[0].source_level_db,
-                        degrees(simulator.transmitter(1).elevation),
-                        degrees(s.transmitters[0].beamwidth));
-  text +=
-      fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
-                  kinds[static_cast<int>(s.pulse.kind)], pulse.centre_frequency(), pulse.duration(),
-                  windows[static_cast<int>(s.pulse.window)], pulse.bandwidth_40db());
-  double aperture = 0.0;
-  for (const Vec3& a : s.arrays[0].phones)
-    for (const Vec3& b : {s.arrays[0].phones.front(), s.arrays[0].phones.back()})
-      aperture = std::max(aperture, (a - b).norm());
-  text +=
-      fmt::format("array      {}, {:g} m across\n", count_of(channels_of(s), "phone"), aperture);
+  std::string text;
+  for (const Platform& one : s.platforms) {
+    const Kinematics k = one.track.at(0.0);
+    text += fmt::format("platform   {}{}, {}\n", s.platforms.size() > 1 ? one.name + ": " : "",
+                        position(k.position), motion(k.velocity));
+  }
+  for (std::size_t t = 0; t < s.transmitters.size(); ++t) {
+    text += transmitter_text(simulator, t);
+    if (t == 0 || s.transmitters[t].pulse) text += pulse_text(s, static_cast<int>(t));
+  }
+  for (const ReceiverArray& array : s.arrays) text += array_text(s, array);
   for (const Target& target : s.targets) {
     const Kinematics k = target.track.at(0.0);
     const Separation way = separation(platform.position, k.position);
@@ -135,16 +171,24 @@ std::string sonar_text(const PingSimulator& simulator) {
   return text;
 }
 
-std::string size_text(const Scenario& s) {
+std::string size_text(const PingSimulator& simulator) {
+  const Scenario& s = simulator.scenario();
   const PingSchedule& p = s.pings;
-  const double samples = std::round(p.recording_duration * p.sample_rate);
-  const double bytes = 4.0 * samples * static_cast<double>(channels_of(s)) * p.count +
+  const double rate = recorded_rate(s);
+  const bool complex = p.samples == Samples::baseband;
+  const double samples = p.continuous ? static_cast<double>(Stream::longest_part(s))
+                                      : std::round(p.recording_duration * rate);
+  const double bytes = 4.0 * (complex ? 2.0 : 1.0) * samples * static_cast<double>(channels_of(s)) *
+                           simulator.pings() +
                        8.0 * samples;  // the pressure and its time axis; tables are small beside it
+  const std::string what =
+      complex ? fmt::format("complex baseband about {:.6g} Hz, ", recorded_carrier(s)) : "";
   return fmt::format(
-      "recording  {}, {:g} s apart, each {:g} s at {:g} Hz: {:.0f} samples a phone; "
+      "recording  {}, {:g} s apart, {}{}each {:g} s at {:g} Hz: {:.0f} samples a phone; "
       "a file of about {}\n",
-      count_of(std::size_t(p.count), "ping"), p.interval, p.recording_duration, p.sample_rate,
-      samples, byte_count(bytes));
+      count_of(std::size_t(simulator.pings()), "ping"), p.interval,
+      p.continuous ? "one stream, " : "", what, p.recording_duration, rate, samples,
+      byte_count(bytes));
 }
 
 std::string axis_text(const std::vector<double>& values, double unit) {
@@ -188,7 +232,7 @@ int validate(const ScenarioChoice& choice) {
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
-        transect_text(simulator) + sonar_text(simulator) + size_text(scenario));
+        transect_text(simulator) + sonar_text(simulator) + size_text(simulator));
   for (const std::string& note : scenario.notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;

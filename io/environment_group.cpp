@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/ping/growing_table.h"
+#include "io/hdf5/scale.h"
 
 namespace asdic {
 namespace {
@@ -31,9 +31,7 @@ std::vector<double> boundary_ranges(const Environment& ocean, double first, doub
 
 void scale(Hdf5File& file, const std::string& name, const std::vector<double>& values,
            const std::string& long_name) {
-  file.write<double>("environment/" + name, values, {values.size()});
-  describe(file, "environment/" + name, long_name, "m");
-  file.make_scale("environment/" + name, name);
+  write_scale(file, "environment/" + name, name, values, long_name, "m");
 }
 
 void column(Hdf5File& file, const std::string& name, const std::vector<double>& values,

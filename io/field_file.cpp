@@ -4,18 +4,10 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "io/ping/growing_table.h"
+#include "io/hdf5/scale.h"
 
 namespace asdic {
 namespace {
-
-template <class T>
-void scale(Hdf5File& file, const std::string& name, const std::vector<T>& values,
-           const std::string& long_name, const std::string& units = "") {
-  file.write<T>(name, values, {values.size()});
-  describe(file, name, long_name, units);
-  file.make_scale(name, name);
-}
 
 void coordinate(Hdf5File& file, const std::string& name, const std::vector<double>& values,
                 const std::string& long_name) {
@@ -55,8 +47,9 @@ void write_field(Hdf5File& file, const FieldData& field) {
     file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
     file.set_attribute("", "beam_error_db", field.beam_error_db);
   }
-  scale(file, "source_depth", field.source_depths, "depth of the source, positive down", "m");
-  scale<std::int8_t>(file, "re_im", {0, 1}, "0 real part, 1 imaginary part");
+  write_scale(file, "source_depth", "source_depth", field.source_depths,
+              "depth of the source, positive down", "m");
+  write_scale<std::int8_t>(file, "re_im", "re_im", {0, 1}, "0 real part, 1 imaginary part");
   const ReceiverGrid& grid = field.receivers;
   const std::size_t sources = field.source_depths.size();
   Shape shape = {sources, grid.depths.size(), grid.ranges.size(), 2};
@@ -64,14 +57,14 @@ void write_field(Hdf5File& file, const FieldData& field) {
   if (grid.irregular) {
     std::vector<std::int32_t> numbers(grid.ranges.size());
     std::iota(numbers.begin(), numbers.end(), 0);
-    scale(file, "receiver", numbers, "number of the receiver, from 0");
+    write_scale(file, "receiver", "receiver", numbers, "number of the receiver, from 0");
     coordinate(file, "receiver_depth", grid.depths, "depth of the receiver, positive down");
     coordinate(file, "receiver_range", grid.ranges, "horizontal distance from the source");
     shape = {sources, grid.ranges.size(), 2};
     scales = {"source_depth", "receiver", "re_im"};
   } else {
-    scale(file, "depth", grid.depths, "depth of the receiver, positive down", "m");
-    scale(file, "range", grid.ranges, "horizontal distance from the source", "m");
+    write_scale(file, "depth", "depth", grid.depths, "depth of the receiver, positive down", "m");
+    write_scale(file, "range", "range", grid.ranges, "horizontal distance from the source", "m");
   }
   std::vector<float> parts;
   parts.reserve(2 * field.pressure.size());

@@ -11,8 +11,10 @@
 
 #include "core/error.h"
 #include "io/arrival_table.h"
+#include "io/hdf5/scale.h"
 #include "io/ping/growing_table.h"
 #include "io/ping/sections.h"
+#include "sonar/stream.h"
 
 namespace asdic {
 namespace {
@@ -24,7 +26,8 @@ using Type = ElementType;
 std::vector<GrowingTable::Column> echo_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
           {"target", "number of the target", "", Type::int32},
-          {"channel", "number of the phone, -1: the reference point", "", Type::int32},
+          {"array", "number of the array", "", Type::int32},
+          {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
           {"outgoing", "path of the leg source to target", "", Type::int32},
           {"returning", "path of the leg target to array", "", Type::int32},
           {"delay", "from the start of the ping to the echo's leading edge", "s"},
@@ -98,6 +101,7 @@ struct PingFileWriter::Impl {
 
   void create_ping_datasets();
   void create_sampled_datasets(const PingRecord& record);
+  void append_pressure(const PingRecord& record);
   void append_geometry(const PingRecord& record);
   void append_tables(const PingRecord& record);
   void append_summary(const PingRecord& record);
@@ -108,10 +112,12 @@ void PingFileWriter::Impl::create_ping_datasets() {
   describe(file, "ping", "number of the ping, from 1");
   file.make_scale("ping", "ping");
   growing<std::int64_t>("valid_samples", "samples of this ping that were simulated", "");
+  growing<std::int32_t>("transmitter", "number of the transmitter that sent it, from 0", "");
   growing<double>("ping_time", "start of the ping since the start of the scenario", "s");
   growing<double>("elevation_deg", "elevation of the transmitter's beam, positive up", "degree");
-  growing<double>("platform_position", "platform at the start of the ping", "m", {"xyz"}, {3});
-  growing<double>("platform_velocity", "velocity of the platform", "m/s", {"xyz"}, {3});
+  growing<double>("platform_position", "of the transmitter at the start of the ping", "m", {"xyz"},
+                  {3});
+  growing<double>("platform_velocity", "velocity of the transmitter", "m/s", {"xyz"}, {3});
   const std::size_t channels = channels_of(scenario), targets = scenario.targets.size();
   growing<double>("phone_position", "phones at the start of the ping", "m", {"channel", "xyz"},
                   {channels, 3});
@@ -140,6 +146,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
 void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   const Recording& recording = record.recording;
   samples = recording.samples;
+  if (scenario.pings.continuous) samples = Stream::longest_part(scenario);
   std::vector<double> time(samples);
   for (std::size_t i = 0; i < samples; ++i)
     time[i] = recording.start + static_cast<double>(i) / recording.sample_rate;
@@ -147,12 +154,25 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   describe(file, "time", "after the start of the ping", "s");
   file.make_scale("time", "sample");
   const std::size_t channels = channels_of(scenario);
-  file.create_growing<float>("pressure", {channels, samples}, Shape{1, 1, samples});
-  describe(file, "pressure", "acoustic pressure", "Pa");
-  file.attach_scales("pressure", {"ping", "channel", "time"});
+  if (recording.is_complex()) {
+    write_scale<std::int32_t>(file, "iq", "iq", {0, 1}, "0 real part, 1 imaginary part");
+    file.create_growing<float>("pressure", {channels, samples, 2}, Shape{1, 1, samples, 2});
+    describe(file, "pressure", "acoustic pressure, complex baseband", "Pa");
+    file.attach_scales("pressure", {"ping", "channel", "time", "iq"});
+    file.set_attribute("pressure", "carrier_hz", recording.carrier);
+    file.set_attribute("pressure", "carrier_clock",
+                       scenario.pings.continuous ? "start of the scenario" : "start of the ping");
+  } else {
+    file.create_growing<float>("pressure", {channels, samples}, Shape{1, 1, samples});
+    describe(file, "pressure", "acoustic pressure", "Pa");
+    file.attach_scales("pressure", {"ping", "channel", "time"});
+  }
   file.set_attribute("pressure", "sample_rate_hz", recording.sample_rate);
   file.set_attribute("pressure", "reference",
-                     "p = Re{Σ A s₊(η(t − τ))}, time dependence exp(+iωt)");
+                     recording.is_complex()
+                         ? "b = Σ A s₊(η(t − τ)) exp(−i2π f_c t), time dependence exp(+iωt)"
+                         : "p = Re{Σ A s₊(η(t − τ))}, time dependence exp(+iωt)");
+  file.set_attribute("pressure", "continuous", std::int64_t{scenario.pings.continuous});
 
   level_bins = record.levels.echo.size();
   if (level_bins == 0) return;
@@ -170,7 +190,21 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   }
 }
 
+/// Rows that are shorter than the longest end in zeros.
+void PingFileWriter::Impl::append_pressure(const PingRecord& record) {
+  const std::size_t width = record.recording.components(), own = record.recording.samples * width,
+                    row = samples * width;
+  if (own > row) throw std::logic_error("a ping longer than its file's rows");
+  if (own == row) return file.append<float>("pressure", record.pressure);
+  std::vector<float> padded(record.phones.size() * row, 0.0F);
+  for (std::size_t n = 0; n < record.phones.size(); ++n)
+    std::copy_n(record.pressure.begin() + static_cast<std::ptrdiff_t>(n * own), own,
+                padded.begin() + static_cast<std::ptrdiff_t>(n * row));
+  file.append<float>("pressure", padded);
+}
+
 void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
+  file.append<std::int32_t>("transmitter", std::array{std::int32_t{record.transmitter}});
   file.append<double>("ping_time", std::array{record.start_time});
   file.append<double>("elevation_deg", std::array{degrees(record.elevation)});
   file.append<double>("platform_position", flat(record.platform.position));
@@ -201,9 +235,9 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
     const Vec3& s = echo.heard.slowness;  // along the direction of travel, z down
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
     const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
-    echoes.row({double(record.ping), double(echo.target), double(echo.heard.channel),
-                double(echo.outgoing), double(echo.returning), echo.heard.delay, echo.heard.doppler,
-                echo.level_db, degrees(elevation), bearing});
+    echoes.row({double(record.ping), double(echo.target), double(echo.array),
+                double(echo.heard.channel), double(echo.outgoing), double(echo.returning),
+                echo.heard.delay, echo.heard.doppler, echo.level_db, degrees(elevation), bearing});
   }
   const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
   every = std::max(every, step);
@@ -251,7 +285,7 @@ PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario
     : impl_(std::make_unique<Impl>(path, scenario)) {
   try {
     ping_file::write_root(impl_->file, scenario, provenance);
-    ping_file::write_replica(impl_->file, scenario);
+    ping_file::write_replicas(impl_->file, scenario);
     ping_file::write_environment(impl_->file, scenario);
     impl_->create_ping_datasets();
     impl_->file.flush();  // readable from now on, whatever happens
@@ -284,11 +318,11 @@ void PingFileWriter::append(const PingRecord& record) {
   Impl& to = *impl_;
   const std::size_t channels = channels_of(to.scenario);
   if (record.phones.size() != channels || record.targets.size() != to.scenario.targets.size() ||
-      record.pressure.size() != channels * record.recording.samples)
+      record.pressure.size() != channels * record.recording.samples * record.recording.components())
     throw std::logic_error("a ping record of another shape than its scenario");
   if (to.pings == 0) to.create_sampled_datasets(record);
 
-  to.file.append_padded<float>("pressure", record.pressure, record.recording.samples);
+  to.append_pressure(record);
   if (to.level_bins > 0) {
     const std::size_t bins = record.levels.echo.size();
     to.file.append_padded<float>("levels/echo", record.levels.echo, bins);

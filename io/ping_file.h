@@ -71,10 +71,14 @@ class PingFile {
   [[nodiscard]] std::size_t channels() const noexcept { return shape_[1]; }
   [[nodiscard]] std::size_t samples() const noexcept { return shape_[2]; }
   [[nodiscard]] double sample_rate() const;  ///< [Hz]
+  /// Complex baseband samples about carrier(); else real pressure.
+  [[nodiscard]] bool is_complex() const noexcept { return components_ == 2; }
+  [[nodiscard]] double carrier() const;  ///< [Hz]; 0 for pressure
   [[nodiscard]] bool complete() const;
   [[nodiscard]] std::string scenario_text() const;
 
-  /// \param ping, channel  counted from 0   \return [valid samples of the ping] [Pa]
+  /// \param ping, channel  counted from 0   \return [valid samples of the ping] [Pa],
+  /// real and imaginary parts in turn where the file holds complex baseband
   /// \throws InputError ("ping", "channel") if there is no such
   [[nodiscard]] std::vector<float> pressure(std::size_t ping, std::size_t channel) const;
   [[nodiscard]] std::size_t valid_samples(std::size_t ping) const;
@@ -89,6 +93,7 @@ class PingFile {
 
   Hdf5File file_;
   Shape shape_{0, 0, 0};
+  std::size_t components_ = 1;
 };
 
 /// SHA-256 in hexadecimal.

@@ -14,12 +14,20 @@ PingFile::PingFile(const std::filesystem::path& path) : file_(Hdf5File::open(pat
   if (const std::string version = file_.attribute_text("", "version"); !version.starts_with("1."))
     throw wrong("version " + version, "version 1.x");
   if (file_.has("pressure")) shape_ = file_.info("pressure").shape;
-  if (shape_.size() != 3) throw wrong("pressure of another rank", "(ping, channel, sample)");
+  const bool complex = shape_.size() == 4 && shape_[3] == 2;
+  if (shape_.size() != 3 && !complex)
+    throw wrong("pressure of another rank",
+                "(ping, channel, sample) or (ping, channel, sample, 2)");
+  components_ = complex ? 2 : 1;
   shape_[0] = file_.has("ping") ? file_.info("ping").shape[0] : 0;  // written last: whole pings
 }
 
 double PingFile::sample_rate() const {
   return file_.attribute_number("pressure", "sample_rate_hz");
+}
+
+double PingFile::carrier() const {
+  return is_complex() ? file_.attribute_number("pressure", "carrier_hz") : 0.0;
 }
 
 bool PingFile::complete() const { return file_.attribute_number("", "complete") == 1.0; }
@@ -44,6 +52,7 @@ std::vector<float> PingFile::pressure(std::size_t ping, std::size_t channel) con
     throw InputError({.where = file_.path().string() + ": channel",
                       .got = std::to_string(channel),
                       .expected = "a channel from 0 to " + std::to_string(channels() - 1)});
+  if (is_complex()) return file_.read<float>("pressure", {ping, channel, 0, 0}, {1, 1, n, 2});
   return file_.read<float>("pressure", {ping, channel, 0}, {1, 1, n});
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <fstream>
+#include <type_traits>
 
 #include "core/error.h"
 #include "io/bellhop/bellhop_files.h"
@@ -17,6 +19,27 @@ std::string ending(const std::filesystem::path& path) {
   std::string text = path.extension().string();
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+/// How a BELLHOP file was written, for the way back; Fortran's headers and text go without saying.
+constexpr const char *wide_key = "bellhop_wide_header", *binary_key = "bellhop_binary";
+
+template <class BellhopFile>
+void write_layout(Hdf5File& file, const BellhopFile& result) {
+  if (result.dialect == bellhop::Dialect::wide) file.set_attribute("", wide_key, std::int64_t{1});
+  if constexpr (std::is_same_v<BellhopFile, bellhop::ArrivalsFile>)
+    if (result.binary) file.set_attribute("", binary_key, std::int64_t{1});
+}
+
+template <class BellhopFile>
+BellhopFile with_layout(const Hdf5File& file, BellhopFile result) {
+  const auto is_set = [&](const char* key) {
+    return file.has_attribute("", key) && file.attribute_number("", key) != 0.0;
+  };
+  if (is_set(wide_key)) result.dialect = bellhop::Dialect::wide;
+  if constexpr (std::is_same_v<BellhopFile, bellhop::ArrivalsFile>)
+    result.binary = is_set(binary_key);
+  return result;
 }
 
 constexpr const char* known_files =
@@ -57,8 +80,8 @@ PropagationFile read_result(const std::filesystem::path& path) {
 PropagationFile read_hdf5_result(const Hdf5File& file) {
   const std::string type =
       file.has_attribute("", "filetype") ? file.attribute_text("", "filetype") : "none";
-  if (type == "asdic field") return to_shade_file(read_field(file));
-  if (type == "asdic arrivals") return result_tables::read_arrivals(file);
+  if (type == "asdic field") return with_layout(file, to_shade_file(read_field(file)));
+  if (type == "asdic arrivals") return with_layout(file, result_tables::read_arrivals(file));
   if (type == "asdic rays") return result_tables::read_rays(file);
   throw InputError({.where = file.path().string() + ": filetype",
                     .got = '"' + type + '"',
@@ -70,9 +93,11 @@ void write_hdf5_result(Hdf5File& file, const PropagationFile& result) {
   file.set_attribute("", "version", "1.0");
   if (const auto* field = std::get_if<bellhop::ShadeFile>(&result)) {
     file.set_attribute("", "title", field->title);
+    write_layout(file, *field);
     write_field(file, from_shade_file(*field));
   } else if (const auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result)) {
     file.set_attribute("", "title", "");
+    write_layout(file, *arrivals);
     result_tables::write_arrivals(file, *arrivals);
   } else {
     const auto& rays = std::get<bellhop::RayFile>(result);

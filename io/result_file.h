@@ -23,9 +23,9 @@ using PropagationFile = std::variant<bellhop::ShadeFile, bellhop::ArrivalsFile, 
 [[nodiscard]] bool is_hdf5(const std::filesystem::path& path);
 
 /// The same from and to an open HDF5 file: filetypes "asdic field", "asdic arrivals" (the table
-/// /arrivals with the receivers' axes), "asdic rays" (docs/formats). Nothing of a BELLHOP file is
-/// lost on the way there and back but float32's last bit in angles; elevations are positive up
-/// there.
+/// /arrivals with the receivers' axes), "asdic rays" (docs/formats). Nothing of a BELLHOP file, its
+/// dialect included, is lost on the way there and back but float32's last bit in angles; elevations
+/// are positive up there.
 [[nodiscard]] PropagationFile read_hdf5_result(const Hdf5File& file);
 void write_hdf5_result(Hdf5File& file, const PropagationFile& result);
 

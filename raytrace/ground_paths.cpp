@@ -16,9 +16,11 @@ struct CellPath {
   GroundPath path;
 };
 
-/// A point of a branch: range and delay as functions of σ, with exact slopes.
+/// A point of a branch: range and delay as functions of the angle θ, σ = sin θ, with exact slopes.
+/// Over σ the range is no cubic straight up and down (r ∝ cos θ), over ξ = cos θ/c_ref none along
+/// the horizon.
 struct BranchPoint {
-  HermiteNode range, delay;  // dτ/dσ = ξ·dr/dσ
+  HermiteNode range, delay;  // dτ/dθ = ξ·dr/dθ
   double length = 0.0;       // of the path so far [m]
 };
 
@@ -52,35 +54,39 @@ class BranchFollower {
     turns_ = (s.interval->turns_above ? s.branch.top_vertices() : 0) +
              (s.interval->turns_below ? s.branch.bottom_vertices() : 0);
     floor_ = 0.0;
-    const Hermite cubic({s.sigma_begin, s.range_begin, s.slope_begin},
-                        {s.sigma_end, s.range_end, s.slope_end});
-    if (s.caustic_begin) floor_ = std::max(floor_, floor_at(s.sigma_begin, s.sigma_end, cubic));
-    if (s.caustic_end) floor_ = std::max(floor_, floor_at(s.sigma_end, s.sigma_begin, cubic));
-    refine(point(s.sigma_begin), point(s.sigma_end), 0);
+    const BranchPoint begin = point(std::asin(s.sigma_begin)), end = point(std::asin(s.sigma_end));
+    const Hermite cubic(begin.range, end.range);
+    if (s.caustic_begin) floor_ = std::max(floor_, floor_at(begin.range.x, end.range.x, cubic));
+    if (s.caustic_end) floor_ = std::max(floor_, floor_at(end.range.x, begin.range.x, cubic));
+    refine(begin, end, 0);
   }
 
  private:
-  RayParameter ray(double sigma) const { return {stretch_->interval->reference_speed, sigma}; }
+  RayParameter ray(double theta) const {
+    return {stretch_->interval->reference_speed, std::sin(theta)};
+  }
+  /// dξ/dθ.
+  static double slowness_per_angle(const RayParameter& r) { return -r.sigma / r.reference_speed; }
 
-  BranchPoint point(double sigma) const {
-    const RayParameter r = ray(sigma);
+  BranchPoint point(double theta) const {
+    const RayParameter r = ray(theta);
     const ColumnSums sums = fan_.column().sums(r);
     const ColumnDetails details = fan_.column().details(r);
     const double range = weights_.of(sums.up.range, sums.middle.range, sums.down.range);
     const double slope = weights_.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) *
-                         r.slowness_per_sigma();
-    return {.range = {sigma, range, slope},
-            .delay = {sigma, weights_.of(details.up.time, details.middle.time, details.down.time),
+                         slowness_per_angle(r);
+    return {.range = {theta, range, slope},
+            .delay = {theta, weights_.of(details.up.time, details.middle.time, details.down.time),
                       slope * r.slowness},
             .length = weights_.of(details.up.length, details.middle.length, details.down.length)};
   }
 
   double floor_at(double caustic, double other, const Hermite& cubic) const {
     const double step =
-        1e-3 * (other - caustic);  // r″ with respect to σ at the caustic, where r′ = 0
-    const double per_sigma2 = std::abs(cubic.slope(caustic + step) / step);
-    const double chain = ray(caustic).slowness_per_sigma();
-    return airy_floor(per_sigma2 / (chain * chain), frequency_);
+        1e-3 * (other - caustic);  // r″ with respect to θ at the caustic, where r′ = 0
+    const double per_angle2 = std::abs(cubic.slope(caustic + step) / step);
+    const double chain = slowness_per_angle(ray(caustic));
+    return airy_floor(per_angle2 / (chain * chain), frequency_);
   }
 
   void refine(const BranchPoint& a, const BranchPoint& b, int depth) {
@@ -110,26 +116,26 @@ class BranchFollower {
     const double first = std::max(0.0, std::ceil(near.range.value / spacing_ - 0.5));
     const double limit = std::min(far.range.value, max_range_);
     const double lo = std::min(near.range.x, far.range.x), hi = std::max(near.range.x, far.range.x);
-    double sigma = near.range.x;
+    double theta = near.range.x;
     for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
       const double r = (cell + 0.5) * spacing_;
       if (r >= limit) return;
       for (int i = 0; i < 3; ++i) {  // the cubic's root, from the neighbour's
-        const double slope = range.slope(sigma);
+        const double slope = range.slope(theta);
         if (slope == 0.0) break;
-        sigma = std::clamp(sigma - (range.value(sigma) - r) / slope, lo, hi);
+        theta = std::clamp(theta - (range.value(theta) - r) / slope, lo, hi);
       }
       const double share = (r - near.range.value) / (far.range.value - near.range.value);
-      out_.push_back({cell, path(sigma, r, delay.value(sigma), range.slope(sigma),
+      out_.push_back({cell, path(theta, r, delay.value(theta), range.slope(theta),
                                  near.length + share * (far.length - near.length))});
     }
   }
 
-  GroundPath path(double sigma, double range, double delay, double slope, double length) const {
-    const RayParameter r = ray(sigma);
+  GroundPath path(double theta, double range, double delay, double slope, double length) const {
+    const RayParameter r = ray(theta);
     const Column& column = fan_.column();
     const Branch& branch = stretch_->branch;
-    double per_slowness = slope / r.slowness_per_sigma();
+    double per_slowness = slope / slowness_per_angle(r);
     const int caustics = caustics_passed(turns_, per_slowness);
     per_slowness = std::max(std::abs(per_slowness), floor_);
     const int tops = stretch_->interval->turns_above ? 0 : branch.top_vertices();

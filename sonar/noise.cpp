@@ -16,14 +16,17 @@ double white_noise_variance(double spectral_level_db, double sample_rate) noexce
   return power_from_db(spectral_level_db) * 0.5 * sample_rate * micropascal * micropascal;
 }
 
-void add_white_noise(std::span<float> pressure, std::size_t channels, double spectral_level_db,
-                     double sample_rate, std::uint64_t seed, std::uint32_t ping) {
-  assert(channels > 0 && pressure.size() % channels == 0);
-  const std::size_t samples = pressure.size() / channels;
-  const auto rms =
-      static_cast<float>(std::sqrt(white_noise_variance(spectral_level_db, sample_rate)));
+double white_baseband_variance(double spectral_level_db, double sample_rate) noexcept {
+  return 2.0 * white_noise_variance(spectral_level_db, sample_rate);
+}
+
+void add_white_noise(std::span<float> all, std::size_t channels, double variance,
+                     std::uint64_t seed, std::uint32_t ping) {
+  assert(channels > 0 && all.size() % channels == 0);
+  const std::size_t samples = all.size() / channels;
+  const auto rms = static_cast<float>(std::sqrt(variance));
   tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t channel) {
-    float* row = pressure.data() + channel * samples;
+    float* row = all.data() + channel * samples;
     std::array<float, 1024> normals;
     for (std::size_t first = 0; first < samples; first += normals.size()) {
       const std::size_t n = std::min(normals.size(), samples - first);

@@ -12,11 +12,14 @@
 
 #include "core/error.h"
 #include "reverb/patches.h"
+#include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
 #include "sonar/noise.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/sampling.h"
+#include "sonar/stream.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
@@ -90,15 +93,15 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
     const Vec3 reference = array_at(scenario_, static_cast<int>(a), sent.time).position;
     for (const Vec3& phone : scenario_.arrays[a].phones) record.phones.push_back(reference + phone);
   }
-  record.recording = {.sample_rate = schedule.sample_rate,
-                      .start = schedule.recording_start,
-                      .samples = static_cast<std::size_t>(
-                          std::llround(schedule.recording_duration * schedule.sample_rate))};
-  record.pressure.assign(record.phones.size() * record.recording.samples, 0.0F);
+  record.recording = recording_of(scenario_);
+  if (schedule.continuous) record.recording.epoch = sent.time;
+  record.pressure.assign(
+      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
   return record;
 }
 
-Returns PingSimulator::echoes(const EchoContext& context, PingRecord& record) const {
+/// Echoes, source → target × target → array, and the ping itself on its way to arrays elsewhere.
+Returns PingSimulator::sparse_returns(const EchoContext& context, PingRecord& record) const {
   Returns returns;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
     const Target& target = scenario_.targets[i];
@@ -110,10 +113,20 @@ Returns PingSimulator::echoes(const EchoContext& context, PingRecord& record) co
       record.echoes.push_back(echo);
     }
   }
+  const auto platform_of = [](const auto& list, int i) {
+    return list[static_cast<std::size_t>(i)].platform;
+  };
+  if (scenario_.propagation.direct_blast &&
+      platform_of(scenario_.transmitters, context.transmitter) !=
+          platform_of(scenario_.arrays, context.array)) {
+    DirectBlast blast = direct_blast(context);
+    for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
+    returns.insert(returns.end(), blast.heard.begin(), blast.heard.end());
+  }
   return returns;
 }
 
-PingRecord PingSimulator::simulate(int ping) const {
+PingRecord PingSimulator::sound(int ping) const {
   Stopwatch watch;
   const Transmission& sent = transmission(ping);
   const Transmitter projector = projector_of(scenario_, sent);
@@ -148,7 +161,6 @@ PingRecord PingSimulator::simulate(int ping) const {
   LevelMeter levels(record.recording);
   Baseband heard, reverberated;  // of all channels
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-    // Echoes: source → target × target → array.
     const EchoContext context{.paths = paths_,
                               .scenario = scenario_,
                               .pattern = pattern,
@@ -156,9 +168,9 @@ PingRecord PingSimulator::simulate(int ping) const {
                               .ping_time = sent.time,
                               .transmitter = sent.transmitter,
                               .array = static_cast<int>(a)};
-    const Returns echo_returns = echoes(context, record);
+    const Returns sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
-    append_channels(heard, synthesizer.baseband(echo_returns, scenario_.arrays[a].phones));
+    append_channels(heard, synthesizer.baseband(sparse, scenario_.arrays[a].phones));
     append_channels(reverberated, synthesizer.baseband(patch_returns, scenario_.arrays[a].phones));
     record.timings.synthesis += watch.lap();
   }
@@ -166,17 +178,12 @@ PingRecord PingSimulator::simulate(int ping) const {
   levels.add_reverberation(reverberated, peak_pressure);
   std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
                  heard.values.begin(), std::plus<>{});
-  synthesizer.add_passband(heard, peak_pressure, record.pressure);
+  synthesizer.add_samples(heard, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();
 
-  double noise_variance = 0.0;
-  if (scenario_.noise.spectral_level_db) {
-    const double rate = record.recording.sample_rate;
-    add_white_noise(record.pressure, record.phones.size(), *scenario_.noise.spectral_level_db, rate,
-                    scenario_.seed, static_cast<std::uint32_t>(ping));
-    noise_variance = white_noise_variance(*scenario_.noise.spectral_level_db, rate);
-  }
-  levels.add_noise(noise_variance);
+  if (scenario_.noise.spectral_level_db)
+    levels.add_noise(
+        white_noise_variance(*scenario_.noise.spectral_level_db, scenario_.pings.sample_rate));
   record.levels = levels.series();
   record.summary = summarise(record, scenario_, sent_pulse, [&](double t) {
     return expected_reverberation_db(reverberation, rings, sent_pulse, t);
@@ -185,9 +192,51 @@ PingRecord PingSimulator::simulate(int ping) const {
   return record;
 }
 
+void PingSimulator::complete(PingRecord& record) const {
+  Stopwatch watch;
+  const double rate = record.recording.sample_rate;
+  if (scenario_.noise.spectral_level_db && !record.pressure.empty()) {
+    const double level = *scenario_.noise.spectral_level_db;
+    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate)
+                                                          : white_noise_variance(level, rate);
+    add_white_noise(record.pressure, record.phones.size(), variance, scenario_.seed,
+                    static_cast<std::uint32_t>(record.ping));
+  }
+  if (scenario_.pings.blanking) blank(record);
+  record.timings.noise += watch.lap();
+}
+
+/// Nothing is heard on the transmitter's own platform until the pulse has left.
+void PingSimulator::blank(PingRecord& record) const {
+  const Recording& recording = record.recording;
+  const double sent = pulse(record.transmitter).duration() - recording.start;
+  const auto deaf = static_cast<std::ptrdiff_t>(
+      recording.components() *
+      std::min(recording.samples,
+               static_cast<std::size_t>(std::ceil(std::max(0.0, sent * recording.sample_rate)))));
+  const int carrier = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)].platform;
+  const std::size_t row = recording.samples * recording.components();
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    if (scenario_.arrays[a].platform != carrier) continue;
+    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
+    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
+      const auto begin = record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
+      std::fill(begin, begin + deaf, 0.0F);
+    }
+  }
+}
+
+PingRecord PingSimulator::simulate(int ping) const {
+  PingRecord record = sound(ping);
+  complete(record);
+  return record;
+}
+
 int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
               const PingOptions& options) {
   const int count = simulator.pings();
+  const bool continuous = simulator.scenario().pings.continuous;
+  Stream stream(simulator.scenario());
   int next = 1, done = 0;
   // Two pings in flight a thread keep the writer fed; more would only cost memory.
   const auto in_flight =
@@ -204,9 +253,16 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
                                   }) &
           tbb::make_filter<int, std::shared_ptr<PingRecord>>(
               tbb::filter_mode::parallel,
-              [&](int ping) { return std::make_shared<PingRecord>(simulator.simulate(ping)); }) &
+              [&](int ping) {
+                return std::make_shared<PingRecord>(continuous ? simulator.sound(ping)
+                                                               : simulator.simulate(ping));
+              }) &
           tbb::make_filter<std::shared_ptr<PingRecord>, void>(
               tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
+                if (continuous) {
+                  stream.take(*record);
+                  simulator.complete(*record);
+                }
                 sink(std::move(*record));
                 ++done;
                 if (options.progress) options.progress(done);

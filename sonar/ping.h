@@ -23,8 +23,14 @@ class PingSimulator {
   /// \throws InputError naming the key at fault ("pings.sample_rate", "pulse.duration", …)
   explicit PingSimulator(Scenario scenario);
 
-  /// \param ping  counted from 1
+  /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
+  /// counted from 1
   [[nodiscard]] PingRecord simulate(int ping) const;
+  /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
+  /// add these up (sonar/stream.h) and complete() the sum.
+  [[nodiscard]] PingRecord sound(int ping) const;
+  /// Adds what does not come of a ping: noise, then blanking.
+  void complete(PingRecord& record) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
@@ -47,7 +53,8 @@ class PingSimulator {
   [[nodiscard]] std::vector<SectorPatches> surface_patches(const Vec3& platform, double frequency,
                                                            Timings& timings) const;
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
-  [[nodiscard]] Returns echoes(const EchoContext& context, PingRecord& record) const;
+  [[nodiscard]] Returns sparse_returns(const EchoContext& context, PingRecord& record) const;
+  void blank(PingRecord& record) const;
 
   Scenario scenario_;
   std::vector<Transmission> transmissions_;

@@ -48,7 +48,8 @@ struct PatchRow {
       0.0;  ///< expected level of that area by this pair, pulse not windowed [dB re 1 µPa]
 };
 
-/// Mean-square pressure over the phones against time, with the parts told apart. [n] each [Pa²]
+/// Mean-square pressure over the phones against time, with the parts told apart: what comes of this
+/// ping alone, whatever of others is heard in its record. [n] each [Pa²]
 struct LevelSeries {
   double time_step = 0.05;  ///< [s]
   std::vector<float> echo, reverberation, noise;
@@ -83,7 +84,7 @@ struct PingRecord {
   std::vector<Kinematics> targets;
   std::vector<Vec3> phones;  ///< [channels] of all arrays, positions at the ping's start [m]
   Recording recording;
-  std::vector<float> pressure;  ///< [channels × samples] [Pa]
+  std::vector<float> pressure;  ///< [channels × samples × components of the recording] [Pa]
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
   std::vector<PatchRow> patches;

@@ -155,4 +155,17 @@ std::vector<float> replica(const Pulse& pulse, double sample_rate) {
   return samples;
 }
 
+std::vector<float> baseband_replica(const Pulse& pulse, double rate, double carrier) {
+  const auto last = static_cast<std::size_t>(std::ceil(pulse.duration() * rate));
+  std::vector<float> samples;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double t = static_cast<double>(i) / rate, cycles = carrier * t;
+    const std::complex<double> value =
+        pulse.analytic(t) * std::polar(1.0, -2.0 * pi * (cycles - std::floor(cycles)));
+    samples.push_back(static_cast<float>(value.real()));
+    samples.push_back(static_cast<float>(value.imag()));
+  }
+  return samples;
+}
+
 }  // namespace asdic

@@ -55,5 +55,8 @@ class Pulse {
 /// Re s₊ sampled at the phones' rate: what a matched filter needs. \return
 /// [ceil(duration·sample_rate) + 1]
 [[nodiscard]] std::vector<float> replica(const Pulse& pulse, double sample_rate);
+/// s₊·e^{−i2πf_c t} sampled at the baseband's rate, t from the leading edge. \return
+/// [2 × (ceil(duration·rate) + 1)] real and imaginary part in turn
+[[nodiscard]] std::vector<float> baseband_replica(const Pulse& pulse, double rate, double carrier);
 
 }  // namespace asdic

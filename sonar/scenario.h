@@ -21,6 +21,7 @@ struct PropagationSettings {
   int max_surface_bounces = 3;
   int max_bottom_bounces = 3;
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
+  bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
   bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
 };
 

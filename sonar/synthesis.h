@@ -9,11 +9,17 @@
 
 namespace asdic {
 
-/// When and how finely the phones record. t = 0 is the leading edge of the pulse at the projector.
+/// When, how finely and about which carrier the phones record. t = 0 is the leading edge of the
+/// pulse at the projector.
 struct Recording {
   double sample_rate = 16000.0;  ///< [Hz]
   double start = 0.0;            ///< of the first sample [s]
   std::size_t samples = 0;       ///< of each phone
+  double carrier = 0.0;          ///< of complex baseband samples [Hz]; 0: real pressure
+  double epoch = 0.0;            ///< when the pulse left, on the clock that the carrier runs by [s]
+
+  [[nodiscard]] bool is_complex() const noexcept { return carrier > 0.0; }
+  [[nodiscard]] std::size_t components() const noexcept { return is_complex() ? 2 : 1; }
 };
 
 /// Complex baseband of every phone: p₊(t)·e^{−i2πf_c t}, |·| is the peak envelope.
@@ -57,11 +63,15 @@ class Synthesizer {
   [[nodiscard]] Baseband baseband(std::span<const Return> returns,
                                   std::span<const Vec3> phones) const;
 
-  /// Adds scale·Re{b e^{i2πf_c t}} to the phones' samples. \param pressure [channels ×
-  /// recording.samples], row per phone
-  void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
+  /// Adds scale·p₊ to the phones' samples: its real part where they are pressure, p₊·e^{−i2πf(t +
+  /// epoch)}, real and imaginary part in turn, where they are complex. \param samples [channels ×
+  /// recording.samples × components], row per phone
+  void add_samples(const Baseband& baseband, double scale, std::span<float> samples) const;
 
  private:
+  void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
+  void add_complex(const Baseband& baseband, double scale, std::span<float> samples) const;
+
   struct Plan;
   std::vector<Plan> plan_;  // a vector of one keeps FFTW's types out of the header
 };

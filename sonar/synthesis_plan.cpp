@@ -23,7 +23,18 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
                       .expected = "a share of the speed of sound between 0 and 0.5"});
   const double highest =
       (pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db()) * (1.0 + max_doppler);
-  if (!(recording.sample_rate > 2.0 * highest && std::isfinite(recording.sample_rate)))
+  if (recording.is_complex()) {
+    const double lowest =
+        (pulse.centre_frequency() - 0.5 * pulse.bandwidth_40db()) * (1.0 - max_doppler);
+    const double half =
+        std::max(std::abs(highest - recording.carrier), std::abs(lowest - recording.carrier));
+    if (!(recording.sample_rate >= 2.0 * half && std::isfinite(recording.sample_rate)))
+      throw InputError({.where = "baseband_rate",
+                        .got = hertz(recording.sample_rate),
+                        .expected = "at least " + hertz(2.0 * half) +
+                                    ", twice the furthest that the pulse's band (−40 dB, Doppler "
+                                    "included) reaches from the carrier"});
+  } else if (!(recording.sample_rate > 2.0 * highest && std::isfinite(recording.sample_rate)))
     throw InputError({.where = "sample_rate",
                       .got = hertz(recording.sample_rate),
                       .expected = "more than " + hertz(2.0 * highest) +
@@ -39,7 +50,8 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
     : recording((check(sent, record, doppler), record)),
       max_doppler(doppler),
       pulse_duration(sent.duration()),
-      pulse(sent, record.sample_rate),
+      pulse(sent,
+            record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate),
       expansion(pulse) {
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
   const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;

@@ -1,7 +1,10 @@
 #include "sonar/transmission.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
+
+#include "sonar/sampling.h"
 
 namespace asdic {
 
@@ -21,6 +24,10 @@ std::vector<Transmission> transmissions(const Scenario& scenario) {
            .time = transmitter.first_ping_time + static_cast<double>(n) * interval,
            .elevation = sweep.empty() ? transmitter.elevation : sweep[n % sweep.size()]});
     }
+  }
+  if (schedule.continuous) {
+    const double rate = recorded_rate(scenario);
+    for (Transmission& one : sent) one.time = std::round(one.time * rate) / rate;
   }
   std::stable_sort(sent.begin(), sent.end(), [](const Transmission& a, const Transmission& b) {
     return std::tie(a.time, a.transmitter) < std::tie(b.time, b.transmitter);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/ping/scale.h"
+#include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
 #include "io/text/material_text.h"
 #include "io/text/toml_value.h"

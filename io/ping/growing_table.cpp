@@ -5,12 +5,6 @@
 
 namespace asdic {
 
-void describe(Hdf5File& file, const std::string& dataset, const std::string& long_name,
-              const std::string& units) {
-  file.set_attribute(dataset, "long_name", long_name);
-  if (!units.empty()) file.set_attribute(dataset, "units", units);
-}
-
 GrowingTable::GrowingTable(Hdf5File& file, const std::string& group, const std::string& dimension,
                            std::vector<Column> columns)
     : file_(&file),

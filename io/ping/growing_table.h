@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/scale.h"
 
 namespace asdic {
 
@@ -31,9 +31,5 @@ class GrowingTable {
   std::vector<std::vector<double>> pending_;
   std::size_t rows_ = 0, written_ = 0;
 };
-
-/// long_name and, where there is one, units.
-void describe(Hdf5File& file, const std::string& dataset, const std::string& long_name,
-              const std::string& units = "");
 
 }  // namespace asdic

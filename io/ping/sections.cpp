@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "io/ping/growing_table.h"
-#include "io/ping/scale.h"
+#include "sonar/sampling.h"
 
 namespace asdic::ping_file {
 namespace {
@@ -41,7 +41,9 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
   file.set_attribute("", "build", provenance.build);
   file.set_attribute("", "seed", static_cast<std::int64_t>(scenario.seed));
   file.set_attribute("", "scenario_sha256", sha256(scenario.text));
-  file.set_attribute("", "pings_requested", std::int64_t{scenario.pings.count});
+  file.set_attribute(
+      "", "pings_requested",
+      static_cast<std::int64_t>(scenario.pings.count) * std::ssize(scenario.transmitters));
   file.set_attribute("", "complete", std::int64_t{0});
   if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
   file.write_text("scenario", scenario.text);
@@ -50,6 +52,20 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
   std::vector<std::int32_t> channels(channels_of(scenario));
   std::iota(channels.begin(), channels.end(), 0);
   write_scale(file, "channel", "channel", channels, "number of the phone, from 0");
+  std::vector<std::int32_t> array_of_channel;
+  std::vector<std::string> arrays, transmitters;
+  for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
+    arrays.push_back(scenario.arrays[a].name);
+    array_of_channel.insert(array_of_channel.end(), scenario.arrays[a].phones.size(),
+                            static_cast<std::int32_t>(a));
+  }
+  for (const Transmitter& transmitter : scenario.transmitters)
+    transmitters.push_back(transmitter.name);
+  file.write<std::int32_t>("channel_array", array_of_channel, {array_of_channel.size()});
+  describe(file, "channel_array", "number of the channel's array, from 0");
+  file.attach_scales("channel_array", {"channel"});
+  file.set_attribute("channel_array", "names", arrays);
+  file.set_attribute("", "transmitters", transmitters);
   write_scale<std::int32_t>(file, "xyz", "xyz", {0, 1, 2}, "0 east, 1 north, 2 depth");
   if (!scenario.targets.empty()) {
     std::vector<std::int32_t> targets(scenario.targets.size());
@@ -67,22 +83,41 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
   file.set_attribute("run", "threads", std::int64_t{provenance.threads});
 }
 
-void write_replica(Hdf5File& file, const Scenario& scenario) {
-  const Pulse pulse(scenario.pulse);
-  const double rate = scenario.pings.sample_rate;
-  const std::vector<float> samples = replica(pulse, rate);
-  std::vector<double> time(samples.size());
-  for (std::size_t i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / rate;
-  write_scale(file, "replica_time", "replica_sample", time, "after the pulse's leading edge", "s");
-  file.write<float>("replica", samples, {samples.size()});
-  describe(file, "replica", "transmitted pulse, unit peak before its window");
-  file.attach_scales("replica", {"replica_time"});
-  file.set_attribute("replica", "kind", text_of(scenario.pulse.kind));
-  file.set_attribute("replica", "centre_frequency_hz", pulse.centre_frequency());
-  file.set_attribute("replica", "bandwidth_hz", pulse.bandwidth_40db());
-  file.set_attribute("replica", "duration_s", pulse.duration());
-  file.set_attribute("replica", "window", text_of(scenario.pulse.window));
-  file.set_attribute("replica", "source_level_db", scenario.transmitters[0].source_level_db);
+/// The pulse of one transmitter as a matched filter needs it: real at the phones' rate, or complex
+/// about the baseband's carrier.
+void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter) {
+  const PulseSettings& settings = pulse_of(scenario, transmitter);
+  const Pulse pulse(settings);
+  const double rate = recorded_rate(scenario), carrier = recorded_carrier(scenario);
+  const std::string suffix = transmitter == 0 ? "" : "_" + std::to_string(transmitter);
+  const std::string name = "replica" + suffix, time_name = "replica_time" + suffix;
+  std::vector<float> samples =
+      carrier > 0.0 ? baseband_replica(pulse, rate, carrier) : replica(pulse, rate);
+  const std::size_t length = carrier > 0.0 ? samples.size() / 2 : samples.size();
+  std::vector<double> time(length);
+  for (std::size_t i = 0; i < length; ++i) time[i] = static_cast<double>(i) / rate;
+  write_scale(file, time_name, "replica_sample" + suffix, time, "after the pulse's leading edge",
+              "s");
+  if (carrier > 0.0)
+    file.write<float>(name, samples, {length, 2});
+  else
+    file.write<float>(name, samples, {length});
+  describe(file, name,
+           carrier > 0.0 ? "transmitted pulse, complex baseband, unit peak before its window"
+                         : "transmitted pulse, unit peak before its window");
+  file.attach_scales(name, {time_name});
+  file.set_attribute(name, "kind", text_of(settings.kind));
+  file.set_attribute(name, "centre_frequency_hz", pulse.centre_frequency());
+  file.set_attribute(name, "bandwidth_hz", pulse.bandwidth_40db());
+  file.set_attribute(name, "duration_s", pulse.duration());
+  file.set_attribute(name, "window", text_of(settings.window));
+  file.set_attribute(name, "source_level_db",
+                     scenario.transmitters[static_cast<std::size_t>(transmitter)].source_level_db);
+}
+
+void write_replicas(Hdf5File& file, const Scenario& scenario) {
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
+    write_replica(file, scenario, static_cast<int>(t));
 }
 
 void write_rays(Hdf5File& file, const RayPaths& rays) {

@@ -23,13 +23,6 @@ double imaginary_delay(double absorption_db, double frequency) {
   return frequency > 0.0 ? -absorption_db / db_per_neper / (2.0 * pi * frequency) : 0.0;
 }
 
-void write_axis(Hdf5File& file, const std::string& name, const std::vector<double>& values,
-                const std::string& long_name) {
-  file.write<double>(name, values, {values.size()});
-  describe(file, name, long_name, "m");
-  file.make_scale(name, name);
-}
-
 std::vector<GrowingTable::Column> columns() {
   return {
       {"source_index", "index into source_depth", "", Type::int32},
@@ -163,9 +156,12 @@ void read_legs(const Hdf5File& file, const Table& table, ArrivalsFile& result) {
 void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
   file.set_attribute("", "frequency_hz", arrivals.frequency);
   file.set_attribute("", "irregular", std::int64_t{arrivals.irregular});
-  write_axis(file, "source_depth", arrivals.source_depths, "depth of the source, positive down");
-  write_axis(file, "depth", arrivals.receiver_depths, "depth of the receiver, positive down");
-  write_axis(file, "range", arrivals.receiver_ranges, "horizontal distance from the source");
+  write_scale(file, "source_depth", "source_depth", arrivals.source_depths,
+              "depth of the source, positive down", "m");
+  write_scale(file, "depth", "depth", arrivals.receiver_depths,
+              "depth of the receiver, positive down", "m");
+  write_scale(file, "range", "range", arrivals.receiver_ranges,
+              "horizontal distance from the source", "m");
   const std::size_t ranges = arrivals.receiver_ranges.size();
   const std::size_t rows = arrivals.irregular ? 1 : arrivals.receiver_depths.size();
   GrowingTable table(file, "arrivals", "arrival", columns());

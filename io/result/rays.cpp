@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "io/ping/growing_table.h"
+#include "io/hdf5/scale.h"
 #include "io/result/tables.h"
 
 namespace asdic::result_tables {
@@ -16,9 +16,7 @@ using bellhop::RayFile;
 void write_numbers(Hdf5File& file, const std::string& name, std::size_t n) {
   std::vector<std::int32_t> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0);
-  file.write<std::int32_t>("rays/" + name, numbers, {n});
-  describe(file, "rays/" + name, "number, from 0");
-  file.make_scale("rays/" + name, name);
+  write_scale(file, "rays/" + name, name, numbers, "number, from 0");
 }
 
 template <class T>

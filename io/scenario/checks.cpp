@@ -4,6 +4,8 @@
 
 #include "io/scenario/sections.h"
 #include "sonar/ping_bounds.h"
+#include "sonar/sampling.h"
+#include "sonar/stream.h"
 #include "sonar/transmission.h"
 
 namespace asdic::scenario {
@@ -123,19 +125,15 @@ void check_platforms(TomlTable& root, const Scenario& scenario) {
                          arrays = root.one_or_more("array");
   double end = 0.0;
   for (const PingTimes& ping : ping_times(scenario)) end = std::max(end, ping.end);
-  for (std::size_t i = 0; i < platforms.size(); ++i)
-    check_carried(scenario, static_cast<int>(i), Vec3::Zero(), end, platforms[i],
-                  [&](const Moment& moment, const WaterColumn& water, double depth) {
-                    return platforms[i].fault(moment.key, water.expected(),
-                                              depth_at_time(depth, moment.time));
-                  });
   for (std::size_t i = 0; i < transmitters.size(); ++i) {
     const Transmitter& transmitter = scenario.transmitters[i];
-    check_carried(scenario, transmitter.platform, transmitter.offset, end,
-                  platforms[static_cast<std::size_t>(transmitter.platform)],
+    TomlTable& carrier = platforms[static_cast<std::size_t>(transmitter.platform)];
+    check_carried(scenario, transmitter.platform, transmitter.offset, end, carrier,
                   [&](const Moment& moment, const WaterColumn& water, double depth) {
-                    return transmitters[i].fault("offset", water.expected(),
-                                                 depth_at_time(depth, moment.time));
+                    const std::string got = depth_at_time(depth, moment.time);
+                    return transmitters[i].has("offset")
+                               ? transmitters[i].fault("offset", water.expected(), got)
+                               : carrier.fault(moment.key, water.expected(), got);
                   });
   }
   for (std::size_t i = 0; i < arrays.size(); ++i) {
@@ -182,54 +180,47 @@ void check_targets(TomlTable& root, const Scenario& scenario) {
   }
 }
 
-double slowest_water(const Environment& ocean) {
-  double slowest = infinity;
-  if (ocean.section) {
-    for (const double c : ocean.section->speeds()) slowest = std::min(slowest, c);
-    return slowest;
-  }
-  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  for (int i = 0; i <= 100; ++i) slowest = std::min(slowest, ocean.water.at(bottom * i / 100).c);
-  return slowest;
-}
-
 /// fs > 2·(f_c + B/2)·η_max, B the width outside which the pulse's spectrum is 40 dB down: what the
 /// synthesizer asks for as well.
 void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettings& settings) {
+  const double rate = recorded_rate(scenario);
+  TomlTable pings = root.table("pings");
+  if (scenario.pings.samples == Samples::baseband) {
+    const Band band = heard_band(scenario, Pulse(settings));
+    const double carrier = recorded_carrier(scenario);
+    const double needed = 2.0 * std::max(band.highest - carrier, carrier - band.lowest);
+    if (rate < needed)
+      throw pings.fault(pings.has("baseband_rate") ? "baseband_rate" : "carrier",
+                        "a baseband rate of at least " + to_text(std::ceil(needed)) +
+                            " Hz: the pulse's band with its Doppler shift about a carrier of " +
+                            to_text(std::round(10.0 * carrier) / 10.0) + " Hz",
+                        to_text(rate) + " Hz");
+    return;
+  }
   double highest = settings.kind == PulseKind::cw ? settings.frequency
                    : settings.kind == PulseKind::file
                        ? 0.0
                        : std::max(settings.start_frequency, settings.end_frequency);
-  if (scenario.pings.sample_rate > 2.0 * highest) {  // else it is too slow without a spectrum
-    const Pulse pulse(settings);
-    highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
-  }
-  double target_speed = 0.0;
-  for (const Target& target : scenario.targets)
-    target_speed = std::max(target_speed, fastest(target.track));
-  double platform_speed = 0.0;
-  for (const Platform& platform : scenario.platforms)
-    platform_speed = std::max(platform_speed, fastest(platform.track));
-  const double slowest_sound = slowest_water(scenario.environment);
-  // η = (1 + v_T/c)(1 + v_R/c)/((1 − v_T/c)(1 − v_S/c)) ≈ 1 + 2(v_T + v_S)/c at most
-  const double doppler = 1.0 + 2.0 * (target_speed + platform_speed) / slowest_sound;
-  const double needed = 2.0 * highest * doppler;
-  TomlTable pings = root.table("pings");
-  if (!(scenario.pings.sample_rate > needed))
+  highest *= 1.0 + doppler_bound(scenario);
+  if (rate > 2.0 * highest)  // else it is too slow without a spectrum
+    highest = heard_band(scenario, Pulse(settings)).highest;
+  if (!(rate > 2.0 * highest))
     throw pings.fault("sample_rate",
-                      "a sample rate above " + to_text(std::ceil(needed)) +
+                      "a sample rate above " + to_text(std::ceil(2.0 * highest)) +
                           " Hz: twice the highest frequency of the pulse with its Doppler shift",
-                      to_text(scenario.pings.sample_rate) + " Hz");
+                      to_text(rate) + " Hz");
 }
 
 void check_size(TomlTable& root, const Scenario& scenario) {
   constexpr double limit = 2147483648.0;  // 2 GiB
-  const double samples = scenario.pings.recording_duration * scenario.pings.sample_rate;
+  const double rate = recorded_rate(scenario);
+  const std::size_t longest = scenario.pings.continuous ? Stream::longest_part(scenario) : 0;
+  const double samples =
+      std::max(scenario.pings.recording_duration * rate, static_cast<double>(longest));
   TomlTable pings = root.table("pings");
   if (samples < 2.0)
     throw pings.fault("recording_duration", "at least two samples",
-                      to_text(scenario.pings.recording_duration) + " s at " +
-                          to_text(scenario.pings.sample_rate) + " Hz");
+                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz");
   const double end = scenario.pings.recording_start + scenario.pings.recording_duration;
   if (scenario.pulse.duration > end) {
     TomlTable pulse = root.table("pulse");
@@ -238,13 +229,13 @@ void check_size(TomlTable& root, const Scenario& scenario) {
                       to_text(scenario.pulse.duration) + " s");
   }
   const std::size_t phones = channels_of(scenario);
-  const double bytes = samples * static_cast<double>(phones) * sizeof(float);
+  const double bytes = samples * static_cast<double>(phones) * sizeof(float) *
+                       (scenario.pings.samples == Samples::baseband ? 2.0 : 1.0);
   if (bytes > limit)
     throw pings.fault("recording_duration", "at most 2 GiB of pressure a ping",
-                      to_text(scenario.pings.recording_duration) + " s at " +
-                          to_text(scenario.pings.sample_rate) + " Hz on " + std::to_string(phones) +
-                          " phones, " + to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) +
-                          " GiB a ping");
+                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz on " +
+                          std::to_string(phones) + " phones, " +
+                          to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) + " GiB a ping");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "io/scenario/sections.h"
+#include "io/scenario/tracks.h"
 
 namespace asdic::scenario {
 
@@ -11,9 +12,30 @@ void read_propagation(TomlTable table, Scenario& scenario) {
   settings.max_launch_angle = radians(table.number(
       "max_launch_angle_deg",
       {.noun = "angle", .unit = "degrees", .low = 0.0, .high = 90.0, .above = true}, 90.0));
+  settings.direct_blast = table.flag("direct_blast", settings.direct_blast);
   settings.exact_per_phone = table.flag("exact_per_phone", false);
   table.finish();
 }
+
+namespace {
+
+/// What is recorded: pressure at a rate, or complex baseband about a carrier.
+void read_samples(TomlTable& table, PingSchedule& pings) {
+  const std::string samples = table.choice("samples", {"pressure", "baseband"}, "pressure");
+  pings.samples = samples == "baseband" ? Samples::baseband : Samples::pressure;
+  constexpr Quantity rate{
+      .noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e7, .above = true};
+  if (pings.samples == Samples::pressure) {
+    exclude(table, "samples = \"pressure\"", {"carrier", "baseband_rate"});
+    pings.sample_rate = table.number("sample_rate", rate, pings.sample_rate);
+    return;
+  }
+  exclude(table, "samples = \"baseband\"", {"sample_rate"});
+  if (table.has("carrier")) pings.carrier = table.number("carrier", frequency_quantity);
+  if (table.has("baseband_rate")) pings.baseband_rate = table.number("baseband_rate", rate);
+}
+
+}  // namespace
 
 void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scenario) {
   PingSchedule& pings = scenario.pings;
@@ -31,9 +53,11 @@ void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scena
       table.number("recording_duration", duration_quantity, pings.recording_duration);
   pings.recording_start =
       table.number("recording_start", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e5}, 0.0);
-  pings.sample_rate = table.number(
-      "sample_rate", {.noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e7, .above = true},
-      pings.sample_rate);
+  read_samples(table, pings);
+  pings.continuous = table.flag("continuous", pings.continuous);
+  pings.blanking = table.flag("blanking", pings.blanking);
+  if (pings.continuous && pings.recording_start > 0.0)
+    throw table.fault("recording_start", "0 in a continuous stream, which has no gaps");
   table.finish();
 }
 

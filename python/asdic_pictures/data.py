@@ -82,10 +82,13 @@ class PingFile:
             self.file.close()
             raise InputError(path, f"version {version} of the format", "version 1")
         shape = self._dataset("pressure").shape
-        if len(shape) != 3 or 0 in shape:
+        self.complex = len(shape) == 4 and shape[3] == 2
+        if (len(shape) != 3 and not self.complex) or 0 in shape:
             raise InputError(path, f"pressure of shape {shape}",
-                             "(ping, channel, sample), none of them 0")
-        self.pings, self.channels, self.samples = shape
+                             "(ping, channel, sample) or (ping, channel, sample, 2), none of them 0")
+        self.pings, self.channels, self.samples = shape[:3]
+        if self.complex:
+            self.samples *= self._finer
 
     def __enter__(self):
         return self
@@ -162,7 +165,7 @@ class PingFile:
     @cached_property
     def valid_samples(self) -> np.ndarray:
         """[ping], never more than the record is long"""
-        return np.clip(self.read("valid_samples"), 0, self.samples)
+        return np.clip(self.read("valid_samples") * self._finer, 0, self.samples)
 
     @cached_property
     def simulated(self) -> np.ndarray:
@@ -175,11 +178,34 @@ class PingFile:
         return float(self.read("time", slice(0, 1))[0])
 
     @cached_property
-    def sample_rate(self) -> float:
+    def stored_rate(self) -> float:
         rate = self.attribute("pressure", "sample_rate_hz")
         if not rate > 0:
             raise InputError(self.path, f"a sample rate of {rate} Hz", "one above 0")
         return rate
+
+    @cached_property
+    def _finer(self) -> int:
+        """Samples of pressure for one of complex baseband: enough for the highest frequency."""
+        if not self.complex:
+            return 1
+        carrier = self.attribute("pressure", "carrier_hz")
+        return int(np.ceil(2.5 * (carrier + 0.5 * self.stored_rate) / self.stored_rate))
+
+    @cached_property
+    def sample_rate(self) -> float:
+        """Of `pressure` and `replica` [Hz]"""
+        return self.stored_rate * self._finer
+
+    def _real(self, parts: np.ndarray) -> np.ndarray:
+        """Pressure of complex baseband [samples, 2], t = 0 at its first sample."""
+        return signal.passband(parts[:, 0] + 1j * parts[:, 1], self._finer,
+                               self.attribute("pressure", "carrier_hz"), self.sample_rate)
+
+    def replica(self) -> np.ndarray:
+        """The pulse at `sample_rate`, unit peak before its window"""
+        r = np.nan_to_num(self.read("replica").astype(float))
+        return self._real(r) if self.complex else r
 
     @cached_property
     def centre_frequency(self) -> float:
@@ -232,10 +258,11 @@ class PingFile:
 
     def pressure(self, row: int, channel: int) -> np.ndarray:
         """Pressure of one phone [Pa]; samples that are not numbers are 0 (see `warnings`)."""
-        valid = slice(0, int(self.valid_samples[row]))
+        valid = slice(0, int(self.valid_samples[row]) // self._finer)
         p = self.read("pressure", (row, channel, valid)).astype(float)
         self._bad_samples[row, channel] = int(np.count_nonzero(~np.isfinite(p)))
-        return np.nan_to_num(p, nan=0.0, posinf=0.0, neginf=0.0)
+        p = np.nan_to_num(p, nan=0.0, posinf=0.0, neginf=0.0)
+        return self._real(p) if self.complex else p
 
     def warnings(self) -> list[str]:
         """What the reader of the pictures should know, after they are drawn."""

@@ -14,7 +14,7 @@ COLUMNS = 1400
 def nothing_to_show(data, ping):
     if data.pulse_kind not in ("lfm", "hfm", "file"):
         return "a tone has nothing to compress"
-    if data.valid_samples[ping] < data.read("replica").size:
+    if data.valid_samples[ping] < data.replica().size:
         return "the record is shorter than the pulse"
     return None
 
@@ -32,7 +32,7 @@ def compress(envelopes, replica, axis=-1):
 
 def replica_envelope(data, b):
     """The stored pulse, in the band and at the rate of `b`. → [sample]"""
-    replica = np.nan_to_num(data.read("replica").astype(float))
+    replica = data.replica()
     padded = np.zeros(int(round(b.duration * data.sample_rate)))
     padded[: len(replica)] = replica[: len(padded)]
     # as long as the record, so that rate and carrier are the same

@@ -62,6 +62,19 @@ def band_filter(offset, width: float):
     return np.cos(0.5 * np.pi * np.sin(0.5 * np.pi * x) ** 2)
 
 
+def passband(envelope: np.ndarray, finer: int, carrier: float, rate: float) -> np.ndarray:
+    """Re{b e^{i2πf_c t}} at a rate `finer` times the envelope's, t = 0 at the first sample."""
+    n = len(envelope)
+    spectrum = np.fft.fft(envelope)
+    wide = np.zeros(n * finer, complex)
+    half = n // 2
+    wide[:half] = spectrum[:half]
+    if n > half:
+        wide[-(n - half):] = spectrum[half:]
+    t = np.arange(n * finer) / rate
+    return np.real(np.fft.ifft(wide) * finer * np.exp(2j * np.pi * carrier * t))
+
+
 def baseband(channels, sample_rate: float, carrier: float, width: float,
              start: float = 0.0, least: int = 4) -> Baseband:
     """Keeps `width` Hz around `carrier`: the analytic signal, shifted to frequency zero, decimated.

@@ -24,6 +24,9 @@ struct BeamSetting {
 struct BeamLaunch {
   double elevation = 0.0;  ///< [rad], positive up
   double amplitude = 1.0;  ///< the source's pattern there
+  /// Angles to the next higher and lower ray, where a graded fan has hats of two unequal halves
+  /// (0: no half on that side) [rad]. Both 0: BeamSetting::spacing.
+  double higher = 0.0, lower = 0.0;
 };
 
 /// Receivers and what has arrived at them: columns of equal range, one after the other.

@@ -17,7 +17,10 @@ const float root_of_two_pi = static_cast<float>(std::sqrt(2.0 * pi));
 
 ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
                      std::size_t columns)
-    : setting_(setting), depths_(depths), padded_depths_(depths.begin(), depths.end()) {
+    : setting_(setting),
+      spacing_of_fan_(setting.spacing),
+      depths_(depths),
+      padded_depths_(depths.begin(), depths.end()) {
   padded_depths_.resize(depths.size() + lanes, depths.back() + 1e6);
   stride_ = (depths.size() + 2 * lanes - 1) / lanes * lanes;
   real_.assign(columns * stride_, 0.0F);
@@ -101,6 +104,8 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
       const Lanes per_q = 1.0F / q;
       weight = amplitude * max(Lanes(0.0F), 1.0F - n * per_q * per_spacing);
       weight *= coherent ? sqrt(per_q) : per_q;
+      // half a hat ends at its ray, where it is not zero
+      if (half_ != Half::both) where(ramp() >= static_cast<float>(last - k), weight) = 0.0F;
     } else {
       const Lanes per_sigma = 1.0F / max(q * spacing, Lanes(least_[i]));
       const Lanes u = n * per_sigma;
@@ -222,10 +227,11 @@ void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
                           .length = 0.0,
                           .q = x.q[i],
                           .dq_ds = x.dq_ds[i],
-                          .loss = std::polar(x.level[i], x.phase[i])};
+                          .loss = std::polar(x.level[i], x.phase[i]),
+                          .mirror = x.mirror[i]};
   float* real = real_.data() + x.column[i] * stride_;
   float* imaginary = setting_.coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
-  beams::add_crossing(setting_, launched_, x.source_speed, crossing, depths_,
+  beams::add_crossing(setting_, launch_, launched_, x.source_speed, crossing, depths_,
                       [&](std::size_t k, std::complex<double> p) {
                         real[k] += static_cast<float>(p.real());
                         if (imaginary != nullptr) imaginary[k] += static_cast<float>(p.imag());
@@ -233,6 +239,21 @@ void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
 }
 
 void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {
+  if (launch.higher == launch.lower) {
+    setting_.spacing = launch.higher == 0.0 ? spacing_of_fan_ : launch.higher;
+    launch_ = launch;
+    return add_half(launch, crossings, Half::both);
+  }
+  setting_.spacing = launch.higher;
+  launch_ = launch, launch_.lower = 0.0;
+  add_half(launch, crossings, Half::higher);
+  setting_.spacing = launch.lower;
+  launch_ = launch, launch_.higher = 0.0;
+  add_half(launch, crossings, Half::lower);
+}
+
+void ColumnSum::add_half(const BeamLaunch& launch, const Crossings& crossings, Half half) {
+  half_ = half;
   prepare(launch, crossings);
   const bool is_hat = setting_.kind == BeamKind::hat, even = spacing_ > 0.0;
   if (setting_.coherent) {

@@ -38,6 +38,7 @@ class ColumnSum {
 
   void prepare(const BeamLaunch& launch, const Crossings& crossings);
   void find_rows(const Crossings& crossings);
+  void find_rows_of_half(const Crossings& crossings);
   void prepare_recurrences(std::size_t n);
   [[nodiscard]] Way way(std::size_t i) const noexcept;
   template <bool coherent, bool is_hat>
@@ -49,7 +50,13 @@ class ColumnSum {
   void add_evenly(std::size_t i, float* real, float* imaginary) const;
   void add_plainly(const Crossings& crossings, std::size_t i);
 
+  /// The half of a hat that is being added.
+  enum class Half : std::int8_t { both, higher, lower };
+  void add_half(const BeamLaunch& launch, const Crossings& crossings, Half half);
+
   BeamSetting setting_;
+  double spacing_of_fan_ = 0.0;
+  Half half_ = Half::both;
   std::span<const double> depths_;
   std::vector<double> padded_depths_;  // [rows + lanes], the last ones far away
   std::size_t stride_ = 0;             // floats from column to column
@@ -58,6 +65,7 @@ class ColumnSum {
   std::vector<float> real_, imaginary_;       // [columns × stride]
 
   // Of one beam, [crossings].
+  BeamLaunch launch_;
   double launched_ = 1.0;
   std::vector<float> amplitude_, phase_, wave_number_;  // at the ray; dφ/dz
   std::vector<float> cosine_, sine_, q_, growth_;       // |cos θ|, sin θ, q, dq/dz

@@ -67,6 +67,7 @@ void ColumnSum::find_rows(const Crossings& x) {
   const std::size_t n = x.size();
   const double top = first_depth_, per = per_spacing_, step = spacing_;
   const auto rows = static_cast<double>(depths_.size());
+  if (half_ != Half::both) return find_rows_of_half(x);
   const double *depth = x.depth.data(), *above = above_.data(), *below = below_.data();
   std::int32_t *first_out = first_.data(), *last_out = last_.data();
   float* offset = offset_.data();
@@ -93,6 +94,39 @@ void ColumnSum::find_rows(const Crossings& x) {
       first_[i] = row(x.depth[i] - above_[i]);
       last_[i] = row(x.depth[i] + below_[i]);
     }
+  }
+}
+
+/// Rows on one side of each ray; one at the ray itself belongs to the higher half.
+void ColumnSum::find_rows_of_half(const Crossings& x) {
+  const bool higher = half_ == Half::higher;
+  const auto rows = static_cast<double>(depths_.size());
+  const auto first_not_above = [&](double z) {
+    if (spacing_ > 0.0)
+      return static_cast<std::int32_t>(
+          std::clamp(std::ceil((z - first_depth_) * per_spacing_), 0.0, rows));
+    return static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), z) -
+                                     depths_.begin());
+  };
+  const auto first_below = [&](double z) {
+    if (spacing_ > 0.0)
+      return static_cast<std::int32_t>(
+          std::clamp(std::floor((z - first_depth_) * per_spacing_) + 1.0, 0.0, rows));
+    return static_cast<std::int32_t>(std::upper_bound(depths_.begin(), depths_.end(), z) -
+                                     depths_.begin());
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double z = x.depth[i];
+    const bool deeper = (x.q[i] * x.cosine[i] * x.mirror[i] <= 0.0) == higher;
+    if (deeper) {
+      first_[i] = higher ? first_not_above(z) : first_below(z);
+      last_[i] = std::max(first_[i], first_below(z + below_[i]));
+    } else {
+      last_[i] = higher ? first_below(z) : first_not_above(z);
+      first_[i] = std::min(last_[i], first_not_above(z - above_[i]));
+    }
+    if (spacing_ > 0.0)
+      offset_[i] = static_cast<float>(first_depth_ + static_cast<double>(first_[i]) * spacing_ - z);
   }
 }
 

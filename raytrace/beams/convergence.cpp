@@ -18,13 +18,108 @@ int first_count(const PropagationCase& run_case) {
   return std::clamp(static_cast<int>(count) + 1, 128, 20'000);
 }
 
+/// Where errors are smaller than 100 dB below 1 m, or 60 dB below the strongest, they do not count.
+double faintest_of(const std::vector<std::complex<double>>& field) {
+  double strongest = 0.0;
+  for (const auto& p : field) strongest = std::max(strongest, std::abs(p));
+  return std::min(1e-5, 1e-3 * strongest);
+}
+
+/// The value that a share of them stays below.
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+constexpr double most_bound_db = 99.0;  // where the bound is as large as the field
+
+/// |ΔTL| that a bound allows [dB], of the cells where field or bound is above the floor.
+std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
+                              const std::vector<double>& bound, bool coherent) {
+  const double faintest = faintest_of(field), factor = coherent ? 20.0 : 10.0;
+  std::vector<double> unsure;
+  unsure.reserve(field.size());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double p = std::abs(field[i]), x = coherent ? p : p * p;
+    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest) continue;
+    unsure.push_back(bound[i] < x
+                         ? std::min(most_bound_db, -factor * std::log10(1.0 - bound[i] / x))
+                         : most_bound_db);
+  }
+  return unsure;
+}
+
+/// Root mean square over depth (mean intensity if not coherent) of each column.
+std::vector<double> column_levels(const std::vector<std::complex<double>>& field,
+                                  std::size_t columns, bool coherent) {
+  std::vector<double> level(columns);
+  for (std::size_t i = 0; i < field.size(); ++i) level[i % columns] += std::norm(field[i]);
+  const double rows = static_cast<double>(field.size()) / static_cast<double>(columns);
+  for (double& l : level) l = coherent ? std::sqrt(l / rows) : l / rows;
+  return level;
+}
+
+std::string percent(double share) {
+  return std::to_string(static_cast<int>(std::floor(100.0 * share))) + " %";
+}
+
+std::string decimals(double value) {
+  std::string text = std::to_string(value);
+  return text.substr(0, text.find('.') + 3);
+}
+
+/// Until the bound is what is wanted.
+ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& field_of,
+                             bool circle, std::size_t first, std::size_t most) {
+  const BeamSettings& beams = run_case.beams;
+  const bool coherent = run_case.field == FieldKind::coherent;
+  BeamFan fan = even_fan(beams.lowest, beams.highest, static_cast<int>(first));
+  std::vector<double> level;
+  while (true) {
+    const std::size_t count = fan.elevation.size();
+    FanField pass = field_of(fan, {.bound = true, .level = level});
+    ConvergedField answer{.field = std::move(pass.field),
+                          .beams = count,
+                          .error_db = bound_db(answer.field, pass.bound, coherent, 0.95),
+                          .bounded = true};
+    if (answer.error_db <= wanted_bound_db) return answer;
+    if (count >= most) {
+      const auto unsure = unsure_db(answer.field, pass.bound, coherent);
+      const auto sure = std::count_if(unsure.begin(), unsure.end(),
+                                      [](double db) { return db <= wanted_bound_db; });
+      answer.note = std::to_string(count) + " beams leave the field sure to " +
+                    decimals(wanted_bound_db) + " dB at " +
+                    percent(static_cast<double>(sure) / static_cast<double>(unsure.size())) +
+                    " of the receivers" +
+                    (answer.error_db < most_bound_db
+                         ? ", to " + decimals(answer.error_db) + " dB at 95 %"
+                         : std::string(", and less than 95 % of them to any number"));
+      return answer;
+    }
+    level = column_levels(answer.field, run_case.receivers.ranges.size(), coherent);
+    // The bound falls with the number or a little faster.
+    const double factor = std::clamp(1.05 * answer.error_db / wanted_bound_db, 1.25, 2.0);
+    const auto next = std::min(static_cast<std::size_t>(factor * static_cast<double>(count)), most);
+    if (beams.kind == BeamKind::hat && !circle) fan = graded_fan(fan, pass.tube_share, next);
+    if (fan.elevation.size() <= count)  // Gaussians, or no tube that stands out
+      fan = even_fan(beams.lowest, beams.highest, static_cast<int>(std::max(next, count + 1)));
+  }
+}
+
 }  // namespace
+
+double bound_db(const std::vector<std::complex<double>>& field, const std::vector<double>& bound,
+                bool coherent, double share) {
+  std::vector<double> unsure = unsure_db(field, bound, coherent);
+  return quantile(unsure, share);
+}
 
 double level_difference_db(const std::vector<std::complex<double>>& a,
                            const std::vector<std::complex<double>>& b, double share) {
-  double strongest = 0.0;
-  for (const auto& p : b) strongest = std::max(strongest, std::abs(p));
-  const double floor = std::min(1e-5, 1e-3 * strongest);
+  const double floor = faintest_of(b);
   std::vector<double> difference;
   difference.reserve(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -33,11 +128,7 @@ double level_difference_db(const std::vector<std::complex<double>>& a,
     difference.push_back(20.0 *
                          std::abs(std::log10(std::max(x, 0.1 * floor) / std::max(y, 0.1 * floor))));
   }
-  if (difference.empty()) return 0.0;
-  const auto at = difference.begin() +
-                  static_cast<std::ptrdiff_t>(share * static_cast<double>(difference.size() - 1));
-  std::nth_element(difference.begin(), at, difference.end());
-  return *at;
+  return quantile(difference, share);
 }
 
 ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of) {
@@ -45,12 +136,16 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
   const bool circle = std::abs(beams.highest - beams.lowest - 2.0 * pi) < 1e-9;
   const int most = std::max(most_beams, beams.count | 1);
   int count = std::max(beams.count, first_count(run_case)) | 1;
+  if (has_error_bound(run_case))
+    return bounded_field(run_case, field_of, circle, static_cast<std::size_t>(count),
+                         static_cast<std::size_t>(most));
   double last_change = 0.0;
   int last_count = 0;
   while (true) {
     // Every second of an odd number of beams has both ends; around a circle it takes an even
     // number.
-    FanField fan = field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count));
+    FanField fan =
+        field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count), {.half = true});
     const double change = level_difference_db(fan.half, fan.field, 0.95);
     // change ~ count^−p; what is left is the sum of all further halvings. p is 2 between smooth
     // neighbours, 1 or less where edges of ray families decide.
@@ -63,9 +158,9 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
                           .error_db = change / (std::exp2(p) - 1.0)};
     if (answer.error_db <= wanted_error_db) return answer;
     if (count >= most) {
-      answer.note = "the field is not sure of its number of beams: " + std::to_string(count) +
-                    " leave an error of about " + std::to_string(answer.error_db) +
-                    " dB at 95 % of the receivers";
+      answer.note =
+          "the field is not sure of its number of beams: " + std::to_string(answer.beams) +
+          " leave an error of about " + decimals(answer.error_db) + " dB at 95 % of the receivers";
       return answer;
     }
     last_change = change;

@@ -13,20 +13,30 @@ namespace asdic {
 struct ConvergedField {
   std::vector<std::complex<double>> field;  ///< [rows × ranges]
   std::size_t beams = 0;
-  double error_db = 0.0;  ///< estimate of |ΔTL| to infinitely many beams, at 95 % of the cells
+  double error_db = 0.0;  ///< |ΔTL| to infinitely many beams, at 95 % of the cells; no more than
+  bool bounded = false;   ///< this is sure (TubeError), else an estimate
   std::string note;       ///< what the user should know
 };
 
-/// The field of a fan and of every second beam of it.
-using FieldOfFan = std::function<FanField(const BeamFan&)>;
+/// The field of a fan and what else is to be known of it.
+using FieldOfFan = std::function<FanField(const BeamFan&, const FieldCheck&)>;
 
-/// Makes the fan denser until it is as good as every second beam of it to `wanted_error_db`,
-/// allowing for the rate at which that difference shrinks. docs/theory/fields.md
+/// Makes the fan denser until the field is sure to `wanted_bound_db` where there is an error bound
+/// (has_error_bound): hats where their tubes need it, Gaussians evenly. Other kinds: until it is as
+/// good as every second beam of it to `wanted_error_db`, allowing for the rate at which that
+/// difference shrinks. docs/theory/fields.md
 [[nodiscard]] ConvergedField converged_field(const PropagationCase& run_case,
                                              const FieldOfFan& field_of);
 
-inline constexpr double wanted_error_db = 0.2;  ///< |ΔTL| at 95 % of the cells
+inline constexpr double wanted_bound_db = 0.5;  ///< |ΔTL| at 95 % of the cells
+inline constexpr double wanted_error_db = 0.2;  ///< the same where it can only be estimated
 inline constexpr int most_beams = 32'769;       ///< beyond this the error is told and left
+
+/// What a share of the cells is sure to, |ΔTL| [dB], no more than 99; of those where field or bound
+/// is above the floor of level_difference_db.
+/// \param bound  majorant of the error of a pressure or, if not coherent, of its square
+[[nodiscard]] double bound_db(const std::vector<std::complex<double>>& field,
+                              const std::vector<double>& bound, bool coherent, double share);
 
 /// |ΔTL| that a share of the cells stays below [dB], among those where either is above the floor:
 /// 100 dB below 1 m, or 60 dB below the strongest, whatever is fainter.

@@ -18,6 +18,10 @@ struct Crossing {
   double q = 0.0;             ///< ∂n/∂α [m/rad]
   double dq_ds = 0.0;         ///< c·p [1/rad]
   std::complex<double> loss;  ///< reflections × exp(−∫α ds) × i^caustics
+  double mirror = 1.0;        ///< −1 after an odd number of reflections
+
+  /// +1 where rays launched a little higher are deeper here, −1 where they are shallower.
+  [[nodiscard]] double toward_higher() const noexcept { return q * cosine * mirror > 0.0 ? -1 : 1; }
 };
 
 /// i^n.
@@ -42,7 +46,10 @@ inline Crossing crossing_of(const RaySegment& segment, const RayState& state) no
           .q = state.q,
           .dq_ds = c * state.p,
           .loss = segment.history.reflection * std::exp(-state.nepers) *
-                  power_of_i(caustics_at(segment, state))};
+                  power_of_i(caustics_at(segment, state)),
+          .mirror = (segment.history.surface_bounces + segment.history.bottom_bounces) % 2 == 0
+                        ? 1.0
+                        : -1.0};
 }
 
 /// Calls visit(column, state) for each range that a segment crosses, in the order in which it does.

@@ -6,7 +6,7 @@ namespace asdic {
 
 void Crossings::resize(std::size_t n) {
   column.resize(n);
-  for (auto* array : {&depth, &cosine, &sine, &speed, &time, &q, &dq_ds, &level, &phase})
+  for (auto* array : {&depth, &cosine, &sine, &speed, &time, &q, &dq_ds, &level, &phase, &mirror})
     array->resize(n);
 }
 
@@ -26,6 +26,7 @@ void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Cr
       out.dq_ds.push_back(x.dq_ds);
       out.level.push_back(std::abs(x.loss));
       out.phase.push_back(std::arg(x.loss));
+      out.mirror.push_back(x.mirror);
     });
 }
 

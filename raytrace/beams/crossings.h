@@ -19,6 +19,7 @@ struct Crossings {
   std::vector<double> q, dq_ds;       ///< [n] ∂n/∂α [m/rad] and its growth c·p [1/rad]
   std::vector<double> level;          ///< [n] |reflections|·exp(−∫α ds)
   std::vector<double> phase;          ///< [n] of reflections and caustics [rad]
+  std::vector<double> mirror;         ///< [n] −1 after an odd number of reflections, else 1
 
   [[nodiscard]] std::size_t size() const noexcept { return column.size(); }
   void resize(std::size_t n);

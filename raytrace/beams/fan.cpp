@@ -16,6 +16,35 @@ BeamFan even_fan(double lowest, double highest, int count) {
   return fan;
 }
 
+BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share, std::size_t count) {
+  constexpr double most_parts = 8.0;
+  const auto parts = [&](double scale, std::size_t i) {
+    return std::clamp(std::floor(scale * std::sqrt(share[i])), 1.0, most_parts);
+  };
+  const auto beams = [&](double scale) {
+    double n = 1.0;
+    for (std::size_t i = 0; i < share.size(); ++i) n += parts(scale, i);
+    return n;
+  };
+  const double wanted =
+      std::min(static_cast<double>(count), most_parts * static_cast<double>(share.size()));
+  const double largest = share.empty() ? 0.0 : *std::max_element(share.begin(), share.end());
+  double low = 0.0, high = largest > 0.0 ? 1.0 / std::sqrt(largest) : 0.0;
+  for (int i = 0; i < 60 && beams(high) < wanted; ++i) low = high, high *= 2.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (beams(middle) < wanted ? low : high) = middle;
+  }
+  BeamFan result{.spacing = fan.spacing, .graded = true};
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double from = fan.elevation[i], width = fan.elevation[i + 1] - from;
+    const auto n = static_cast<int>(parts(high, i));
+    for (int k = 0; k < n; ++k) result.elevation.push_back(from + width * k / n);
+  }
+  result.elevation.push_back(fan.elevation.back());
+  return result;
+}
+
 BeamFan given_fan(const std::vector<double>& elevations) {
   BeamFan fan{.elevation = elevations};
   std::sort(fan.elevation.begin(), fan.elevation.end());

@@ -9,11 +9,24 @@ namespace asdic {
 struct BeamFan {
   std::vector<double> elevation;  ///< [n] increasing [rad], positive up
   double spacing = 0.0;           ///< Δα, mean angle from beam to beam [rad]
+  bool graded = false;            ///< each beam reaches to its neighbours, else Δα to both sides
+
+  /// Angle from beam i to the next higher one [rad]; beyond the ends as within.
+  [[nodiscard]] double to_next(std::size_t i) const noexcept {
+    const std::size_t k = i + 1 < elevation.size() ? i : i - 1;
+    return elevation[k + 1] - elevation[k];
+  }
 };
 
 /// Evenly from the lowest to the highest elevation, both included; of a full circle the last beam,
 /// which is the first, is left out. \param count  ≥ 2
 [[nodiscard]] BeamFan even_fan(double lowest, double highest, int count);
+
+/// Some `count` beams, where a tube between two rays whose error has a share S of the whole is
+/// divided in √S·λ equal parts (1 to 8): since an error falls at least as fast as the width, that
+/// leaves the least Σ S for the number. \param share  [beams − 1] ≥ 0
+[[nodiscard]] BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share,
+                                 std::size_t count);
 
 /// Exactly the elevations asked for (two or more). They are taken as evenly spaced.
 [[nodiscard]] BeamFan given_fan(const std::vector<double>& elevations);

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/beams/tube_error.h"
+#include "raytrace/runs/checks.h"
 
 namespace asdic {
 
@@ -96,26 +99,40 @@ struct Work {
   const Progress& progress;
   BeamSetting setting;
   TraceLimits limits;
-  bool with_half;
+  const FieldCheck& also;
+  std::vector<double> level;        // [ranges] of TubeError
+  std::vector<double>& tube_share;  // [beams − 1]
+  double* end_share;                // [2] of the first and the last ray
 
-  [[nodiscard]] BeamLaunch launch(double elevation, double source_speed) const {
-    return {elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
+  [[nodiscard]] BeamLaunch launch(std::size_t i, double source_speed) const {
+    const double elevation = fan.elevation[i];
+    BeamLaunch launch{elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
+    if (fan.graded) {
+      launch.higher = fan.to_next(i), launch.lower = fan.to_next(i > 0 ? i - 1 : 0);
+      // but for rounding, within a tube that was divided evenly
+      if (std::abs(launch.higher - launch.lower) < 1e-9 * launch.higher)
+        launch.lower = launch.higher;
+    }
+    return launch;
   }
 };
 
-/// Sums the fan in `parts`, which take turns at packets of neighbouring rays. Each has add(i) for
-/// ray i and at(column, row, half).
-template <class Part>
-FanField sum_parts(const Work& work, std::vector<Part>& parts) {
+/// Sums the fan in `count` parts, which take turns at packets of neighbouring rays. Each is made
+/// from `work` and `more` by the thread that fills it, and has add(i) for ray i and at(column, row,
+/// half).
+template <class Part, class... More>
+FanField sum_parts(const Work& work, std::size_t count, const More&... more) {
   constexpr std::size_t packet = 16;
+  std::vector<std::optional<Part>> parts(count);
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    parts[p].emplace(work, more...);
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
       const std::size_t last = std::min(first + packet, beams);
-      for (std::size_t i = first; i < last; ++i) parts[p].add(i);
+      for (std::size_t i = first; i < last; ++i) parts[p]->add(i);
       const std::size_t n = done += last - first;
       if (work.progress && !work.progress(double(n) / double(beams))) stopped = true;
     }
@@ -126,17 +143,39 @@ FanField sum_parts(const Work& work, std::vector<Part>& parts) {
   FanField result;
   const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
     field.resize(grid.size());
-    tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t j) {
-      const double scale = field_scale(work.setting, grid.ranges[j]);
-      for (std::size_t k = 0; k < rows; ++k) {
-        std::complex<double> sum = 0.0;
-        for (const Part& part : parts) sum += part.at(j, k, half);
-        field[k * columns + j] = scale * (work.setting.coherent ? sum : std::sqrt(sum.real()));
-      }
+    // a few columns at a time, since the field has its ranges side by side
+    constexpr std::size_t block = 8;
+    tbb::parallel_for(std::size_t{0}, (columns + block - 1) / block, [&](std::size_t b) {
+      const std::size_t from = b * block, to = std::min(from + block, columns);
+      double scale[block];
+      for (std::size_t j = from; j < to; ++j)
+        scale[j - from] = field_scale(work.setting, grid.ranges[j]);
+      for (std::size_t k = 0; k < rows; ++k)
+        for (std::size_t j = from; j < to; ++j) {
+          std::complex<double> sum = 0.0;
+          for (const auto& part : parts) sum += part->at(j, k, half);
+          field[k * columns + j] =
+              scale[j - from] * (work.setting.coherent ? sum : std::sqrt(sum.real()));
+        }
     });
   };
   collect(false, result.field);
-  if (work.with_half) collect(true, result.half);
+  if (work.also.half) collect(true, result.half);
+  if constexpr (requires(Part part) { part.bound_at(0, 0); }) {
+    if (work.also.bound) {
+      for (auto& part : parts) part->finish();
+      result.bound.resize(grid.size());
+      for (std::size_t j = 0; j < columns; ++j) {
+        double scale = field_scale(work.setting, grid.ranges[j]);
+        if (!work.setting.coherent) scale *= scale;
+        for (std::size_t k = 0; k < rows; ++k) {
+          double sum = 0.0;
+          for (const auto& part : parts) sum += part->bound_at(j, k);
+          result.bound[k * columns + j] = scale * sum;
+        }
+      }
+    }
+  }
   return result;
 }
 
@@ -146,14 +185,14 @@ class PlainPart {
   explicit PlainPart(const Work& work)
       : work_(work), setting_{work.setting, work.setting}, field_{empty_field(work.run_case), {}} {
     setting_[1].spacing *= 2.0;
-    if (work.with_half) field_[1] = field_[0];
+    if (work.also.half) field_[1] = field_[0];
   }
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
-    const BeamLaunch launch = work_.launch(elevation, ray_.source_speed);
+    const BeamLaunch launch = work_.launch(i, ray_.source_speed);
     add_beam(setting_[0], launch, ray_, field_[0]);
-    if (work_.with_half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
+    if (work_.also.half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
   }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     const FieldSum& field = field_[half ? 1 : 0];
@@ -167,6 +206,30 @@ class PlainPart {
   FieldSum field_[2];
 };
 
+/// The crossings of a ray as it is marched.
+class MarchedCrossings final : public RangeVisitor {
+ public:
+  explicit MarchedCrossings(Crossings& out) : out_(out) { out_.resize(0); }
+
+  void pass(std::size_t column, const RayState& y, const RayHistory& history) override {
+    const double c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
+    out_.column.push_back(static_cast<std::uint32_t>(column));
+    out_.depth.push_back(y.depth);
+    out_.cosine.push_back(c * y.xi);
+    out_.sine.push_back(c * y.zeta);
+    out_.speed.push_back(c);
+    out_.time.push_back(y.time);
+    out_.q.push_back(y.q);
+    out_.dq_ds.push_back(c * y.p);
+    out_.level.push_back(std::abs(history.reflection) * std::exp(-y.nepers));
+    const double turns = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
+    out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
+  }
+
+ private:
+  Crossings& out_;
+};
+
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:
@@ -175,36 +238,88 @@ class FastPart {
     BeamSetting setting = work.setting;
     sum_.emplace_back(setting, grid.depths, grid.ranges.size());
     setting.spacing *= 2.0;
-    if (work.with_half) sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    if (work.also.half) sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    if (work.also.bound) tubes_.emplace(work.setting, grid.depths, grid.ranges.size());
   }
   void add(std::size_t i) {
-    const double elevation = work_.fan.elevation[i];
-    if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
-      work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
-      find_crossings(ray_, work_.run_case.receivers.ranges, crossings_);
+    if (work_.also.bound && i > 0) {
+      if (last_ + 1 != i)
+        cross(i - 1, before_);  // the packet's first: another part has that ray
+      else
+        std::swap(here_, before_);
     }
-    const BeamLaunch launch = work_.launch(elevation, crossings_.source_speed);
-    sum_[0].add(launch, crossings_);
-    if (work_.with_half && i % 2 == 0) sum_[1].add(launch, crossings_);
+    const BeamLaunch launch = cross(i, here_);
+    sum_[0].add(launch, here_.crossings);
+    if (work_.also.half && i % 2 == 0) sum_[1].add(launch, here_.crossings);
+    if (work_.also.bound && i > 0)
+      work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
+    if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))
+      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
+          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
+    last_ = i;
+  }
+  void finish() { tubes_->finish(); }
+  [[nodiscard]] double bound_at(std::size_t column, std::size_t row) const {
+    return tubes_->at(column, row);
   }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     return sum_[half ? 1 : 0].at(column, row);
   }
 
  private:
+  BeamLaunch cross(std::size_t i, RayAtColumns& out) {
+    const double elevation = work_.fan.elevation[i];
+    if (layered_ == nullptr || !layered_->find(elevation, workspace_, out.crossings)) {
+      MarchedCrossings marched(out.crossings);
+      out.crossings.source_speed =
+          work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
+                                  elevation, work_.limits, marched);
+    }
+    const BeamLaunch launch = work_.launch(i, out.crossings.source_speed);
+    if (work_.also.bound) out.foretell(work_.setting, launch);
+    return launch;
+  }
+
   const Work& work_;
   const LayeredCrossings* layered_;
   LayeredCrossings::Workspace workspace_;
-  Crossings crossings_;
-  RayTrajectory ray_;
+  RayAtColumns here_, before_;
+  std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_
   std::vector<ColumnSum> sum_;
+  std::optional<TubeError> tubes_;
 };
+
+/// What the errors of tubes are held against: what is given, or the fan's power spread evenly over
+/// the depths, Σ A²L/D with A² = 1/|q|.
+std::vector<double> tube_level(const PropagationCase& run_case, const FieldCheck& also) {
+  const ReceiverGrid& grid = run_case.receivers;
+  const bool coherent = run_case.field == FieldKind::coherent;
+  std::vector<double> level(also.bound ? grid.ranges.size() : 0);
+  const double depth = std::max(1.0, grid.depths.back() - grid.depths.front());
+  const double power = (run_case.beams.highest - run_case.beams.lowest) / depth;
+  for (std::size_t j = 0; j < level.size(); ++j) {
+    level[j] = coherent ? std::sqrt(power) : power;
+    if (also.level.empty()) continue;
+    const double scale =
+        field_scale({.point_source = run_case.beams.source == SourceKind::point}, grid.ranges[j]);
+    if (scale > 0.0 && also.level[j] > 0.0)
+      level[j] = also.level[j] / (coherent ? scale : scale * scale);
+  }
+  return level;
+}
 
 }  // namespace
 
+bool has_error_bound(const PropagationCase& run_case) noexcept {
+  const BeamKind kind = run_case.beams.kind;
+  return !run_case.receivers.irregular && (kind == BeamKind::hat || kind == BeamKind::gaussian);
+}
+
 FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, double source_depth,
                       const BeamFan& fan, const Progress& progress, FieldMethod method,
-                      bool with_half) {
+                      const FieldCheck& also) {
+  std::vector<double> tube_share(also.bound ? fan.elevation.size() - 1 : 0);
+  double end_share[2] = {0.0, 0.0};
   const Work work{run_case,
                   tracer,
                   source_depth,
@@ -212,37 +327,38 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                   progress,
                   beam_setting(run_case, fan),
                   field_limits(run_case),
-                  with_half};
+                  also,
+                  tube_level(run_case, also),
+                  tube_share,
+                  end_share};
   const std::size_t cells = run_case.receivers.size();
-  const bool fast = method == FieldMethod::fast && !run_case.receivers.irregular &&
-                    (work.setting.kind == BeamKind::hat || work.setting.kind == BeamKind::gaussian);
+  const bool fast = method == FieldMethod::fast && has_error_bound(run_case);
   // A packet of beams costs as much as a share of the grid: fewer parts for fewer beams.
   const std::size_t few =
       std::clamp<std::size_t>(fan.elevation.size() / (fast ? 1024 : 64), 1, most_parts);
   const std::size_t count = std::clamp<std::size_t>(most_partial_cells / cells, 1, few);
-  if (!fast) {
-    std::vector<PlainPart> parts;
-    for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work);
-    return sum_parts(work, parts);
-  }
-  const auto layered = LayeredCrossings::make(run_case.environment, run_case.frequency,
-                                              source_depth, run_case.receivers.ranges, work.limits);
-  std::vector<FastPart> parts;
-  for (std::size_t p = 0; p < count; ++p) parts.emplace_back(work, layered ? &*layered : nullptr);
-  return sum_parts(work, parts);
+  if (!fast) return sum_parts<PlainPart>(work, count);
+  std::optional<LayeredCrossings> layered;
+  if (!run_case.beams.displacement)
+    layered = LayeredCrossings::make(run_case.environment, run_case.frequency, source_depth,
+                                     run_case.receivers.ranges, work.limits);
+  FanField result = sum_parts<FastPart>(work, count, layered ? &*layered : nullptr);
+  if (also.bound) tube_share.front() += end_share[0], tube_share.back() += end_share[1];
+  result.tube_share = std::move(tube_share);
+  return result;
 }
 
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
   check(run_case);
-  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const RayTracer tracer = tracer_of(run_case);
   PropagationResult result;
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
     const double depth = run_case.source_depths[i];
     ConvergedField answer;
     if (run_case.beams.elevations.empty()) {
-      answer = converged_field(run_case, [&](const BeamFan& fan) {
-        return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, true);
+      answer = converged_field(run_case, [&](const BeamFan& fan, const FieldCheck& also) {
+        return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, also);
       });
     } else {
       const BeamFan fan = given_fan(run_case.beams.elevations);
@@ -252,6 +368,7 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
     for (const std::complex<double>& p : answer.field) result.field.emplace_back(p);
     result.beams = std::max(result.beams, answer.beams);
     result.beam_error_db = std::max(result.beam_error_db, answer.error_db);
+    result.beam_error_bounded = answer.bounded;
     if (!answer.note.empty()) result.notes.push_back(answer.note);
   }
   return result;

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <span>
 #include <vector>
 
 #include "raytrace/beams/fan.h"
@@ -27,13 +28,29 @@ struct FanField {
   std::vector<std::complex<double>> field;  ///< [rows × ranges], range fastest; a root of intensity
                                             ///< if it is not coherent
   std::vector<std::complex<double>>
-      half;  ///< the same of beams 0, 2, 4, …, twice as wide, if asked for
+      half;                        ///< the same of beams 0, 2, 4, …, twice as wide, if asked for
+  std::vector<double> bound;       ///< [rows × ranges] majorant of the error of `field`; of its
+                                   ///< square if it is not coherent
+  std::vector<double> tube_share;  ///< [beams − 1] of each ray tube in it (TubeError::add)
 };
 
-/// What run_field repeats. \param with_half  fill `half` (the fan has an odd number of beams)
+/// What is to be known of a field besides itself.
+struct FieldCheck {
+  bool half = false;   ///< every second beam of it (an odd number of beams)
+  bool bound = false;  ///< its error bound; hat and Gaussian beams, Cartesian, on a grid
+  std::span<const double>
+      level;  ///< [ranges] the pressure that an error is held against (intensity
+              ///< if not coherent); empty: that of the fan spread over depth
+};
+
+/// Whether FieldCheck::bound can be had.
+[[nodiscard]] bool has_error_bound(const PropagationCase& run_case) noexcept;
+
+/// What run_field repeats.
 [[nodiscard]] FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer,
                                     double source_depth, const BeamFan& fan,
                                     const Progress& progress = {},
-                                    FieldMethod method = FieldMethod::fast, bool with_half = false);
+                                    FieldMethod method = FieldMethod::fast,
+                                    const FieldCheck& also = {});
 
 }  // namespace asdic

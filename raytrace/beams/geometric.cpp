@@ -41,21 +41,26 @@ double gaussian_least_width(double frequency, double time, double speed) noexcep
   return std::min(0.2 * frequency * time, pi * speed / frequency);
 }
 
-void add_crossing(const BeamSetting& setting, double launched, double source_speed,
-                  const Crossing& x, std::span<const double> depths, const AddTo& add_to) {
+void add_crossing(const BeamSetting& setting, const BeamLaunch& launch, double launched,
+                  double source_speed, const Crossing& x, std::span<const double> depths,
+                  const AddTo& add_to) {
   if (x.q == 0.0) return;
   const double omega = 2.0 * pi * setting.frequency;
   const bool is_hat = setting.kind == BeamKind::hat;
   const double root = launched * std::sqrt(x.speed / source_speed);
   const double least = gaussian_least_width(setting.frequency, x.time, x.speed);
+  const bool even = launch.higher == 0.0 && launch.lower == 0.0;
   const auto add = [&](std::size_t k) {
     const double dz = depths[k] - x.depth;
+    const double spacing = even                            ? setting.spacing
+                           : dz * x.toward_higher() >= 0.0 ? launch.higher
+                                                           : launch.lower;
     const double n = std::abs(dz * x.cosine), s = dz * x.sine;
     const double q = x.q + x.dq_ds * s;
     const bool beyond = q * x.q < 0.0;  // a caustic lies between the ray and the foot
     if (beyond && is_hat) return false;
-    const Cut cut = is_hat ? hat(n, q, setting.spacing, setting.coherent)
-                           : gaussian(n, q, setting.spacing, least, setting.coherent);
+    const Cut cut = is_hat ? hat(n, q, spacing, setting.coherent)
+                           : gaussian(n, q, spacing, least, setting.coherent);
     if (!cut.inside) return false;
     if (setting.coherent) {
       const std::complex<double> loss = beyond ? x.loss * power_of_i(s > 0.0 ? 1 : -1) : x.loss;
@@ -79,7 +84,7 @@ void add_cartesian(const BeamSetting& setting, const BeamLaunch& launch, const R
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
       std::complex<double>* sum = field.column(column);
-      add_crossing(setting, launched, ray.source_speed, crossing_of(segment, state),
+      add_crossing(setting, launch, launched, ray.source_speed, crossing_of(segment, state),
                    field.column_depths(column),
                    [sum](std::size_t k, std::complex<double> p) { sum[k] += p; });
     });

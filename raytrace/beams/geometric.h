@@ -12,10 +12,12 @@ namespace asdic::beams {
 void add_cartesian(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                    FieldSum& field);
 
-/// One crossing of them. \param launched  launch_factor  \param add_to  takes a row and what to add
+/// One crossing of them. \param launch  widths of a hat's halves  \param launched  launch_factor
+/// \param add_to  takes a row and what to add
 using AddTo = std::function<void(std::size_t row, std::complex<double> value)>;
-void add_crossing(const BeamSetting& setting, double launched, double source_speed,
-                  const Crossing& crossing, std::span<const double> depths, const AddTo& add_to);
+void add_crossing(const BeamSetting& setting, const BeamLaunch& launch, double launched,
+                  double source_speed, const Crossing& crossing, std::span<const double> depths,
+                  const AddTo& add_to);
 
 /// Hat and Gaussian beams in ray-centred coordinates: every receiver is served from the foot of the
 /// normal that meets it, where delay and q are the ray's.

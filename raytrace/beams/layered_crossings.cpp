@@ -123,11 +123,11 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
   double *r_to = work.r.data(), *s_to = work.s.data(), *z_to = work.z.data(),
          *cos_to = work.cosine.data(), *tau_to = work.tau.data(), *q_to = work.q.data(),
          *p_to = work.p.data(), *g_to = work.g.data(), *level_to = out.level.data(),
-         *phase_to = out.phase.data();
+         *phase_to = out.phase.data(), *mirror_to = out.mirror.data();
 
   std::complex<double> coefficient[2];  // of surface and bottom, once they are met
   double loss[2] = {-1.0, -1.0}, turn[2] = {0.0, 0.0};
-  double level = 1.0, phase = 0.0, sense = 1.0, length = 0.0;
+  double level = 1.0, phase = 0.0, mirror = 1.0, sense = 1.0, length = 0.0;
   bool flat_series = true;
   // Where the ray enters a layer.
   std::size_t layer = first_layer(sine), column = 0;
@@ -169,7 +169,7 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
       for (std::size_t j = first; j < column; j += doubles) {
         fill(r, r_to + j), fill(s, s_to + j), fill(z, z_to + j), fill(cos_a, cos_to + j);
         fill(tau, tau_to + j), fill(q, q_to + j), fill(p, p_to + j), fill(g, g_to + j);
-        fill(level, level_to + j), fill(phase, phase_to + j);
+        fill(level, level_to + j), fill(phase, phase_to + j), fill(mirror, mirror_to + j);
       }
       if (alpha_ != 0.0)  // the arc is its chord times asin(y)/y
         for (std::size_t j = first; j < column; ++j) {
@@ -208,6 +208,7 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
       }
       level *= loss[which];
       phase += turn[which];
+      mirror = -mirror;
       p += 2.0 * g * xi2 * q / s;
       s = -s;
       if (level == 0.0 || level < faintest_) break;

@@ -49,7 +49,7 @@ class PathBuilder {
 /// e^{+iπ/2} for every caustic.
 [[nodiscard]] inline std::complex<double> caustic_phase(int caustics) noexcept {
   constexpr std::complex<double> quarter_turns[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  return quarter_turns[caustics % 4];
+  return quarter_turns[caustics & 3];  // a displaced reflection may take one back
 }
 
 }  // namespace asdic

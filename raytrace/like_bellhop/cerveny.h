@@ -22,6 +22,16 @@ namespace asdic::like_bellhop {
 /// 1 up to 50 wavelengths off the ray, 0 beyond 100, a cubic between.
 [[nodiscard]] double taper(double distance, double wavelength) noexcept;
 
+/// What the pressure of a beam is multiplied with: 1, or the sine or cosine of its ray's angle, for
+/// a velocity times ρc; a vertical one is upside down in image k. How BELLHOP weighs its V and H is
+/// not known: these are asdic's own (docs/theory/beams.md). \param t  scaled tangent
+[[nodiscard]] inline double component(const CervenyBeams& kind, const Vec2& t, int k) noexcept {
+  if (kind.component == CervenyBeams::Component::pressure) return 1.0;
+  const Vec2 e = t.normalized();
+  if (kind.component == CervenyBeams::Component::horizontal) return e.x();
+  return k == 0 ? e.y() : -e.y();
+}
+
 /// The receiver at `depth` as image k sees it (0: itself, 1: over the surface, 2: under the
 /// bottom), and the sign of its reflection: the surface is taken as pressure release, the bottom as
 /// rigid.

@@ -86,8 +86,8 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
           const double dz = image.depth - z;
           if (-0.5 * omega * h.imag() * dz * dz >= window) continue;
           const Complex phase = omega * (tau + t_z * dz + 0.5 * h * dz * dz) - a.phase;
-          sum += image.sign * taper(std::abs(dz), wavelength) * amplitude *
-                 std::exp(Complex(0.0, -1.0) * phase);
+          sum += image.sign * component(kind, b.t, k) * taper(std::abs(dz), wavelength) *
+                 amplitude * std::exp(Complex(0.0, -1.0) * phase);
         }
         if (sum != 0.0) sink.take_pressure(row, column, sum);
       }

@@ -31,8 +31,9 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
           if (m.imag() > 0.0 || -0.5 * omega * m.imag() * n * n >= window) return;
           const Complex phase = omega * (tau + 0.5 * m * n * n) - s.a.phase;
           sink.take_pressure(row, column,
-                             image.sign * factor * s.b.amplitude * taper(std::abs(n), wavelength) *
-                                 next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q) *
+                             image.sign * component(kind, s.b.t, k) * factor * s.b.amplitude *
+                                 taper(std::abs(n), wavelength) * next_branch(branch, qa, q) *
+                                 std::sqrt(c * std::abs(epsilon) / q) *
                                  std::exp(Complex(0.0, -1.0) * phase));
         });
         branch = next_branch(branch, qa, qb);

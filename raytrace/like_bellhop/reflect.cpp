@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/ocean/beam_displacement.h"
+
 namespace asdic::like_bellhop {
 namespace {
 
@@ -96,6 +98,35 @@ struct ApplyMaterial {
   }
 };
 
+/// Carries a reflected beam along its facet, a straight line here: the point, the delay and both
+/// solutions p, q, by asdic's own formulas (docs/theory/reflections.md (1)-(3)): no output of
+/// BELLHOP's option S is at hand.
+void displace(const LiteralOcean& ocean, const LiteralPoint& in, const WaterPoint& w,
+              const Vec2& tangent, const BoundaryMaterial& material, LiteralPoint& y) noexcept {
+  const Vec2 t_in = w.c * in.t, t_out = w.c * y.t;
+  const double cosine = tangent.dot(t_in);
+  const double sine = tangent.y() * t_in.x() - tangent.x() * t_in.y();
+  if (sine == 0.0) return;
+  const BeamDisplacement moved =
+      beam_displacement(material, std::abs(std::atan2(sine, std::abs(cosine))),
+                        {.speed = w.c, .density = ocean.water.density(in.x.y())}, ocean.frequency);
+  const auto bend = [&](const Vec2& t) { return -w.gradient().dot(Vec2(-t.y(), t.x())) / w.c; };
+  const auto carry = [&](double q_in, double p_in, double& q, double& p) {
+    const double turn = -(w.c * p_in + bend(t_in) * q_in / sine * cosine);
+    const double spread = std::copysign(1.0, sine) * moved.per_grazing * turn;
+    q += sine * spread;
+    p += bend(t_out) * spread * cosine / w.c;
+    return q / sine * -sine * turn < 0.0;  // dl/dk_t afterwards
+  };
+  const bool falling = carry(in.q1, in.p1, y.q1, y.p1);
+  // beams count every sign change of q as +pi/2; one where dl/dk_t falls through zero is -pi/2
+  if (in.q1 * y.q1 < 0.0 && falling) y.phase -= pi;
+  carry(in.q2, in.p2, y.q2, y.p2);
+  const double way = std::copysign(1.0, cosine) * moved.length;
+  y.x += way * tangent;
+  y.tau += way * cosine / w.c;
+}
+
 }  // namespace
 
 LiteralPoint reflect(const LiteralOcean& ocean, const LiteralPoint& in, BoundaryKind kind,
@@ -138,6 +169,7 @@ LiteralPoint reflect(const LiteralOcean& ocean, const LiteralPoint& in, Boundary
                .rho = ocean.water.density(in.x.y()),
                .frequency = ocean.frequency};
   std::visit(ApplyMaterial{k, y}, line.material(segment));
+  if (ocean.displacement) displace(ocean, in, w, facet.tangent, line.material(segment), y);
   (at_bottom ? y.bottom_bounces : y.surface_bounces) += 1;
   return y;
 }

@@ -26,7 +26,8 @@ LiteralOcean make_ocean(const PropagationCase& run_case, const LikeBellhopOption
       .frequency = run_case.frequency,
       .step = options.step.value_or(run_case.literal.step),
       .box_range = run_case.box_range,
-      .box_depth = run_case.box_depth};
+      .box_depth = run_case.box_depth,
+      .displacement = run_case.beams.displacement};
   if (!(ocean.step > 0.0))
     ocean.step = 0.1 * (ocean.water.last_depth() - ocean.water.first_depth());
   return ocean;

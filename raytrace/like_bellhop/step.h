@@ -12,6 +12,7 @@ struct LiteralOcean {
   double frequency = 0.0;                   ///< [Hz]
   double step = 0.0;                        ///< longest step [m]
   double box_range = 0.0, box_depth = 0.0;  ///< [m]
+  bool displacement = false;                ///< beams are carried along boundaries
 };
 
 /// Where a ray is: cell of the water, segments of the boundaries.

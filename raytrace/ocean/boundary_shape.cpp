@@ -8,33 +8,21 @@
 
 #include "core/error.h"
 #include "raytrace/ocean/number_text.h"
+#include "raytrace/ocean/samples.h"
 
 namespace asdic {
 namespace {
 
 void check_nodes(std::span<const double> range, std::span<const double> depth,
                  std::size_t materials) {
-  const auto n = std::to_string(range.size());
-  if (range.empty())
-    throw InputError({.where = "range", .got = "no nodes", .expected = "at least one"});
-  if (depth.size() != range.size())
-    throw InputError({.where = "depth",
-                      .got = std::to_string(depth.size()) + " values",
-                      .expected = "as many as ranges: " + n});
+  check_count(range.size(), "range", 1);
+  check_as_many(depth.size(), "depth", range.size(), "ranges");
   if (materials != 0 && materials != range.size())
     throw InputError({.where = "material",
                       .got = std::to_string(materials) + " materials",
-                      .expected = "none, or as many as ranges: " + n});
+                      .expected = "none, or as many as ranges: " + std::to_string(range.size())});
   for (std::size_t i = 0; i < range.size(); ++i) {
-    if (!std::isfinite(range[i]))
-      throw InputError({.where = element("range", i),
-                        .got = with_unit(range[i], "m"),
-                        .expected = "a finite range"});
-    if (i > 0 && range[i] <= range[i - 1])
-      throw InputError(
-          {.where = element("range", i),
-           .got = with_unit(range[i], "m"),
-           .expected = "a range beyond the one before, " + with_unit(range[i - 1], "m")});
+    check_place(range, i, "range", "a range beyond");
     if (!std::isfinite(depth[i]))
       throw InputError({.where = element("depth", i),
                         .got = with_unit(depth[i], "m"),

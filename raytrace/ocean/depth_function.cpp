@@ -6,26 +6,15 @@
 
 #include "core/error.h"
 #include "raytrace/ocean/number_text.h"
+#include "raytrace/ocean/samples.h"
 
 namespace asdic {
 
 DepthFunction DepthFunction::table(std::span<const double> depth, std::span<const double> value) {
-  if (depth.empty())
-    throw InputError({.where = "depth", .got = "no samples", .expected = "at least one"});
-  if (value.size() != depth.size())
-    throw InputError({.where = "value",
-                      .got = std::to_string(value.size()) + " values",
-                      .expected = "as many as depths: " + std::to_string(depth.size())});
+  check_count(depth.size(), "depth", 1);
+  check_as_many(value.size(), "value", depth.size(), "depths");
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (!std::isfinite(depth[i]))
-      throw InputError({.where = element("depth", i),
-                        .got = with_unit(depth[i], "m"),
-                        .expected = "a finite depth"});
-    if (i > 0 && depth[i] < depth[i - 1])
-      throw InputError(
-          {.where = element("depth", i),
-           .got = with_unit(depth[i], "m"),
-           .expected = "a depth not above the one before, " + with_unit(depth[i - 1], "m")});
+    check_place(depth, i, "depth", "a depth not above", true);
     if (!std::isfinite(value[i]))
       throw InputError({.where = element("value", i),
                         .got = with_unit(value[i], ""),

@@ -8,31 +8,17 @@
 #include "core/error.h"
 #include "raytrace/ocean/cubic_slopes.h"
 #include "raytrace/ocean/number_text.h"
+#include "raytrace/ocean/samples.h"
 
 namespace asdic {
 namespace {
 
 void check_samples(std::span<const double> depth, std::span<const double> speed) {
-  if (depth.empty())
-    throw InputError({.where = "depth", .got = "no samples", .expected = "at least one"});
-  if (speed.size() != depth.size())
-    throw InputError({.where = "speed",
-                      .got = std::to_string(speed.size()) + " values",
-                      .expected = "as many as depths: " + std::to_string(depth.size())});
+  check_count(depth.size(), "depth", 1);
+  check_as_many(speed.size(), "speed", depth.size(), "depths");
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (!std::isfinite(depth[i]))
-      throw InputError({.where = element("depth", i),
-                        .got = with_unit(depth[i], "m"),
-                        .expected = "a finite depth"});
-    if (i > 0 && depth[i] <= depth[i - 1])
-      throw InputError(
-          {.where = element("depth", i),
-           .got = with_unit(depth[i], "m"),
-           .expected = "a depth below the one before, " + with_unit(depth[i - 1], "m")});
-    if (!std::isfinite(speed[i]) || speed[i] <= 0.0)
-      throw InputError({.where = element("speed", i),
-                        .got = with_unit(speed[i], "m/s"),
-                        .expected = "a speed above 0 m/s"});
+    check_place(depth, i, "depth", "a depth below");
+    check_speed(speed[i], element("speed", i));
   }
 }
 
@@ -155,9 +141,7 @@ SoundSpeedProfile SoundSpeedProfile::munk(const MunkParameters& m) {
 }
 
 SoundSpeedProfile SoundSpeedProfile::isovelocity(double speed) {
-  if (!std::isfinite(speed) || speed <= 0.0)
-    throw InputError(
-        {.where = "speed", .got = with_unit(speed, "m/s"), .expected = "a speed above 0 m/s"});
+  check_speed(speed, "speed");
   const double surface = 0.0;
   return table({&surface, 1}, {&speed, 1}, Interpolation::c_linear);
 }

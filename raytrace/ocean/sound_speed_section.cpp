@@ -6,26 +6,15 @@
 
 #include "core/error.h"
 #include "raytrace/ocean/number_text.h"
+#include "raytrace/ocean/samples.h"
 
 namespace asdic {
 namespace {
 
 void check_axis(std::span<const double> axis, const char* name, std::size_t least) {
-  if (axis.size() < least)
-    throw InputError({.where = name,
-                      .got = std::to_string(axis.size()) + " values",
-                      .expected = "at least " + std::to_string(least)});
-  for (std::size_t i = 0; i < axis.size(); ++i) {
-    if (!std::isfinite(axis[i]))
-      throw InputError({.where = element(name, i),
-                        .got = with_unit(axis[i], "m"),
-                        .expected = "a finite " + std::string(name)});
-    if (i > 0 && axis[i] <= axis[i - 1])
-      throw InputError({.where = element(name, i),
-                        .got = with_unit(axis[i], "m"),
-                        .expected = "a " + std::string(name) + " beyond the one before, " +
-                                    with_unit(axis[i - 1], "m")});
-  }
+  check_count(axis.size(), name, least);
+  const std::string beyond = "a " + std::string(name) + " beyond";
+  for (std::size_t i = 0; i < axis.size(); ++i) check_place(axis, i, name, beyond.c_str());
 }
 
 /// c and dc/dz of one profile at a depth, by the line of row j.
@@ -55,11 +44,8 @@ SoundSpeedSection::SoundSpeedSection(std::span<const double> range, std::span<co
                       .expected = std::to_string(range.size()) + " ranges times " +
                                   std::to_string(depth.size()) + " depths"});
   for (std::size_t i = 0; i < speed.size(); ++i)
-    if (!std::isfinite(speed[i]) || speed[i] <= 0.0)
-      throw InputError({.where = element("speed", i / depth.size()) + '[' +
-                                 std::to_string(i % depth.size()) + ']',
-                        .got = with_unit(speed[i], "m/s"),
-                        .expected = "a speed above 0 m/s"});
+    check_speed(speed[i],
+                element("speed", i / depth.size()) + '[' + std::to_string(i % depth.size()) + ']');
 }
 
 SoundSpeedSection::Cell SoundSpeedSection::cell(double range, double depth) const noexcept {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/units.h"
@@ -39,7 +40,11 @@ class ArrivalSearch {
         solver_(run_case.environment),
         receivers_(points_of(run_case.receivers)) {}
 
-  [[nodiscard]] const EigenraySolver& solver() const noexcept { return solver_; }
+  /// Made when first asked for: layered runs without drawn rays need none.
+  [[nodiscard]] const RayTracer& tracer() const {
+    if (!tracer_) tracer_.emplace(tracer_of(case_));
+    return *tracer_;
+  }
 
   /// [receivers] arrivals of one source, finished. \param notes  what the user should know
   /// \param progress  told the share of this source
@@ -47,7 +52,7 @@ class ArrivalSearch {
                              std::vector<std::string>& notes) const {
     const BeamSettings& beams = case_.beams;
     std::vector<Arrivals> found;
-    if (solver_.layered() && within_box(case_) && forward_only(beams)) {
+    if (solver_.layered() && within_box(case_) && forward_only(beams) && !beams.displacement) {
       const PathLimits limits{
           .max_surface_bounces = most_bounces,
           .max_bottom_bounces = most_bounces,
@@ -67,8 +72,7 @@ class ArrivalSearch {
                              .min_range = box.min_range,
                              .max_range = box.max_range};
       SearchWatch watch{.progress = progress};
-      found = marching_eigenrays(*solver_.tracer(case_.frequency), 0.0, source_depth, receivers_,
-                                 limits, &watch);
+      found = marching_eigenrays(tracer(), 0.0, source_depth, receivers_, limits, &watch);
       if (watch.stopped) throw Interrupted();
       if (watch.unfinished > 0)
         notes.push_back("source at " + std::to_string(source_depth) +
@@ -108,6 +112,7 @@ class ArrivalSearch {
   const PropagationCase& case_;
   PathSelection selection_;
   EigenraySolver solver_;
+  mutable std::optional<RayTracer> tracer_;
   std::vector<ReceiverPoint> receivers_;
 };
 
@@ -146,9 +151,7 @@ PropagationResult search(const PropagationCase& run_case, const Progress& progre
       return !progress || progress((double(i) + share) / double(sources));
     };
     std::vector<Arrivals> found = paths.from(depth, part, result.notes);
-    if (with_rays)
-      result.rays.push_back(
-          drawn(run_case, *paths.solver().tracer(run_case.frequency), depth, found));
+    if (with_rays) result.rays.push_back(drawn(run_case, paths.tracer(), depth, found));
     if (with_arrivals)
       result.arrivals.insert(result.arrivals.end(), std::make_move_iterator(found.begin()),
                              std::make_move_iterator(found.end()));

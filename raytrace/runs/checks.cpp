@@ -54,4 +54,9 @@ void check_receivers(const PropagationCase& run_case) {
                       .expected = "as many depths as ranges on an irregular grid"});
 }
 
+RayTracer tracer_of(const PropagationCase& run_case) {
+  return {run_case.environment, run_case.frequency,
+          run_case.beams.displacement ? Reflection::displaced : Reflection::on_the_spot};
+}
+
 }  // namespace asdic

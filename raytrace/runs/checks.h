@@ -1,5 +1,6 @@
 #pragma once
 #include "raytrace/propagation_case.h"
+#include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
 
@@ -9,5 +10,9 @@ void check_sources(const PropagationCase& run_case);
 
 /// And receivers, for runs that have any. \throws InputError
 void check_receivers(const PropagationCase& run_case);
+
+/// The marching solver as a run asks for it: at its frequency, displaced at reflections or not. The
+/// layered solver knows no displacement; runs that ask for it march (`beams.displacement`).
+[[nodiscard]] RayTracer tracer_of(const PropagationCase& run_case);
 
 }  // namespace asdic

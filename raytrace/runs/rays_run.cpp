@@ -42,7 +42,7 @@ TraceLimits box_of(const PropagationCase& run_case) {
 
 PropagationResult run_rays(const PropagationCase& run_case, const Progress& progress) {
   check_sources(run_case);
-  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const RayTracer tracer = tracer_of(run_case);
   TraceLimits limits = box_of(run_case);
   limits.faintest = faintest;
   const std::vector<double> elevations = elevations_of(run_case.beams);

@@ -174,13 +174,16 @@ class CellSearch {
     const auto between = [u](double x, double y) { return x + u * (y - x); };
     const double slope = range.slope(alpha);
     // Where two rays coalesce: |∂r/∂ξ| of ground_paths.cpp, with ξ the slowness along the boundary.
-    const double bend = (hb.d_range - ha.d_range) / (b.angle - a.angle);
-    const double turn = (hb.slowness - ha.slowness) / (b.angle - a.angle);
+    // The cubic's slope is a parabola; its bend where that is zero, if it is anywhere. At a
+    // limiting ray, where dr/dα goes to infinity and no caustic is, it is nowhere.
+    const double bend_a = range.bend(a.angle), width = b.angle - a.angle;
+    const double third = (range.bend(b.angle) - bend_a) / width;
+    const double bend = std::sqrt(std::max(0.0, bend_a * bend_a - 2.0 * third * ha.d_range));
+    const double turn = (hb.slowness - ha.slowness) / width;
     constexpr double zeta = 0.307;
-    const double floor = turn != 0.0
-                             ? std::cbrt(2.0 / (2.0 * pi * frequency_)) * std::sqrt(zeta) *
-                                   std::pow(std::abs(bend), 2.0 / 3.0) / std::cbrt(std::abs(turn))
-                             : 0.0;
+    const double floor = turn != 0.0 ? std::cbrt(2.0 / (2.0 * pi * frequency_)) * std::sqrt(zeta) *
+                                           std::pow(bend, 2.0 / 3.0) / std::cbrt(std::abs(turn))
+                                     : 0.0;
     const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
     const double r = (cell + 0.5) * spacing_;
     const double spreading = std::sqrt(between(ha.speed, hb.speed) * std::abs(std::cos(alpha)) /

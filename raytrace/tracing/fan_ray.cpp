@@ -42,6 +42,11 @@ bool forward(const RaySegment& s) noexcept { return s.end.range >= s.begin.range
 /// The sign of q just after a segment's begin.
 double sense_of(const RaySegment& s) noexcept { return s.begin.q != 0.0 ? s.begin.q : s.begin.p; }
 
+/// Whether a reflection between two segments moved the ray along the boundary.
+bool displaced(const RaySegment& before, const RaySegment& after) noexcept {
+  return before.end.range != after.begin.range;
+}
+
 int bounces(const RaySegment& s) noexcept {
   return s.history.surface_bounces + s.history.bottom_bounces;
 }
@@ -87,9 +92,11 @@ void split_into_legs(const RayTrajectory& ray, const Environment& environment,
     if (bounced) {
       const bool bottom =
           segments[i].history.bottom_bounces != segments[i - 1].history.bottom_bounces;
-      history = history_after(history, bottom ? environment.bottom : environment.surface,
-                              bottom ? BoundaryKind::bottom : BoundaryKind::surface,
-                              segments[i].begin.range);
+      const Boundary& wall = bottom ? environment.bottom : environment.surface;
+      const BoundaryKind kind = bottom ? BoundaryKind::bottom : BoundaryKind::surface;
+      history = history_after(history, wall, kind, segments[i - 1].end.range);
+      if (displaced(segments[i - 1], segments[i]))
+        history = history_after(history, wall, kind, segments[i].begin.range);
     } else {
       history = mixed(history, turned_back);
     }
@@ -160,6 +167,11 @@ void digest(const RayTrajectory& ray, const Environment& environment,
     if (leg.from_boundary && !out.legs.empty()) leg.d_begin = out.legs.back().d_end;
     if (leg.from_boundary && static_cast<std::size_t>(bounces(head)) <= ray.bounces.size())
       leg.begins_at = ray.bounces[static_cast<std::size_t>(bounces(head)) - 1].boundary;
+    if (leg.from_boundary && first > 0 && displaced(segments[first - 1], head))
+      leg.d_begin = range_per_angle(
+          leg.begin,
+          leg.begins_at == BoundaryKind::surface ? environment.surface : environment.bottom,
+          leg.sign);
     if (leg.to_boundary) {
       const auto bounce = static_cast<std::size_t>(bounces(head));
       const bool surface = bounce < ray.bounces.size()
@@ -193,10 +205,10 @@ void digest(const RayTrajectory& ray, const Environment& environment,
   }
 }
 
-std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const Environment& environment,
+std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const RayTracer& tracer,
                                           std::size_t leg, std::uint64_t history, double range) {
   thread_local std::vector<LegOfRay> parts;
-  split_into_legs(ray, environment, parts);
+  split_into_legs(ray, tracer.environment(), parts);
   if (leg >= parts.size() || parts[leg].history != history) return {};
   const std::span<const RaySegment> segments(ray.segments.data() + parts[leg].first,
                                              parts[leg].last - parts[leg].first);
@@ -223,7 +235,7 @@ std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const Enviro
     const RaySegment& s = *std::find_if(segments.begin(), segments.end(), [&](const RaySegment& x) {
       return onward ? range < x.end.range : range > x.end.range;
     });
-    const RayState y = state_at(s, arc_at_range(s, range));
+    const RayState y = tracer.state_at_range(s, range);
     found.state = y;
     found.history = s.history;
     found.c = 1.0 / std::hypot(y.xi, y.zeta);

@@ -115,10 +115,10 @@ struct ExactCrossing {
   ColumnCrossing crossing;
 };
 
-/// \param leg  index of the leg   \param history  which it must have; none if the ray has another
+/// \param tracer  of the ray   \param leg  index of the leg   \param history  which it must have;
+/// none if the ray has another
 [[nodiscard]] std::optional<ExactCrossing> cross_column(const RayTrajectory& ray,
-                                                        const Environment& environment,
-                                                        std::size_t leg, std::uint64_t history,
-                                                        double range);
+                                                        const RayTracer& tracer, std::size_t leg,
+                                                        std::uint64_t history, double range);
 
 }  // namespace asdic

@@ -1,10 +1,13 @@
 #pragma once
-#include <array>
+#include <span>
 
-#include "raytrace/tracing/jumps.h"
+#include "raytrace/tracing/displace.h"
 #include "raytrace/tracing/ocean.h"
 
 namespace asdic::tracing {
+
+inline constexpr double widest_turn = 0.3;      ///< of the direction within one segment [rad]
+inline constexpr double longest_segment = 2e4;  ///< [m]
 
 /// One ray under way: from cell to cell, each segment ended by an event.
 class March {
@@ -12,20 +15,21 @@ class March {
   March(const RayTracer::Ocean& ocean, const TraceLimits& limits, RayTrajectory& out) noexcept
       : ocean_(ocean), limits_(limits), out_(out) {}
 
+  /// Segments are not stored, but told where they pass ranges.
+  void tell(std::span<const double> ranges, RangeVisitor& visitor) noexcept {
+    ranges_ = ranges;
+    visitor_ = &visitor;
+  }
   void run(double source_range, double source_depth, double launch_elevation);
 
  private:
-  /// What may end a segment. Each has a value that is positive before and zero at the event.
+  /// What may end a segment.
   enum class Event : unsigned char {
     none,     ///< an ordinary step
     row_top,  ///< a line of the water, or a flat boundary
     row_bottom,
     column_begin,  ///< a range of the section
     column_end,
-    surface_begin,  ///< a node of the surface's shape
-    surface_end,
-    bottom_begin,
-    bottom_end,
     surface,  ///< a shaped surface
     bottom,
     turn,  ///< ζ = 0
@@ -35,24 +39,44 @@ class March {
   };
 
   void enter(double depth);
+  void enter_cell(std::size_t row, std::size_t column);
   [[nodiscard]] bool begin_step();
   void creep();
+  [[nodiscard]] RayState crept(double way) const;
   void plan();
-  void take_general_step();
-  void find_events();
-  [[nodiscard]] double value(Event event, const RayState& y) const noexcept;
-  [[nodiscard]] double rate(Event event, const RayState& y) const noexcept;
-  void shrink_to(Event event, double low, double high);
-  void dipped(Event event);
+  void plan_closed(bool down, double longest);
+  void plan_series(bool down, double longest);
+  [[nodiscard]] double guess(bool down) const;
+  void strike(BoundaryKind kind);
+  [[nodiscard]] double hit(BoundaryKind kind, std::size_t facet, double in, double out) const;
+  [[nodiscard]] double hit_between(BoundaryKind kind, std::size_t facet, double in,
+                                   double out) const;
+  [[nodiscard]] ValueSlope clearance(BoundaryKind kind, std::size_t facet, double h) const;
+  [[nodiscard]] double step_to_range(double range, bool forward) const;
+  [[nodiscard]] bool meets(BoundaryKind kind, double heading) const;
   void snap();
   void record();
+  void store();
+  void tell_ranges();
+  [[nodiscard]] RayState passing(double range) const;
   [[nodiscard]] bool answer();
   [[nodiscard]] bool reflect_at(BoundaryKind kind);
+  [[nodiscard]] bool displace_along(BoundaryKind kind, const RayState& in, const Local& water,
+                                    const Tangent& hit, const BeamDisplacement& moved);
   [[nodiscard]] Tangent tangent_at(BoundaryKind kind) const noexcept;
   [[nodiscard]] const Boundary& boundary(BoundaryKind kind) const noexcept {
     return kind == BoundaryKind::surface ? ocean_.environment.surface : ocean_.environment.bottom;
   }
-  [[nodiscard]] bool on_flat(BoundaryKind kind) const noexcept;
+  [[nodiscard]] const Wall& wall(BoundaryKind kind) const noexcept {
+    return kind == BoundaryKind::surface ? ocean_.surface : ocean_.bottom;
+  }
+  [[nodiscard]] std::size_t facet(BoundaryKind kind) const noexcept {
+    return kind == BoundaryKind::surface ? surface_facet_ : bottom_facet_;
+  }
+  [[nodiscard]] std::size_t facet_ahead(BoundaryKind kind) const noexcept;
+  [[nodiscard]] bool on_flat(BoundaryKind kind) const noexcept {
+    return !boundary(kind).shape && y_.depth == boundary(kind).depth;
+  }
   [[nodiscard]] bool end(RayEnd how) noexcept {
     out_.ended = how;
     return false;
@@ -63,18 +87,22 @@ class March {
   RayTrajectory& out_;
 
   RayState y_, next_;
-  Local here_{};
+  Local here_{}, there_{};  // of cell_, at y_ and next_
   Cell cell_{};
+  Course course_;
   std::size_t row_ = 0, column_ = 0, surface_facet_ = 0, bottom_facet_ = 0;
   bool near_surface_ = false, near_bottom_ = false;
+  bool rising_ = false;    // ζ < 0 where the step begins
   bool creeping_ = false;  // along a line of the water that bends the ray back to it
   RayHistory history_;
   double source_range_ = 0.0;
-  double sense_ = 1.0;          // sign of q since the last caustic
-  double turn_sense_ = 0.0;     // sign of ζ at the step's begin
-  double step_ = 0.0;           // h of the step being taken
-  double general_step_ = 50.0;  // what the error control last found right
+  double sense_ = 1.0;  // sign of q since the last caustic
+  double step_ = 0.0;   // h of the step being taken
   Event event_ = Event::none;
+  std::span<const double> ranges_;
+  RangeVisitor* visitor_ = nullptr;
+  std::size_t next_range_ = 0;  // the first not below y_
+  int segments_ = 0;
   int touches_ = 0;  // reflections without way between them
 };
 

@@ -1,4 +1,4 @@
-// The events that end a segment: how far away each is, and where on a step it happens.
+// The event that ends a segment: which comes first, and where on the ray's course.
 #include <algorithm>
 #include <cmath>
 
@@ -11,159 +11,201 @@ constexpr double landed = 1e-9;  // an event is hit within this [m]
 
 }  // namespace
 
-double March::value(Event event, const RayState& y) const noexcept {
-  const Environment& sea = ocean_.environment;
-  switch (event) {
-    case Event::none:
-      return 1.0;
-    case Event::row_top:
-      return y.depth - cell_.row->top;
-    case Event::row_bottom:
-      return cell_.row->bottom - y.depth;
-    case Event::column_begin:
-      return y.range - ocean_.column_begin(column_);
-    case Event::column_end:
-      return ocean_.column_end(column_) - y.range;
-    case Event::surface_begin:
-      return y.range - sea.surface.shape->facet_begin(surface_facet_);
-    case Event::surface_end:
-      return sea.surface.shape->facet_end(surface_facet_) - y.range;
-    case Event::bottom_begin:
-      return y.range - sea.bottom.shape->facet_begin(bottom_facet_);
-    case Event::bottom_end:
-      return sea.bottom.shape->facet_end(bottom_facet_) - y.range;
-    case Event::surface:
-      return y.depth - sea.surface.shape->depth_at(y.range, surface_facet_);
-    case Event::bottom:
-      return sea.bottom.shape->depth_at(y.range, bottom_facet_) - y.depth;
-    case Event::turn:
-      return y.zeta * turn_sense_ * 1e6;  // of the size of metres
-    case Event::least_range:
-      return y.range - limits_.min_range;
-    case Event::greatest_range:
-      return limits_.max_range - y.range;
-    case Event::greatest_depth:
-      return limits_.max_depth - y.depth;
-  }
-  return 1.0;
+/// Chooses the step and takes it: next_, step_ and event_, what ends it.
+void March::plan() {
+  course_.begin(cell_, y_, here_);
+  event_ = Event::none;
+  rising_ = y_.zeta < 0.0;
+  const bool down = y_.zeta > 0.0 || (y_.zeta == 0.0 && here_.c_z < 0.0);
+  const double bend = std::abs(-here_.c_r * y_.zeta + here_.c_z * y_.xi);  // |c_n|/c
+  const double longest =
+      course_.per_metre() *
+      (bend * longest_segment > widest_turn ? widest_turn / bend : longest_segment);
+  if (course_.closed())
+    plan_closed(down, longest);
+  else
+    plan_series(down, longest);
+  if (near_surface_) strike(BoundaryKind::surface);
+  if (near_bottom_) strike(BoundaryKind::bottom);
+  next_ = course_.end(step_);
 }
 
-/// d(value)/dh.
-double March::rate(Event event, const RayState& y) const noexcept {
-  const Local at = local(cell_, y);
-  const double per_arc = arc_rate(cell_, at.c);
-  const double dr = at.c * y.xi * per_arc, dz = at.c * y.zeta * per_arc;
-  const auto slope = [&](const BoundaryShape& shape, std::size_t facet) {
-    // of the position, which for a curvilinear shape is not that of the tangent
-    if (shape.interpolation() == ShapeInterpolation::smooth) return shape.at(y.range, facet).slope;
-    return shape.depth_at(y.range + 0.5, facet) - shape.depth_at(y.range - 0.5, facet);
+/// Arcs and parabolas tell where they meet a line.
+void March::plan_closed(bool down, double longest) {
+  const Row& row = *cell_.row;
+  step_ = longest;
+  const auto take = [&](Event event, double step) {
+    if (step > step_) return;
+    step_ = std::max(step, 0.0);
+    event_ = event;
   };
-  switch (event) {
-    case Event::row_top:
-      return dz;
-    case Event::row_bottom:
-    case Event::greatest_depth:
-      return -dz;
-    case Event::column_begin:
-    case Event::surface_begin:
-    case Event::bottom_begin:
-    case Event::least_range:
-      return dr;
-    case Event::column_end:
-    case Event::surface_end:
-    case Event::bottom_end:
-    case Event::greatest_range:
-      return -dr;
-    case Event::surface:
-      return dz - slope(*ocean_.environment.surface.shape, surface_facet_) * dr;
-    case Event::bottom:
-      return slope(*ocean_.environment.bottom.shape, bottom_facet_) * dr - dz;
-    case Event::turn:
-      return -at.c_z / (at.c * at.c) * per_arc * turn_sense_ * 1e6;
-    case Event::none:
-      break;
+  take(down ? Event::row_bottom : Event::row_top,
+       course_.to_line({.depth = down ? row.bottom : row.top, .nz = down ? -1.0 : 1.0}));
+  take(Event::turn, course_.to_turn());
+  // no further than this; c within a segment, turned by 0.3 rad, is within 5 % of here
+  const double within = 1.1 * step_ / course_.per_metre();
+  const bool forward = y_.xi > 0.0;
+  const auto take_range = [&](Event event, double range) {
+    if (std::abs(range - y_.range) <= within) take(event, step_to_range(range, forward));
+  };
+  if (forward) {
+    take_range(Event::column_end, ocean_.column_end(column_));
+    take_range(Event::greatest_range, limits_.max_range);
+  } else if (y_.xi < 0.0) {
+    take_range(Event::column_begin, ocean_.column_begin(column_));
+    take_range(Event::least_range, limits_.min_range);
   }
-  return 0.0;
+  if (limits_.max_depth - y_.depth <= within)
+    take(Event::greatest_depth, course_.to_line({.depth = limits_.max_depth, .nz = -1.0}));
 }
 
-/// Brings the end of the step back to where `event` happens, between the steps `low` (value ≥ 0)
-/// and `high` (value < 0): regula falsi with halving (Illinois).
-void March::shrink_to(Event event, double low, double high) {
-  double value_low = value(event, low == 0.0 ? y_ : advance(cell_, y_, low));
-  double value_high = value(event, advance(cell_, y_, high));
-  if (value_low <= 0.0 && low == 0.0) {  // just left the boundary: find a step that is clear of it
-    for (double clear = 0.5 * high; clear > 1e-12 * high; clear *= 0.5) {
-      value_low = value(event, advance(cell_, y_, clear));
-      low = clear;
-      if (value_low > 0.0) break;
-      high = clear;
-      value_high = value_low;
-    }
-  }
-  double middle = high;
-  for (int i = 0, side = 0; i < 200 && value_low > 0.0; ++i) {
-    middle = (low * value_high - high * value_low) / (value_high - value_low);
-    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
-    const double m = value(event, advance(cell_, y_, middle));
-    if (std::abs(m) < landed || high - low < 1e-14 * high) break;
-    if (m < 0.0) {
-      high = middle;
-      value_high = m;
-      if (side == 1) value_low *= 0.5;
-      side = 1;
-    } else {
-      low = middle;
-      value_low = m;
-      if (side == -1) value_high *= 0.5;
-      side = -1;
-    }
-  }
-  step_ = middle;
-  next_ = advance(cell_, y_, middle);
-  event_ = event;
+/// The travel time to the row's line or the turning point ahead, by the ray's present bend; in
+/// range no further than where the column or the ray ends.
+double March::guess(bool down) const {
+  const double c = here_.c, tr = c * y_.xi, tz = c * y_.zeta;
+  const double bend = (here_.c_r * tz - here_.c_z * tr) / c * tr;  // z″ = −(c_n/c)·t_r
+  const double dz = (down ? cell_.row->bottom : cell_.row->top) - y_.depth;
+  const double square = tz * tz + 2.0 * bend * dz;
+  double way = square < 0.0 ? -tz / bend : 2.0 * dz / (tz + std::copysign(std::sqrt(square), dz));
+  if (!(way >= 0.0)) way = longest_segment;
+  const double wall = tr > 0.0 ? std::min(limits_.max_range, ocean_.column_end(column_))
+                               : std::max(limits_.min_range, ocean_.column_begin(column_));
+  if (tr != 0.0) way = std::min(way, (wall - y_.range) / tr);
+  return (way + 1.0) / c;
 }
 
-/// A step that begins and ends in the water may have dipped into a shaped boundary between.
-void March::dipped(Event event) {
-  if (!(rate(event, y_) < 0.0 && rate(event, next_) > 0.0)) return;
-  double low = 0.0, high = step_;
-  RayState lowest = y_;
-  for (int i = 0; i < 60 && high - low > 1e-6; ++i) {  // where it comes nearest: rate = 0
+/// A power series tells where it is: what it has passed at the end of the step, it met before.
+void March::plan_series(bool down, double longest) {
+  const Row& row = *cell_.row;
+  course_.expand(std::min(longest, 1.2 * guess(down)));
+  step_ = course_.reach();
+  const double sense = y_.zeta > 0.0 ? 1.0 : -1.0;
+  if (y_.zeta != 0.0 && sense * course_.rise(step_).value < 0.0) {
+    event_ = Event::turn;
+    step_ = falling_root(0.0, step_, step_, [&](double h) {
+      const auto rise = course_.rise(h);
+      return ValueSlope{sense * rise.value, sense * rise.slope};
+    });
+  }
+  if (cell_.law == Law::bilinear) {  // range is to grow or to fall all along
+    const double dr = course_.at(0.0).dr, sign = std::copysign(1.0, dr);
+    if (std::abs(dr) > 1e-9 * here_.c && sign * course_.at(step_).dr < 0.0) {
+      event_ = Event::none;
+      step_ = falling_root(0.0, step_, step_, [&](double h) {
+        const auto advance = course_.advance(h);
+        return ValueSlope{sign * advance.value, sign * advance.slope};
+      });
+    }
+  }
+  Place end = course_.at(step_);
+  const auto take = [&](Event event, const Line& line) {
+    if (line.distance(end.range, end.depth) >= 0.0) return;
+    event_ = event;
+    step_ = falling_root(0.0, step_, step_, [&](double h) {
+      const Place p = course_.at(h);
+      return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
+    });
+    end = course_.at(step_);
+  };
+  const auto before = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
+  const auto behind = [](double range) { return Line{.range = range, .nr = 1.0, .nz = 0.0}; };
+  take(Event::row_top, {.depth = row.top, .nz = 1.0});
+  take(Event::row_bottom, {.depth = row.bottom, .nz = -1.0});
+  if (cell_.law == Law::bilinear) {
+    take(Event::column_begin, behind(ocean_.column_begin(column_)));
+    take(Event::column_end, before(ocean_.column_end(column_)));
+  }
+  take(Event::least_range, behind(limits_.min_range));
+  take(Event::greatest_range, before(limits_.max_range));
+  take(Event::greatest_depth, {.depth = limits_.max_depth, .nz = -1.0});
+}
+
+double March::step_to_range(double range, bool forward) const {
+  const Line line{.range = range, .nr = forward ? -1.0 : 1.0, .nz = 0.0};
+  if (course_.closed()) return course_.to_line(line);
+  return falling_root(0.0, step_, step_, [&](double h) {
+    const Place p = course_.at(h);
+    return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr};
+  });
+}
+
+/// Ends the step where it first meets a shaped boundary, facet after facet along its way. Within a
+/// segment depth grows or falls all along, so its ends bound it.
+void March::strike(BoundaryKind kind) {
+  const bool above = kind == BoundaryKind::surface;
+  const auto& facets = wall(kind).facets;
+  const Place end = course_.at(step_);
+  const double shallow = std::min(y_.depth, end.depth), deep = std::max(y_.depth, end.depth);
+  const bool forward = end.range >= y_.range;
+  const std::size_t first = facet(kind);
+  for (std::size_t i = first;; forward ? ++i : --i) {
+    const Facet& f = facets[i];
+    const bool last = forward ? end.range <= f.end : end.range >= f.begin;
+    const bool clear = above ? f.extreme < shallow - landed : f.extreme > deep + landed;
+    if (!clear) {
+      const double in = i == first ? 0.0 : step_to_range(forward ? f.begin : f.end, forward);
+      const double out = last ? step_ : step_to_range(forward ? f.end : f.begin, forward);
+      const double h = hit(kind, i, std::clamp(in, 0.0, step_), std::clamp(out, 0.0, step_));
+      if (h < never) {
+        step_ = h;
+        event_ = above ? Event::surface : Event::bottom;
+        (above ? surface_facet_ : bottom_facet_) = i;
+        return;
+      }
+    }
+    if (last) return;
+  }
+}
+
+/// Distance from a facet along its normal; of a smooth one, in depth.
+ValueSlope March::clearance(BoundaryKind kind, std::size_t facet, double h) const {
+  const Place p = course_.at(h);
+  const Line& line = wall(kind).facets[facet].line;
+  if (wall(kind).straight)
+    return {line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
+  const BoundaryPoint point = boundary(kind).shape->at(p.range, facet);
+  const double sense = kind == BoundaryKind::surface ? 1.0 : -1.0;
+  return {sense * (p.depth - point.depth), sense * (p.dz - point.slope * p.dr)};
+}
+
+/// Where the course meets a facet between two steps; infinity if it does not.
+double March::hit(BoundaryKind kind, std::size_t facet, double in, double out) const {
+  const bool closed = course_.closed() && wall(kind).straight;
+  const ValueSlope begin = clearance(kind, facet, in), end = clearance(kind, facet, out);
+  if (begin.value <= 1e-12 && begin.slope < 0.0) return in;
+  const bool passes = end.value < -landed, dips = begin.slope < 0.0 && end.slope > 0.0;
+  if (!passes && !dips) return never;
+  if (closed) {
+    const double h = course_.to_line(wall(kind).facets[facet].line);
+    if (h >= in && h <= out) return h;
+    if (!passes) return never;
+  }
+  if (passes) return hit_between(kind, facet, in, out);
+  // down and up again: by the tangents at its ends it stays above this
+  const double cut =
+      (end.value - begin.value + begin.slope * in - end.slope * out) / (begin.slope - end.slope);
+  if (begin.value + begin.slope * (cut - in) > 0.0) return never;
+  double low = in, high = out;
+  for (int i = 0; i < 60 && high - low > 1e-9 * out; ++i) {  // where it comes nearest
     const double middle = 0.5 * (low + high);
-    lowest = advance(cell_, y_, middle);
-    (rate(event, lowest) < 0.0 ? low : high) = middle;
-    if (value(event, lowest) < 0.0) return shrink_to(event, 0.0, middle);
+    const ValueSlope there = clearance(kind, facet, middle);
+    if (there.value < 0.0) return hit_between(kind, facet, in, middle);
+    (there.slope < 0.0 ? low : high) = middle;
   }
+  return never;
 }
 
-/// The first thing that happens on the step.
-void March::find_events() {
-  const auto check = [&](Event event) {
-    if (event == event_) return;
-    if (value(event, next_) < -landed) shrink_to(event, 0.0, step_);
-  };
-  if (turn_sense_ != 0.0 && cell_.law == Law::general) check(Event::turn);
-  check(Event::row_top);
-  check(Event::row_bottom);
-  if (ocean_.environment.section) {
-    check(Event::column_begin);
-    check(Event::column_end);
-  }
-  if (near_surface_) {
-    check(Event::surface_begin);
-    check(Event::surface_end);
-    check(Event::surface);
-    if (event_ != Event::surface) dipped(Event::surface);
-  }
-  if (near_bottom_) {
-    check(Event::bottom_begin);
-    check(Event::bottom_end);
-    check(Event::bottom);
-    if (event_ != Event::bottom) dipped(Event::bottom);
-  }
-  check(Event::least_range);
-  check(Event::greatest_range);
-  check(Event::greatest_depth);
+/// The same when it is clear of the facet at the first of them, or has just left it, and behind it
+/// at the second.
+double March::hit_between(BoundaryKind kind, std::size_t facet, double in, double out) const {
+  double low = in;
+  if (clearance(kind, facet, in).value <= 0.0)
+    for (double clear = 0.5 * (out - in); clear > 1e-12 * out; clear *= 0.5) {
+      low = in + clear;
+      if (clearance(kind, facet, low).value > 0.0) break;
+      out = low;
+    }
+  return falling_root(low, out, out, [&](double h) { return clearance(kind, facet, h); });
 }
 
 }  // namespace asdic::tracing

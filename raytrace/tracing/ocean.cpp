@@ -35,7 +35,43 @@ std::vector<double> lines_of(const Environment& ocean, const DepthFunction& alph
 
 }  // namespace
 
-RayTracer::Ocean::Ocean(const Environment& given, double frequency) : environment(given) {
+namespace tracing {
+
+Wall::Wall(const Boundary& boundary, BoundaryKind kind) {
+  if (!boundary.shape) return;
+  const BoundaryShape& shape = *boundary.shape;
+  straight = shape.interpolation() != ShapeInterpolation::smooth;
+  const bool above = kind == BoundaryKind::surface;
+  for (std::size_t i = 0; i < shape.facets(); ++i) {
+    const bool inner = i > 0 && i + 1 < shape.facets();
+    const double begin = inner || i > 0 ? shape.facet_begin(i) : shape.facet_end(i);
+    const double end = inner ? shape.facet_end(i) : begin;
+    const double z0 = shape.depth_at(begin, i), z1 = shape.depth_at(end, i);
+    const double slope = inner ? (z1 - z0) / (end - begin) : 0.0;
+    const double unit = (above ? 1.0 : -1.0) / std::sqrt(1.0 + slope * slope);
+    double high = std::min(z0, z1), low = std::max(z0, z1);
+    if (!straight && inner) {  // a cubic stays among its control points
+      const double third = (end - begin) / 3.0;
+      const double a = z0 + third * shape.at(begin, i).slope;
+      const double b = z1 - third * shape.at(end, i).slope;
+      high = std::min({high, a, b});
+      low = std::max({low, a, b});
+    }
+    facets.push_back({.begin = shape.facet_begin(i),
+                      .end = shape.facet_end(i),
+                      .extreme = above ? low : high,
+                      .line = {.range = begin, .depth = z0, .nr = -slope * unit, .nz = unit}});
+  }
+}
+
+}  // namespace tracing
+
+RayTracer::Ocean::Ocean(const Environment& given, double at_frequency, Reflection how)
+    : environment(given),
+      frequency(at_frequency),
+      reflection(how),
+      surface(environment.surface, BoundaryKind::surface),
+      bottom(environment.bottom, BoundaryKind::bottom) {
   const DepthFunction alpha = attenuation_np_per_m(environment, frequency);
   const std::vector<double> lines = lines_of(environment, alpha);
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
@@ -64,17 +100,39 @@ RayTracer::Ocean::Ocean(const Environment& given, double frequency) : environmen
 
 tracing::Cell RayTracer::Ocean::cell(std::size_t row, std::size_t column) const noexcept {
   using tracing::Law;
-  tracing::Cell cell{.ocean = &environment, .row = &rows[row], .column = column};
+  tracing::Cell cell{.row = &rows[row]};
+  const std::size_t j = cell.row->interval;
   if (environment.section) {
-    const bool uniform = column == 0 || column == environment.section->ranges().size();
-    cell.law = uniform ? Law::arc : Law::general;
-  } else if (!environment.water.munk_parameters()) {
-    if (environment.water.interpolation() == Interpolation::c_linear ||
-        environment.water.depths().size() == 1)
-      cell.law = Law::arc;
-    else if (environment.water.interpolation() == Interpolation::n2_linear)
-      cell.law = Law::parabola;
+    const SoundSpeedSection& section = *environment.section;
+    const auto depths = section.depths(), ranges = section.ranges();
+    const std::size_t n = depths.size(), last = ranges.size() - 1;
+    const std::size_t left = column == 0 ? 0 : column - 1;
+    const double height = depths[j + 1] - depths[j];
+    const auto speed = [&](std::size_t i, std::size_t k) { return section.speeds()[i * n + k]; };
+    cell.z0 = depths[j];
+    cell.a[0] = speed(left, j);
+    cell.a[1] = (speed(left, j + 1) - speed(left, j)) / height;
+    if (column == 0 || column > last) return cell;
+    const double slope = (speed(column, j + 1) - speed(column, j)) / height;
+    const double width = ranges[column] - ranges[left];
+    cell.law = Law::bilinear;
+    cell.r0 = ranges[left];
+    cell.b = {(speed(column, j) - speed(left, j)) / width, (slope - cell.a[1]) / width};
+    return cell;
   }
+  const SoundSpeedProfile& water = environment.water;
+  if (water.munk_parameters()) {
+    cell.law = Law::munk;
+    cell.munk = &*water.munk_parameters();
+    return cell;
+  }
+  const IntervalLaw& law = water.law(j);
+  cell.z0 = law.z0;
+  cell.a = law.a;
+  if (water.interpolation() == Interpolation::n2_linear)
+    cell.law = Law::parabola;
+  else if (law.a[2] != 0.0 || law.a[3] != 0.0)
+    cell.law = Law::cubic;
   return cell;
 }
 

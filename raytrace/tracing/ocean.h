@@ -2,13 +2,33 @@
 #include <vector>
 
 #include "raytrace/tracing/cell.h"
+#include "raytrace/tracing/course.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
 
+namespace tracing {
+
+/// A facet of a shaped boundary, ready to be met.
+struct Facet {
+  double begin = 0.0, end = 0.0;  ///< ranges [m], ∓infinity for the outer ones
+  double extreme = 0.0;           ///< how far it reaches into the water at most: a depth [m]
+  Line line;                      ///< through its ends, the normal pointing into the water
+};
+
+/// A shaped boundary, facet by facet; empty for a flat one.
+struct Wall {
+  std::vector<Facet> facets;
+  bool straight = true;  ///< the facets are their lines
+
+  Wall(const Boundary& boundary, BoundaryKind kind);
+};
+
+}  // namespace tracing
+
 /// The environment prepared for marching: rows, columns and losses looked up once.
 struct RayTracer::Ocean {
-  Ocean(const Environment& environment, double frequency);
+  Ocean(const Environment& environment, double frequency, Reflection reflection);
 
   /// The cell of a row and a column. Valid as long as the ocean.
   [[nodiscard]] tracing::Cell cell(std::size_t row, std::size_t column) const noexcept;
@@ -27,7 +47,10 @@ struct RayTracer::Ocean {
   }
 
   Environment environment;
+  double frequency;  ///< [Hz]
+  Reflection reflection;
   std::vector<tracing::Row> rows;  ///< from top to bottom, without gaps
+  tracing::Wall surface, bottom;
 };
 
 }  // namespace asdic

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 
 #include "raytrace/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
@@ -15,6 +16,22 @@ struct TraceLimits {
   int max_segments = 1'000'000;
 };
 
+/// Where a ray leaves a boundary.
+enum class Reflection : unsigned char {
+  on_the_spot,
+  displaced,  ///< carried along by the phase of the coefficient (ocean/beam_displacement.h)
+};
+
+/// Told where a ray passes ranges.
+class RangeVisitor {
+ public:
+  /// \param range  index of it   \param y  there   \param history  up to there, caustics included
+  virtual void pass(std::size_t range, const RayState& y, const RayHistory& history) = 0;
+
+ protected:
+  ~RangeVisitor() = default;
+};
+
 /// Marches rays through any ocean: closed forms in cells where they exist (c linear: arcs of
 /// circles; 1/c² linear: parabolas), a high-order step with error control elsewhere, and events
 /// (grid lines of the water, nodes and facets of the boundaries, turning points) located to
@@ -24,7 +41,8 @@ struct TraceLimits {
 class RayTracer {
  public:
   /// \param frequency  sets attenuation and reflection [Hz]
-  RayTracer(const Environment& environment, double frequency);
+  RayTracer(const Environment& environment, double frequency,
+            Reflection reflection = Reflection::on_the_spot);
   ~RayTracer();
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
@@ -35,6 +53,17 @@ class RayTracer {
   /// \param out  its memory is reused
   void trace(double source_range, double source_depth, double launch_elevation,
              const TraceLimits& limits, RayTrajectory& out) const;
+
+  /// The same ray without storing it: the visitor is told the exact state at each range that the
+  /// ray passes, in the order in which it does; a turn on a range may be told once or not at all.
+  /// \param ranges  increasing [m]   \return c₀, the speed at the source [m/s]
+  double trace_past(std::span<const double> ranges, double source_range, double source_depth,
+                    double launch_elevation, const TraceLimits& limits,
+                    RangeVisitor& visitor) const;
+
+  /// The state where one segment of a ray of this tracer crosses a range between those of its ends:
+  /// as exact as its ends, where state_at interpolates.
+  [[nodiscard]] RayState state_at_range(const RaySegment& segment, double range) const;
 
   struct Ocean;  ///< what is prepared once (ocean.h)
 

@@ -29,7 +29,7 @@ struct RayHistory {
   double reflection_phase = 0.0;          ///< its phase, not wrapped [rad]
   int surface_bounces = 0, bottom_bounces = 0;
   int upper_turns = 0, lower_turns = 0;  ///< turning points in the water
-  int caustics = 0;                      ///< zeros of q passed
+  int caustics = 0;  ///< zeros of q passed, less those a displaced reflection takes back
 };
 
 /// A piece of a ray within one cell of the ocean, where everything is smooth. `end` is the state

@@ -89,7 +89,7 @@ std::optional<ExactCrossing> RootFinder::exact(double angle) {
   TraceLimits limits = limits_;
   limits.max_range = std::min(limits.max_range, reach_);
   tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
-  return cross_column(ray_, tracer_.environment(), leg_, history_, column_->range);
+  return cross_column(ray_, tracer_, leg_, history_, column_->range);
 }
 
 /// The zero of the exact slope between two nodes: secant steps inside a shrinking bracket.

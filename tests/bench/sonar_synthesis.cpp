@@ -54,7 +54,7 @@ void whole_ping(benchmark::State& state) {
   std::vector<float> pressure(array.phones.size() * minute.samples);
   for (auto _ : state) {
     const Synthesizer synthesizer(pulse, minute, spread);
-    synthesizer.add_passband(synthesizer.baseband(returns, array.phones), 1.0, pressure);
+    synthesizer.add_samples(synthesizer.baseband(returns, array.phones), 1.0, pressure);
   }
   state.counters["samples/s"] =
       benchmark::Counter(double(pressure.size()), benchmark::Counter::kIsIterationInvariantRate);
@@ -65,7 +65,7 @@ void passband(benchmark::State& state) {
   const Synthesizer synthesizer(Pulse(hann_tone), minute, 0.0);
   const Baseband b = synthesizer.baseband(reverberation(100, 0.0), array.phones);
   std::vector<float> pressure(array.phones.size() * minute.samples);
-  for (auto _ : state) synthesizer.add_passband(b, 1.0, pressure);
+  for (auto _ : state) synthesizer.add_samples(b, 1.0, pressure);
   state.counters["samples/s"] =
       benchmark::Counter(double(pressure.size()), benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -104,11 +105,110 @@ TEST(FastFields, AreThePlainOnes) {
       }
 }
 
+/// A fan whose tubes differ in width at random.
+BeamFan random_fan(const PropagationCase& run_case, unsigned seed) {
+  std::mt19937 random(seed);
+  const BeamFan even = even_fan(run_case.beams.lowest, run_case.beams.highest, 101);
+  std::vector<double> share(even.elevation.size() - 1);
+  for (double& s : share) s = std::exponential_distribution<double>()(random);
+  return graded_fan(even, share, 220);
+}
+
+double relative_difference(const std::vector<std::complex<double>>& a,
+                           const std::vector<std::complex<double>>& b) {
+  double error = 0.0, norm = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    error += std::norm(a[n] - b[n]), norm += std::norm(b[n]);
+  return std::sqrt(error / norm);
+}
+
+// Hats with two unequal halves. As above; and a receiver within rounding of a ray may be counted to
+// the other half, whose weight there is the same.
+TEST(GradedFans, AreThePlainOnes) {
+  for (unsigned seed = 1; seed <= 12; ++seed)
+    for (const FieldKind field : {FieldKind::coherent, FieldKind::incoherent}) {
+      PropagationCase run_case = random_channel(seed);
+      run_case.field = field;
+      const RayTracer tracer(run_case.environment, run_case.frequency);
+      const BeamFan fan = random_fan(run_case, seed);
+      const double zs = run_case.source_depths[0];
+      const auto plain = field_of_fan(run_case, tracer, zs, fan, {}, FieldMethod::plain).field;
+      const auto fast = field_of_fan(run_case, tracer, zs, fan).field;
+      EXPECT_LT(relative_difference(fast, plain), 1e-4) << "seed " << seed << ' ' << int(field);
+    }
+}
+
+// Two halves of the same width are the hat. Those of single precision differ by rounding.
+TEST(GradedFans, AreEvenOnesIfTheirTubesAre) {
+  const PropagationCase run_case = random_channel(4);
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  BeamFan fan = even_fan(run_case.beams.lowest, run_case.beams.highest, 301);
+  const double zs = run_case.source_depths[0];
+  const auto even = field_of_fan(run_case, tracer, zs, fan).field;
+  fan.graded = true;
+  EXPECT_LT(relative_difference(field_of_fan(run_case, tracer, zs, fan).field, even), 1e-6);
+}
+
+TEST(GradedFans, DivideWhereTheErrorIs) {
+  const BeamFan even = even_fan(-1.0, 1.0, 5);
+  const BeamFan fan = graded_fan(even, {0.0, 1.0, 4.0, 0.0}, 11);
+  EXPECT_EQ(fan.elevation.size(), 12U);  // 1, 3, 6, 1 parts: as √S; 1, 2, 5, 1 were too few
+  for (const double e : even.elevation)
+    EXPECT_NE(std::find(fan.elevation.begin(), fan.elevation.end(), e), fan.elevation.end());
+  EXPECT_TRUE(std::is_sorted(fan.elevation.begin(), fan.elevation.end()));
+  EXPECT_DOUBLE_EQ(fan.elevation[1], -0.5);
+  EXPECT_DOUBLE_EQ(fan.elevation[5], 0.5 / 6.0);
+}
+
+/// How a field's bound stands against a fan eight times as dense.
+struct Held {
+  double error_db, bound_db, beyond;  ///< both at 95 %; share of receivers with an error above it
+};
+Held held(const PropagationCase& run_case, const BeamFan& fan, const BeamFan& denser) {
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const double zs = run_case.source_depths[0];
+  const bool coherent = run_case.field == FieldKind::coherent;
+  const FanField f =
+      field_of_fan(run_case, tracer, zs, fan, {}, FieldMethod::fast, {.bound = true});
+  const auto truth = field_of_fan(run_case, tracer, zs, denser).field;
+  double beyond = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double error = coherent ? std::abs(f.field[i] - truth[i])
+                                  : std::abs(std::norm(f.field[i]) - std::norm(truth[i]));
+    beyond += error > f.bound[i] + 1e-5 * std::abs(truth[i]) * (coherent ? 1 : std::abs(truth[i]));
+  }
+  return {level_difference_db(f.field, truth, 0.95), bound_db(f.field, f.bound, coherent, 0.95),
+          beyond / double(truth.size())};
+}
+
+// The bound is one: at 95 % of the receivers for every ocean, kind of beam and of sum, and receiver
+// by receiver but for those beside a caustic or an edge inside a torn tube, where rays do not end
+// where their neighbours do: less than the 5 % that a figure at 95 % leaves out.
+TEST(ErrorBound, HoldsOverRandomOceans) {
+  for (unsigned seed = 1; seed <= 30; ++seed)
+    for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
+      for (const FieldKind field : {FieldKind::coherent, FieldKind::incoherent}) {
+        PropagationCase run_case = random_channel(seed);
+        run_case.beams.kind = kind;
+        run_case.field = field;
+        for (const int beams : {301, 1201}) {
+          const auto even = [&](int n) {
+            return even_fan(run_case.beams.lowest, run_case.beams.highest, n);
+          };
+          const Held h = held(run_case, even(beams), even(8 * (beams - 1) + 1));
+          SCOPED_TRACE(testing::Message() << "seed " << seed << " kind " << int(kind) << " field "
+                                          << int(field) << " beams " << beams);
+          EXPECT_LE(h.error_db, h.bound_db);
+          EXPECT_LE(h.beyond, 0.05);
+        }
+      }
+}
+
 TEST(Fields, HaveTheSameBitsForAnyNumberOfThreads) {
   for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian, BeamKind::ray_centred_hat}) {
     PropagationCase run_case = random_channel(5);
     run_case.beams.kind = kind;
-    run_case.beams.elevations = even_fan(-0.4, 0.4, 3001).elevation;
+    if (kind != BeamKind::hat) run_case.beams.elevations = even_fan(-0.4, 0.4, 3001).elevation;
     std::vector<std::complex<float>> first;
     for (const std::size_t threads : {1, 2, 4}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -119,19 +219,30 @@ TEST(Fields, HaveTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// A field does not depend on the number of beams in the input but for what its own rule allows.
+// A field does not depend on the number of beams in the input but for what its own rule allows: two
+// of them are no further apart than the bounds of both.
 TEST(Fields, DoNotDependOnTheNumberOfBeamsAskedFor) {
-  PropagationCase run_case = random_channel(7);
-  run_case.field = FieldKind::incoherent;
-  run_case.beams.kind = BeamKind::gaussian;
-  const PropagationResult few = run_field(run_case);
-  run_case.beams.count = 3 * static_cast<int>(few.beams);
-  const PropagationResult many = run_field(run_case);
   const auto wide = [](const std::vector<std::complex<float>>& p) {
     return std::vector<std::complex<double>>(p.begin(), p.end());
   };
-  EXPECT_LT(few.beam_error_db, wanted_error_db);
-  EXPECT_LT(level_difference_db(wide(few.field), wide(many.field), 0.95), wanted_error_db);
+  for (const unsigned seed : {2U, 7U, 9U})
+    for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
+      for (const FieldKind field : {FieldKind::coherent, FieldKind::incoherent}) {
+        PropagationCase run_case = random_channel(seed);
+        run_case.field = field;
+        run_case.beams.kind = kind;
+        const PropagationResult few = run_field(run_case);
+        SCOPED_TRACE(testing::Message() << "seed " << seed << " kind " << int(kind) << " field "
+                                        << int(field) << " beams " << few.beams);
+        EXPECT_TRUE(few.beam_error_bounded);
+        EXPECT_TRUE(!few.notes.empty() || few.beam_error_db <= wanted_bound_db);
+        for (const double factor : {0.3, 1.0, 1.7}) {
+          run_case.beams.count = static_cast<int>(factor * double(few.beams));
+          const PropagationResult other = run_field(run_case);
+          EXPECT_LE(level_difference_db(wide(few.field), wide(other.field), 0.95),
+                    few.beam_error_db + other.beam_error_db);
+        }
+      }
 }
 
 TEST(Fields, StopWhenTold) {

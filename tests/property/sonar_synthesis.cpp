@@ -20,7 +20,7 @@ std::vector<float> fast_synthesis(const Pulse& pulse, const Recording& recording
                                   const Returns& returns, double max_doppler) {
   const Synthesizer synthesizer(pulse, recording, max_doppler);
   std::vector<float> pressure(three_phones.size() * recording.samples, 0.0F);
-  synthesizer.add_passband(synthesizer.baseband(returns, three_phones), 1.0, pressure);
+  synthesizer.add_samples(synthesizer.baseband(returns, three_phones), 1.0, pressure);
   return pressure;
 }
 
@@ -186,8 +186,8 @@ TEST(Synthesis, AddsToWhatIsThereAndScales) {
   const Synthesizer synthesizer(pulse, four_seconds, 0.0);
   const Baseband b = synthesizer.baseband(returns, three_phones);
   std::vector<float> once(3 * four_seconds.samples, 0.0F), twice(once.size(), 1.0F);
-  synthesizer.add_passband(b, 1.0, once);
-  synthesizer.add_passband(b, 2.0, twice);
+  synthesizer.add_samples(b, 1.0, once);
+  synthesizer.add_samples(b, 2.0, twice);
   for (std::size_t i = 0; i < once.size(); i += 97)
     EXPECT_NEAR(twice[i], 1.0F + 2.0F * once[i], 1e-5F);
 }

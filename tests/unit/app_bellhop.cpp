@@ -85,6 +85,18 @@ TEST_F(BellhopCommand, ResultsBecomeHdf5AndTheSameBytesAgain) {
   }
 }
 
+// The way a file was written comes along, unless another is asked for.
+TEST_F(BellhopCommand, TheOtherDialectComesBackToo) {
+  const std::string file = (data / "deep-source-arrivals/case.arr").string();
+  ASSERT_EQ(asdic(folder, "convert " + file + " wide.arr --wide --binary").status, 0);
+  ASSERT_EQ(asdic(folder, "convert wide.arr x.h5").status, 0);
+  ASSERT_EQ(asdic(folder, "convert x.h5 same.arr").status, 0);
+  EXPECT_TRUE(text("same.arr") == text("wide.arr"));
+  ASSERT_EQ(asdic(folder, "convert x.h5 text.arr --ascii --fortran").status, 0);
+  EXPECT_FALSE(text("text.arr") == text("wide.arr"));
+  EXPECT_EQ(asdic(folder, "convert x.h5 y.arr --ascii --binary").status, 2);
+}
+
 TEST_F(BellhopCommand, ConvertSaysWhatGoesTogether) {
   const auto run = asdic(folder, "convert " + (data / "rays-upslope/case.ray").string() + " x.shd");
   EXPECT_EQ(run.status, 2);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/program.h"
@@ -62,6 +63,25 @@ TEST(Explain, ToldForPeopleIsATableAndAdvice) {
   EXPECT_NE(outcome.out.find("step 500 m, 1001 beams"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("number of beams"), std::string::npos);
   EXPECT_NE(outcome.out.find("is what BELLHOP makes of this input"), std::string::npos);
+}
+
+// A file beside the case is BELLHOP's unless the .prt is signed by asdic.
+TEST(Explain, SaysWhoseFileItIs) {
+  const support::TemporaryDirectory folder;
+  for (const char* name : {"case.env", "case.bty", "case.ray"})
+    std::filesystem::copy_file(data + "rays-upslope/" + name, folder.path() / name);
+  const auto writer = [&] {
+    const auto outcome = asdic(folder, "explain case --json -q");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out)["on_disk"]["written_by"];
+  };
+  EXPECT_EQ(writer(), "unknown");
+  std::ofstream(folder.path() / "case.prt") << " BELLHOP/BELLHOP3D\n rays, upslope\n";
+  EXPECT_EQ(writer(), "BELLHOP");
+  EXPECT_EQ(asdic(folder, "bellhop case -q").status, 0);
+  EXPECT_EQ(writer(), "asdic");
+  EXPECT_EQ(asdic(folder, "bellhop case --like-bellhop -q").status, 0);
+  EXPECT_EQ(writer(), "asdic --like-bellhop");
 }
 
 TEST(Explain, ACaseThatIsNotThereIsAFault) {

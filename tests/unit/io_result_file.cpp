@@ -101,6 +101,27 @@ TEST(ResultFile, ArrivalsComeBackAsTheyWere) {
   EXPECT_EQ(a.bottom_bounces, b.bottom_bounces);
 }
 
+// So that a converted file can be converted back into the same bytes.
+TEST(ResultFile, DialectAndBinaryComeBack) {
+  for (const auto dialect : {bellhop::Dialect::fortran, bellhop::Dialect::wide}) {
+    ShadeFile shade = field(false);
+    shade.dialect = dialect;
+    const auto shade_after = std::get<ShadeFile>(round_trip(shade));
+    EXPECT_EQ(bellhop::shade_file_bytes(shade_after), bellhop::shade_file_bytes(shade));
+    for (const bool binary : {false, true}) {
+      ArrivalsFile arrivals{.binary = binary,
+                            .frequency = 3500.0,
+                            .source_depths = {10.0},
+                            .receiver_depths = {5.0},
+                            .receiver_ranges = {100.0},
+                            .arrivals = {{{.amplitude = 0.25, .phase_deg = 180.0, .delay = 2.5}}},
+                            .dialect = dialect};
+      const auto after = std::get<ArrivalsFile>(round_trip(arrivals));
+      EXPECT_EQ(bellhop::arrivals_file_bytes(after), bellhop::arrivals_file_bytes(arrivals));
+    }
+  }
+}
+
 TEST(ResultFile, RaysComeBackAsTheyWere) {
   RayFile before{
       .title = "rays", .frequency = 50.0, .sources_z = 2, .angles = 7, .bottom_depth = 80.0};

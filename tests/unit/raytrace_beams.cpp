@@ -185,5 +185,29 @@ TEST(Fan, HasBothEndsAndNoDoubleBeam) {
   EXPECT_NEAR(circle.elevation.back(), 0.75 * pi, 1e-12);
 }
 
+// The velocity of a spherical wave, times ρc, is along the line to the receiver: p·dz/R and p·r/R,
+// but for the near field, 1/kR = 1.2e-3 at the nearest, and what wide beams are off at 200 m
+// (2e-3). Červený's additional component, c·n·P/Q along the beam's normal, would change 5e-8.
+TEST(CervenyBeams, ComponentsAreTheVelocity) {
+  FreeSpace space;
+  space.depths = {-40.0, 0.0, 40.0, 100.0};
+  for (const BeamKind kind : {BeamKind::cerveny_cartesian, BeamKind::cerveny_ray_centred})
+    for (const auto component :
+         {CervenyBeams::Component::vertical, CervenyBeams::Component::horizontal}) {
+      CervenyBeams beam;
+      const auto pressure = space.sum({.kind = kind, .cerveny = beam});
+      beam.component = component;
+      const auto velocity = space.sum({.kind = kind, .cerveny = beam});
+      for (std::size_t j = 0; j < space.ranges.size(); ++j)
+        for (std::size_t k = 0; k < space.depths.size(); ++k) {
+          const double r = space.ranges[j], z = space.depths[k], distance = std::hypot(r, z);
+          const double share = (component == CervenyBeams::Component::vertical ? z : r) / distance;
+          const auto ratio =
+              velocity[j * space.depths.size() + k] / pressure[j * space.depths.size() + k];
+          EXPECT_NEAR(std::abs(ratio - share), 0.0, 3e-3) << r << ' ' << z;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace asdic

@@ -25,7 +25,7 @@ TEST(WhiteNoise, LevelsOfThePhysicsPage) {  // 40 dB/Hz: 76.0 dB at 8 kHz, 79.0 
 TEST(WhiteNoise, SpectrumIsFlatAtTheGivenLevel) {
   const std::size_t n = 1 << 19;
   std::vector<float> pressure(n, 0.0F);
-  add_white_noise(pressure, 1, 40.0, fs, 11, 3);
+  add_white_noise(pressure, 1, white_noise_variance(40.0, fs), 11, 3);
   FftBuffer<double> x(n);
   std::copy(pressure.begin(), pressure.end(), x.data());
   FftBuffer<std::complex<double>> bins(n / 2 + 1);
@@ -46,7 +46,7 @@ TEST(WhiteNoise, PhonesPingsAndSeedsAreIndependent) {
   const std::size_t n = 100'000;
   const auto record = [&](std::uint64_t seed, std::uint32_t ping) {
     std::vector<float> p(2 * n, 0.0F);
-    add_white_noise(p, 2, 120.0 - db_from_power(0.5 * fs), fs, seed, ping);  // variance 1 Pa²
+    add_white_noise(p, 2, 1.0, seed, ping);
     return p;
   };
   const auto a = record(1, 1), b = record(1, 2), d = record(2, 1);
@@ -62,8 +62,8 @@ TEST(WhiteNoise, PhonesPingsAndSeedsAreIndependent) {
 
 TEST(WhiteNoise, APhonesNoiseDoesNotDependOnTheOthers) {
   std::vector<float> two(2 * 5000, 1.0F), three(3 * 5000, 1.0F);
-  add_white_noise(two, 2, 60.0, fs, 5, 0);
-  add_white_noise(three, 3, 60.0, fs, 5, 0);
+  add_white_noise(two, 2, white_noise_variance(60.0, fs), 5, 0);
+  add_white_noise(three, 3, white_noise_variance(60.0, fs), 5, 0);
   EXPECT_TRUE(std::equal(two.begin(), two.end(), three.begin()));
 }
 

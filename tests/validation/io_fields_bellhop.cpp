@@ -59,9 +59,10 @@ TEST_P(SameFan, GivesWhatBellhopConvergesTo) {
   RecordProperty("p95_db", std::to_string(difference.tl_db.p95));
 }
 
-// Gaps, named: seamount-curved (2.0 dB at the median; most of it is BELLHOP's normals, which are
-// not of unit length), swell-surface (0.29 dB, residual 0.11: open) and cerveny-raycentred (0.23
-// dB, residual 0.21: BELLHOP is of first order in its step there). docs/theory/fields.md
+// Gaps, named, all of them BELLHOP's: seamount-curved (2.0 dB at the median) and swell-surface
+// (0.29 dB), normals that are not of unit length and facets that bend like the corner at their end
+// (LikeBellhopCurvilinear); cerveny-raycentred (0.23 dB, residual 0.21), a step of first order
+// (LikeBellhopCervenyRayCentred). docs/theory/fields.md
 INSTANTIATE_TEST_SUITE_P(Geometric, SameFan,
                          testing::Values(Case{"munk-coherent-hat", 0.02, 0.1},
                                          Case{"munk-incoherent-gauss", 0.02, 0.1},

@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "raytrace/eigenrays.h"
+#include "raytrace/ground_paths.h"
 #include "support/csv.h"
 #include "support/integrator.h"
 
@@ -224,6 +225,36 @@ TEST(Eigenrays, Munk) {
   }
   EXPECT_EQ(rows, csv.rows());
   EXPECT_EQ(unlisted, 1U);
+}
+
+// The first cells of the surface, all but straight above: image sources at depths z_s and 2H − z_s,
+// 1/distance each, over a rigid bottom. The grid's ranges are right to a hundredth of the spacing,
+// 0.2 m: 1e-4 of the shorter distance, 200 m, and with the slopes of its cubics, some eight times
+// that over a spacing, 1e-3 of the amplitude.
+TEST(GroundPaths, StraightAboveAreThoseOfImageSources) {
+  Environment ocean;
+  ocean.bottom = {.depth = 900.0, .material = Rigid{}};
+  constexpr double source = 200.0, spacing = 20.0;
+  for (const bool marched : {false, true}) {
+    if (marched)
+      ocean.bottom.shape = BoundaryShape(std::vector{-1e4, 1e4}, std::vector{900.0, 900.0},
+                                         ShapeInterpolation::piecewise_linear);
+    const GroundPaths ground = ground_paths(
+        EigenraySolver(ocean), source, BoundaryKind::surface, spacing, 400.0, 1000.0,
+        {.max_surface_bounces = 0, .max_bottom_bounces = 1, .max_launch_angle = 0.5 * pi});
+    for (std::size_t cell = 0; cell < 4; ++cell) {
+      SCOPED_TRACE(testing::Message() << "cell " << cell << (marched ? " marched" : " layered"));
+      const double r = (static_cast<double>(cell) + 0.5) * spacing;
+      for (const double depth : {source, 2.0 * 900.0 - source}) {
+        const double distance = std::hypot(r, depth);
+        double nearest = infinity;
+        for (const GroundPath& path : ground.paths(cell))
+          if (std::abs(path.delay - distance / 1500.0) < 1e-3)
+            nearest = std::min(nearest, std::abs(std::abs(path.amplitude) * distance - 1.0));
+        EXPECT_LT(nearest, 1e-3);
+      }
+    }
+  }
 }
 
 }  // namespace

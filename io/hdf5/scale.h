@@ -2,9 +2,14 @@
 #include <string>
 #include <vector>
 
-#include "io/ping/growing_table.h"
+#include "io/hdf5_file.h"
 
-namespace asdic::ping_file {
+// How every file of ours names its datasets and axes.
+namespace asdic {
+
+/// Attributes long_name and, where there is one, units.
+void describe(Hdf5File& file, const std::string& dataset, const std::string& long_name,
+              const std::string& units = "");
 
 /// Writes a vector that is the scale of a dimension.
 template <class T>
@@ -16,4 +21,4 @@ void write_scale(Hdf5File& file, const std::string& dataset, const std::string& 
   file.make_scale(dataset, dimension);
 }
 
-}  // namespace asdic::ping_file
+}  // namespace asdic

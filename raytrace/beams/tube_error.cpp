@@ -1,0 +1,277 @@
+#include "raytrace/beams/tube_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/beams/geometric.h"
+#include "raytrace/beams/lanes.h"
+
+namespace asdic {
+
+namespace {
+
+const double root_of_two_pi = std::sqrt(2.0 * pi);
+
+inline double larger(double a, double b) noexcept { return a > b ? a : b; }
+inline double smaller(double a, double b) noexcept { return a < b ? a : b; }
+
+}  // namespace
+
+void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch) {
+  const std::size_t n = crossings.size();
+  for (auto* array :
+       {&size, &growth, &cosine, &higher, &amplitude, &power, &phase, &wave_number, &least})
+    array->resize(n);
+  const double launched = beams::launch_factor(setting, launch);
+  const double launched2 = launched * launched / crossings.source_speed;
+  const double f = setting.frequency, omega = 2.0 * pi * f;
+  const bool coherent = setting.coherent;
+  const double width = setting.kind == BeamKind::hat ? 0.0 : 1.0;
+  const double *q = crossings.q.data(), *cos_in = crossings.cosine.data(),
+               *sine = crossings.sine.data(), *dq_ds = crossings.dq_ds.data(),
+               *c = crossings.speed.data(), *time = crossings.time.data(),
+               *level = crossings.level.data(), *turned = crossings.phase.data(),
+               *mirror = crossings.mirror.data();
+  double *size_to = size.data(), *growth_to = growth.data(), *cosine_to = cosine.data(),
+         *higher_to = higher.data(), *amplitude_to = amplitude.data(), *power_to = power.data(),
+         *phase_to = phase.data(), *number_to = wave_number.data(), *least_to = least.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const double along = std::abs(cos_in[i]), sign = q[i] < 0.0 ? -1.0 : 1.0;
+    const double intensity = launched2 * level[i] * level[i] * c[i];  // · |q|
+    size_to[i] = larger(std::abs(q[i]), 1e-9);
+    growth_to[i] = sign * dq_ds[i] * sine[i];
+    cosine_to[i] = along;
+    higher_to[i] = q[i] * cos_in[i] * mirror[i] > 0.0 ? -1.0 : 1.0;
+    amplitude_to[i] = intensity / size_to[i];
+    power_to[i] = intensity / along;
+    phase_to[i] = turned[i] - omega * time[i];
+    number_to[i] = -omega * sine[i] / c[i];
+    least_to[i] = width * smaller(0.2 * f * time[i], pi * c[i] / f);
+  }
+  if (coherent)
+    for (std::size_t i = 0; i < n; ++i) amplitude_to[i] = std::sqrt(amplitude_to[i]);
+}
+
+void TubeError::Pieces::resize(std::size_t n) {
+  for (auto* array : {&error, &from, &to, &sigma}) array->resize(n);
+}
+
+TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
+                     std::size_t columns)
+    : setting_(setting), depths_(depths), first_depth_(depths.front()), stride_(depths.size() + 1) {
+  sum_.assign(columns * stride_, 0.0);
+  head_.assign(columns, -1);
+  const std::size_t n = depths.size();
+  const double step = n < 2 ? 0.0 : (depths.back() - first_depth_) / double(n - 1);
+  bool even = step > 0.0;
+  for (std::size_t k = 0; k < n; ++k)
+    even = even && std::abs(depths[k] - (first_depth_ + double(k) * step)) < 1e-3 * step;
+  if (even) per_spacing_ = 1.0 / step;
+}
+
+/// From crossing i of the lower ray and j of the higher one on, `count` pairs.
+/// docs/theory/fields.md, eq. (1) to (3)
+template <bool hat, bool coherent>
+void TubeError::bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtColumns& b,
+                              std::size_t j, std::size_t count, double width) {
+  const double *higher_a = a.higher.data() + i, *size_a = a.size.data() + i,
+               *growth_a = a.growth.data() + i, *cosine_a = a.cosine.data() + i,
+               *turned_a = a.crossings.phase.data() + i, *mirror_a = a.crossings.mirror.data() + i,
+               *phase_a = a.phase.data() + i, *number_a = a.wave_number.data() + i,
+               *least_a = a.least.data() + i, *amplitude_a = a.amplitude.data() + i,
+               *power_a = a.power.data() + i, *depth_a = a.crossings.depth.data() + i;
+  const double *higher_b = b.higher.data() + j, *size_b = b.size.data() + j,
+               *growth_b = b.growth.data() + j, *cosine_b = b.cosine.data() + j,
+               *turned_b = b.crossings.phase.data() + j, *mirror_b = b.crossings.mirror.data() + j,
+               *phase_b = b.phase.data() + j, *number_b = b.wave_number.data() + j,
+               *least_b = b.least.data() + j, *amplitude_b = b.amplitude.data() + j,
+               *power_b = b.power.data() + j, *depth_b = b.crossings.depth.data() + j;
+  double *tube_error = tube_.error.data(), *tube_from = tube_.from.data(),
+         *tube_to = tube_.to.data(), *tube_sigma = tube_.sigma.data(),
+         *lower_error = lower_.error.data(), *lower_from = lower_.from.data(),
+         *lower_to = lower_.to.data(), *lower_sigma = lower_.sigma.data(),
+         *higher_error = higher_.error.data(), *higher_from = higher_.from.data(),
+         *higher_to = higher_.to.data(), *higher_sigma = higher_.sigma.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t k = 0; k < count; ++k) {
+    const double za = depth_a[k], zb = depth_b[k], dz = zb - za;
+    const double apart = std::abs(dz), side_a = higher_a[k], side_b = -higher_b[k];
+    // |q| of each ray's beam at the other; its hat's weight there, 0 if that is where it was
+    // foretold
+    const double there_a = size_a[k] + growth_a[k] * dz, there_b = size_b[k] - growth_b[k] * dz;
+    const double weight_a = 1.0 - apart * cosine_a[k] / (there_a * width);
+    const double weight_b = 1.0 - apart * cosine_b[k] / (there_b * width);
+    const double weight = larger(std::abs(weight_a), std::abs(weight_b));
+    // The phase that each foretells for the other; reflections and caustics to the nearest turn.
+    const double turns = turned_a[k] - turned_b[k];
+    const double whole = 2.0 * pi * std::floor(turns / (2.0 * pi) + 0.5);
+    const double ahead = phase_a[k] - phase_b[k] - whole;
+    const double phase =
+        coherent ? larger(std::abs(ahead + number_a[k] * dz), std::abs(ahead + number_b[k] * dz))
+                 : 0.0;
+    // The beams: reach of a hat, σ of a Gaussian along the column, amplitude at the ray.
+    const double open_a = cosine_a[k] - side_a * growth_a[k] * width;
+    const double open_b = cosine_b[k] - side_b * growth_b[k] * width;
+    const double reach_a = hat ? size_a[k] * width / larger(open_a, 0.5 * cosine_a[k]) : 0.0;
+    const double reach_b = hat ? size_b[k] * width / larger(open_b, 0.5 * cosine_b[k]) : 0.0;
+    const double across_a = larger(size_a[k] * width, least_a[k]);
+    const double across_b = larger(size_b[k] * width, least_b[k]);
+    const double share_a = hat ? 1.0 : size_a[k] * width / (across_a * root_of_two_pi);
+    const double share_b = hat ? 1.0 : size_b[k] * width / (across_b * root_of_two_pi);
+    const double sigma_a = hat ? 0.0 : across_a / cosine_a[k];
+    const double sigma_b = hat ? 0.0 : across_b / cosine_b[k];
+    const double amp_a = share_a * amplitude_a[k], amp_b = share_b * amplitude_b[k];
+    const double most = larger(amp_a, amp_b), both = amp_a + amp_b,
+                 change = std::abs(amp_a - amp_b);
+    const double smooth = hat ? most * (weight + 0.25 * phase) + 0.5 * change
+                              : 0.5 * (most * (weight + phase) + change);
+    // Torn: on the wrong side, behind a caustic, mirrored once more, or not foretold at all. The
+    // power of the rays in between is that of the two, on the average.
+    const double ordered = smaller(smaller(dz * side_a, -dz * side_b), smaller(there_a, there_b));
+    const double mirrored = std::abs(mirror_a[k] - mirror_b[k]);
+    const double torn = (ordered < 0.0 ? 1.0 : 0.0) + mirrored + (smooth > both ? 1.0 : 0.0) +
+                        (there_a * there_b == 0.0 ? 1.0 : 0.0);
+    const double mean = larger(power_a[k], power_b[k]) * width / larger(apart, 1e-9);
+    const double between = smaller(coherent ? std::sqrt(mean) : mean, both);
+    const double part = torn > 0.0 ? (hat ? 1.0 : 0.5) : 0.0;
+    const double end_a = za + side_a * reach_a, end_b = zb + side_b * reach_b;
+    const double low = smaller(za, zb), high = larger(za, zb);
+    tube_error[k] = torn > 0.0 ? between : smooth;
+    tube_from[k] = torn > 0.0 ? low : smaller(low, smaller(end_a, end_b));
+    tube_to[k] = torn > 0.0 ? high : larger(high, larger(end_a, end_b));
+    tube_sigma[k] = larger(sigma_a, sigma_b);
+    lower_error[k] = part * amp_a;
+    lower_from[k] = smaller(za, end_a);
+    lower_to[k] = larger(za, end_a);
+    lower_sigma[k] = sigma_a;
+    higher_error[k] = part * amp_b;
+    higher_from[k] = smaller(zb, end_b);
+    higher_to[k] = larger(zb, end_b);
+    higher_sigma[k] = sigma_b;
+  }
+}
+
+void TubeError::bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+                      std::size_t count, double width) {
+  const bool hat = setting_.kind == BeamKind::hat, coherent = setting_.coherent;
+  if (hat && coherent) return bound_of_kind<true, true>(a, i, b, j, count, width);
+  if (hat) return bound_of_kind<true, false>(a, i, b, j, count, width);
+  if (coherent) return bound_of_kind<false, true>(a, i, b, j, count, width);
+  bound_of_kind<false, false>(a, i, b, j, count, width);
+}
+
+/// A ray without a neighbour: all that it brings is unsure.
+double TubeError::put_alone(const RayAtColumns& ray, std::size_t i, double width, double level) {
+  const bool hat = setting_.kind == BeamKind::hat;
+  const double across = larger(ray.size[i] * width, ray.least[i]), z = ray.crossings.depth[i];
+  const double reach = hat ? across / ray.cosine[i] : 0.0;
+  const double share = hat ? 1.0 : ray.size[i] * width / (across * root_of_two_pi);
+  return put(ray.crossings.column[i], share * ray.amplitude[i], z - reach, z + reach,
+             hat ? 0.0 : across / ray.cosine[i], level);
+}
+
+double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, double width,
+                      std::span<const double> level) {
+  const Crossings &a = lower.crossings, &b = higher.crossings;
+  const std::size_t n = std::min(a.size(), b.size());
+  const auto simple = [](const Crossings& x) {
+    return x.size() == 0 || (x.column.front() == 0 && x.column.back() + 1 == x.size() &&
+                             std::is_sorted(x.column.begin(), x.column.end()));
+  };
+  double share = 0.0;
+  if (simple(a) && simple(b)) {  // each column once, in order
+    for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(n);
+    bound(lower, 0, higher, 0, n, width);
+    for (std::size_t i = 0; i < n; ++i) share += put_tube(i, i, level[i]);
+    for (std::size_t i = n; i < a.size(); ++i) share += put_alone(lower, i, width, level[i]);
+    for (std::size_t i = n; i < b.size(); ++i) share += put_alone(higher, i, width, level[i]);
+    return share;
+  }
+  // The first crossing of a column belongs to the neighbour's first, the second to its second, …
+  for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(1);
+  next_.assign(b.size(), -1);
+  for (std::size_t j = b.size(); j-- > 0;) {
+    next_[j] = head_[b.column[j]];
+    head_[b.column[j]] = static_cast<std::int32_t>(j);
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::size_t column = a.column[i];
+    const std::int32_t j = head_[column];
+    if (j < 0) {
+      share += put_alone(lower, i, width, level[column]);
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(j);
+    head_[column] = next_[k];
+    bound(lower, i, higher, k, 1, width);
+    share += put_tube(column, 0, level[column]);
+  }
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    std::int32_t& left = head_[b.column[j]];
+    for (; left >= 0; left = next_[static_cast<std::size_t>(left)])
+      share += put_alone(higher, static_cast<std::size_t>(left), width, level[b.column[j]]);
+  }
+  return share;
+}
+
+double TubeError::add_end(const RayAtColumns& ray, double width, std::span<const double> level) {
+  double share = 0.0;
+  for (std::size_t i = 0; i < ray.crossings.size(); ++i) {
+    share += put_alone(ray, i, width, level[ray.crossings.column[i]]);
+  }
+  return share;
+}
+
+double TubeError::put_tube(std::size_t column, std::size_t n, double level) {
+  const auto one = [&](const Pieces& p) {
+    return put(column, p.error[n], p.from[n], p.to[n], p.sigma[n], level);
+  };
+  double share = one(tube_);
+  if (lower_.error[n] > 0.0 || higher_.error[n] > 0.0) share += one(lower_) + one(higher_);
+  return share;
+}
+
+double TubeError::put(std::size_t column, double error, double from, double to, double sigma,
+                      double level) {
+  double receivers;
+  if (sigma == 0.0) {
+    receivers = put_between(column, error, from, to);
+  } else {  // a staircase over e^(−u²/2): steps at whole u
+    constexpr double step[4] = {1.0 - 0.60653066, 0.60653066 - 0.13533528, 0.13533528 - 0.011108997,
+                                0.011108997};
+    receivers = 0.0;
+    for (int u = 1; u <= 4; ++u)
+      receivers +=
+          step[u - 1] * put_between(column, step[u - 1] * error, from - u * sigma, to + u * sigma);
+  }
+  return receivers * std::min(error / level, 1.0);
+}
+
+double TubeError::put_between(std::size_t column, double error, double from, double to) {
+  const auto rows = static_cast<double>(depths_.size());
+  std::size_t first, last;
+  if (per_spacing_ > 0.0) {
+    const double a = std::ceil((from - first_depth_) * per_spacing_);
+    const double b = std::floor((to - first_depth_) * per_spacing_) + 1.0;
+    first = static_cast<std::size_t>(std::clamp(a, 0.0, rows));
+    last = static_cast<std::size_t>(std::clamp(b, 0.0, rows));
+  } else {
+    first = static_cast<std::size_t>(std::lower_bound(depths_.begin(), depths_.end(), from) -
+                                     depths_.begin());
+    last = static_cast<std::size_t>(std::upper_bound(depths_.begin(), depths_.end(), to) -
+                                    depths_.begin());
+  }
+  if (last <= first) return 0.0;
+  double* sum = sum_.data() + column * stride_;
+  sum[first] += error;
+  sum[last] -= error;
+  return static_cast<double>(last - first);
+}
+
+void TubeError::finish() {
+  for (std::size_t i = 0; i < sum_.size(); i += stride_)
+    for (std::size_t k = 1; k < stride_; ++k) sum_[i + k] += sum_[i + k - 1];
+}
+
+}  // namespace asdic

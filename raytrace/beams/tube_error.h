@@ -1,0 +1,79 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raytrace/beams/beam.h"
+#include "raytrace/beams/crossings.h"
+
+namespace asdic {
+
+/// One ray of a fan where it crosses the columns, and what it foretells of its neighbours there.
+struct RayAtColumns {
+  Crossings crossings;
+  std::vector<double> size, growth;  ///< [n] |q| and its change downwards along the column
+  std::vector<double> cosine;        ///< [n] |cos θ|
+  std::vector<double> higher;        ///< [n] +1: higher rays are deeper, −1: shallower
+  std::vector<double> amplitude;     ///< [n] of the ray, squared where intensities are added
+  std::vector<double> power;         ///< [n] amplitude² × |q|/cos θ
+  std::vector<double> phase;         ///< [n] reflections, caustics and −ωτ [rad]
+  std::vector<double> wave_number;   ///< [n] dφ/dz [rad/m]
+  std::vector<double> least;         ///< [n] least σ of a Gaussian [m]; 0: a hat
+
+  /// Fills all but the crossings out of these.
+  void foretell(const BeamSetting& setting, const BeamLaunch& launch);
+};
+
+/// A majorant of the error that comes of a fan's being finite, receiver by receiver, for hat and
+/// Gaussian beams in Cartesian coordinates: how badly two neighbouring rays foretell each other
+/// (place, delay, amplitude, width) bounds what is wrong between them, and bounds of all ray tubes
+/// are added without regard to sign. docs/theory/fields.md, "Error bound"
+class TubeError {
+ public:
+  TubeError(const BeamSetting& setting, std::span<const double> depths, std::size_t columns);
+
+  /// Adds the tube between two neighbouring rays, `width` rad apart.
+  /// \param level  [columns] what an error is held against, in units of the sum before field_scale
+  /// \return the tube's share: receivers × error / level, errors above the level counting as that
+  double add(const RayAtColumns& lower, const RayAtColumns& higher, double width,
+             std::span<const double> level);
+
+  /// Adds what the fan's first or last ray brings: its beam stands for rays beyond it too.
+  double add_end(const RayAtColumns& ray, double width, std::span<const double> level);
+
+  /// To be called once, after the last tube: at(column, row) is the majorant from then on, of the
+  /// pressure, or of the intensity, before field_scale.
+  void finish();
+  [[nodiscard]] double at(std::size_t column, std::size_t row) const noexcept {
+    return sum_[column * stride_ + row];
+  }
+
+ private:
+  /// An error between two depths, falling off like a Gaussian of width `sigma` beyond them; an
+  /// array for each, of one tube.
+  struct Pieces {
+    std::vector<double> error, from, to, sigma;
+    void resize(std::size_t n);
+  };
+  void bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+             std::size_t count, double width);
+  template <bool hat, bool coherent>
+  void bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
+                     std::size_t count, double width);
+  double put_alone(const RayAtColumns& ray, std::size_t i, double width, double level);
+  double put_tube(std::size_t column, std::size_t n, double level);
+  double put(std::size_t column, double error, double from, double to, double sigma, double level);
+  double put_between(std::size_t column, double error, double from, double to);
+
+  BeamSetting setting_;
+  std::span<const double> depths_;
+  double first_depth_ = 0.0, per_spacing_ = 0.0;  // of evenly spaced depths, else 0
+  std::size_t stride_ = 0;
+  std::vector<double> sum_;                // [columns × (rows + 1)] changes from row to row
+  Pieces tube_;                            // bounds of one tube, [crossings]: all over it
+  Pieces lower_, higher_;                  // and where it is torn also what its two rays bring
+  std::vector<std::int32_t> head_, next_;  // of crossings of the same column
+};
+
+}  // namespace asdic

@@ -1,0 +1,18 @@
+#pragma once
+#include "sonar/echo.h"
+#include "sonar/returns.h"
+
+namespace asdic {
+
+/// What an array hears of the ping itself, on its way from the transmitter: no target, no
+/// scatterer.
+struct DirectBlast {
+  std::vector<Leg> legs;  ///< transmitter → array (or one to every phone)
+  Returns heard;          ///< one per path
+};
+
+/// Delays are solved for where the array is when each path arrives; every path has its exact
+/// Doppler factor. The array has to be at least 1 m from the transmitter: levels refer to 1 m.
+[[nodiscard]] DirectBlast direct_blast(const EchoContext& context);
+
+}  // namespace asdic

@@ -1,0 +1,63 @@
+#pragma once
+#include <span>
+
+#include "sonar/ping_record.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/track.h"
+
+namespace asdic {
+
+/// Unit vector of travel over the local speed of sound [s/m].
+[[nodiscard]] Vec3 slowness_vector(double bearing, double elevation, double sound_speed);
+
+/// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
+/// a reference time. Times count from the start of the ping.
+struct Way {
+  Leg leg;
+  Kinematics end;               ///< of the thing at the reference time
+  double reference_time = 0.0;  ///< [s]
+};
+
+/// One path to where the thing is when that path arrives.
+struct MetPath {
+  Way way;
+  Arrival path;
+  double time = 0.0;  ///< of arrival, since the start of the ping [s]
+};
+
+/// The same path after its ends have moved by metres: same history, nearest launch angle. Null if
+/// it is there no more.
+[[nodiscard]] const Arrival* same_path(const Arrivals& arrivals, const Arrival& path);
+
+/// Finds where sound meets things that move: 7 m/s over 20 s is 144 m. Source:
+/// docs/theory/echoes.md
+class MovingPaths {
+ public:
+  /// \param frequency  [Hz]   \param ping_time  since the start of the scenario [s]
+  MovingPaths(const PropagationPaths& paths, const PathLimits& limits, double frequency,
+              double ping_time)
+      : paths_(paths), limits_(limits), frequency_(frequency), ping_time_(ping_time) {}
+
+  /// Eigenrays from a point, left at `start`, to where a track is when the first of them comes.
+  /// \param offset  from the track [m]   \param known  the same paths when something was metres
+  /// away; none: they are searched for
+  [[nodiscard]] Way way(const Vec3& from, double start, const Track& track, const Vec3& offset,
+                        std::span<const Arrival> known = {}) const;
+
+  /// One of its paths to where the track is when *that path* arrives: found again there until the
+  /// linear step t = t₀ + τ + s·v(t − t_ref) is enough.
+  [[nodiscard]] MetPath meet(const Vec3& from, double start, const Track& track, const Vec3& offset,
+                             const Way& reference, const Arrival& path) const;
+
+ private:
+  [[nodiscard]] Way way_at(const Vec3& from, const Track& track, const Vec3& offset, double time,
+                           std::span<const Arrival> known) const;
+  [[nodiscard]] Kinematics place(const Track& track, const Vec3& offset, double time) const;
+  [[nodiscard]] bool settled(double moved, double c, double range) const;
+
+  const PropagationPaths& paths_;
+  PathLimits limits_;
+  double frequency_, ping_time_;
+};
+
+}  // namespace asdic

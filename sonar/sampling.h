@@ -1,0 +1,24 @@
+#pragma once
+#include "sonar/scenario.h"
+#include "sonar/synthesis.h"
+
+namespace asdic {
+
+/// Samples per second of what a scenario records: of the pressure, or of the complex baseband [Hz].
+[[nodiscard]] double recorded_rate(const Scenario& scenario);
+
+/// The carrier of a scenario's complex baseband [Hz]: as it says, or the middle of all its pulses'
+/// bands. 0 where pressure is recorded.
+[[nodiscard]] double recorded_carrier(const Scenario& scenario);
+
+/// The lowest and highest frequency that a pulse's echo has: −40 dB, with the largest Doppler
+/// factor that the scenario's speeds allow [Hz].
+struct Band {
+  double lowest = 0.0, highest = 0.0;
+};
+[[nodiscard]] Band heard_band(const Scenario& scenario, const Pulse& pulse);
+
+/// A ping's own record: as long as it is heard.
+[[nodiscard]] Recording recording_of(const Scenario& scenario);
+
+}  // namespace asdic

@@ -1,0 +1,187 @@
+#include "sonar/stream.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sonar/direct_blast.h"
+#include "sonar/sampling.h"
+#include "support/two_platforms.h"
+
+namespace asdic {
+namespace {
+
+using support::two_platforms;
+
+TEST(Transmissions, AreThoseOfAllTransmittersInTheOrderInWhichTheyAreSent) {
+  Scenario s = two_platforms();
+  s.pings.count = 2;
+  s.pings.elevations = {0.1, 0.2};
+  s.transmitters.push_back(s.transmitters[0]);
+  s.transmitters[1].first_ping_time = 0.5;
+  s.transmitters[1].interval = 1.0;
+  s.transmitters[1].elevations = {0.3};
+  const std::vector<Transmission> sent = transmissions(s);
+  ASSERT_EQ(sent.size(), 4U);
+  const std::vector<double> times{0.0, 0.5, 1.5, 2.0}, elevations{0.1, 0.3, 0.3, 0.2};
+  const std::vector<int> who{0, 1, 1, 0}, turn{1, 1, 2, 2};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_DOUBLE_EQ(sent[i].time, times[i]);
+    EXPECT_DOUBLE_EQ(sent[i].elevation, elevations[i]);
+    EXPECT_EQ(sent[i].transmitter, who[i]);
+    EXPECT_EQ(sent[i].turn, turn[i]);
+  }
+}
+
+TEST(Transmissions, OfAStreamLeaveAtWholeSamples) {
+  Scenario s = two_platforms();
+  s.pings.count = 3;
+  s.pings.interval = 1.00007;
+  s.pings.continuous = true;
+  for (const Transmission& one : transmissions(s)) {
+    const double samples = one.time * s.pings.sample_rate;
+    EXPECT_NEAR(samples, std::round(samples), 1e-9);
+  }
+}
+
+// The truth: every ping simulated alone, added up at the sample where it left.
+TEST(Stream, IsTheSumOfItsPingsWithoutGaps) {
+  for (const Samples kind : {Samples::pressure, Samples::baseband}) {
+    Scenario s = two_platforms();
+    s.pings.count = 4;
+    s.pings.interval = 0.7;  // each ping is still heard under the next four
+    s.pings.continuous = true;
+    s.pings.samples = kind;
+    s.noise = {};
+    const PingSimulator simulator(s);
+    const std::size_t width = kind == Samples::baseband ? 2 : 1;
+    const double rate = recorded_rate(s);
+
+    std::vector<std::vector<float>> rows(channels_of(s));
+    std::size_t longest = 0;
+    EXPECT_EQ(run_pings(simulator,
+                        [&](PingRecord&& record) {
+                          const std::size_t n = record.recording.samples * width;
+                          longest = std::max(longest, record.recording.samples);
+                          for (std::size_t c = 0; c < rows.size(); ++c)
+                            rows[c].insert(rows[c].end(),
+                                           record.pressure.begin() + std::ptrdiff_t(c * n),
+                                           record.pressure.begin() + std::ptrdiff_t((c + 1) * n));
+                        }),
+              4);
+    EXPECT_EQ(longest, Stream::longest_part(s));
+
+    std::vector<std::vector<float>> expected(rows.size());
+    for (int ping = 1; ping <= 4; ++ping) {
+      const PingRecord alone = simulator.sound(ping);
+      const auto first =
+          static_cast<std::size_t>(std::llround(simulator.transmission(ping).time * rate)) * width;
+      const std::size_t n = alone.recording.samples * width;
+      for (std::size_t c = 0; c < rows.size(); ++c) {
+        expected[c].resize(std::max(expected[c].size(), first + n), 0.0F);
+        for (std::size_t i = 0; i < n; ++i) expected[c][first + i] += alone.pressure[c * n + i];
+      }
+    }
+    float loudest = 0.0F;
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      ASSERT_EQ(rows[c].size(), expected[c].size());
+      for (std::size_t i = 0; i < rows[c].size(); ++i) {
+        loudest = std::max(loudest, std::abs(rows[c][i]));
+        ASSERT_FLOAT_EQ(rows[c][i], expected[c][i]);
+      }
+    }
+    EXPECT_GT(loudest, 0.0F);
+  }
+}
+
+// p = Re{b e^{i2πf_c t}}, at the samples that both have: rates 8000 and 200 Hz.
+TEST(ComplexBaseband, IsThePressureAboutItsCarrier) {
+  Scenario s = two_platforms();
+  s.platforms[0].track.start.velocity = {3.0, 4.0, 0.0};
+  const PingRecord real = PingSimulator(s).simulate(1);
+  for (const double carrier : {1000.0, 987.3}) {
+    s.pings.samples = Samples::baseband;
+    s.pings.carrier = carrier;
+    s.pings.baseband_rate = 400.0;
+    const PingRecord complex = PingSimulator(s).simulate(1);
+    ASSERT_EQ(complex.recording.samples * 20, real.recording.samples);
+    double peak = 0.0, worst = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < complex.recording.samples; ++i) {
+        const std::size_t at = 2 * (c * complex.recording.samples + i);
+        const std::complex<double> b(complex.pressure[at], complex.pressure[at + 1]);
+        const double t = static_cast<double>(i) / 400.0;
+        const double p = (b * std::polar(1.0, 2.0 * pi * carrier * t)).real();
+        const double q = real.pressure[c * real.recording.samples + 20 * i];
+        peak = std::max(peak, std::abs(q));
+        worst = std::max(worst, std::abs(p - q));
+      }
+    EXPECT_GT(peak, 0.0);
+    EXPECT_LT(worst, 1e-4 * peak) << "−80 dB, the synthesis' own bound";
+  }
+}
+
+TEST(ComplexBaseband, HasARateThatHoldsTheBandByDefault) {
+  Scenario s = two_platforms();
+  s.pings.samples = Samples::baseband;
+  const Band band = heard_band(s, Pulse(s.pulse));
+  EXPECT_GT(recorded_rate(s), band.highest - band.lowest);
+  EXPECT_DOUBLE_EQ(recorded_carrier(s), Pulse(s.pulse).centre_frequency());
+}
+
+TEST(Blanking, SilencesTheTransmittersOwnPlatformWhileItTransmits) {
+  Scenario s = two_platforms();
+  s.noise.spectral_level_db = 80.0;
+  s.pings.blanking = true;
+  s.arrays.push_back(line_array(2, 0.5, 0.0, 0.0));  // on the ship
+  const PingRecord record = PingSimulator(s).simulate(1);
+  const std::size_t n = record.recording.samples, deaf = 1600;  // 0.2 s
+  ASSERT_EQ(record.pressure.size(), 5 * n);
+  for (std::size_t c = 0; c < 5; ++c) {
+    const float* row = record.pressure.data() + c * n;
+    const bool silent = std::all_of(row, row + deaf, [](float p) { return p == 0.0F; });
+    EXPECT_EQ(silent, c >= 3) << "channel " << c;
+    EXPECT_NE(row[deaf], 0.0F);
+  }
+}
+
+// 1500 m of it horizontal, 200 m down: spherical spreading in open water.
+TEST(DirectBlast, ComesStraightAndWithItsOwnDoppler) {
+  Scenario s = two_platforms();
+  s.platforms[0].track.start.velocity = {6.0, 8.0, 0.0};  // towards the buoy
+  const PingRecord record = PingSimulator(s).simulate(1);
+  ASSERT_EQ(record.legs.size(), 1U);
+  const Leg& leg = record.legs[0];
+  EXPECT_EQ(leg.kind, Leg::Kind::source_to_array);
+  EXPECT_EQ(leg.array, 0);
+  ASSERT_EQ(leg.arrivals.size(), 1U);
+  const double distance = std::sqrt(1500.0 * 1500.0 + 200.0 * 200.0);
+  EXPECT_NEAR(leg.arrivals[0].delay, distance / 1500.0, 1e-9);
+  EXPECT_NEAR(std::abs(leg.arrivals[0].amplitude), 1.0 / distance, 1e-9);
+  // The loudest sample of the record: 200 dB and the spreading, a peak envelope of √2 rms.
+  float loudest = 0.0F;
+  for (const float p : record.pressure) loudest = std::max(loudest, std::abs(p));
+  const double level = 200.0 - 20.0 * std::log10(distance) + 20.0 * std::log10(std::sqrt(2.0));
+  EXPECT_NEAR(20.0 * std::log10(static_cast<double>(loudest)) + 120.0, level, 0.2);
+
+  const PropagationPaths paths(s.environment, s.transect);
+  const BeamPattern pattern(s.transmitters[0], 1.5);
+  const EchoContext context{
+      .paths = paths, .scenario = s, .pattern = pattern, .frequency = 1000.0, .ping_time = 0.0};
+  const DirectBlast blast = direct_blast(context);
+  ASSERT_EQ(blast.heard.size(), 1U);
+  const double closing = 10.0 * 1500.0 / distance;
+  EXPECT_NEAR(blast.heard[0].doppler, 1.0 / (1.0 - closing / 1500.0), 1e-12);
+}
+
+TEST(DirectBlast, IsNotHeardWhereItIsNotWanted) {
+  Scenario s = two_platforms();
+  s.propagation.direct_blast = false;
+  EXPECT_TRUE(PingSimulator(s).simulate(1).legs.empty());
+  s = two_platforms();
+  s.arrays[0].platform = 0;  // its own platform: a metre away or less
+  EXPECT_TRUE(PingSimulator(s).simulate(1).legs.empty());
+}
+
+}  // namespace
+}  // namespace asdic
