@@ -24,7 +24,7 @@ namespace {
 struct Options {
   std::string file, output, scenario, csv;
   std::optional<int> ping, threads;
-  std::string beamformer = "conventional", shading = "none", normaliser = "cell-averaging";
+  std::string beamformer = "conventional", shading = "none", normaliser = "split-window";
   std::string elevations, track_start = "3/4";
   double mvdr_loading_db = -10.0;
   std::optional<double> from, until;

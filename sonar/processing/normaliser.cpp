@@ -62,12 +62,15 @@ void BackgroundEstimator::operator()(std::span<const float> power, std::span<flo
   };
   average(power, 1.0);
   if (settings_.method == Normaliser::cell_averaging) return;
-  // Exponential values above r·µ replaced by µ have the mean µ·(1 − r·e^(−r)).
+  // Exponential values above r·µ replaced by µ have the mean µ·(1 − r·e^(−r)). Once more, for a
+  // very loud echo lifts the first mean so far that its own flanks hide.
   scratch.clipped.resize(n);
-  for (std::size_t i = 0; i < n; ++i)
-    scratch.clipped[i] =
-        power[i] > static_cast<float>(outstanding) * background[i] ? background[i] : power[i];
-  average(scratch.clipped, 1.0 / (1.0 - outstanding * std::exp(-outstanding)));
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < n; ++i)
+      scratch.clipped[i] =
+          power[i] > static_cast<float>(outstanding) * background[i] ? background[i] : power[i];
+    average(scratch.clipped, 1.0 / (1.0 - outstanding * std::exp(-outstanding)));
+  }
 }
 
 }  // namespace asdic

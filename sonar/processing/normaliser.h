@@ -8,12 +8,12 @@ namespace asdic {
 /// How the background around a cell is estimated.
 enum class Normaliser {
   cell_averaging,  ///< the mean of the reference cells on both sides (CA-CFAR)
-  split_window,    ///< the same twice: what stands out of the first mean is left out of the second
+  split_window,  ///< the same, and twice again with what stands out of the last mean put back to it
 };
 
 /// A cell is 1/noise bandwidth of the matched filter: values so far apart are independent.
 struct NormaliserSettings {
-  Normaliser method = Normaliser::cell_averaging;
+  Normaliser method = Normaliser::split_window;
   double guard_cells = 2.0;               ///< left out on either side: the echo itself
   double reference_cells = 12.0;          ///< averaged on either side
   double false_alarm_probability = 1e-6;  ///< of a cell
