@@ -92,6 +92,9 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
           score_detections(made.array.result.detections, echoes, made.truth, made.array.shape,
                            made.array.places.array.position, processor.resolution(made.array),
                            searched.first_time, std::min(searched.last_time, recordings.end(row)));
+      if (row == first)
+        made.map_range =
+            processor.ranges_at(made.array, made.transmitter, made.array.result.maps.time);
       run.pings.push_back(std::move(made));
     }
     done(static_cast<int>(row - first) + 1);

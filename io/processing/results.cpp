@@ -8,8 +8,8 @@
 #include <map>
 
 #include "core/error.h"
+#include "io/hdf5/scale.h"
 #include "io/hdf5_file.h"
-#include "io/ping/scale.h"
 #include "io/processing/table.h"
 
 namespace asdic {
@@ -40,11 +40,16 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
   const DetectorResult& like = first->array.result;
   const std::size_t columns = like.maps.time.size(), beams = like.grid.looks.size(),
                     filters = like.dopplers.size();
-  ping_file::write_scale(file, group + "/time", "map_time", like.maps.time,
-                         "middle of the column, after the start of the ping", "s");
+  write_scale(file, group + "/time", "map_time", like.maps.time,
+              "middle of the column, after the start of the ping", "s");
+  if (first->map_range.size() == columns) {
+    file.write<double>(group + "/range", first->map_range, {columns});
+    describe(file, group + "/range", "of an echo at that time, by the sound paths", "m");
+    file.attach_scales(group + "/range", {group + "/time"});
+  }
   std::vector<std::int32_t> number;
   for (std::size_t b = 0; b < beams; ++b) number.push_back(static_cast<std::int32_t>(b));
-  ping_file::write_scale(file, group + "/beam", "beam", number, "number of the beam");
+  write_scale(file, group + "/beam", "beam", number, "number of the beam");
   std::vector<double> bearing, elevation;
   for (const Vec3& look : like.grid.looks) {
     bearing.push_back(compass_degrees(std::atan2(look.x(), look.y())));
@@ -60,8 +65,8 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
   column("beam_elevation_deg", elevation, "look elevation, positive up", "degree");
   if (!like.grid.cosine.empty())
     column("beam_cosine", like.grid.cosine, "of the angle between look and axis", "");
-  ping_file::write_scale(file, group + "/doppler_factor", "filter", like.dopplers,
-                         "that the filter is matched to");
+  write_scale(file, group + "/doppler_factor", "filter", like.dopplers,
+              "that the filter is matched to");
   const ArrayShape& shape = first->array.shape;
   constexpr const char* kinds[] = {"point", "line", "plane", "volume"};
   file.set_attribute(group, "array_kind", kinds[static_cast<int>(shape.kind)]);
@@ -110,10 +115,10 @@ void write_ambiguity(Hdf5File& file, const Replica& replica) {
   const std::vector<double> surface = ambiguity(replica, delays, dopplers);
   std::vector<float> values;
   for (const double x : surface) values.push_back(static_cast<float>(x));
-  ping_file::write_scale(file, "processed/ambiguity/delay", "ambiguity_delay", delays,
-                         "of the echo over the filter's", "s");
-  ping_file::write_scale(file, "processed/ambiguity/doppler_factor", "ambiguity_doppler", dopplers,
-                         "of the echo over the filter's");
+  write_scale(file, "processed/ambiguity/delay", "ambiguity_delay", delays,
+              "of the echo over the filter's", "s");
+  write_scale(file, "processed/ambiguity/doppler_factor", "ambiguity_doppler", dopplers,
+              "of the echo over the filter's");
   file.write<float>("processed/ambiguity/power", values, {dopplers.size(), delays.size()});
   describe(file, "processed/ambiguity/power", "of the filter's answer, 1 at its echo");
   file.attach_scales("processed/ambiguity/power",

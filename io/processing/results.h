@@ -16,6 +16,8 @@ struct ProcessedPing {
   ProcessedArray array;
   PingScore score;
   std::vector<TrueTarget> truth;
+  std::vector<double>
+      map_range;  ///< [columns of the maps] of the first ping of an array; else empty [m]
 };
 
 /// A track with what it was made of.

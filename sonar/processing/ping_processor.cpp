@@ -119,6 +119,20 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   return done;
 }
 
+std::vector<double> PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
+                                             std::span<const double> times) const {
+  const Localiser& localiser =
+      *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(sender) : 0];
+  std::vector<double> ranges(times.size(), std::numeric_limits<double>::quiet_NaN());
+  SonarPlaces places = processed.places;
+  places.shape.kind = ArrayKind::point;  // no direction is needed
+  tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
+    const auto found = localiser.locate({.time = times[i]}, places, 1.0);
+    if (!found.empty()) ranges[i] = found[0].range;
+  });
+  return ranges;
+}
+
 Resolution PingProcessor::resolution(const ProcessedArray& processed) const {
   const double wavelength = processed.sound_speed / replica(0).centre_frequency();
   return {.time = processed.result.time_cell,

@@ -64,6 +64,11 @@ class PingProcessor {
   [[nodiscard]] std::vector<Contact> contacts(const ProcessedArray& processed, double ping_time,
                                               int side) const;
 
+  /// The range that an echo from abeam (or from the elevation 0) has at each of some times, by the
+  /// sound paths; NaN where there is none. \param times  after the ping's start [s]
+  [[nodiscard]] std::vector<double> ranges_at(const ProcessedArray& processed, int transmitter,
+                                              std::span<const double> times) const;
+
   /// Tolerances by which detections are told from false alarms.
   [[nodiscard]] Resolution resolution(const ProcessedArray& processed) const;
   [[nodiscard]] const ProcessingSettings& settings() const noexcept { return settings_; }

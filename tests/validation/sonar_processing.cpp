@@ -37,9 +37,8 @@ struct Outcome {
   std::vector<TrueTarget> targets;
 };
 
-Outcome run(const Scenario& scenario, ProcessingSettings settings, int ping = 1) {
-  const PingSimulator simulator(scenario);
-  const PingRecord record = simulator.simulate(ping);
+Outcome run(const PingSimulator& simulator, const PingRecord& record, ProcessingSettings settings) {
+  const Scenario& scenario = simulator.scenario();
   settings.detector.first_time = simulator.pulse().duration();
   const PingProcessor processor(scenario, support::replicas_of(simulator), settings);
   Outcome out;
@@ -51,6 +50,10 @@ Outcome run(const Scenario& scenario, ProcessingSettings settings, int ping = 1)
                                processor.resolution(out.processed), settings.detector.first_time,
                                scenario.pings.recording_duration);
   return out;
+}
+Outcome run(const Scenario& scenario, const ProcessingSettings& settings) {
+  const PingSimulator simulator(scenario);
+  return run(simulator, simulator.simulate(1), settings);
 }
 
 const Detection& hit(const Outcome& out) {
@@ -163,6 +166,8 @@ TEST(ProcessedPing, IsTheSameForAnyNumberOfThreads) {
   s.reverberation.enabled = true;
   s.reverberation.azimuths = 8;
   s.propagation.max_surface_bounces = 1;
+  const PingSimulator simulator(s);
+  const PingRecord record = simulator.simulate(1);
   for (const Beamformer beamformer : {Beamformer::conventional, Beamformer::mvdr}) {
     ProcessingSettings settings{.target_depth = 125.0};
     settings.detector.beamformer = beamformer;
@@ -171,7 +176,7 @@ TEST(ProcessedPing, IsTheSameForAnyNumberOfThreads) {
     std::vector<std::vector<float>> maps;
     for (const std::size_t threads : {1U, 7U}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      const Outcome out = run(s, settings);
+      const Outcome out = run(simulator, record, settings);
       all.push_back(out.processed.result.detections);
       maps.push_back(out.processed.result.maps.beam_time);
     }
