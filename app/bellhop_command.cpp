@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 
 #include <chrono>
 #include <cmath>
@@ -10,9 +9,9 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/interrupt.h"
-#include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/provenance.h"
+#include "app/text_output.h"
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
@@ -164,13 +163,13 @@ int bellhop_command(const Options& options) {
   const std::filesystem::path root =
       root_of(options.output.empty() ? options.root : options.output);
   check_output(with(root, ".prt"), {});
-  const int threads = options.threads.value_or(tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
+  std::optional<tbb::global_control> limit;  // tasks are not even asked how many cores there are
+  if (options.threads)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(*options.threads));
   Report report;
-  const Provenance made = provenance(threads);
-  report.line(fmt::format("asdic {} ({}), {}", made.program_version, made.build,
-                          root_of(options.root).string() + ".env"));
+  report.line(
+      fmt::format("asdic {}, {}", program_and_build(), root_of(options.root).string() + ".env"));
   report.line("");
   try {
     run_case(options, root, report);

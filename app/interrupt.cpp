@@ -32,8 +32,9 @@ Interrupt::Interrupt() {
   signalled = false;
   on_both(on_signal);
   watcher_ = std::jthread([this](const std::stop_token& over) {
+    std::unique_lock lock(mutex_);
     while (!over.stop_requested() && !signalled)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      over_.wait_for(lock, over, std::chrono::milliseconds(10), [] { return signalled.load(); });
     if (!signalled) return;
     on_both(SIG_DFL);  // after SIGINT a SIGTERM ends the program as well
     stop_.request_stop();

@@ -1,4 +1,6 @@
 #pragma once
+#include <condition_variable>
+#include <mutex>
 #include <stop_token>
 #include <thread>
 
@@ -20,6 +22,8 @@ class Interrupt {
 
  private:
   std::stop_source stop_;
+  std::mutex mutex_;
+  std::condition_variable_any over_;  ///< wakes the watcher before its time
   std::jthread watcher_;
 };
 

@@ -1,78 +1,12 @@
-#include <signal.h>
+#include "app/program.h"
 
-#include <cstdio>
-#include <exception>
-#include <new>
-#include <string>
-
-#include "app/command.h"
-#include "app/console.h"
-#include "app/provenance.h"
-#include "core/error.h"
-
-namespace {
-
-using namespace asdic;
-
-enum ExitStatus : int { success = 0, failure = 1, bad_input = 2 };
-
-int complain(const std::string& message, int status) {
-  std::fflush(stdout);
-  std::fputs(("asdic: " + message + '\n').c_str(), stderr);
-  return status;
-}
-
-/// The command that was being parsed: its help is the one that helps.
-std::string help_of(const CLI::App& program) {
-  const auto chosen = program.get_subcommands();
-  return chosen.empty() ? "asdic --help" : "asdic " + chosen.front()->get_name() + " --help";
-}
-
-int run(int argc, char** argv) {
-  CLI::App program(
-      "asdic simulates an active sonar in a real ocean: a ping goes out, sound\n"
-      "refracts, strikes the surface and the targets, and comes back to every phone.",
-      "asdic");
-  program.set_version_flag("--version", app::version_text());
-  program.require_subcommand(0, 1);
-  program.footer(
-      "Example:  asdic ping scenarios/deep_ocean.toml -o deep_ocean.h5\n"
-      "Exit status: 0 done, 1 it could not be done, 2 the input is wrong.");
-  app::Action action;
-  for (auto* add : {app::add_ping_command, app::add_rays_command, app::add_arrivals_command,
-                    app::add_validate_command, app::add_info_command, app::add_plot_command,
-                    app::add_export_command, app::add_ocean_command, app::add_bellhop_command,
-                    app::add_convert_command, app::add_explain_command, app::add_compare_command,
-                    app::add_field_command, app::add_process_command})
-    add(program, action);
-  for (CLI::App* command : program.get_subcommands({}))
-    command->set_version_flag("--version", app::version_text());
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& help) {  // --help, --version
-    const int status = program.exit(help);
-    app::flush_output();
-    return status;
-  } catch (const CLI::ParseError& error) {
-    return complain(std::string(error.what()) + "; see " + help_of(program), bad_input);
-  }
-  if (!action) return complain("no command was given; see asdic --help", bad_input);
-  const int status = action();
-  app::flush_output();
-  return status;
-}
-
-}  // namespace
-
+// The whole program: every command.
 int main(int argc, char** argv) {
-  signal(SIGXFSZ, SIG_IGN);  // a file over its limit is a failed write, told as any other
-  try {
-    return run(argc, argv);
-  } catch (const InputError& error) {
-    return complain(error.what(), bad_input);
-  } catch (const std::bad_alloc&) {
-    return complain("not enough memory for this run", failure);
-  } catch (const std::exception& error) {
-    return complain(error.what(), failure);
-  }
+  using namespace asdic::app;
+  constexpr AddCommand commands[] = {
+      add_ping_command,    add_rays_command,    add_arrivals_command, add_validate_command,
+      add_info_command,    add_plot_command,    add_export_command,   add_ocean_command,
+      add_bellhop_command, add_convert_command, add_explain_command,  add_compare_command,
+      add_field_command,   add_process_command};
+  return run_program(argc, argv, commands);
 }

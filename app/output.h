@@ -1,16 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <string>
-#include <string_view>
 
+#include "app/text_output.h"
 #include "io/hdf5_file.h"
 #include "sonar/scenario.h"
 
 namespace asdic::app {
-
-/// Before hours of work: that a result could have this name. \param input  what it is made from
-/// \throws InputError for a folder, the input itself, or a folder that is not there
-void check_output(const std::filesystem::path& path, const std::filesystem::path& input);
 
 /// A small HDF5 file that gets its name when it is whole.
 class Hdf5Output {
@@ -39,8 +35,5 @@ struct ResultOrigin {
 
 /// What every file of results tells of itself: filetype, version, title, program, and the scenario.
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin);
-
-/// A whole text file at once: under its name it is complete. \throws RunError
-void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace asdic::app

@@ -47,6 +47,8 @@ Provenance provenance(int threads) {
           .threads = threads};
 }
 
+std::string program_and_build() { return fmt::format("{} ({})", ASDIC_VERSION, ASDIC_BUILD); }
+
 std::string version_text() {
   return fmt::format("asdic {}\nbuild: {}\nlibraries: {}", ASDIC_VERSION, ASDIC_BUILD,
                      library_versions());

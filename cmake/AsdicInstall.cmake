@@ -7,6 +7,7 @@ foreach(folder IN LISTS folders)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/asdic FILES_MATCHING PATTERN "*.h")
 endforeach()
 install(TARGETS asdic_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS asdic_full RUNTIME DESTINATION libexec/asdic)  # found from bin/asdic as ../libexec/asdic
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python FILES_MATCHING PATTERN "*.py")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios)
 install(EXPORT asdicTargets NAMESPACE asdic:: DESTINATION ${config_dir})

@@ -41,11 +41,20 @@ function(asdic_library folder)
   set_property(GLOBAL APPEND PROPERTY ASDIC_LIBRARIES ${folder})
 endfunction()
 
-# asdic_program(<name> <folder> <libraries>...)
-function(asdic_program name folder)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
-  add_executable(asdic_${folder} ${sources})
-  set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME ${name} EXPORT_NAME ${name}
-                        RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  target_link_libraries(asdic_${folder} PRIVATE ${ARGN} Threads::Threads asdic_warnings asdic_build_options)
+# asdic_program(<folder> <libraries>...): every .cpp of <folder> makes libexec/asdic/asdic-full, the whole program; those named
+# in <folder>/quick/sources.cmake make bin/asdic, which starts in a few milliseconds: libraries that it does not call are not loaded.
+function(asdic_program folder)
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+  include("${PROJECT_SOURCE_DIR}/${folder}/quick/sources.cmake")
+  list(TRANSFORM quick_sources PREPEND "${PROJECT_SOURCE_DIR}/${folder}/")
+  add_executable(asdic_full ${sources})
+  add_executable(asdic_${folder} ${quick_sources})
+  set_target_properties(asdic_full PROPERTIES OUTPUT_NAME asdic-full
+                        RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/asdic)
+  set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME asdic RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  target_link_options(asdic_${folder} PRIVATE LINKER:--as-needed)
+  add_dependencies(asdic_${folder} asdic_full)
+  foreach(program asdic_full asdic_${folder})
+    target_link_libraries(${program} PRIVATE ${ARGN} Threads::Threads asdic_warnings asdic_build_options)
+  endforeach()
 endfunction()

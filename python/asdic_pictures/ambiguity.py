@@ -26,7 +26,7 @@ def draw(data, ping):
     mesh = style.image(axes, style.cell_edges(delay), style.cell_edges(shift), db, (-50.0, 0.0))
     if (db > -3.0).any():
         lines = axes.contour(delay, shift, db, levels=[-20.0, -3.0], colors="white",
-                             linewidths=[0.7, 1.2])
+                             linewidths=[0.7, 1.2], linestyles="solid")
         axes.clabel(lines, fmt=lambda v: f"{v:.0f} dB".replace("-", "−"), fontsize=8)
     style.image_frame(axes)
     axes.set_xlabel("delay of the echo over the filter's / s")

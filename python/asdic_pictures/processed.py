@@ -125,7 +125,7 @@ def angle_axis(axes, m: Maps, vertical=True) -> None:
     else:
         axes.set_xticks(place, labels)
         axes.set_xlabel(name)
-        axes.set_xlim(low, high)
+        axes.set_xlim(*((high, low) if m.kind == "line" else (low, high)))  # angles rise
 
 
 def mark(axes, x, y, t) -> list:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
 
 namespace asdic {
@@ -93,24 +94,27 @@ void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
   for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
                        &interval.d_up, &interval.d_middle, &interval.d_down})
     values->reserve(nodes.size());
-  for (const double sigma : nodes) {
-    const RayParameter ray(c_slow, sigma);
-    const ColumnSums sums = column_.sums(ray);
-    const double chain = ray.slowness_per_sigma();
-    const double cycle = sums.up.range + sums.middle.range + sums.down.range;
-    const double slope = (sums.up.d_range + sums.middle.d_range + sums.down.d_range) * chain;
-    // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
-    // receiver and fainter than anything.
-    if (!std::isfinite(cycle) || !std::isfinite(slope)) continue;
-    interval.sigma.push_back(sigma);
-    interval.up.push_back(sums.up.range);
-    interval.middle.push_back(sums.middle.range);
-    interval.down.push_back(sums.down.range);
-    interval.d_up.push_back(sums.up.d_range * chain);
-    interval.d_middle.push_back(sums.middle.d_range * chain);
-    interval.d_down.push_back(sums.down.d_range * chain);
-    interval.turns_above = sums.turns_above;
-    interval.turns_below = sums.turns_below;
+  for (std::size_t begin = 0; begin < nodes.size(); begin += rays_at_once) {
+    const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
+    const RayLanes rays(c_slow, sigmas);
+    const auto& [up, middle, down, turns_above, turns_below] = walk_sums(column_, rays);
+    const Rays chain = -rays.sigma * rays.per_c2 / rays.slowness;  // dξ/dσ
+    const Rays cycle = rays.slowness * (up.per_slowness + middle.per_slowness + down.per_slowness);
+    const Rays slope = chain * (up.d_range + middle.d_range + down.d_range);
+    interval.turns_above = turns_above;
+    interval.turns_below = turns_below;
+    for (std::size_t i = 0; i < std::min(rays_at_once, nodes.size() - begin); ++i) {
+      // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
+      // receiver and fainter than anything.
+      if (!std::isfinite(cycle[i]) || !std::isfinite(slope[i])) continue;
+      interval.sigma.push_back(sigmas[i]);
+      interval.up.push_back(rays.slowness[i] * up.per_slowness[i]);
+      interval.middle.push_back(rays.slowness[i] * middle.per_slowness[i]);
+      interval.down.push_back(rays.slowness[i] * down.per_slowness[i]);
+      interval.d_up.push_back(chain[i] * up.d_range[i]);
+      interval.d_middle.push_back(chain[i] * middle.d_range[i]);
+      interval.d_down.push_back(chain[i] * down.d_range[i]);
+    }
   }
   if (interval.sigma.size() < 2) return;
   limit_by_loss(interval);
@@ -177,8 +181,9 @@ namespace {
 class StretchSplitter {
  public:
   StretchSplitter(const BranchTable& table, const FanInterval& interval, const Branch& branch,
+                  std::span<const double> ranges,
                   const std::function<void(const MonotoneStretch&)>& visit)
-      : table_(table), interval_(interval), branch_(branch), visit_(visit) {}
+      : table_(table), interval_(interval), branch_(branch), ranges_(ranges), visit_(visit) {}
 
   void split_cell(std::size_t cell, HermiteNode a, HermiteNode b) {
     cell_ = cell;
@@ -187,13 +192,13 @@ class StretchSplitter {
 
  private:
   void split(HermiteNode a, HermiteNode b, bool caustic_a = false, int depth = 0) {
-    const Hermite cubic(a, b);
+    const bool steep = a.x > steep_sigma;
+    const Hermite cubic = steep ? Hermite(in_cosine(a), in_cosine(b)) : Hermite(a, b);
     const auto turns = cubic.extrema();
     if (depth < 4 && !turns.empty()) {
       // A change of sign of the exact slope brackets an extremum; without one the cubic saw a
       // wiggle: look at its place and decide there.
-      const double guess = turns.front();
-      const HermiteNode middle = node(guess);
+      const HermiteNode middle = node(steep ? sine_of_cosine(turns.front()) : turns.front());
       if ((a.slope > 0.0) != (b.slope > 0.0) || (middle.slope > 0.0) != (a.slope > 0.0)) {
         const HermiteNode caustic =
             (middle.slope > 0.0) != (a.slope > 0.0) ? extremum(a, middle) : extremum(middle, b);
@@ -213,22 +218,38 @@ class StretchSplitter {
     return {sigma, range, slope};
   }
 
+  /// Whether no wanted range lies between r there and the extremum, slope²/(2|r″|) away (held to be
+  /// eight times as far): then it serves as well.
+  bool near_enough(const HermiteNode& here, double curvature) const {
+    if (ranges_.empty()) return false;
+    const double away = 4.0 * here.slope * here.slope / curvature + 1e-3;
+    const auto next = std::lower_bound(ranges_.begin(), ranges_.end(), here.value - away);
+    return next == ranges_.end() || *next > here.value + away;
+  }
+
+  /// With slope zero, and the sign of what follows.
+  static HermiteNode as_extremum(HermiteNode node, bool rises) {
+    node.slope = rises ? -1e-300 : 1e-300;
+    return node;
+  }
+
   /// The zero of the exact slope between two nodes where it has different signs: secant steps
   /// inside a shrinking bracket.
   HermiteNode extremum(HermiteNode a, HermiteNode b) const {
     const bool rises = a.slope > 0.0;
-    HermiteNode best = a;
+    HermiteNode best = std::abs(a.slope) < std::abs(b.slope) ? a : b;
     for (int i = 0; i < 60; ++i) {
+      // With curvature r″ the range there differs from the extremum by slope²/(2r″).
+      const double curvature = std::abs((b.slope - a.slope) / (b.x - a.x));
+      if (best.slope * best.slope < 2e-6 * curvature || b.x - a.x < 1e-14 * b.x ||
+          (i > 0 && near_enough(best, curvature)))
+        break;
       double x = a.x - a.slope * (b.x - a.x) / (b.slope - a.slope);
       if (i % 3 == 2 || !(x > a.x && x < b.x)) x = 0.5 * (a.x + b.x);
       best = node(x);
       ((best.slope > 0.0) == rises ? a : b) = best;
-      // With curvature r″ the range there differs from the extremum by slope²/(2r″).
-      const double curvature = std::abs((b.slope - a.slope) / (b.x - a.x));
-      if (best.slope * best.slope < 2e-6 * curvature || b.x - a.x < 1e-14 * b.x) break;
     }
-    best.slope = rises ? -1e-300 : 1e-300;  // zero, with the sign of what follows
-    return best;
+    return as_extremum(best, rises);
   }
 
   void emit(const HermiteNode& a, const HermiteNode& b, bool caustic_a, bool caustic_b) const {
@@ -250,12 +271,23 @@ class StretchSplitter {
   const FanInterval& interval_;
   Branch branch_;
   std::size_t cell_ = 0;
+  std::span<const double> ranges_;
   const std::function<void(const MonotoneStretch&)>& visit_;
 };
 
 }  // namespace
 
 void BranchTable::for_each_stretch(double low, double high,
+                                   const std::function<void(const MonotoneStretch&)>& visit) const {
+  for_each_stretch(low, high, {}, visit);
+}
+
+void BranchTable::for_each_stretch(std::span<const double> ranges,
+                                   const std::function<void(const MonotoneStretch&)>& visit) const {
+  for_each_stretch(ranges.front(), ranges.back(), ranges, visit);
+}
+
+void BranchTable::for_each_stretch(double low, double high, std::span<const double> ranges,
                                    const std::function<void(const MonotoneStretch&)>& visit) const {
   const bool upper = column_.source_is_upper();
   for (const FanInterval& interval : intervals_) {
@@ -283,7 +315,7 @@ void BranchTable::for_each_stretch(double low, double high,
                              w.of(interval.up[i], interval.middle[i], interval.down[i]),
                              w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i])};
         };
-        StretchSplitter splitter(*this, interval, branch, visit);
+        StretchSplitter splitter(*this, interval, branch, ranges, visit);
         HermiteNode a = node(0);
         for (std::size_t i = 1; i < n; ++i) {
           if (k > most[i - 1]) {

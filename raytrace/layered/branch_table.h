@@ -1,10 +1,12 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "raytrace/layered/branch.h"
 #include "raytrace/layered/column.h"
+#include "raytrace/layered/hermite.h"
 
 namespace asdic {
 
@@ -34,6 +36,19 @@ struct FanInterval {
   std::vector<int> loudest_vertices;  ///< [n − 1] vertices after which bounces have left less than
                                       ///< PathLimits::faintest of a ray between two nodes
 };
+
+/// Steep rays have r like k = cos θ = √(1 − σ²), and no cubic in σ follows that to the vertical:
+/// from this σ on −k is the variable of cubics.
+inline constexpr double steep_sigma = 0.5;
+
+/// A point of r(σ) as one of r(−k), and back.
+[[nodiscard]] inline HermiteNode in_cosine(const HermiteNode& node) noexcept {
+  const double k = std::sqrt((1.0 - node.x) * (1.0 + node.x));
+  return {-k, node.value, node.slope * k / node.x};  // dσ/d(−k) = k/σ
+}
+[[nodiscard]] inline double sine_of_cosine(double minus_k) noexcept {
+  return std::sqrt((1.0 - minus_k) * (1.0 + minus_k));
+}
 
 /// A stretch of an interval over which a branch's range is monotone in σ.
 struct MonotoneStretch {
@@ -66,7 +81,15 @@ class BranchTable {
   void for_each_stretch(double low, double high,
                         const std::function<void(const MonotoneStretch&)>& visit) const;
 
+  /// The same where only these ranges matter. \param ranges  [n] increasing, n > 0. Extrema between
+  /// them need not be exact: a stretch may go on past one by less than the distance to the next
+  /// range.
+  void for_each_stretch(std::span<const double> ranges,
+                        const std::function<void(const MonotoneStretch&)>& visit) const;
+
  private:
+  void for_each_stretch(double low, double high, std::span<const double> ranges,
+                        const std::function<void(const MonotoneStretch&)>& visit) const;
   void add_interval(double c_slow, double c_fast, bool singular_slow, bool singular_fast);
   void limit_by_loss(FanInterval& interval) const;
 

@@ -38,6 +38,11 @@ class Column {
   };
   [[nodiscard]] All all(const RayParameter& ray) const noexcept;
 
+  /// Of the layers whose tops are the upper and the lower of the two depths; the latter may be
+  /// layers().size().
+  [[nodiscard]] std::size_t upper() const noexcept { return upper_; }
+  [[nodiscard]] std::size_t lower() const noexcept { return lower_; }
+
   [[nodiscard]] bool source_is_upper() const noexcept { return source_is_upper_; }
   [[nodiscard]] double source_speed() const noexcept { return source_speed_; }
   [[nodiscard]] double receiver_speed() const noexcept { return receiver_speed_; }

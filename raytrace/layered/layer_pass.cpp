@@ -4,27 +4,18 @@
 #include <array>
 #include <cmath>
 
+#include "raytrace/layered/arc_series.h"
 #include "raytrace/layered/smooth_quadrature.h"
 
 namespace asdic {
 namespace {
 
-/// (atanh x)/x and (asin x)/x, for |x| < 1, without cancellation at 0: series while their next term
-/// is below rounding (a layer changes the speed by a few per cent), which is most of the time.
-constexpr double short_series = 0.06;
+/// (atanh x)/x and (asin x)/x, for |x| < 1, without cancellation at 0.
 double atanh_over(double x) {
-  if (std::abs(x) > short_series) return std::atanh(x) / x;
-  const double y = x * x;  // next term y⁷/15 = 1e-18
-  return 1.0 +
-         y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7 + y * (1.0 / 9 + y * (1.0 / 11 + y / 13)))));
+  return std::abs(x) > short_series ? std::atanh(x) / x : atanh_series(x);
 }
 double asin_over(double x) {
-  if (std::abs(x) > short_series) return std::asin(std::clamp(x, -1.0, 1.0)) / x;
-  const double y = x * x;
-  return 1.0 + y * (1.0 / 6 +
-                    y * (3.0 / 40 +
-                         y * (15.0 / 336 +
-                              y * (105.0 / 3456 + y * (945.0 / 42240 + y * (10395.0 / 599040))))));
+  return std::abs(x) > short_series ? std::asin(std::clamp(x, -1.0, 1.0)) / x : asin_series(x);
 }
 
 /// A turning piece so thin that its law is a straight line to rounding; nodes in it could not be
@@ -224,7 +215,10 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
     return arc(c_edge, c_turn, sine, 0.0, std::abs(turn_z - edge), std::abs(gradient),
                ray.slowness);
   };
-  if (layer.law == Layer::Law::c_linear) return circle(layer.gradient);
+  if (layer.law == Layer::Law::c_linear) {  // τ = atanh(s)/|g|, ℓ = asin(s)/(ξ|g|)
+    const double per_g = sine / std::abs(layer.gradient);
+    return {.time = per_g * atanh_over(sine), .length = per_g * asin_over(sine) / ray.slowness};
+  }
   if (layer.law == Layer::Law::n2_linear)
     return parabola(c_edge, c_turn, sine / c_edge, 0.0, std::abs(turn_z - edge),
                     -std::abs(layer.gradient), ray.slowness);

@@ -1,7 +1,11 @@
 #pragma once
+#include <span>
+
 #include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
+#include "raytrace/layered/reflection_lanes.h"
+#include "raytrace/layered/root_search.h"
 
 namespace asdic {
 
@@ -11,16 +15,10 @@ class PathBuilder {
  public:
   PathBuilder(const Environment& environment, const Column& column, double frequency);
 
-  /// \param sigma  the root on this interval and branch   \param range  of the receiver [m]
-  [[nodiscard]] Arrival build(const FanInterval& interval, const Branch& branch, double sigma,
-                              double range) const {
-    const RayParameter ray(interval.reference_speed, sigma);
-    return build(interval, branch, ray, column_.all(ray), range);
-  }
-  /// The same from what the ray's walk through the column gave.
-  [[nodiscard]] Arrival build(const FanInterval& interval, const Branch& branch,
-                              const RayParameter& traced, const Column::All& walk,
-                              double range) const;
+  /// Adds the path of every root of a batch whose reflections leave `faintest` to those of its
+  /// receiver. \param found  [receivers]
+  void build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
+             double faintest, std::span<Arrivals> found) const;
 
   /// √(c_r ξ /(r·|dr/dξ|·(sin θ₀/c_s)·sin θ_r)): the amplitude of a ray tube [1/m × 1 m].
   [[nodiscard]] double spreading(const RayParameter& ray, double range,
@@ -35,9 +33,19 @@ class PathBuilder {
   [[nodiscard]] double sine_at_receiver(const RayParameter& ray) const noexcept;
 
  private:
+  /// What follows from a root in straight formulae, for a batch of them.
+  struct PathLanes {
+    Rays slowness, range_per_slowness, q, spreading, delay, length;
+    Rays launch, arrival, surface_grazing, bottom_grazing;  // angles from the horizontal
+    ComplexLanes reflection;
+    Rays first_up, first_down, half_cycle;  // ranges of vertices
+  };
+  [[nodiscard]] PathLanes path_lanes(const FanInterval& interval, const TaskLanes& tasks,
+                                     const FoundRays& roots) const noexcept;
   const Environment& environment_;
   const Column& column_;
   double absorption_db_per_metre_;
+  WaterAtBoundary water_at_surface_, water_at_bottom_;
 };
 
 /// Zeros of q passed by a ray: one between any two turning points, and one after the last of them

@@ -56,21 +56,25 @@ class Search {
     const std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
     result.peaks = peaks.size();
     const LeakTable leaks(replica_, bank_);
-    const double k = 2.0 * pi / wavelength_;
+    // Of one echo's paths the pattern of the loudest is known; the others' fill its zeros, to about
+    // the level of far side lobes, 1/N².
+    const double k = 2.0 * pi / wavelength_, least = 1.0 / std::pow(phones_.size(), 2.0);
+    std::map<std::size_t, Vec3> look;  // of kept peaks
     std::map<std::pair<std::size_t, std::size_t>, double> known;
-    const auto beam_leak = [&](std::size_t from, std::size_t to) {
-      const auto [at, fresh] = known.try_emplace({from, to}, 0.0);
+    const auto keep = [&](std::size_t i) {
+      result.detections.push_back(refine(peaks[i], beams));
+      look[i] = result.detections.back().look;
+    };
+    const auto beam_leak = [&](std::size_t kept, std::size_t beam) {
+      const auto [at, fresh] = known.try_emplace({kept, beam}, 0.0);
       if (fresh)
-        at->second = beam_pattern(phones_, weights_, grid_.looks[to], grid_.looks[from], k);
+        at->second =
+            std::max(beam_pattern(phones_, weights_, grid_.looks[beam], look[kept], k), least);
       return at->second;
     };
-    const std::vector<std::size_t> chosen =
-        independent_peaks(peaks, leaks, beam_leak, power_from_db(settings_.leak_margin_db),
-                          settings_.most_detections);
-    result.detections.resize(chosen.size());
-    tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {
-      result.detections[i] = refine(peaks[chosen[i]], beams);
-    });
+    static_cast<void>(independent_peaks(peaks, leaks, keep, beam_leak,
+                                        power_from_db(settings_.leak_margin_db),
+                                        settings_.most_detections));
     std::sort(result.detections.begin(), result.detections.end(),
               [](const Detection& a, const Detection& b) {
                 return std::tuple(a.time, a.doppler, a.level_db) <

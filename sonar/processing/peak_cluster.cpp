@@ -63,6 +63,7 @@ double LeakTable::at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexc
 
 std::vector<std::size_t> independent_peaks(
     const std::vector<Peak>& peaks, const LeakTable& leaks,
+    const std::function<void(std::size_t)>& keep,
     const std::function<double(std::size_t, std::size_t)>& beam_leak, double margin,
     std::size_t most) {
   std::vector<std::size_t> order(peaks.size());
@@ -84,12 +85,13 @@ std::vector<std::size_t> independent_peaks(
       const double in_time =
           leaks.at(sample - it->first, static_cast<std::ptrdiff_t>(p.filter) -
                                            static_cast<std::ptrdiff_t>(loud.filter));
-      const double leak = std::max(in_time * beam_leak(loud.beam, p.beam), cleanest);
+      const double leak = std::max(in_time * beam_leak(it->second, p.beam), cleanest);
       explained = static_cast<double>(p.power) < margin * leak * static_cast<double>(loud.power) +
                                                      static_cast<double>(p.threshold);
     }
     if (explained) continue;
     kept.emplace(sample, i);
+    keep(i);
     result.push_back(i);
     if (result.size() == most) break;
   }

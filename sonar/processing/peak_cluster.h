@@ -27,12 +27,15 @@ class LeakTable {
   std::vector<float> values_;  // [2·filters_ − 1][2·reach_ + 1]
 };
 
-/// From the loudest down, those that no louder one explains. \param beam_leak  power that a plane
-/// wave in the middle of one beam leaves in another   \param margin  factor of power
-/// \return indices, loudest first, at most `most`
+/// From the loudest down, those that no louder one explains.
+/// \param keep       told of each that is kept, in that order (an index of `peaks`), before
+///                    beam_leak() is asked about it
+/// \param beam_leak  power that the thing behind a kept peak leaves in a beam
+/// \param margin     factor of power   \return indices, loudest first, at most `most`
 [[nodiscard]] std::vector<std::size_t> independent_peaks(
     const std::vector<Peak>& peaks, const LeakTable& leaks,
-    const std::function<double(std::size_t from, std::size_t to)>& beam_leak, double margin,
+    const std::function<void(std::size_t kept)>& keep,
+    const std::function<double(std::size_t kept, std::size_t beam)>& beam_leak, double margin,
     std::size_t most);
 
 }  // namespace asdic

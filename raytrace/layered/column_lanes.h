@@ -1,0 +1,61 @@
+#pragma once
+#include <experimental/simd>
+
+#include "raytrace/layered/column.h"
+
+namespace asdic {
+
+/// As many double-precision numbers as the machine adds at once: one for each of several rays.
+using Rays = std::experimental::native_simd<double>;
+inline constexpr std::size_t rays_at_once = Rays::size();
+
+inline Rays load(const double* from) noexcept {
+  return Rays(from, std::experimental::element_aligned);
+}
+inline void store(const Rays& value, double* to) noexcept {
+  value.copy_to(to, std::experimental::element_aligned);
+}
+
+/// RayParameter of several rays of one interval of the fan, which turn in the same layers.
+struct RayLanes {
+  double reference_speed;  ///< c_ref [m/s]
+  double per_c2;           ///< 1/c_ref² [s²/m²]
+  Rays sigma;              ///< σ, 0..1
+  Rays slowness;           ///< ξ [s/m]
+
+  RayLanes(double c_ref, const Rays& sine) noexcept
+      : reference_speed(c_ref),
+        per_c2(1.0 / (c_ref * c_ref)),
+        sigma(sine),
+        slowness(sqrt((1.0 - sine) * (1.0 + sine)) / c_ref) {}
+
+  /// sin²θ where the speed is c; negative where the rays do not come.
+  [[nodiscard]] Rays sine2(double c) const noexcept {
+    return (reference_speed - c) * (reference_speed + c) * per_c2 +
+           sigma * sigma * (c * c * per_c2);
+  }
+  /// sin θ, of rays that come there.
+  [[nodiscard]] Rays sine(double c) const noexcept { return sqrt(max(sine2(c), Rays(1e-300))); }
+};
+
+/// One piece of ColumnSums and ColumnDetails for several rays, as functions of σ that are smooth up
+/// to the vertical ray (σ = 1).
+struct LegLanes {
+  Rays per_slowness = 0.0;  ///< r/ξ = ∫ c/s dz [m²/s]
+  Rays d_range = 0.0;       ///< dr/dξ, finite part [m²/s]
+  Rays intercept = 0.0;     ///< τ − ξr = ∫ s/c dz [s]
+  Rays length = 0.0;        ///< ∫ 1/s dz [m]
+};
+
+struct ColumnLanes {
+  LegLanes up, middle, down;
+  bool turns_above = false, turns_below = false;
+};
+
+/// Column::sums for several rays at once: the same sums, to rounding and the quadrature's 1e-10.
+/// Intercepts and lengths are left out.
+[[nodiscard]] ColumnLanes walk_sums(const Column& column, const RayLanes& rays) noexcept;
+/// Column::all for several rays at once.
+[[nodiscard]] ColumnLanes walk_all(const Column& column, const RayLanes& rays) noexcept;
+
+}  // namespace asdic

@@ -1,0 +1,90 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "raytrace/layered/branch_table.h"
+#include "raytrace/layered/column_lanes.h"
+#include "raytrace/layered/hermite.h"
+#include "raytrace/layered/leg_series.h"
+
+namespace asdic {
+
+/// A root of r(σ) = range, known to lie between the ends of a monotone stretch.
+struct RootTask {
+  const FanInterval* interval = nullptr;
+  Branch branch;
+  std::size_t receiver = 0;  ///< whose it is
+  double range = 0.0;        ///< [m]
+  std::size_t cell = 0;      ///< of the interval
+  bool steep = false;        ///< −cos θ is the variable x of the next two, else σ
+  HermiteNode begin, end;    ///< x, r, dr/dx at the ends of the stretch
+};
+
+/// As many tasks as lanes, side by side; the last one fills what is left.
+struct TaskLanes {
+  std::array<const RootTask*, rays_at_once> task{};
+  std::size_t count = 0;  ///< of different ones
+  Rays range;             ///< [m]
+  Rays up, middle, down;  ///< BranchWeights
+
+  TaskLanes(const RootTask* const* tasks, std::size_t n, bool source_is_upper) noexcept;
+
+  [[nodiscard]] Rays of(const Rays& u, const Rays& m, const Rays& d) const noexcept {
+    return up * u + middle * m + down * d;
+  }
+};
+
+/// The rays of an interval that a batch of tasks asked for.
+struct FoundRays {
+  RayLanes rays;
+  ColumnLanes legs;
+};
+
+/// The roots: from the cubic through the stretch's ends by Newton's method, kept inside a shrinking
+/// bracket, until what is missed is below 0.01 mm, or what the next step would leave is below 0.1
+/// mm and 1e-8 of the slope; path_builder.cpp sees to the rest. \param series  that holds between
+/// the tasks' ends, or nullptr: the column itself is walked
+[[nodiscard]] FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series,
+                                   const TaskLanes& tasks) noexcept;
+
+/// Of the tasks of one interval, those that are solved alike: with one series, or with walks.
+class RootGroups {
+ public:
+  RootGroups(const Column& column, const FanInterval& interval, std::span<const RootTask> tasks);
+
+  /// Calls found(TaskLanes, FoundRays) with every batch.
+  template <class Found>
+  void solve(Found&& found) {
+    std::size_t begin = 0;
+    while (begin < order_.size()) {
+      const Group group = next(begin);
+      for (std::size_t i = begin; i < group.end; i += rays_at_once) {
+        const TaskLanes lanes(&order_[i], std::min(rays_at_once, group.end - i),
+                              column_.source_is_upper());
+        found(lanes, find_roots(column_, interval_.reference_speed, group.series, lanes));
+      }
+      begin = group.end;
+    }
+  }
+
+ private:
+  struct Group {
+    const LegSeries* series;
+    std::size_t end;
+  };
+  /// As many walks as a series takes: 16 rays with times against two or three, one of them with
+  /// times, for each root.
+  static constexpr std::size_t worth_a_series = 9;
+
+  [[nodiscard]] Group next(std::size_t begin);
+  [[nodiscard]] std::size_t first_at(std::size_t begin, std::size_t cell) const noexcept;
+
+  const Column& column_;
+  const FanInterval& interval_;
+  IntervalSeries series_;
+  std::vector<const RootTask*> order_;  ///< by cell
+};
+
+}  // namespace asdic
