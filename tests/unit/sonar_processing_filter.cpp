@@ -128,7 +128,7 @@ TEST(MatchedFilterBank, SnrIsTwiceEnergyOverNoiseDensity) {
     const Replica pulse = replica_of(settings);
     const double level_db = 60.0;  // N₀ [dB re 1 µPa²/Hz]
     std::vector<float> noise(static_cast<std::size_t>(400.0 * rate), 0.0F);
-    add_white_noise(noise, 1, level_db, rate, 7, 1);
+    add_white_noise(noise, 1, white_noise_variance(level_db, rate), 7, 1);
     const double density = power_from_db(level_db) * micropascal * micropascal;
     const auto snr = [&](const Replica& used) {
       const Filtered heard = filtered(used, echo(settings, 1.0, 1.0, 4.0), {1.0});
@@ -291,7 +291,7 @@ TEST(CellAveraging, FalseAlarmRateHoldsBehindAMatchedFilter) {
   double alarms = 0.0, samples = 0.0;
   for (std::uint32_t run = 1; run <= 5; ++run) {
     std::vector<float> noise(static_cast<std::size_t>(400.0 * rate), 0.0F);
-    add_white_noise(noise, 1, 60.0, rate, 11, run);
+    add_white_noise(noise, 1, white_noise_variance(60.0, rate), 11, run);
     const Filtered f = filtered(pulse, noise, {1.0});
     const BackgroundEstimator estimator(settings, f.bank.sample_rate() / pulse.noise_bandwidth());
     std::vector<float> power, background(f.out[0].size()), threshold(f.out[0].size());
