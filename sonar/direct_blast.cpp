@@ -39,12 +39,18 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
   };
   const auto& transmitter = scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
   const auto& carrier = scenario.platforms[static_cast<std::size_t>(transmitter.platform)];
+  // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
+  const auto near = [&](std::vector<double> turns, double from) {
+    std::erase_if(
+        turns, [&](double turn) { return turn <= from || turn >= from + 1.5 * pulse.duration(); });
+    return turns;
+  };
   const MovingPath path{.moment = moment,
                         .pulse_duration = pulse.duration(),
                         .frequency = highest,
-                        .source_turns = turns_of(carrier.track, context.ping_time),
+                        .source_turns = near(turns_of(carrier.track, context.ping_time), 0.0),
                         .target_turns = {},
-                        .array_turns = turns_of(track, context.ping_time)};
+                        .array_turns = near(turns_of(track, context.ping_time), met.time)};
   const double phase =
       curvature_phase(highest, pulse.duration(), (met.way.end.velocity - source.velocity).norm(),
                       met.path.path_length, context.paths.speed_at(source.position), aperture);

@@ -177,12 +177,19 @@ class EchoFinder {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
     const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
+    // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
+    const auto near = [&](std::vector<double> turns, double from) {
+      std::erase_if(turns, [&](double turn) {
+        return turn <= from || turn >= from + 1.5 * context_.pulse->duration();
+      });
+      return turns;
+    };
     return {.moment = [this, &pair, offset](double sent) { return moment(pair, offset, sent); },
             .pulse_duration = context_.pulse->duration(),
             .frequency = highest,
-            .source_turns = turns_of(carrier.track, context_.ping_time),
-            .target_turns = turns_of(target_.track, context_.ping_time),
-            .array_turns = turns_of(array_track_, context_.ping_time)};
+            .source_turns = near(turns_of(carrier.track, context_.ping_time), 0.0),
+            .target_turns = near(turns_of(target_.track, context_.ping_time), pair.there.time),
+            .array_turns = near(turns_of(array_track_, context_.ping_time), pair.home.time)};
   }
 
   /// The same pair of paths for what leaves `sent` after the leading edge.

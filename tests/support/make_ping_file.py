@@ -26,7 +26,7 @@ TABLES = {
     "bounces": ("bounce",
         "boundary grazing_deg range"),
     "echoes": ("echo",
-        "ping target channel outgoing returning delay doppler_factor level_db "
+        "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg"),
     "patches": ("patch",
         "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
@@ -65,7 +65,7 @@ def table(file, name, dimension, columns, rows):
     group = file.create_group(name)
     rows = np.array(rows, float).reshape(-1, len(columns))
     index = scale(group, dimension, np.arange(len(rows)), "row", dtype=np.int32)
-    whole = {"ping", "leg", "target", "channel", "path", "outgoing", "returning", "surface_bounces",
+    whole = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning", "surface_bounces",
              "bottom_bounces", "upper_turns",
              "lower_turns", "caustics", "first_bounce", "bounce_count", "boundary"}
     for column, values in zip(columns, rows.T):

@@ -71,7 +71,8 @@ TABLES = {
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
 SUMMARY = "present paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
-INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning", "surface_bounces",
+INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning",
+            "surface_bounces",
             "bottom_bounces", "upper_turns",
             "lower_turns", "caustics", "first_bounce", "bounce_count", "boundary"}
 
