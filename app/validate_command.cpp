@@ -47,6 +47,21 @@ std::pair<double, double> speeds(const Environment& ocean) {
 }
 
 /// Where the transect lies along which the ocean varies.
+std::string reverberation_text(const Scenario& s, double spacing) {
+  const ReverberationSettings& r = s.reverberation;
+  std::string text =
+      r.enabled && r.surface_scatters
+          ? fmt::format("surface reverberation  {}, {} azimuths, ground grid of {:.3g} m\n",
+                        name_of(r.surface), r.azimuths, spacing)
+          : "surface reverberation  none\n";
+  if (!r.enabled) return text;
+  if (r.bottom) text += fmt::format("bottom reverberation   {}\n", name_of(*r.bottom));
+  for (const VolumeLayer& layer : r.volume)
+    text += fmt::format("volume reverberation   {:g} dB re 1/m from {:g} to {:g} m\n",
+                        layer.strength_db, layer.top, layer.bottom);
+  return text;
+}
+
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   const Environment& ocean = s.environment;
@@ -162,12 +177,7 @@ std::string sonar_text(const PingSimulator& simulator) {
   text += s.noise.spectral_level_db
               ? fmt::format("noise      {:g} dB re 1 µPa²/Hz\n", *s.noise.spectral_level_db)
               : "noise      none\n";
-  text +=
-      s.reverberation.enabled
-          ? fmt::format("surface reverberation  {}, {} azimuths, ground grid of {:.3g} m\n",
-                        std::visit([](const auto& m) { return m.name; }, s.reverberation.surface),
-                        s.reverberation.azimuths, simulator.ground_spacing())
-          : "surface reverberation  none\n";
+  text += reverberation_text(s, simulator.ground_spacing());
   return text;
 }
 
