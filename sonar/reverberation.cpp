@@ -134,10 +134,12 @@ void PingReverberation::find_limits() {
       if (dropped > left_out * total) break;
     }
     limits_.least.resize(entries[begin].stretch + 1, 0.0);
-    limits_.least.back() = entries[std::min(first, end - 1)].power;
+    // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
+    // that lies a little nearer than its middle would be left out of this stretch for it.
+    limits_.least.back() = first > begin ? entries[first - 1].power : 0.0;
   }
   for (const Found& f : all)
-    if (f.ring_power >= limits_.at(f.sample.delay)) {
+    if (f.ring_power > limits_.at(f.sample.delay)) {
       samples_.push_back(f.sample);
       expected_returns_ += f.share * f.scatterers;
     }

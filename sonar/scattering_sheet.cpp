@@ -127,7 +127,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
       const double power = std::norm(sent) * std::norm(b.amplitude) * ring;
-      if (limits && power * strongest < least) continue;
+      if (limits && power * strongest <= least) continue;
       const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
                                      .grazing_out = grazing_of(b, b_ends, back.tilt),
                                      .azimuth = turn};
@@ -135,7 +135,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       if (sigma < 0.0)
         sigma = std::visit(
             [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
-      if (sigma <= 0.0 || (limits && power * sigma < least)) continue;
+      if (sigma <= 0.0 || (limits && power * sigma <= least)) continue;
       pairs.found.push_back({.out = &a,
                              .back = &b,
                              .out_index = static_cast<std::uint32_t>(i),

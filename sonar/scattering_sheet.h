@@ -49,7 +49,7 @@ struct PathPairs {
   std::vector<double> sigma_;  // [out × back], below 0 where not known yet
 };
 
-/// What is too faint to be heard: in every stretch of delay, the power below which a pair through a
+/// What is too faint to be heard: in every stretch of delay, the power up to which a pair through a
 /// whole ring is left out.
 struct AudibleLimits {
   double stretch = 1.0;       ///< length [s]

@@ -129,10 +129,10 @@ double distance(std::vector<double> x) {
 // A Rayleigh envelope: intensity is exponential. Kolmogorov-Smirnov at a false-alarm rate of 1e-6,
 // D < √(ln(2e6)/2n). A Rice envelope of the same mean with half its power in a constant must fail.
 TEST(Reverberation, EnvelopeIsRayleigh) {
-  const auto samples = independent(reference(), 8);
+  const auto samples = independent(reference(), 16);
   const double limit = std::sqrt(std::log(2e6) / (2.0 * double(samples.size())));
   EXPECT_LT(distance(samples), limit);
-  EXPECT_GT(distance(independent(reference(), 8, std::sqrt(0.5))), limit);
+  EXPECT_GT(distance(independent(reference(), 16, std::sqrt(0.5))), limit);
 }
 
 /// How much of the grid is left in the matched filter's output: |⟨(I/Ī) e^{i2πr(t)/Δr}⟩|²·n, an
