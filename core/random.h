@@ -11,6 +11,10 @@ enum class Draw : std::uint32_t {
   surface_weight = 2,
   bottom_weight = 3,
   volume_weight = 4,
+  scatterer_place = 10,
+  scatterer_velocity = 11,
+  scatterer_texture = 12,
+  sector_weight = 13,
 };
 
 /// Philox's key of all streams of one seed and purpose.
