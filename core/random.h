@@ -11,6 +11,9 @@ enum class Draw : std::uint32_t {
   surface_weight = 2,
   bottom_weight = 3,
   volume_weight = 4,
+  coherent_noise = 30,
+  ship_noise = 31,
+  ship_tonal = 32,
 };
 
 /// Philox's key of all streams of one seed and purpose.

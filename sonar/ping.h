@@ -4,6 +4,7 @@
 #include <stop_token>
 
 #include "raytrace/eigenrays.h"
+#include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
@@ -60,6 +61,7 @@ class PingSimulator {
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
+  AmbientNoise noise_;
   std::unique_ptr<SurfaceGround> ground_;
   double max_doppler_ = 0.0;
 };
