@@ -49,7 +49,8 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .pressure = std::move(result.field),
           .beam_kind = std::string(name(run_case.beams.kind)),
           .beams = result.beams,
-          .beam_error_db = result.beam_error_db};
+          .beam_error_db = result.beam_error_db,
+          .beam_error_bounded = result.beam_error_bounded};
 }
 
 void write_field_file(const FieldResult& result) {
@@ -73,8 +74,9 @@ std::string field_text(const FieldResult& result, double wall) {
                   name(data.source), count_of(data.source_depths.size(), "depth"),
                   receivers_text(data.receivers));
   text +=
-      fmt::format("beams      {} of kind {}; more would change {} dB at 95 % of the receivers\n",
-                  data.beams, data.beam_kind, number(data.beam_error_db, 3));
+      fmt::format("beams      {} of kind {}; more would change {} {} dB at 95 % of the receivers\n",
+                  data.beams, data.beam_kind, data.beam_error_bounded ? "no more than" : "about",
+                  number(data.beam_error_db, 3));
   if (!tl.empty())
     text += fmt::format("loss       {} to {} dB, median {} dB; no sound at {:.3g} %\n",
                         number(tl.front(), 1), number(tl.back(), 1),
@@ -104,6 +106,7 @@ std::string field_json(const FieldResult& result) {
                             {"beam_kind", data.beam_kind},
                             {"beams", data.beams},
                             {"beam_error_db", data.beam_error_db},
+                            {"beam_error_bounded", data.beam_error_bounded},
                             {"tl_db", loss},
                             {"silent_pct", silent_pct(data, tl.size())},
                             {"notes", result.notes}};

@@ -46,6 +46,7 @@ void write_field(Hdf5File& file, const FieldData& field) {
   if (field.beams > 0) {
     file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
     file.set_attribute("", "beam_error_db", field.beam_error_db);
+    file.set_attribute("", "beam_error_bounded", std::int64_t{field.beam_error_bounded});
   }
   write_scale(file, "source_depth", "source_depth", field.source_depths,
               "depth of the source, positive down", "m");
@@ -95,6 +96,8 @@ FieldData read_field(const Hdf5File& file) {
     field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
   if (file.has_attribute("", "beam_error_db"))
     field.beam_error_db = file.attribute_number("", "beam_error_db");
+  if (file.has_attribute("", "beam_error_bounded"))
+    field.beam_error_bounded = file.attribute_number("", "beam_error_bounded") != 0.0;
 
   ReceiverGrid& grid = field.receivers;
   grid.irregular = file.has("receiver");

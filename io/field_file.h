@@ -22,7 +22,8 @@ struct FieldData {
   std::vector<std::complex<float>> pressure;  ///< [sources × rows × ranges], range fastest
   std::string beam_kind;                      ///< "hat", "gaussian" …; empty: not known
   std::size_t beams = 0;                      ///< rays traced per source; 0: not known
-  double beam_error_db = 0.0;  ///< what more beams would change, at 95 % of receivers
+  double beam_error_db = 0.0;       ///< what more beams would change, at 95 % of receivers
+  bool beam_error_bounded = false;  ///< that is a bound, else an estimate
 };
 
 /// Writes the datasets and attributes of docs/formats/field.md, but for the root's (filetype,

@@ -114,7 +114,8 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   return Hdf5File(std::move(impl));
 }
 
-Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::path& path,
+                                                        bool change) {
   hdf5::quiet();
   std::error_code error;
   const auto wrong = [&](const std::string& got) {
@@ -125,9 +126,22 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   if (H5Fis_hdf5(path.c_str()) == 0) throw wrong("a file that is not HDF5");
-  impl->file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  impl->file = H5Fopen(path.c_str(), change ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
   if (impl->file < 0) throw wrong("a file that cannot be opened (" + hdf5::last_message() + ")");
-  return Hdf5File(std::move(impl));
+  return impl;
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  return Hdf5File(open_existing(path, false));
+}
+
+Hdf5File Hdf5File::edit(const std::filesystem::path& path) {
+  return Hdf5File(open_existing(path, true));
+}
+
+void Hdf5File::remove(const std::string& object) {
+  if (has(object))
+    impl_->check(H5Ldelete(impl_->file, object.c_str(), H5P_DEFAULT), object, "removing");
 }
 
 const std::filesystem::path& Hdf5File::path() const noexcept { return impl_->path; }

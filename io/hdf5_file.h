@@ -35,6 +35,8 @@ class Hdf5File {
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& path);
   /// For reading.
   [[nodiscard]] static Hdf5File open(const std::filesystem::path& path);
+  /// For reading and changing what is there.
+  [[nodiscard]] static Hdf5File edit(const std::filesystem::path& path);
   Hdf5File(Hdf5File&&) noexcept;
   Hdf5File& operator=(Hdf5File&&) noexcept;
   ~Hdf5File();  ///< closes; faults are lost (call close() to hear of them)
@@ -78,6 +80,8 @@ class Hdf5File {
   void set_attribute(const std::string& object, const std::string& key,
                      const std::vector<std::string>& values);
   void make_group(const std::string& group);
+  /// Takes a dataset or a whole group away, if it is there.
+  void remove(const std::string& object);
 
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] std::vector<DatasetInfo> datasets() const;  ///< all, sorted by path
@@ -102,6 +106,7 @@ class Hdf5File {
  private:
   struct Impl;
   explicit Hdf5File(std::unique_ptr<Impl> impl);
+  static std::unique_ptr<Impl> open_existing(const std::filesystem::path& path, bool change);
   std::unique_ptr<Impl> impl_;
 };
 

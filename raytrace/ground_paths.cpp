@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
@@ -36,18 +37,18 @@ double airy_floor(double curvature, double frequency) {
 
 class BranchFollower {
  public:
-  BranchFollower(const Environment& environment, const BranchTable& fan, BoundaryKind boundary,
+  BranchFollower(const Environment& environment, const BranchTable& fan, const GroundLevel& level,
                  double spacing, double max_range, double frequency, std::vector<CellPath>& out)
       : fan_(fan),
         builder_(environment, fan.column(), frequency),
-        boundary_(boundary),
+        level_(level),
         spacing_(spacing),
         max_range_(max_range),
         frequency_(frequency),
         out_(out) {}
 
   void follow(const MonotoneStretch& s) {
-    if (s.branch.arrives_upward() != (boundary_ == BoundaryKind::surface))
+    if (level_.boundary && s.branch.arrives_upward() != (level_.boundary == BoundaryKind::surface))
       return;  // the field that falls on the boundary
     stretch_ = &s;
     weights_ = weights(s.branch, fan_.column().source_is_upper());
@@ -149,12 +150,14 @@ class BranchFollower {
             (branch.starts_up ? 1.0 : -1.0) *
             std::atan2(builder_.sine_at_source(r), r.slowness * column.source_speed()),
         .grazing = std::atan2(builder_.sine_at_receiver(r), r.slowness * column.receiver_speed()),
-        .horizontal_slowness = r.slowness};
+        .horizontal_slowness = r.slowness,
+        .slowness_slope = std::copysign(1.0 / per_slowness, slope / slowness_per_angle(r)),
+        .downward = branch.arrives_upward() ? -1.0 : 1.0};
   }
 
   const BranchTable& fan_;
   PathBuilder builder_;
-  BoundaryKind boundary_;
+  GroundLevel level_;
   double spacing_, max_range_, frequency_;
   std::vector<CellPath>& out_;
   const MonotoneStretch* stretch_ = nullptr;
@@ -165,13 +168,15 @@ class BranchFollower {
 
 /// Of a layered ocean: along the branches of its fan.
 std::vector<CellPath> follow_branches(const EigenraySolver& solver, double source_depth,
-                                      BoundaryKind boundary, double spacing, double max_range,
+                                      const GroundLevel& level, double spacing, double max_range,
                                       double frequency, const PathLimits& limits) {
   const Environment& ocean = solver.environment();
-  const double depth = boundary == BoundaryKind::surface ? ocean.surface.depth : ocean.bottom.depth;
+  const double depth = !level.boundary                            ? level.depth
+                       : *level.boundary == BoundaryKind::surface ? ocean.surface.depth
+                                                                  : ocean.bottom.depth;
   const BranchTable fan = solver.table(source_depth, depth, limits);
   std::vector<CellPath> found;
-  BranchFollower follower(ocean, fan, boundary, spacing, max_range, frequency, found);
+  BranchFollower follower(ocean, fan, level, spacing, max_range, frequency, found);
   fan.for_each_stretch(0.0, max_range,
                        [&](const MonotoneStretch& stretch) { follower.follow(stretch); });
   return found;
@@ -179,32 +184,38 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
 
 /// Of any other: between neighbours of a fan of marched rays.
 std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
-                                BoundaryKind boundary, double spacing, double max_range,
+                                const GroundLevel& level, double spacing, double max_range,
                                 double frequency, const PathLimits& limits) {
+  if (!level.boundary)
+    throw InputError({.where = "level",
+                      .got = "a depth of an ocean that varies with range",
+                      .expected = "a layered ocean (speed a function of depth, flat boundaries)"});
   const FanLimits fan{.lowest = -limits.max_launch_angle,
                       .highest = limits.max_launch_angle,
                       .max_surface_bounces = limits.max_surface_bounces,
                       .max_bottom_bounces = limits.max_bottom_bounces,
                       .faintest = limits.faintest};
   std::vector<CellPath> found;
-  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, boundary,
+  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, *level.boundary,
                                           spacing, max_range, frequency, fan))
     found.push_back({hit.cell,
                      {.delay = hit.delay,
                       .amplitude = hit.amplitude,
                       .launch_elevation = hit.launch_elevation,
                       .grazing = hit.grazing,
-                      .horizontal_slowness = hit.slowness}});
+                      .horizontal_slowness = hit.slowness,
+                      .slowness_slope = 0.0,
+                      .downward = *level.boundary == BoundaryKind::surface ? -1.0 : 1.0}});
   return found;
 }
 
 }  // namespace
 
-GroundPaths ground_paths(const EigenraySolver& solver, double source_depth, BoundaryKind boundary,
-                         double spacing, double max_range, double frequency,
-                         const PathLimits& limits) {
+GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
+                         const GroundLevel& level, double spacing, double max_range,
+                         double frequency, const PathLimits& limits) {
   const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
-      solver, source_depth, boundary, spacing, max_range, frequency, limits);
+      solver, source_depth, level, spacing, max_range, frequency, limits);
   GroundPaths ground;
   ground.spacing_ = spacing;
   const auto cells = static_cast<std::size_t>(std::max(0.0, std::ceil(max_range / spacing - 0.5)));

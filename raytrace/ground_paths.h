@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,8 +9,17 @@
 
 namespace asdic {
 
-/// One path from a source to one cell of a boundary: the incident field, before the boundary
-/// answers.
+/// Where paths end: at the surface, the bottom, or a depth in between, where sound passes both
+/// ways.
+struct GroundLevel {
+  std::optional<BoundaryKind> boundary = BoundaryKind::surface;  ///< none: the depth below
+  double depth = 0.0;                                            ///< of a level in the water [m]
+
+  GroundLevel(BoundaryKind kind) : boundary(kind) {}  // NOLINT: a boundary is a level
+  explicit GroundLevel(double metres) : boundary(), depth(metres) {}
+};
+
+/// One path from a source to one cell of a level: the incident field, before the boundary answers.
 struct GroundPath {
   double delay = 0.0;  ///< [s]
   std::complex<double> amplitude =
@@ -17,6 +27,8 @@ struct GroundPath {
   double launch_elevation = 0.0;     ///< [rad], positive up
   double grazing = 0.0;              ///< at the cell [rad]
   double horizontal_slowness = 0.0;  ///< dτ/dr along the boundary; over flat ground ξ [s/m]
+  double slowness_slope = 0.0;  ///< d²τ/dr² [s/m²], held near caustics; 0 where it is not known
+  double downward = 0.0;        ///< +1 where the path goes down at its end, −1 up
 };
 
 /// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
@@ -34,10 +46,11 @@ class GroundPaths {
   [[nodiscard]] std::span<const GroundPath> paths(std::size_t cell) const noexcept {
     return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
+  [[nodiscard]] std::span<const GroundPath> all() const noexcept { return paths_; }
   [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
 
  private:
-  friend GroundPaths ground_paths(const EigenraySolver&, double, BoundaryKind, double, double,
+  friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&, double, double,
                                   double, const PathLimits&);
   double spacing_ = 0.0;
   std::vector<std::uint32_t> first_;  // [cells + 1]
@@ -49,10 +62,12 @@ class GroundPaths {
 /// and delay are right to a hundredth of the spacing; the amplitude follows from dr/dξ there. Near
 /// a caustic |dr/dξ| is held at the value where two coalescing rays have their greatest (Airy)
 /// amplitude, for the integral of intensity² over range diverges in ray theory. Over slopes, swell
-/// and fronts the fan is marched and `grazing` is the angle to the local tangent. \param spacing of
-/// the grid [m]   \param max_range  [m]   \param frequency  [Hz]
+/// and fronts the fan is marched and `grazing` is the angle to the local tangent. \param level  a
+/// depth in the water only in a layered ocean   \param spacing of the grid [m]   \param max_range
+/// [m]   \param frequency  [Hz]
+/// \throws InputError ("level") for a depth in the water of an ocean that is not layered
 [[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
-                                       BoundaryKind boundary, double spacing, double max_range,
+                                       const GroundLevel& level, double spacing, double max_range,
                                        double frequency, const PathLimits& limits);
 
 }  // namespace asdic

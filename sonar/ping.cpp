@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "reverb/patches.h"
 #include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
@@ -51,9 +50,8 @@ PingSimulator::PingSimulator(Scenario scenario)
   const auto wider = [](const Pulse& a, const Pulse& b) {
     return a.bandwidth_40db() < b.bandwidth_40db();
   };
-  ground_ = std::make_unique<SurfaceGround>(
-      paths_,
-      ground_settings(scenario_, *std::max_element(pulses_.begin(), pulses_.end(), wider), paths_));
+  reverberation_ = std::make_unique<ReverberationModel>(
+      scenario_, paths_, *std::max_element(pulses_.begin(), pulses_.end(), wider));
   set_sea(scenario_.reverberation.surface, scenario_.wind_speed,
           speed_at_surface(scenario_, paths_));
 }
@@ -62,22 +60,7 @@ Transmitter PingSimulator::transmitter(int ping) const {
   return projector_of(scenario_, transmission(ping));
 }
 
-double PingSimulator::ground_spacing() const { return ground_->settings().spacing; }
-
-std::vector<SectorPatches> PingSimulator::surface_patches(const Vec3& platform, double frequency,
-                                                          Timings& timings) const {
-  Stopwatch watch;
-  const auto planes = ground_->around(platform);
-  timings.rays += watch.lap();
-  std::vector<SectorPatches> found(planes->size());
-  tbb::parallel_for(std::size_t{0}, planes->size(), [&](std::size_t i) {
-    const GroundSectors& plane = (*planes)[i];
-    found[i] = {
-        .patches = patches(*plane.paths, scenario_.reverberation.surface, frequency, plane.tilt),
-        .sectors = plane.sectors};
-  });
-  return found;
-}
+double PingSimulator::ground_spacing() const { return reverberation_->ground_spacing(); }
 
 PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
   const PingSchedule& schedule = scenario_.pings;
@@ -141,25 +124,9 @@ PingRecord PingSimulator::sound(int ping) const {
   const Synthesizer synthesizer(sent_pulse, record.recording, max_doppler_);
   record.timings.synthesis = watch.lap();
 
-  // Reverberation: source → patch → the arrays on the transmitter's platform.
-  const ReverberationContext reverberation{
-      .scenario = scenario_,
-      .pattern = pattern,
-      .platform = record.platform,
-      .sound_speed = local_speed,
-      .ping = static_cast<std::uint32_t>(ping),
-      .first_bearing = paths_.layered() ? 0.0 : scenario_.transect.bearing};
-  std::vector<SectorPatches> rings;
-  Returns patch_returns;
-  if (scenario_.reverberation.enabled) {
-    rings = surface_patches(record.platform.position, frequency, record.timings);
-    patch_returns = reverberation_returns(reverberation, rings);
-    record.patches = patch_rows(reverberation, rings, most_patch_rows).rows;
-  }
-  record.timings.patches = watch.lap() - record.timings.rays;
-
   LevelMeter levels(record.recording);
-  Baseband heard, reverberated;  // of all channels
+  Baseband heard, reverberated;                  // of all channels
+  std::vector<PingReverberation> reverberation;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const EchoContext context{.paths = paths_,
                               .scenario = scenario_,
@@ -171,7 +138,21 @@ PingRecord PingSimulator::sound(int ping) const {
     const Returns sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
     append_channels(heard, synthesizer.baseband(sparse, scenario_.arrays[a].phones));
-    append_channels(reverberated, synthesizer.baseband(patch_returns, scenario_.arrays[a].phones));
+    // Reverberation: source → scatterer → array.
+    reverberation.push_back(reverberation_->ping(
+        {.pattern = pattern,
+         .pulse = sent_pulse,
+         .transmitter = sent.transmitter,
+         .array = static_cast<int>(a),
+         .time = sent.time,
+         .ping = static_cast<std::uint32_t>(ping),
+         .latest = record.recording.start +
+                   static_cast<double>(record.recording.samples) / record.recording.sample_rate}));
+    record.timings.rays += watch.lap();
+    const Returns scattered = reverberation.back().returns();
+    if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;
+    record.timings.patches += watch.lap();
+    append_channels(reverberated, synthesizer.baseband(scattered, scenario_.arrays[a].phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);
@@ -183,9 +164,8 @@ PingRecord PingSimulator::sound(int ping) const {
 
   levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
-  record.summary = summarise(record, scenario_, sent_pulse, [&](double t) {
-    return expected_reverberation_db(reverberation, rings, sent_pulse, t);
-  });
+  record.summary = summarise(record, scenario_, sent_pulse,
+                             [&](double t) { return reverberation.front().expected_db(t); });
   record.timings.noise = watch.lap();
   return record;
 }

@@ -11,7 +11,6 @@
 #include "sonar/pulse.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
-#include "sonar/surface_ground.h"
 #include "sonar/transmission.h"
 
 namespace asdic {
@@ -51,8 +50,6 @@ class PingSimulator {
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
 
  private:
-  [[nodiscard]] std::vector<SectorPatches> surface_patches(const Vec3& platform, double frequency,
-                                                           Timings& timings) const;
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
   [[nodiscard]] Returns sparse_returns(const EchoContext& context, PingRecord& record) const;
   void blank(PingRecord& record) const;
@@ -62,7 +59,7 @@ class PingSimulator {
   std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
   AmbientNoise noise_;
-  std::unique_ptr<SurfaceGround> ground_;
+  std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;
 };
 

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reverb/patches.h"
+#include "reverb/ground_spacing.h"
+#include "reverb/scattering/motion.h"
 
 namespace asdic {
 namespace {
 
 constexpr double finest_ground = 1.0;  // [m]
+
+}  // namespace
 
 double fastest_water(const Environment& ocean) {
   double fastest = 0.0;
@@ -21,19 +24,15 @@ double fastest_water(const Environment& ocean) {
   return fastest;
 }
 
-/// By default from the pulse's bandwidth; a surface with a shape is sampled facet by facet.
-double ground_grid(const Scenario& scenario, const Pulse& pulse, const PropagationPaths& paths) {
+double ground_spacing(const Scenario& scenario, const Pulse& pulse, const PropagationPaths& paths) {
   if (scenario.reverberation.ground_spacing) return *scenario.reverberation.ground_spacing;
-  const double by_pulse =
-      asdic::ground_spacing(pulse.bandwidth_40db(), speed_at_surface(scenario, paths));
+  const double by_pulse = ground_spacing(pulse.bandwidth_40db(), speed_at_surface(scenario, paths));
   const auto& shape = scenario.environment.surface.shape;
   if (!shape || shape->ranges().size() < 2) return by_pulse;
   const double facet = (shape->ranges().back() - shape->ranges().front()) /
                        static_cast<double>(shape->ranges().size() - 1);
   return std::min(by_pulse, std::max(facet, finest_ground));
 }
-
-}  // namespace
 
 double fastest(const Track& track) {
   double speed = track.waypoints.empty() ? track.start.velocity.norm() : 0.0;
@@ -44,30 +43,47 @@ double fastest(const Track& track) {
   return speed;
 }
 
+namespace {
+
+/// Of scatterers alone: drift, own velocities held at four standard deviations, Bragg lines.
+double sea_doppler(const Scenario& scenario) {
+  const ReverberationSettings& r = scenario.reverberation;
+  if (!r.enabled) return 0.0;
+  constexpr double slowest_sea = 1300.0;
+  double largest = 0.0;
+  const auto add = [&](const ScattererField& field) {
+    const ScattererMotion& motion = field.motion;
+    double bound = 2.2 * motion.current.norm() / slowest_sea;
+    if (motion.kind == ScattererMotion::Kind::spread)
+      bound += 2.2 * 4.0 * std::sqrt(3.0) * motion.speed_rms / slowest_sea;
+    if (motion.kind == ScattererMotion::Kind::bragg)
+      for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+        const double f = Pulse(pulse_of(scenario, static_cast<int>(t))).centre_frequency();
+        bound = std::max(bound, 1.1 * bragg_shift(4.0 * pi * f / slowest_sea) / f);
+      }
+    largest = std::max(largest, bound);
+  };
+  if (r.surface_scatters) add(r.surface_field);
+  if (r.bottom) add(r.bottom_field);
+  for (const VolumeLayer& layer : r.volume) add(layer.field);
+  return largest;
+}
+
+}  // namespace
+
 double doppler_bound(const Scenario& scenario) {
   double target = 0.0;
   for (const Target& t : scenario.targets) target = std::max(target, fastest(t.track));
   double platform = 0.0;
   for (const Platform& p : scenario.platforms) platform = std::max(platform, fastest(p.track));
   constexpr double slowest_sea = 1300.0;
-  return 2.2 * (platform + target) / slowest_sea;
+  return 2.2 * (platform + target) / slowest_sea + sea_doppler(scenario);
 }
 
 double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {
   Vec3 place = scenario.platforms[0].track.at(0.0).position;
   place.z() = paths.surface_depth(place);
   return paths.speed_at(place);
-}
-
-SurfaceGround::Settings ground_settings(const Scenario& scenario, const Pulse& pulse,
-                                        const PropagationPaths& paths) {
-  const PingSchedule& pings = scenario.pings;
-  return {.azimuths = scenario.reverberation.azimuths,
-          .spacing = ground_grid(scenario, pulse, paths),
-          .max_range = 0.5 * fastest_water(scenario.environment) *
-                       (pings.recording_start + pings.recording_duration),
-          .frequency = pulse.centre_frequency(),
-          .limits = limits_of(scenario.propagation)};
 }
 
 }  // namespace asdic

@@ -2,7 +2,6 @@
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
 #include "sonar/scenario.h"
-#include "sonar/surface_ground.h"
 
 namespace asdic {
 
@@ -16,9 +15,12 @@ namespace asdic {
 /// Speed of sound at the surface over the first platform's first place [m/s].
 [[nodiscard]] double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths);
 
-/// The ground grid of the surface's reverberation: spacing by the pulse's bandwidth, out to the end
-/// of the record.
-[[nodiscard]] SurfaceGround::Settings ground_settings(const Scenario& scenario, const Pulse& pulse,
-                                                      const PropagationPaths& paths);
+/// Fastest speed of sound anywhere in the water [m/s].
+[[nodiscard]] double fastest_water(const Environment& ocean);
+
+/// Spacing of the rings of the reverberation's grid [m]: as the scenario says, else by the pulse's
+/// bandwidth; a surface with a shape is sampled facet by facet.
+[[nodiscard]] double ground_spacing(const Scenario& scenario, const Pulse& pulse,
+                                    const PropagationPaths& paths);
 
 }  // namespace asdic

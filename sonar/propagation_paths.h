@@ -34,6 +34,8 @@ class PropagationPaths {
   /// The solver of a plane, source at range 0: one for all planes of a layered ocean.
   [[nodiscard]] std::shared_ptr<const EigenraySolver> solver(const Plane& plane) const;
 
+  /// Of growing range, clockwise from north [rad].
+  [[nodiscard]] double transect_bearing() const noexcept { return transect_.bearing; }
   /// How far along the transect a place is [m].
   [[nodiscard]] double along(const Vec3& place) const noexcept {
     return transect_.range_of(place.x(), place.y());

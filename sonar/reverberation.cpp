@@ -1,187 +1,288 @@
 #include "sonar/reverberation.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 #include <tuple>
 
-#include "core/random.h"
-#include "sonar/doppler.h"
-#include "sonar/geometry.h"
-
 namespace asdic {
-
 namespace {
 
-/// Indices of the patches that matter, in their order: in every stretch of delay a quarter of a
-/// pulse long the weakest are left out as long as all that is left out there stays 50 dB below the
-/// stretch's power.
-std::vector<std::uint32_t> audible(std::span<const Patch> patches, const BeamPattern& pattern,
-                                   double pulse_duration) {
-  constexpr double left_out = 1e-5;
-  struct Entry {
-    std::uint32_t stretch, index;
-    double power;
-  };
-  std::vector<Entry> entries(patches.size());
-  const double length = 0.25 * pulse_duration;
-  for (std::size_t i = 0; i < patches.size(); ++i)
-    entries[i] = {static_cast<std::uint32_t>(patches[i].delay / length),
-                  static_cast<std::uint32_t>(i),
-                  std::norm(patches[i].amplitude * pattern(patches[i].launch_elevation))};
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.stretch, a.power, a.index) < std::tie(b.stretch, b.power, b.index);
+constexpr std::size_t block = 64;  // rings that one task works through
+
+double ring_area(const ScattererGrid& grid, std::uint32_t ring) noexcept {
+  return 2.0 * pi * (ring + 0.5) * grid.spacing * grid.spacing;
+}
+
+double sector_bearing(const ScattererGrid& grid, int sector) noexcept {
+  return grid.first_bearing + 2.0 * pi * (sector + 0.5) / grid.azimuths;
+}
+
+/// The middle of a cell.
+Vec2 centre(const ScattererGrid& grid, std::uint32_t ring, int sector) noexcept {
+  const double bearing = sector_bearing(grid, sector);
+  return grid.anchor + (ring + 0.5) * grid.spacing * Vec2(std::sin(bearing), std::cos(bearing));
+}
+
+/// Runs f(ring, scratch, out) over all rings in parallel. \return what they put out, in their order
+template <class Item, class F>
+std::vector<Item> over_rings(std::uint32_t rings, F&& f) {
+  const std::size_t blocks = (rings + block - 1) / block;
+  std::vector<std::vector<Item>> parts(blocks);
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+    std::vector<PathPair> scratch;
+    const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(rings, (b + 1) * block));
+    for (auto ring = static_cast<std::uint32_t>(b * block); ring < end; ++ring)
+      f(ring, scratch, parts[b]);
   });
-  std::vector<std::uint32_t> kept;
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    double total = 0.0;
-    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
-      total += entries[end].power;
-    double dropped = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      dropped += entries[i].power;
-      if (dropped > left_out * total) kept.push_back(entries[i].index);
-    }
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<Item> all;
+  all.reserve(total);
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
   }
-  std::sort(kept.begin(), kept.end());
-  return kept;
+  return all;
 }
 
-/// The returns of the patches that some sectors share.
-void add_returns(const ReverberationContext& context, std::span<const Patch> patches,
-                 std::span<const int> sectors, Returns& returns) {
-  const int azimuths = context.scenario.reverberation.azimuths;
-  const std::vector<std::uint32_t> kept =
-      audible(patches, context.pattern, context.scenario.pulse.duration);
-  returns.reserve(returns.size() + kept.size() * sectors.size());
-  std::vector<std::complex<double>> weights(sectors.size());
-  std::vector<double> bearings;
-  std::vector<Vec3> towards;  // of every sector, from the platform, horizontal
-  for (const int k : sectors) {
-    bearings.push_back(context.first_bearing + 2.0 * pi * (k + 0.5) / azimuths);
-    towards.push_back(direction(bearings.back(), 0.0));
-  }
-  const double share =
-      1.0 / std::sqrt(double(azimuths));  // of the ring's amplitude in a sector of its area
-  const bool moving = !context.platform.velocity.isZero();
-  std::uint32_t weighted_cell = 0;
-  bool has_weights = false;
-  for (const std::uint32_t index : kept) {
-    const Patch& patch = patches[index];
-    if (!has_weights || patch.cell != weighted_cell) {
-      for (std::size_t i = 0; i < sectors.size(); ++i) {
-        const std::uint64_t sector =
-            std::uint64_t{patch.cell} << 20 | static_cast<std::uint64_t>(sectors[i]);
-        weights[i] =
-            share * RandomStream(context.scenario.seed, Draw::surface_weight, context.ping, sector)
-                        .complex_normal();
-      }
-      weighted_cell = patch.cell;
-      has_weights = true;
-    }
-    const std::complex<double> amplitude =
-        patch.amplitude * context.pattern(patch.launch_elevation);
-    const double level = std::cos(patch.return_elevation) /
-                         context.sound_speed;  // horizontal and vertical slowness of the
-    const double down =
-        std::sin(patch.return_elevation) / context.sound_speed;  // sound that comes back
-    for (std::size_t sector = 0; sector < sectors.size(); ++sector) {
-      const Vec3 arriving(-level * towards[sector].x(), -level * towards[sector].y(), down);
-      double doppler = 1.0;
-      if (moving) {  // the scatterer stands still
-        const Vec3 leaving =
-            direction(bearings[sector], patch.launch_elevation) / context.sound_speed;
-        doppler = leg_doppler({context.platform.velocity, leaving}, {}) *
-                  leg_doppler({}, {context.platform.velocity, arriving});
-      }
-      returns.push_back({.delay = patch.delay,
-                         .amplitude = amplitude * weights[sector],
-                         .doppler = doppler,
-                         .slowness = arriving});
-    }
-  }
-}
-
-/// The power of the whole ring heard at a time, were it all like these patches.
-double expected_power(const ReverberationContext& context, std::span<const Patch> patches,
-                      const Pulse& pulse, double t) {
-  double power = 0.0;
-  std::complex<double> cell_sum = 0.0;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Patch& patch = patches[i];
-    const double since = t - patch.delay;
-    if (since >= 0.0 && since <= pulse.duration())
-      cell_sum += patch.amplitude * context.pattern(patch.launch_elevation) * pulse.analytic(since);
-    if (i + 1 == patches.size() || patches[i + 1].cell != patch.cell) {
-      power += std::norm(cell_sum);
-      cell_sum = 0.0;
-    }
-  }
-  return power;
-}
-
-/// The part of every ring that a piece stands for.
-double share_of(const ReverberationContext& context, const SectorPatches& piece) {
-  return double(piece.sectors.size()) / context.scenario.reverberation.azimuths;
+/// Three normals that belong to a scatterer, held at four standard deviations.
+Vec3 own_velocity(double rms, std::uint64_t entity, std::uint64_t seed) {
+  if (rms <= 0.0) return Vec3::Zero();
+  RandomStream draw(seed, Draw::scatterer_velocity, 0, entity);
+  Vec3 velocity;
+  for (int i = 0; i < 3; ++i) velocity[i] = rms * std::clamp(draw.normal(), -4.0, 4.0);
+  return velocity;
 }
 
 }  // namespace
 
-Returns reverberation_returns(const ReverberationContext& context,
-                              std::span<const SectorPatches> pieces) {
-  Returns returns;
-  for (const SectorPatches& piece : pieces)
-    add_returns(context, piece.patches, piece.sectors, returns);
-  return returns;
+PingReverberation::PingReverberation(const Scenario& scenario, const ReverberationContext& context,
+                                     std::vector<ScatteringField> fields)
+    : scenario_(scenario), context_(context), fields_(std::move(fields)) {
+  find_limits();
 }
 
-Returns reverberation_returns(const ReverberationContext& context, std::span<const Patch> patches) {
-  std::vector<int> sectors(static_cast<std::size_t>(context.scenario.reverberation.azimuths));
-  std::iota(sectors.begin(), sectors.end(), 0);
-  Returns returns;
-  add_returns(context, patches, sectors, returns);
-  return returns;
+std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
+  if (field.sheet.all_round()) return {0};
+  const auto rings = static_cast<int>(std::max(1U, field.grid.rings));
+  const int n = std::min(std::clamp(400'000 / rings, 12, 36), field.grid.azimuths);
+  std::vector<int> sectors;
+  for (int i = 0; i < n; ++i) sectors.push_back(i * field.grid.azimuths / n);
+  return sectors;
 }
 
-double expected_reverberation_db(const ReverberationContext& context,
-                                 std::span<const SectorPatches> pieces, const Pulse& pulse,
-                                 double t) {
-  double power = 0.0;
-  for (const SectorPatches& piece : pieces)
-    power += share_of(context, piece) * expected_power(context, piece.patches, pulse, t);
-  return context.scenario.transmitters[0].source_level_db + db_from_power(power);
+void PingReverberation::find_limits() {
+  constexpr double left_out = 1e-5;  // of the power in a stretch
+  constexpr double faintest = 1e-8;  // of the loudest pair of a place
+  limits_.stretch = 0.25 * context_.pulse.duration();
+  struct Found {
+    Sample sample;
+    double ring_power, share;  // of a whole ring like this place; how much of it that stands for
+    double scatterers;         // of that ring
+  };
+  std::vector<Found> all;
+  std::uint32_t first_place = 0;
+  for (const ScatteringField& field : fields_) {
+    const std::vector<int> sectors = sample_sectors(field);
+    const auto count = static_cast<std::uint32_t>(sectors.size());
+    const auto found = over_rings<Found>(
+        field.grid.rings,
+        [&](std::uint32_t ring, std::vector<PathPair>& pairs, std::vector<Found>& out) {
+          for (std::uint32_t i = 0; i < count; ++i) {
+            field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
+            const double share = 1.0 / count, area = ring_area(field.grid, ring);
+            double loudest = 0.0;
+            for (const PathPair& pair : pairs)
+              loudest = std::max(loudest, std::norm(pair.amplitude));
+            for (const PathPair& pair : pairs) {
+              if (std::norm(pair.amplitude) < faintest * loudest) continue;
+              out.push_back({{.place = first_place + ring * count + i,
+                              .delay = pair.delay,
+                              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
+                             std::norm(pair.amplitude) * area,
+                             share,
+                             double(field.grid.azimuths) * copies_of(field, ring, sectors[i])});
+            }
+          }
+        });
+    first_place += field.grid.rings * count;
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  struct Entry {
+    std::uint32_t stretch;
+    double power, share;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(all.size());
+  for (const Found& f : all)
+    entries.push_back(
+        {static_cast<std::uint32_t>(f.sample.delay / limits_.stretch), f.ring_power, f.share});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.stretch, a.power, a.share) < std::tie(b.stretch, b.power, b.share);
+  });
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    double total = 0.0;
+    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
+      total += entries[end].power * entries[end].share;
+    std::size_t first = begin;
+    for (double dropped = 0.0; first < end; ++first) {
+      dropped += entries[first].power * entries[first].share;
+      if (dropped > left_out * total) break;
+    }
+    limits_.least.resize(entries[begin].stretch + 1, 0.0);
+    limits_.least.back() = entries[std::min(first, end - 1)].power;
+  }
+  for (const Found& f : all)
+    if (f.ring_power >= limits_.at(f.sample.delay)) {
+      samples_.push_back(f.sample);
+      expected_returns_ += f.share * f.scatterers;
+    }
 }
 
-PatchRows patch_rows(const ReverberationContext& context, std::span<const SectorPatches> pieces,
-                     std::size_t most) {
-  PatchRows result;
-  std::size_t all = 0;
-  for (const SectorPatches& piece : pieces) all += piece.patches.size();
-  if (all == 0) return result;
-  result.every = static_cast<int>((all + most - 1) / most);
-  const int azimuths = context.scenario.reverberation.azimuths;
-  for (const SectorPatches& piece : pieces) {
-    const double share = share_of(context, piece);
-    const double bearing =
-        share == 1.0 ? std::nan("")
-                     : context.first_bearing + 2.0 * pi * (piece.sectors[0] + 0.5) / azimuths;
-    for (const Patch& patch : piece.patches) {
-      if (patch.cell % static_cast<std::uint32_t>(result.every) != 0 || result.rows.size() == most)
-        continue;
-      const double beamed = std::abs(patch.amplitude * context.pattern(patch.launch_elevation));
-      result.rows.push_back({.bearing = bearing,
-                             .range = patch.range,
-                             .area = share * patch.area,
-                             .delay = patch.delay,
-                             .grazing_in = patch.grazing_in,
-                             .grazing_out = patch.grazing_out,
-                             .launch_elevation = patch.launch_elevation,
-                             .arrival_elevation = -patch.return_elevation,
-                             .scattering_strength_db = db_from_power(patch.cross_section),
-                             .level_db = context.scenario.transmitters[0].source_level_db +
-                                         db_from_amplitude(beamed) + db_from_power(share)});
+std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::uint32_t ring,
+                                           int sector) const {
+  // A cell is seen from source and receiver under no more than twice the angle of a sector: near
+  // them, far from the anchor, it is divided.
+  auto copies = static_cast<std::uint32_t>(field.grid.per_cell);
+  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
+  const double range = (ring + 0.5) * field.grid.spacing;
+  for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
+  return copies;
+}
+
+PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
+                                               const ScattererKey& key, std::uint64_t entity,
+                                               std::vector<PathPair>& pairs) const {
+  const ScattererMotion& motion = field.field.motion;
+  const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
+  field.sheet.pairs_at(scatterer.place, pairs, &limits_, ring_area(field.grid, key.ring),
+                       (scatterer.depth_share - 0.5) * field.thickness);
+  Met met;
+  if (pairs.empty()) return met;
+  const Vec2 in_water = scatterer.place - motion.current * context_.time;
+  met.strength =
+      std::sqrt(scatterer.area * pairs.front().area) *
+      texture_amplitude(field.field.statistics, in_water, field.boundary, scenario_.seed);
+  met.velocity = {motion.current.x(), motion.current.y(), 0.0};
+  if (motion.kind == ScattererMotion::Kind::bragg)
+    met.bragg = scatterer.fate < motion.receding_share ? -1.0 : 1.0;
+  else if (motion.kind == ScattererMotion::Kind::spread)
+    met.velocity += own_velocity(motion.speed_rms, entity, scenario_.seed);
+  return met;
+}
+
+Return PingReverberation::heard(const ScatteringField& field, const PathPair& pair, const Met& met,
+                                std::complex<double> weight) const {
+  return {.delay = pair.delay,
+          .amplitude = pair.amplitude * met.strength * weight,
+          .doppler = field.sheet.doppler(pair, met.velocity, met.bragg),
+          .slowness = field.sheet.arriving(pair)};
+}
+
+void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t ring,
+                                    const ScattererWeights& weights, std::vector<PathPair>& scratch,
+                                    Returns& returns) const {
+  for (int sector = 0; sector < field.grid.azimuths; ++sector) {
+    const std::uint32_t copies = copies_of(field, ring, sector);
+    for (std::uint32_t copy = 0; copy < copies; ++copy) {
+      const ScattererKey key{.ring = ring,
+                             .sector = static_cast<std::uint32_t>(sector),
+                             .copies = copies,
+                             .copy = copy};
+      const std::uint64_t entity = key.entity(field.grid.identity);
+      const Met met = meet(field, key, entity, scratch);
+      if (scratch.empty()) continue;
+      const std::complex<double> weight = weights(entity);
+      for (const PathPair& pair : scratch) returns.push_back(heard(field, pair, met, weight));
     }
   }
+}
+
+Returns PingReverberation::plain_returns() const {
+  Returns all;
+  for (const ScatteringField& field : fields_) {
+    const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
+                                   context_.time, context_.ping);
+    Returns found = over_rings<Return>(
+        field.grid.rings, [&](std::uint32_t ring, std::vector<PathPair>& scratch, Returns& out) {
+          add_returns(field, ring, weights, scratch, out);
+        });
+    if (all.empty())
+      all = std::move(found);
+    else
+      all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+Returns PingReverberation::returns() const {
+  const auto most = static_cast<double>(scenario_.reverberation.most_returns);
+  return expected_returns_ > most ? sector_returns() : plain_returns();
+}
+
+double PingReverberation::expected_db(double t) const {
+  const Pulse& pulse = context_.pulse;
+  double power = 0.0;
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const double since = t - samples_[i].delay;
+    if (since >= 0.0 && since <= pulse.duration())
+      sum += samples_[i].amplitude * pulse.analytic(since);
+    if (i + 1 == samples_.size() || samples_[i + 1].place != samples_[i].place) {
+      power += std::norm(sum);
+      sum = 0.0;
+    }
+  }
+  return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
+         db_from_power(power);
+}
+
+PatchRows PingReverberation::rows(std::size_t most) const {
+  std::vector<PathPair> pairs;
+  const double source_level =
+      scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
+  const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
+                       std::vector<PatchRow>& rows) {
+    const ScattererGrid& grid = field.grid;
+    const double ring_of = ring_area(grid, ring);
+    field.sheet.pairs_at(centre(grid, ring, sector), pairs, &limits_, ring_of);
+    for (const PathPair& pair : pairs)
+      rows.push_back(
+          {.bearing = field.sheet.all_round() ? std::nan("") : sector_bearing(grid, sector),
+           .range = (ring + 0.5) * grid.spacing,
+           .area = share * ring_of * pair.area,
+           .delay = pair.delay,
+           .grazing_in = pair.grazing_in,
+           .grazing_out = pair.grazing_out,
+           .launch_elevation = pair.out->launch_elevation,
+           .arrival_elevation = -pair.back->launch_elevation,
+           .scattering_strength_db = db_from_power(pair.cross_section),
+           .level_db = source_level +
+                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
+  };
+  // Every how many rings: from the number of pairs of one ring in 32.
+  std::vector<PatchRow> counted;
+  for (const ScatteringField& field : fields_) {
+    const auto sectors = sample_sectors(field);
+    for (std::uint32_t ring = 0; ring < field.grid.rings; ring += 32)
+      for (const int sector : sectors) add(field, ring, sector, 1.0, counted);
+  }
+  PatchRows result;
+  const std::size_t all = 32 * counted.size();
+  result.every = static_cast<int>(std::max<std::size_t>(1, (all + most - 1) / most));
+  for (const ScatteringField& field : fields_) {
+    const auto sectors = sample_sectors(field);
+    const double share = 1.0 / static_cast<double>(sectors.size());
+    for (std::uint32_t ring = 0; ring < field.grid.rings;
+         ring += static_cast<std::uint32_t>(result.every))
+      for (const int sector : sectors) add(field, ring, sector, share, result.rows);
+  }
+  if (result.rows.size() > most) result.rows.resize(most);
   return result;
 }
 

@@ -1,56 +1,138 @@
 #pragma once
-#include <span>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "reverb/patches.h"
+#include "sonar/boundary_fans.h"
 #include "sonar/ping_record.h"
 #include "sonar/pulse.h"
+#include "sonar/scattering_sheet.h"
 #include "sonar/scenario.h"
-#include "sonar/transmitter.h"
+#include "sonar/transmit_pattern.h"
 
 namespace asdic {
 
-/// Where and how the sonar hears its own reverberation in one ping.
+/// One ping as one array hears it.
 struct ReverberationContext {
-  const Scenario& scenario;
-  const BeamPattern& pattern;
-  Kinematics platform;
-  double sound_speed;  ///< at the platform [m/s]
-  std::uint32_t ping;
-  double first_bearing = 0.0;  ///< where sector 0 begins, clockwise from north [rad]
+  const TransmitPattern& pattern;
+  const Pulse& pulse;
+  int transmitter = 0, array = 0;  ///< indices in the scenario
+  double time = 0.0;               ///< of the ping, since the start of the scenario [s]
+  std::uint32_t ping = 1;          ///< counted from 1: the key of weights that last one ping
+  double latest = 0.0;             ///< end of the record, since the ping [s]
 };
 
-/// The patches of one plane, and the azimuth sectors of every ring that they stand for: all of them
-/// in a layered ocean, otherwise the two mirrored about the transect.
-struct SectorPatches {
-  std::vector<Patch> patches;  ///< of the whole ring, were it all like this plane
-  std::vector<int> sectors;    ///< 0 … azimuths − 1; sector k is centred on first_bearing +
-                               ///< 2π(k + ½)/azimuths
-};
-
-/// The patches as returns: every ring is split into azimuth sectors, each with its own direction,
-/// Doppler factor and complex Gaussian weight, E|w|² = 1, keyed by (seed, ping, ground cell,
-/// sector) and shared by all path pairs through it. The weakest pairs are left out as long as all
-/// that is left out stays 50 dB below what is heard at its time.
-[[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
-                                            std::span<const SectorPatches> pieces);
-/// The same of patches that stand for all sectors.
-[[nodiscard]] Returns reverberation_returns(const ReverberationContext& context,
-                                            std::span<const Patch> patches);
-
-/// Expected level of the reverberation at the array at time t [dB re 1 µPa, peak envelope/√2]: SL +
-/// 10·log₁₀ Σ_cells |Σ_pairs A·D·s(t − τ)|², the mean over sectors. −∞ where there is none.
-[[nodiscard]] double expected_reverberation_db(const ReverberationContext& context,
-                                               std::span<const SectorPatches> pieces,
-                                               const Pulse& pulse, double t);
-
-/// The patches as rows of the file, at most `most` of them; \return {rows, every}: each every-th
-/// cell is kept (of each piece).
+/// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
 struct PatchRows {
   std::vector<PatchRow> rows;
   int every = 1;
 };
-[[nodiscard]] PatchRows patch_rows(const ReverberationContext& context,
-                                   std::span<const SectorPatches> pieces, std::size_t most);
+
+/// The scatterers of one boundary or layer, as one ping meets them.
+struct ScatteringField {
+  ScatteringSheet sheet;
+  ScattererGrid grid;
+  ScattererField field;  ///< motion and statistics
+  Draw weights;          ///< purpose of their draws
+  std::uint64_t boundary = 0;
+  double depth = 0.0;      ///< near the ends [m]
+  double thickness = 0.0;  ///< of a sheet of the volume [m]
+};
+
+/// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
+/// its own delay, direction, Doppler factor and complex Gaussian weight, by all pairs of outgoing
+/// and returning paths. Source and receiver may be anywhere; monostatic is the same place twice.
+/// docs/theory/reverberation.md
+class PingReverberation {
+ public:
+  PingReverberation(const Scenario& scenario, const ReverberationContext& context,
+                    std::vector<ScatteringField> fields);
+
+  /// What the array's reference point hears. The weakest pairs are left out as long as all that is
+  /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
+  /// are replaced by those of sectors.
+  [[nodiscard]] Returns returns() const;
+  /// One return for every scatterer and pair of paths.
+  [[nodiscard]] Returns plain_returns() const;
+  /// The statistical equivalent: the scatterers of a sector, heard within one bin of delay out of
+  /// the same range of elevations, are one return with the power of all, a Gaussian weight of its
+  /// own, and delay, direction and Doppler factor of one of them, chosen with the chances of their
+  /// powers. Reciprocal pairs share a weight. docs/theory/reverberation.md
+  [[nodiscard]] Returns sector_returns() const;
+  /// How many plain_returns() are, more or less.
+  [[nodiscard]] double expected_returns() const noexcept { return expected_returns_; }
+
+  /// Expected level at time t since the ping [dB re 1 µPa, peak envelope/√2]: SL + 10·log₁₀ Σ_cells
+  /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
+  [[nodiscard]] double expected_db(double t) const;
+
+  /// \param most  rows
+  [[nodiscard]] PatchRows rows(std::size_t most) const;
+
+  [[nodiscard]] const std::vector<ScatteringField>& fields() const noexcept { return fields_; }
+
+ private:
+  void find_limits();
+  /// A scatterer of a cell with what belongs to it alone.
+  struct Met {
+    std::complex<double> strength = 0.0;  // √(area·texture), times the weight if asked for
+    double bragg = 0.0;
+    Vec3 velocity = Vec3::Zero();
+  };
+  [[nodiscard]] std::uint32_t copies_of(const ScatteringField& field, std::uint32_t ring,
+                                        int sector) const;
+  /// Its pairs of paths into `pairs`; nothing if there are none.
+  Met meet(const ScatteringField& field, const ScattererKey& key, std::uint64_t entity,
+           std::vector<PathPair>& pairs) const;
+  [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
+                             std::complex<double> weight) const;
+  void add_sector(const ScatteringField& field, int sector, double bin,
+                  const ScattererWeights& weights, Returns& returns) const;
+  void add_returns(const ScatteringField& field, std::uint32_t ring,
+                   const ScattererWeights& weights, std::vector<PathPair>& scratch,
+                   Returns& returns) const;
+  [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
+
+  const Scenario& scenario_;
+  ReverberationContext context_;
+  std::vector<ScatteringField> fields_;
+  AudibleLimits limits_;
+  /// A pair through the middle of a cell of a few sectors, for the expected level.
+  struct Sample {
+    std::uint32_t place = 0;  // pairs of one place add coherently
+    double delay = 0.0;
+    std::complex<double> amplitude = 0.0;  // of the area that the place stands for
+  };
+  std::vector<Sample> samples_;
+  double expected_returns_ = 0.0;
+};
+
+/// Makes the reverberation of any ping at any array of a scenario. Built once; shared by threads.
+class ReverberationModel {
+ public:
+  /// \param scenario, paths  must outlive this   \param widest  of the pulses: it sets the grid
+  ReverberationModel(const Scenario& scenario, const PropagationPaths& paths, const Pulse& widest);
+
+  [[nodiscard]] PingReverberation ping(const ReverberationContext& context) const;
+  [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
+
+ private:
+  /// Of a boundary or a layer: what scatters, and where.
+  struct Part {
+    GroundLevel level;
+    ScatteringSheet::Law law;
+    const ScattererField& field;
+    Draw weights;
+    std::uint64_t id;
+    double thickness = 0.0;
+  };
+  [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
+  [[nodiscard]] std::vector<Part> parts() const;
+
+  const Scenario& scenario_;
+  const PropagationPaths& paths_;
+  BoundaryFans fans_;
+  double spacing_, fastest_water_;
+};
 
 }  // namespace asdic

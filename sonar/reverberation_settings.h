@@ -1,17 +1,44 @@
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <vector>
 
+#include "reverb/scatterer_field.h"
 #include "reverb/scattering/models.h"
 
 namespace asdic {
 
-/// Surface reverberation as scattering patches on one ground grid.
+/// What scatters from a boundary or a layer, apart from the law: how its scatterers move and how
+/// their weights are drawn.
+struct ScattererField {
+  ScattererMotion motion;
+  ScattererStatistics statistics;
+};
+
+/// A layer of the water that scatters: bubbles, fish, plankton.
+struct VolumeLayer {
+  double top = 0.0, bottom = 100.0;  ///< depths [m]
+  double strength_db = -80.0;        ///< S_v [dB re 1 m⁻¹]
+  std::optional<int> sheets;         ///< that stand for it; by default one for every 50 m
+  ScattererField field;
+};
+
+/// Reverberation of surface, bottom and volume as scatterers on polar grids.
 struct ReverberationSettings {
   bool enabled = true;
   AnySurfaceScattering surface =
       NrlSurface{};   ///< wind and surface sound speed are filled in from the environment
-  int azimuths = 36;  ///< sectors of a ring, each with its own bearing and weight
+  int azimuths = 36;  ///< sectors of a ring
   std::optional<double> ground_spacing;  ///< of the grid [m]; by default from the pulse's bandwidth
+  int scatterers_per_cell = 1;           ///< of ring and sector
+  bool resolve_azimuth = false;          ///< as many sectors as array and Doppler resolve, if more
+  bool surface_scatters = true;
+  ScattererField surface_field;
+  std::optional<AnyBottomScattering> bottom;  ///< none: the bottom does not scatter
+  ScattererField bottom_field = {.motion = {}, .statistics = {.coherence_time = infinity}};
+  std::vector<VolumeLayer> volume;
+  std::size_t most_returns =
+      4'000'000;  ///< of a ping at one array; beyond, sectors are synthesised
 };
 
 }  // namespace asdic

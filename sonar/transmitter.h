@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "sonar/pulse.h"
+#include "sonar/transmit_pattern.h"
 
 namespace asdic {
 
@@ -34,12 +35,17 @@ struct Transmitter {
 /// Hann: sinc(u)/(1 − u²); rectangular: sinc(u); u = (L/λ)(sin θ − sin θ₀), sinc(u) = sin(πu)/(πu).
 /// The length follows from the beamwidth: L/λ = u₃/sin(width/2), u₃ = 0.7203 (Hann), 0.4429
 /// (rectangular). λ is that at the source.
-class BeamPattern {
+class BeamPattern final : public TransmitPattern {
  public:
   BeamPattern(const Transmitter& transmitter, double wavelength);
 
   [[nodiscard]] double operator()(
       double elevation) const noexcept;  ///< \param elevation of launch, positive up [rad]
+  [[nodiscard]] std::complex<double> towards(double /*bearing*/,
+                                             double elevation) const noexcept override {
+    return (*this)(elevation);
+  }
+  [[nodiscard]] bool all_round() const noexcept override { return true; }
   [[nodiscard]] double line_length() const noexcept {
     return length_over_wavelength_ * wavelength_;
   }  ///< [m]

@@ -101,14 +101,14 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
   file.set_attribute(group, "absorption", text_of(ocean.absorption));
   file.set_attribute(group, "interpolation", interpolation_of(ocean));
   write_transect(file, scenario);
-  std::visit(
-      [&](auto law) {
-        file.set_attribute(group, "scattering_model", law.name);
-        law.describe([&](const char* key, double value, const Range&) {
-          file.set_attribute(group, std::string("scattering_") + key, value);
-        });
-      },
-      scenario.reverberation.surface);
+  const auto write_law = [&](const auto& law, const std::string& prefix) {
+    file.set_attribute(group, prefix + "_model", std::string(name_of(law)));
+    for_each_parameter(law, [&](std::string_view key, double value, const Range&) {
+      file.set_attribute(group, prefix + "_" + std::string(key), value);
+    });
+  };
+  write_law(scenario.reverberation.surface, "scattering");
+  if (scenario.reverberation.bottom) write_law(*scenario.reverberation.bottom, "bottom_scattering");
   const double wavelength = paths.speed_at(place) / Pulse(scenario.pulse).centre_frequency();
   file.set_attribute(group, "transmitter_line_length_m",
                      BeamPattern(scenario.transmitters[0], wavelength).line_length());

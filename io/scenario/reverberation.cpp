@@ -7,22 +7,94 @@
 namespace asdic::scenario {
 namespace {
 
+const Quantity strength{.noun = "strength", .unit = "dB", .low = -200.0, .high = 20.0};
+const Quantity grazing_angle{.noun = "grazing angle", .unit = "degrees", .low = 0.0, .high = 90.0};
+
+void read_parameters(TomlTable& table, ScatteringTable& law) {
+  const std::vector<double> angles = table.numbers("grazing_deg", grazing_angle);
+  law.strength_db = table.numbers("strength_db", strength);
+  if (law.strength_db.size() != angles.size())
+    throw table.fault(
+        "strength_db", "one strength for each angle of grazing_deg",
+        std::to_string(law.strength_db.size()) + " for " + std::to_string(angles.size()));
+  law.grazing.clear();
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    if (i > 0 && angles[i] <= angles[i - 1])
+      throw table.fault("grazing_deg[" + std::to_string(i) + "]",
+                        "an angle above the one before it");
+    law.grazing.push_back(radians(angles[i]));
+  }
+}
+
+void read_parameters(TomlTable& table, auto& law) {
+  law.describe([&](const char* key, double& value, const Range& range) {
+    value = table.number(key, {.low = range.low, .high = range.high}, value);
+  });
+}
+
 /// The law of the list whose name was chosen, with its parameters as `describe` lists them.
-template <std::size_t... I>
-AnySurfaceScattering read_law(TomlTable& table, std::index_sequence<I...>) {
-  std::vector<std::string> names{
-      std::string(std::variant_alternative_t<I, AnySurfaceScattering>::name)...};
+template <class Laws, std::size_t... I>
+Laws read_law(TomlTable& table, std::index_sequence<I...>) {
+  std::vector<std::string> names{std::string(std::variant_alternative_t<I, Laws>::name)...};
   const std::string kind = table.choice("kind", names, names.front());
-  AnySurfaceScattering law;
+  Laws law;
   const auto read = [&]<class Model>(Model model) {
     if (kind != Model::name) return;
-    model.describe([&](const char* key, double& value, const Range& range) {
-      value = table.number(key, {.low = range.low, .high = range.high}, value);
-    });
+    read_parameters(table, model);
     law = model;
   };
-  (read(std::variant_alternative_t<I, AnySurfaceScattering>{}), ...);
+  (read(std::variant_alternative_t<I, Laws>{}), ...);
   return law;
+}
+template <class Laws>
+Laws read_law(TomlTable& table) {
+  return read_law<Laws>(table, std::make_index_sequence<std::variant_size_v<Laws>>{});
+}
+
+/// How the scatterers of a boundary or layer move, and how their weights are drawn.
+/// \param moves  with the water: it has motion of its own and a current
+void read_field(TomlTable& table, bool moves, ScattererField& field) {
+  if (moves) {
+    const std::string kind = table.choice("motion", {"still", "bragg", "spread"}, "still");
+    field.motion.kind = kind == "bragg"    ? ScattererMotion::Kind::bragg
+                        : kind == "spread" ? ScattererMotion::Kind::spread
+                                           : ScattererMotion::Kind::still;
+    if (kind == "bragg")
+      field.motion.receding_share =
+          table.number("receding_share", {.noun = "share", .low = 0.0, .high = 1.0}, 0.5);
+    if (kind == "spread")
+      field.motion.speed_rms =
+          table.number("speed_rms", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 20.0});
+    if (table.has("current")) {
+      const std::vector<double> current = table.numbers("current", velocity_component);
+      if (current.size() != 2)
+        throw table.fault("current", "two numbers: towards east and north, in m/s");
+      field.motion.current = {current[0], current[1]};
+    }
+  }
+  if (table.has("coherence_time"))
+    field.statistics.coherence_time =
+        table.number("coherence_time", {.noun = "time", .unit = "s", .low = 0.0, .high = infinity});
+  if (table.has("k_shape")) {
+    field.statistics.k_shape = table.number("k_shape", {.noun = "shape", .low = 0.05, .high = 1e4});
+    field.statistics.correlation_length = table.number(
+        "correlation_length",
+        {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true}, 500.0);
+  }
+}
+
+VolumeLayer read_layer(TomlTable& table) {
+  VolumeLayer layer;
+  const std::vector<double> depth = table.numbers("depth", depth_quantity);
+  if (depth.size() != 2 || depth[1] <= depth[0])
+    throw table.fault("depth", "two depths, the deeper one last");
+  layer.top = depth[0];
+  layer.bottom = depth[1];
+  layer.strength_db = table.number("strength_db", strength);
+  if (table.has("sheets")) layer.sheets = static_cast<int>(table.integer("sheets", 1, 1000));
+  read_field(table, true, layer.field);
+  table.finish();
+  return layer;
 }
 
 }  // namespace
@@ -31,20 +103,29 @@ void read_reverberation(TomlTable table, Scenario& scenario) {
   ReverberationSettings& settings = scenario.reverberation;
   settings.enabled = table.flag("enabled", settings.enabled);
   settings.azimuths = static_cast<int>(table.integer("azimuths", 1, 3600, settings.azimuths));
+  settings.resolve_azimuth = table.flag("resolve_azimuth", settings.resolve_azimuth);
+  settings.scatterers_per_cell =
+      static_cast<int>(table.integer("scatterers_per_cell", 1, 1000, settings.scatterers_per_cell));
+  settings.most_returns = static_cast<std::size_t>(table.integer(
+      "most_returns", 1000, 1'000'000'000, static_cast<std::int64_t>(settings.most_returns)));
   if (table.has("ground_spacing"))
     settings.ground_spacing =
         table.number("ground_spacing", {.noun = "spacing", .unit = "m", .low = 0.01, .high = 1e5});
   TomlTable surface = table.table("surface");
-  settings.surface =
-      read_law(surface, std::make_index_sequence<std::variant_size_v<AnySurfaceScattering>>{});
+  settings.surface_scatters = surface.flag("enabled", settings.surface_scatters);
+  settings.surface = read_law<AnySurfaceScattering>(surface);
+  read_field(surface, true, settings.surface_field);
   surface.finish();
+  if (table.has("bottom")) {
+    TomlTable bottom = table.table("bottom");
+    settings.bottom = read_law<AnyBottomScattering>(bottom);
+    read_field(bottom, false, settings.bottom_field);
+    bottom.finish();
+  }
+  for (TomlTable& layer : table.tables("volume")) settings.volume.push_back(read_layer(layer));
   table.finish();
-  std::visit(
-      [&](auto& law) {
-        law.wind_speed = scenario.wind_speed;
-        law.sound_speed = scenario.environment.water.at(scenario.environment.surface.depth).c;
-      },
-      settings.surface);
+  set_sea(settings.surface, scenario.wind_speed,
+          scenario.environment.water.at(scenario.environment.surface.depth).c);
 }
 
 }  // namespace asdic::scenario

@@ -49,17 +49,20 @@ def draw_all(data: PingFile, ping: int, folder: Path) -> None:
     """Draws each picture, or says why it is left out: there is nothing to show.
 
     A picture of an earlier run that is left out now is removed, so a folder never shows two files'
-    pictures.
+    pictures. Those of `asdic process` are spoken of only where it has run.
     """
-    from . import (bearing_time, levels, matched_filter, pressure, rays, spectrogram, style,
-                   sweep)
+    from . import (ambiguity, bearing_time, detections, levels, matched_filter, pressure, processed,
+                   range_bearing, rays, spectrogram, style, sweep, tracks)
 
-    for module in (rays, pressure, bearing_time, levels, spectrogram, matched_filter, sweep):
+    received = (detections, range_bearing, ambiguity, tracks)
+    for module in (rays, pressure, bearing_time, levels, spectrogram, matched_filter, sweep,
+                   *received):
         name = module.__name__.rsplit(".", 1)[1] + ".png"
         reason = module.nothing_to_show(data, ping)
         if reason:
             (folder / name).unlink(missing_ok=True)
-            say(f"{folder / name}: left out, {reason}")
+            if module not in received or processed.there(data):
+                say(f"{folder / name}: left out, {reason}")
             continue
         style.write(module.draw(data, ping), folder / name)
         say(f"{folder / name}: {module.TITLE}")

@@ -1,5 +1,8 @@
 #include "raytrace/beams/crossings.h"
 
+#include <cmath>
+
+#include "core/units.h"
 #include "raytrace/beams/crossing.h"
 
 namespace asdic {
@@ -28,6 +31,23 @@ void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Cr
       out.phase.push_back(std::arg(x.loss));
       out.mirror.push_back(x.mirror);
     });
+}
+
+void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHistory& history) {
+  const double c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
+  const int bounces = history.surface_bounces + history.bottom_bounces;
+  const double turns = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
+  out_.column.push_back(static_cast<std::uint32_t>(column));
+  out_.depth.push_back(y.depth);
+  out_.cosine.push_back(c * y.xi);
+  out_.sine.push_back(c * y.zeta);
+  out_.speed.push_back(c);
+  out_.time.push_back(y.time);
+  out_.q.push_back(y.q);
+  out_.dq_ds.push_back(c * y.p);
+  out_.level.push_back(std::abs(history.reflection) * std::exp(-y.nepers));
+  out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
+  out_.mirror.push_back(bounces % 2 == 0 ? 1.0 : -1.0);
 }
 
 }  // namespace asdic

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/tracing/ray_trajectory.h"
+#include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
 
@@ -27,5 +27,15 @@ struct Crossings {
 
 /// The crossings of a traced ray.
 void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out);
+
+/// The same as a ray is marched, without storing it.
+class MarchedCrossings final : public RangeVisitor {
+ public:
+  explicit MarchedCrossings(Crossings& out) : out_(out) { out_.resize(0); }
+  void pass(std::size_t column, const RayState& y, const RayHistory& history) override;
+
+ private:
+  Crossings& out_;
+};
 
 }  // namespace asdic

@@ -206,30 +206,6 @@ class PlainPart {
   FieldSum field_[2];
 };
 
-/// The crossings of a ray as it is marched.
-class MarchedCrossings final : public RangeVisitor {
- public:
-  explicit MarchedCrossings(Crossings& out) : out_(out) { out_.resize(0); }
-
-  void pass(std::size_t column, const RayState& y, const RayHistory& history) override {
-    const double c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
-    out_.column.push_back(static_cast<std::uint32_t>(column));
-    out_.depth.push_back(y.depth);
-    out_.cosine.push_back(c * y.xi);
-    out_.sine.push_back(c * y.zeta);
-    out_.speed.push_back(c);
-    out_.time.push_back(y.time);
-    out_.q.push_back(y.q);
-    out_.dq_ds.push_back(c * y.p);
-    out_.level.push_back(std::abs(history.reflection) * std::exp(-y.nepers));
-    const double turns = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
-    out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
-  }
-
- private:
-  Crossings& out_;
-};
-
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:

@@ -4,49 +4,59 @@
 #include <variant>
 
 #include "reverb/scattering/chapman_harris.h"
+#include "reverb/scattering/ellis_crowe.h"
+#include "reverb/scattering/lambert.h"
 #include "reverb/scattering/nrl_surface.h"
 #include "reverb/scattering/ogden_erskine.h"
+#include "reverb/scattering/table.h"
+#include "reverb/scattering/volume.h"
 
 namespace asdic {
 
 /// Every law of surface scattering. A new one is one file and one name here.
-using AnySurfaceScattering = std::variant<NrlSurface, ChapmanHarris, OgdenErskine>;
+using AnySurfaceScattering = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable>;
+/// Every law of bottom scattering.
+using AnyBottomScattering = std::variant<Lambert, EllisCrowe, ScatteringTable>;
 
-/// σ [1/sr] at a frequency [Hz].
-[[nodiscard]] inline double scattering_cross_section(const AnySurfaceScattering& scattering,
-                                                     const ScatterGeometry& geometry,
-                                                     double frequency) noexcept {
+/// σ [1/sr] of either at a frequency [Hz].
+template <class... Model>
+[[nodiscard]] double scattering_cross_section(const std::variant<Model...>& scattering,
+                                              const ScatterGeometry& geometry,
+                                              double frequency) noexcept {
   return std::visit([&](const auto& model) { return model.cross_section(geometry, frequency); },
                     scattering);
 }
 
 /// The model's name in scenario files.
-[[nodiscard]] inline std::string_view name_of(const AnySurfaceScattering& scattering) noexcept {
+template <class... Model>
+[[nodiscard]] std::string_view name_of(const std::variant<Model...>& scattering) noexcept {
   return std::visit([](const auto& model) { return std::string_view(model.name); }, scattering);
 }
 
-/// Puts a model under a sea. \param wind_speed  at 10 m [m/s]
+/// Puts a model under a sea (a table knows none). \param wind_speed  at 10 m [m/s]
 /// \param surface_sound_speed  of the water at the surface [m/s]
 inline void set_sea(AnySurfaceScattering& scattering, double wind_speed,
                     double surface_sound_speed) noexcept {
   std::visit(
-      [&](auto& model) {
-        model.wind_speed = wind_speed;
-        model.sound_speed = surface_sound_speed;
+      [&]<class Model>(Model& model) {
+        if constexpr (SurfaceScatteringModel<Model>) {
+          model.wind_speed = wind_speed;
+          model.sound_speed = surface_sound_speed;
+        }
       },
       scattering);
 }
 
 /// Calls f(std::string_view key, double& value, Range limits) for every parameter.
-template <class Function>
-void for_each_parameter(AnySurfaceScattering& scattering, Function&& f) {
+template <class... Model, class Function>
+void for_each_parameter(std::variant<Model...>& scattering, Function&& f) {
   std::visit([&](auto& model) { model.describe(f); }, scattering);
 }
 
 /// Calls f(std::string_view key, double value, Range limits) for every parameter.
-template <class Function>
-void for_each_parameter(const AnySurfaceScattering& scattering, Function&& f) {
-  AnySurfaceScattering copy = scattering;
+template <class... Model, class Function>
+void for_each_parameter(const std::variant<Model...>& scattering, Function&& f) {
+  std::variant<Model...> copy = scattering;
   for_each_parameter(copy, [&](std::string_view key, const double& value, Range limits) {
     f(key, value, limits);
   });

@@ -22,15 +22,25 @@ struct AlternativesOf<std::variant<Model...>> {
   using Types = testing::Types<Model...>;
 };
 
-/// A model with parameters anywhere in their ranges, under any sea.
+/// A model with parameters anywhere in their ranges, under any sea; a table of any rows.
 template <class Model>
 Model any() {
   Model model;
   model.describe([](std::string_view, double& value, Range limits) {
     value = between(limits.low, limits.high);
   });
-  model.wind_speed = between(0.0, 40.0);
-  model.sound_speed = between(1400.0, 1600.0);
+  if constexpr (SurfaceScatteringModel<Model>) {
+    model.wind_speed = between(0.0, 40.0);
+    model.sound_speed = between(1400.0, 1600.0);
+  }
+  if constexpr (std::is_same_v<Model, ScatteringTable>) {
+    model.grazing.clear();
+    model.strength_db.clear();
+    for (int i = 0; i < 4; ++i) {
+      model.grazing.push_back((i + between(0.01, 0.99)) * pi / 8.0);
+      model.strength_db.push_back(between(-60.0, 0.0));
+    }
+  }
   return model;
 }
 
@@ -42,15 +52,19 @@ ScatterGeometry any_geometry() {
 
 double any_frequency() { return between(10.0, 50'000.0); }
 
-// Runs over AnySurfaceScattering: a new model is tested on arrival.
+// Run over AnySurfaceScattering and AnyBottomScattering: a new model is tested on arrival.
 template <class Model>
 class EverySurfaceScattering : public testing::Test {};
 TYPED_TEST_SUITE(EverySurfaceScattering, AlternativesOf<AnySurfaceScattering>::Types);
+template <class Model>
+class EveryBottomScattering : public testing::Test {};
+TYPED_TEST_SUITE(EveryBottomScattering, AlternativesOf<AnyBottomScattering>::Types);
 
 // Source and receiver may change places; only the order of additions differs.
-TYPED_TEST(EverySurfaceScattering, IsReciprocal) {
+template <class Model>
+void expect_reciprocal() {
   EXPECT_TRUE(rc::check([] {
-    const TypeParam model = any<TypeParam>();
+    const Model model = any<Model>();
     const ScatterGeometry g = any_geometry();
     const double f = any_frequency();
     const ScatterGeometry back = {
@@ -59,6 +73,8 @@ TYPED_TEST(EverySurfaceScattering, IsReciprocal) {
     RC_ASSERT(std::abs(model.cross_section(back, f) - forth) <= 1e-12 * forth);
   }));
 }
+TYPED_TEST(EverySurfaceScattering, IsReciprocal) { expect_reciprocal<TypeParam>(); }
+TYPED_TEST(EveryBottomScattering, IsReciprocal) { expect_reciprocal<TypeParam>(); }
 
 TYPED_TEST(EverySurfaceScattering, IsFiniteAndNotNegative) {
   EXPECT_TRUE(rc::check([] {
@@ -74,11 +90,38 @@ TYPED_TEST(EverySurfaceScattering, IsBounded) {
       [] { RC_ASSERT(any<TypeParam>().cross_section(any_geometry(), any_frequency()) <= 2.0); }));
 }
 
+TYPED_TEST(EveryBottomScattering, IsFiniteBoundedAndNotNegative) {
+  EXPECT_TRUE(rc::check([] {
+    const double sigma = any<TypeParam>().cross_section(any_geometry(), any_frequency());
+    RC_ASSERT(std::isfinite(sigma));
+    RC_ASSERT(sigma >= 0.0);
+    RC_ASSERT(sigma <= 2.0);
+  }));
+}
+
+TYPED_TEST(EveryBottomScattering, GrazingSoundScattersNothing) {
+  EXPECT_TRUE(rc::check([] {
+    ScatterGeometry g = any_geometry();
+    g.grazing_in = 0.0;
+    RC_ASSERT(any<TypeParam>().cross_section(g, any_frequency()) == 0.0);
+  }));
+}
+
+TYPED_TEST(EveryBottomScattering, DefaultsAreWithinTheirRanges) {
+  TypeParam model;
+  model.describe([](std::string_view key, const double& value, Range limits) {
+    EXPECT_GE(value, limits.low) << key;
+    EXPECT_LE(value, limits.high) << key;
+  });
+}
+
 TYPED_TEST(EverySurfaceScattering, CalmSeaScattersNothing) {
   EXPECT_TRUE(rc::check([] {
     TypeParam model = any<TypeParam>();
-    model.wind_speed = 0.0;
-    RC_ASSERT(model.cross_section(any_geometry(), any_frequency()) == 0.0);
+    if constexpr (SurfaceScatteringModel<TypeParam>) {
+      model.wind_speed = 0.0;
+      RC_ASSERT(model.cross_section(any_geometry(), any_frequency()) == 0.0);
+    }
   }));
 }
 
@@ -98,7 +141,7 @@ TYPED_TEST(EverySurfaceScattering, RisesWithWind) {
     const ScatterGeometry g = {.grazing_in = grazing, .grazing_out = grazing};
     const double f = between(50.0, 6400.0);
     const double before = model.cross_section(g, f);
-    model.wind_speed += 0.5;
+    if constexpr (SurfaceScatteringModel<TypeParam>) model.wind_speed += 0.5;
     RC_ASSERT(model.cross_section(g, f) >= before * (1.0 - 1e-12));
   }));
 }

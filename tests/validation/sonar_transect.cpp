@@ -164,13 +164,13 @@ Scenario reverberant() {
   return s;
 }
 
-std::vector<GroundSectors> ground_of(const Scenario& s, const PropagationPaths& paths) {
-  return *SurfaceGround(paths, {.azimuths = s.reverberation.azimuths,
-                                .spacing = 20.0,
-                                .max_range = 4000.0,
-                                .frequency = 4000.0,
-                                .limits = limits_of(s.propagation)})
-              .around(s.platforms[0].track.start.position);
+BoundaryFan ground_of(const Scenario& s, const PropagationPaths& paths) {
+  return *BoundaryFans(paths).around(s.platforms[0].track.start.position, BoundaryKind::surface,
+                                     {.sectors = s.reverberation.azimuths,
+                                      .spacing = 20.0,
+                                      .max_range = 4000.0,
+                                      .frequency = 4000.0,
+                                      .limits = limits_of(s.propagation)});
 }
 
 /// Cell by cell, from straight above to the limiting ray: the same paths.
@@ -206,11 +206,13 @@ TEST(Transect, TheSectorAcrossTheSlopeIsLayered) {
   here.bottom.depth = paths.bottom_depth(s.platforms[0].track.start.position);
   here.bottom.shape.reset();
   const PropagationPaths layered(here, {});
-  const auto planes = ground_of(s, paths), ring = ground_of(s, layered);
+  const BoundaryFan fan = ground_of(s, paths);
+  const auto planes = fan.planes, ring = ground_of(s, layered).planes;
   ASSERT_EQ(planes.size(), 3U);
   ASSERT_EQ(ring.size(), 1U);
-  EXPECT_EQ(planes[1].sectors, (std::vector{1, 4}));
-  EXPECT_EQ(ring[0].sectors.size(), 6U);
+  for (const int sector : {1, 4})  // mirrored about the transect
+    EXPECT_EQ(fan.towards(s.transect.bearing + 2.0 * pi * (sector + 0.5) / 6.0).paths,
+              planes[1].paths);
   expect_same(*planes[1].paths, *ring[0].paths, 1e-12, 1e-12, 1e-12);
   const auto delays = [](const GroundPaths& ground) {
     double sum = 0.0;
@@ -233,8 +235,8 @@ TEST(Transect, ReverberationOverAFlatShapeIsThatOfTheLayeredOcean) {
       BoundaryShape(std::vector{-5000.0, 9000.0}, std::vector{900.0, 900.0},
                     ShapeInterpolation::piecewise_linear);
   const PropagationPaths a(flat.environment, flat.transect), b(shaped.environment, shaped.transect);
-  const auto ring = ground_of(flat, a), planes = ground_of(shaped, b);
-  for (const GroundSectors& plane : planes)
+  const auto ring = ground_of(flat, a).planes, planes = ground_of(shaped, b).planes;
+  for (const FanPlane& plane : planes)
     expect_same(*ring[0].paths, *plane.paths, 2.7e-4, 2.7e-3, 0.01);
 }
 
@@ -251,21 +253,33 @@ TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {
   s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 0;
   s.platforms[0].track.start.position.z() += 900.0;
   const PropagationPaths paths(s.environment, s.transect);
+  const auto fan = std::make_shared<const BoundaryFan>(ground_of(s, paths));
+  const Vec3 platform = s.platforms[0].track.start.position;
+  const BeamPattern omni({.taper = Taper::omnidirectional}, 0.375);
+  const ScatteringSheet sheet(
+      fan, fan, NrlSurface{},
+      {.source = {.position = platform}, .receiver = {.position = platform}, .frequency = 4000.0},
+      omni);
   int compared = 0;
-  for (const GroundSectors& plane : ground_of(s, paths)) {
-    const double beta = 2.0 * pi * (plane.sectors[0] + 0.5) / 6.0;
-    if (plane.tilt.empty()) continue;
-    const auto found = patches(*plane.paths, NrlSurface{}, 4000.0, plane.tilt);
-    ASSERT_GT(found.size(), 50U);
-    for (const Patch& patch : found) {
-      const double theta = patch.launch_elevation;  // straight rays, no bounces
-      const double sine = std::abs(std::cos(theta) * std::cos(beta) * slope + std::sin(theta)) /
-                          std::hypot(1.0, slope);
-      EXPECT_NEAR(std::sin(patch.grazing_in), sine, 1e-6);
-      EXPECT_NEAR(patch.area, 2.0 * pi * patch.range * 20.0 * std::hypot(1.0, slope),
-                  1e-9 * patch.area);
-      ++compared;
+  std::vector<PathPair> pairs;
+  for (int sector = 0; sector < 6; ++sector) {
+    const double beta = 2.0 * pi * (sector + 0.5) / 6.0, bearing = s.transect.bearing + beta;
+    if (fan->towards(bearing).tilt.empty()) continue;
+    int found = 0;
+    for (double range = 10.0; range < 4000.0; range += 20.0) {
+      sheet.pairs_at(platform.head<2>() + range * Vec2(std::sin(bearing), std::cos(bearing)),
+                     pairs);
+      for (const PathPair& pair : pairs) {
+        const double theta = pair.out->launch_elevation;  // straight rays, no bounces
+        const double sine = std::abs(std::cos(theta) * std::cos(beta) * slope + std::sin(theta)) /
+                            std::hypot(1.0, slope);
+        EXPECT_NEAR(std::sin(pair.grazing_in), sine, 1e-6);
+        EXPECT_NEAR(pair.area, std::hypot(1.0, slope), 1e-9);
+        ++found;
+      }
     }
+    EXPECT_GT(found, 50);
+    compared += found;
   }
   EXPECT_GT(compared, 300);
 }

@@ -1,0 +1,115 @@
+#include "app/process_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "raytrace/propagation.h"
+#include "sonar/geometry.h"
+
+namespace asdic::app {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The target that most of a track's detections are of.
+int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>& pings) {
+  std::map<int, int> votes;
+  for (const TrackPoint& p : track.points)
+    if (p.detection >= 0)
+      ++votes[pings[static_cast<std::size_t>(p.ping)]
+                  ->score.owner[static_cast<std::size_t>(p.detection)]];
+  const auto most = std::max_element(
+      votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == votes.end() ? -1 : most->first;
+}
+
+double error_of(const ProcessedTrack& made, const TrackPoint& p, const ProcessedPing& ping,
+                const Scenario& scenario) {
+  if (made.target < 0) return none;
+  const Vec3 truth =
+      scenario.targets[static_cast<std::size_t>(made.target)].track.at(p.time).position;
+  if (made.has_bearing) return (p.position - truth.head<2>()).norm();
+  return std::abs(p.position.y() - separation(ping.array.places.array.position, truth).range);
+}
+
+void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,
+                 const std::vector<int>& first_rows, ProcessedRun& run) {
+  bool sides = false, bearings = true;
+  for (const ProcessedPing* ping : pings)
+    for (const Detection& d : ping->array.result.detections) {
+      sides = sides || d.locations.size() > 1;
+      bearings = bearings && (d.locations.empty() || !std::isnan(d.locations[0].bearing));
+    }
+  for (int side = 0; side < (sides ? 2 : 1); ++side) {
+    std::vector<std::vector<Contact>> contacts;
+    std::vector<double> times;
+    for (const ProcessedPing* ping : pings) {
+      contacts.push_back(processor.contacts(ping->array, ping->ping_time, side));
+      std::erase_if(contacts.back(), [&](const Contact& c) {
+        return ping->score.owner[static_cast<std::size_t>(c.detection)] == direct_sound;
+      });
+      times.push_back(ping->ping_time);
+    }
+    for (ContactTrack& track : track_contacts(contacts, times, processor.settings().tracker)) {
+      ProcessedTrack made{.array = pings.front()->array.array,
+                          .side = side,
+                          .ambiguous = sides,
+                          .has_bearing = bearings,
+                          .track = std::move(track)};
+      made.target = owner_of(made.track, pings);
+      for (TrackPoint& p : made.track.points) {
+        const auto k = static_cast<std::size_t>(p.ping);
+        made.rows.push_back(p.detection < 0 ? -1 : first_rows[k] + p.detection);
+        made.error.push_back(error_of(made, p, *pings[k], processor.scenario()));
+        p.ping = pings[k]->array.ping;
+      }
+      run.tracks.push_back(std::move(made));
+    }
+  }
+}
+
+}  // namespace
+
+ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor& processor,
+                          std::optional<int> ping, const std::function<void(int)>& done,
+                          const std::function<bool()>& proceed) {
+  ProcessedRun run;
+  const std::size_t first = ping ? recordings.row_of(*ping) : 0;
+  const std::size_t end = ping ? first + 1 : recordings.pings();
+  const int arrays = static_cast<int>(recordings.scenario().arrays.size());
+  for (std::size_t row = first; row < end; ++row) {
+    for (int array = 0; array < arrays; ++array) {
+      if (!proceed()) throw Interrupted();
+      ProcessedPing made{.transmitter = recordings.transmitter(row),
+                         .ping_time = recordings.ping_time(row)};
+      made.array = processor.process(recordings.recording(row, array), proceed);
+      const std::vector<TrueEcho> echoes = recordings.echoes(row, array);
+      made.truth = recordings.targets(row, echoes);
+      const DetectorSettings& searched = processor.settings().detector;
+      made.score =
+          score_detections(made.array.result.detections, echoes, made.truth, made.array.shape,
+                           made.array.places.array.position, processor.resolution(made.array),
+                           searched.first_time, std::min(searched.last_time, recordings.end(row)));
+      if (row == first)
+        made.map_range =
+            processor.ranges_at(made.array, made.transmitter, made.array.result.maps.time);
+      run.pings.push_back(std::move(made));
+    }
+    done(static_cast<int>(row - first) + 1);
+  }
+  for (int array = 0; array < arrays; ++array) {
+    std::vector<const ProcessedPing*> of_array;
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < run.pings.size(); ++k)
+      if (run.pings[k].array.array == array) {
+        of_array.push_back(&run.pings[k]);
+        rows.push_back(first_row(run, k));
+      }
+    if (of_array.size() > 1) track_array(processor, of_array, rows, run);
+  }
+  return run;
+}
+
+}  // namespace asdic::app

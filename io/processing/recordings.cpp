@@ -1,0 +1,227 @@
+#include "io/processing/recordings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "io/scenario_reader.h"
+#include "sonar/geometry.h"
+
+namespace asdic {
+namespace {
+
+Hdf5File open_ping_file(const std::filesystem::path& path) {
+  Hdf5File file = Hdf5File::open(path);
+  const auto wrong = [&](const std::string& got, const std::string& expected) {
+    return InputError({.where = path.string(), .got = got, .expected = expected});
+  };
+  if (!file.has_attribute("", "filetype"))
+    throw wrong("an HDF5 file without filetype", "a ping file of asdic");
+  if (const std::string type = file.attribute_text("", "filetype"); type != "asdic ping")
+    throw wrong("filetype \"" + type + "\"", "\"asdic ping\"");
+  if (const std::string version = file.attribute_text("", "version"); !version.starts_with("1."))
+    throw wrong("version " + version, "version 1.x");
+  return file;
+}
+
+Scenario scenario_of(const Hdf5File& file, const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& scenario_path) {
+  std::vector<std::string> overrides;
+  if (file.has_attribute("", "overrides")) overrides = file.attribute_texts("", "overrides");
+  return parse_scenario(
+      file.read_text("scenario"),
+      scenario_path.value_or(path.parent_path() / (path.filename().string() + ":scenario")),
+      overrides);
+}
+
+}  // namespace
+
+PingRecordings::PingRecordings(const std::filesystem::path& path,
+                               const std::optional<std::filesystem::path>& scenario_path)
+    : path_(path), file_(open_ping_file(path)) {
+  const auto wrong = [&](const std::string& got, const std::string& expected) {
+    return InputError({.where = path_.string(), .got = got, .expected = expected});
+  };
+  for (const char* name : {"pressure", "ping", "ping_time", "valid_samples", "phone_position",
+                           "time", "replica", "scenario"})
+    if (!file_.has(name)) throw wrong(std::string("no dataset ") + name, "a file with a ping");
+  shape_ = file_.info("pressure").shape;
+  if (!(shape_.size() == 3 || (shape_.size() == 4 && shape_[3] == 2)))
+    throw wrong("pressure of another rank",
+                "(ping, channel, sample) or (ping, channel, sample, iq)");
+  numbers_ = file_.read<std::int32_t>("ping");
+  if (numbers_.empty()) throw wrong("no whole ping", "at least one");
+  scenario_ = scenario_of(file_, path_, scenario_path);
+  if (shape_[1] != channels_of(scenario_))
+    throw wrong(std::to_string(shape_[1]) + " channels",
+                std::to_string(channels_of(scenario_)) + ", those of its scenario");
+  times_ = file_.read<double>("ping_time");
+  valid_ = file_.read<std::int64_t>("valid_samples");
+  if (file_.has("transmitter")) transmitters_ = file_.read<std::int32_t>("transmitter");
+  rate_ = file_.attribute_number("pressure", "sample_rate_hz");
+  start_ = file_.read<double>("time", {0}, {1}).front();
+  if (complex_samples()) carrier_ = file_.attribute_number("pressure", "carrier_hz");
+  if (file_.has_attribute("pressure", "continuous"))
+    continuous_ = file_.attribute_number("pressure", "continuous") != 0.0;
+  if (!(rate_ > 0.0))
+    throw wrong("a sample rate of " + std::to_string(rate_) + " Hz", "one above 0");
+
+  read_direct_sound();
+  if (!file_.has("echoes/delay")) return;
+  const auto column = [&](const std::string& name) { return file_.read<double>("echoes/" + name); };
+  const auto channel = file_.read<std::int32_t>("echoes/channel"),
+             target = file_.read<std::int32_t>("echoes/target");
+  const auto delay = column("delay"), doppler = column("doppler_factor"),
+             level = column("level_db"), elevation = column("arrival_elevation_deg"),
+             bearing = column("arrival_bearing_deg");
+  const auto ping = file_.read<std::int32_t>("echoes/ping");
+  std::vector<std::int32_t> array(delay.size(), 0);
+  if (file_.has("echoes/array")) array = file_.read<std::int32_t>("echoes/array");
+  for (std::size_t i = 0; i < delay.size(); ++i) {
+    // Where every phone has its own paths, the middle one's stand for all.
+    const auto phones =
+        scenario_.arrays[static_cast<std::size_t>(std::max(array[i], 0))].phones.size();
+    if (channel[i] >= 0 && channel[i] != static_cast<std::int32_t>(phones / 2)) continue;
+    echo_ping_.push_back(ping[i]);
+    echo_array_.push_back(array[i]);
+    all_echoes_.push_back({.target = target[i],
+                           .time = delay[i],
+                           .doppler = doppler[i],
+                           .level_db = level[i],
+                           .travel = direction(radians(bearing[i]), radians(elevation[i]))});
+  }
+}
+
+void PingRecordings::read_direct_sound() {
+  if (!file_.has("arrivals/array")) return;
+  const auto leg = file_.read<std::int32_t>("arrivals/leg"),
+             ping = file_.read<std::int32_t>("arrivals/ping"),
+             array = file_.read<std::int32_t>("arrivals/array");
+  const auto delay = file_.read<double>("arrivals/delay"),
+             elevation = file_.read<double>("arrivals/arrival_elevation_deg"),
+             bearing = file_.read<double>("arrivals/bearing_deg");
+  constexpr int source_to_array = 2;
+  for (std::size_t i = 0; i < leg.size(); ++i) {
+    if (leg[i] != source_to_array) continue;
+    echo_ping_.push_back(ping[i]);
+    echo_array_.push_back(array[i]);
+    all_echoes_.push_back({.target = direct_sound,
+                           .time = delay[i],
+                           .doppler = std::numeric_limits<double>::quiet_NaN(),
+                           .level_db = infinity,
+                           .travel = direction(radians(bearing[i]), radians(elevation[i]))});
+  }
+}
+
+std::size_t PingRecordings::row_of(int number) const {
+  const auto at = std::find(numbers_.begin(), numbers_.end(), number);
+  if (at == numbers_.end())
+    throw InputError({.where = "--ping",
+                      .got = std::to_string(number),
+                      .expected = "a ping from " + std::to_string(numbers_.front()) + " to " +
+                                  std::to_string(numbers_.back())});
+  return static_cast<std::size_t>(at - numbers_.begin());
+}
+
+std::vector<Replica> PingRecordings::replicas() const {
+  std::vector<Replica> result;
+  for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t) {
+    const std::string name = t == 0 ? "replica" : "replica_" + std::to_string(t);
+    if (!file_.has(name)) break;
+    const std::vector<float> samples = file_.read<float>(name);
+    if (file_.info(name).shape.size() == 2) {
+      std::vector<std::complex<float>> envelope;
+      for (std::size_t i = 0; i + 1 < samples.size(); i += 2)
+        envelope.emplace_back(samples[i], samples[i + 1]);
+      result.emplace_back(std::span<const std::complex<float>>(envelope), rate_, *carrier_);
+    } else {
+      result.emplace_back(std::span<const float>(samples), rate_);
+    }
+  }
+  return result;
+}
+
+std::vector<PingRecordings::Piece> PingRecordings::pieces(std::size_t row) const {
+  std::vector<Piece> result{{row, static_cast<std::size_t>(valid_[row])}};
+  if (!continuous_) return result;
+  // A ping is listened to into the rows of those that follow.
+  auto wanted = static_cast<std::size_t>(scenario_.pings.recording_duration * rate_);
+  for (std::size_t i = row;; ++i) {
+    const auto here = std::min(wanted, static_cast<std::size_t>(valid_[i]));
+    if (i == row)
+      result[0].samples = std::max(here, std::size_t{1});
+    else
+      result.push_back({i, here});
+    wanted -= std::min(wanted, here);
+    if (wanted == 0 || i + 1 == pings()) return result;
+  }
+}
+
+double PingRecordings::end(std::size_t row) const {
+  std::size_t samples = 0;
+  for (const Piece& piece : pieces(row)) samples += piece.samples;
+  return start_ + static_cast<double>(samples) / rate_;
+}
+
+ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
+  const std::size_t first = first_channel(scenario_, array),
+                    phones = scenario_.arrays[static_cast<std::size_t>(array)].phones.size();
+  ArrayRecording result{.ping = numbers_[row],
+                        .transmitter = transmitter(row),
+                        .array = array,
+                        .ping_time = times_[row],
+                        .start = start_,
+                        .sample_rate = rate_,
+                        .carrier = carrier_};
+  const auto places = file_.read<double>("phone_position", {row, first, 0}, {1, phones, 3});
+  for (std::size_t n = 0; n < phones; ++n)
+    result.phones.emplace_back(places[3 * n], places[3 * n + 1], places[3 * n + 2]);
+  const auto finite = [](float x) { return std::isfinite(x) ? x : 0.0F; };
+  for (std::size_t n = 0; n < phones; ++n)
+    for (const Piece& piece : pieces(row)) {
+      if (piece.samples == 0) continue;
+      if (complex_samples()) {
+        const auto values =
+            file_.read<float>("pressure", {piece.row, first + n, 0, 0}, {1, 1, piece.samples, 2});
+        for (std::size_t i = 0; i < values.size(); i += 2)
+          result.envelope.emplace_back(finite(values[i]), finite(values[i + 1]));
+      } else {
+        const auto values =
+            file_.read<float>("pressure", {piece.row, first + n, 0}, {1, 1, piece.samples});
+        std::transform(values.begin(), values.end(), std::back_inserter(result.pressure), finite);
+      }
+    }
+  return result;
+}
+
+std::vector<TrueEcho> PingRecordings::echoes(std::size_t row, int array) const {
+  std::vector<TrueEcho> result;
+  for (std::size_t i = 0; i < all_echoes_.size(); ++i)
+    if (echo_ping_[i] == numbers_[row] && echo_array_[i] == array &&
+        std::isfinite(all_echoes_[i].time))
+      result.push_back(all_echoes_[i]);
+  return result;
+}
+
+std::vector<TrueTarget> PingRecordings::targets(std::size_t row,
+                                                const std::vector<TrueEcho>& echoes) const {
+  std::vector<TrueTarget> result;
+  for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
+    const Target& target = scenario_.targets[i];
+    double loudest = -infinity, time = 0.0;
+    for (const TrueEcho& echo : echoes)
+      if (echo.target == static_cast<int>(i) && echo.level_db > loudest) {
+        loudest = echo.level_db;
+        time = 0.5 * echo.time;
+      }
+    result.push_back(
+        {.target = static_cast<int>(i),
+         .name = target.name,
+         .present = numbers_[row] >= target.first_ping && numbers_[row] <= target.last_ping,
+         .position = target.track.at(times_[row] + time).position});
+  }
+  return result;
+}
+
+}  // namespace asdic

@@ -1,0 +1,57 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sonar/processing/ping_processor.h"
+#include "sonar/processing/scoring.h"
+#include "sonar/processing/tracker.h"
+
+namespace asdic {
+
+/// One array's part of one ping, done.
+struct ProcessedPing {
+  int transmitter = 0;
+  double ping_time = 0.0;  ///< [s]
+  ProcessedArray array;
+  PingScore score;
+  std::vector<TrueTarget> truth;
+  std::vector<double>
+      map_range;  ///< [columns of the maps] of the first ping of an array; else empty [m]
+};
+
+/// A track with what it was made of.
+struct ProcessedTrack {
+  int array = 0;
+  int side = 0;             ///< 0: the first of a detection's places, 1: the second
+  bool ambiguous = false;   ///< there is one like it on the other side
+  bool has_bearing = true;  ///< false: x is nothing, y the range seen from the array
+  ContactTrack track;
+  std::vector<int> rows;      ///< [points] of the detections table, −1: coasted
+  std::vector<double> error;  ///< [points] from its target, horizontal (or in range); NaN [m]
+  int target = -1;            ///< that most of its detections are of
+};
+
+/// Everything that `asdic process` found out about a file.
+struct ProcessedRun {
+  std::vector<ProcessedPing> pings;  ///< [pings × arrays], in order
+  std::vector<ProcessedTrack> tracks;
+  std::vector<std::string> options;  ///< "name=value" of what was asked for
+  std::string program_version;
+  bool maps = true;
+};
+
+/// A row of the detections table for every detection, in the order of `pings`.
+[[nodiscard]] int first_row(const ProcessedRun& run, std::size_t ping);
+
+/// Puts /processed into a ping file, in place of an earlier one: the file is copied to NAME.part,
+/// changed there and, once all is on disk, given its name, so that what is called NAME is at every
+/// moment either the old or the new file, whole. \param output  may be `input` \throws RunError
+void write_processed(const std::filesystem::path& input, const std::filesystem::path& output,
+                     const ProcessedRun& run, const Replica& replica);
+
+/// The tables as text, one line a row, NaN as nothing.
+[[nodiscard]] std::string detections_csv(const ProcessedRun& run);
+[[nodiscard]] std::string tracks_csv(const ProcessedRun& run);
+
+}  // namespace asdic

@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "io/ping/growing_table.h"
+#include "io/processing/results.h"
+
+namespace asdic::processing {
+
+/// A table of results, for HDF5 and CSV alike.
+struct Table {
+  std::vector<GrowingTable::Column> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+[[nodiscard]] Table detections_table(const ProcessedRun& run);
+[[nodiscard]] Table tracks_table(const ProcessedRun& run);
+[[nodiscard]] Table targets_table(const ProcessedRun& run);
+
+}  // namespace asdic::processing

@@ -1,0 +1,115 @@
+#include "reverb/scatterer_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+double unit(std::uint32_t word) noexcept { return (word + 0.5) * 0x1p-32; }
+
+std::uint64_t bits(double metres) noexcept {  // a place to the decimetre
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(10.0 * metres)));
+}
+
+/// A gamma variate of shape ν and mean 1: Marsaglia & Tsang, ACM TOMS 26, 363 (2000), below ν = 1
+/// by G(ν) = G(ν + 1)·U^{1/ν}.
+double gamma_of_mean_one(double shape, RandomStream& draw) {
+  const double boosted = shape < 1.0 ? shape + 1.0 : shape;
+  const double d = boosted - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
+  for (;;) {
+    const double x = draw.normal(), v = std::pow(1.0 + c * x, 3.0);
+    if (v <= 0.0) continue;
+    if (std::log(draw.uniform()) >= 0.5 * x * x + d - d * v + d * std::log(v)) continue;
+    const double scale = shape < 1.0 ? std::pow(draw.uniform(), 1.0 / shape) : 1.0;
+    return d * v * scale / shape;
+  }
+}
+
+}  // namespace
+
+std::uint64_t mixed(std::uint64_t a, std::uint64_t b) noexcept {
+  std::uint64_t z = (a ^ (b * 0xD6E8FEB86659FD93ULL)) + 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31);
+}
+
+std::uint64_t ScattererKey::entity(std::uint64_t identity) const noexcept {
+  return mixed(mixed(identity, std::uint64_t{ring} << 32 | sector),
+               std::uint64_t{copies} << 32 | copy);
+}
+
+Scatterer place_scatterer(const ScattererGrid& grid, const ScattererKey& key, std::uint64_t entity,
+                          std::uint64_t seed) noexcept {
+  const auto words = RandomStream(seed, Draw::scatterer_place, 0, entity).block(0);
+  const double inner = key.ring * grid.spacing, outer = inner + grid.spacing;
+  const double width = 2.0 * pi / (double(grid.azimuths) * key.copies);
+  const double range = std::sqrt(std::lerp(inner * inner, outer * outer, unit(words[0])));
+  const double strip = double(key.sector) * key.copies + key.copy;
+  const double bearing = grid.first_bearing + width * (strip + unit(words[1]));
+  return {.place = grid.anchor + range * Vec2(std::sin(bearing), std::cos(bearing)),
+          .area = 0.5 * (outer * outer - inner * inner) * width,
+          .depth_share = unit(words[2]),
+          .fate = unit(words[3])};
+}
+
+ScattererWeights::ScattererWeights(const ScattererStatistics& statistics, Draw purpose,
+                                   std::uint64_t seed, double time, std::uint32_t ping)
+    : purpose_(purpose), seed_(seed) {
+  const double coherence = statistics.coherence_time;
+  if (coherence <= 0.0) {
+    first_ = ping;
+    return;
+  }
+  if (std::isinf(coherence)) return;
+  // h has the standard deviation T/2; steps of 0.53 T leave 5e-5 of ripple in Σh².
+  const double step = 0.53 * coherence;
+  const double now = time / step;
+  nodes_ = most_nodes;
+  const double first = std::round(now) - (most_nodes - 1) / 2;
+  // Nodes before the start of the scenario have keys of their own: the upper half of 32 bits.
+  first_ = static_cast<std::uint32_t>(static_cast<std::int64_t>(first));
+  double power = 0.0;
+  for (int j = 0; j < nodes_; ++j) {
+    const double u = (now - first - j) * step / coherence;
+    share_[static_cast<std::size_t>(j)] = std::exp(-2.0 * u * u);
+    power += std::exp(-4.0 * u * u);
+  }
+  for (double& share : share_) share /= std::sqrt(power);
+}
+
+std::complex<double> ScattererWeights::operator()(std::uint64_t entity) const noexcept {
+  std::complex<double> weight = 0.0;
+  for (int j = 0; j < nodes_; ++j) {
+    const auto words =
+        RandomStream(seed_, purpose_, first_ + static_cast<std::uint32_t>(j), entity).block(0);
+    const double radius = std::sqrt(-std::log(unit(words[0])));  // Box–Muller, E|w|² = 1
+    const double angle = 2.0 * pi * unit(words[1]);
+    weight += share_[static_cast<std::size_t>(j)] * radius *
+              std::complex<double>(std::cos(angle), std::sin(angle));
+  }
+  return weight;
+}
+
+double texture_amplitude(const ScattererStatistics& statistics, const Vec2& place,
+                         std::uint64_t boundary, std::uint64_t seed) noexcept {
+  if (!statistics.k_shape) return 1.0;
+  const auto square = [&](double x) {
+    return static_cast<std::uint64_t>(
+        static_cast<std::int64_t>(std::floor(x / statistics.correlation_length)));
+  };
+  RandomStream draw(seed, Draw::scatterer_texture, 0,
+                    mixed(mixed(boundary, square(place.x())), square(place.y())));
+  return std::sqrt(gamma_of_mean_one(*statistics.k_shape, draw));
+}
+
+Anchor anchor_of(const Vec2& first, const Vec2& now, double time, const Vec2& current, double pitch,
+                 std::uint64_t boundary) noexcept {
+  const Vec2 moved = (now - first - current * time) / pitch;
+  const Vec2 in_water = first + pitch * Vec2(std::round(moved.x()), std::round(moved.y()));
+  return {.place = in_water + current * time,
+          .identity = mixed(mixed(boundary, bits(in_water.x())), bits(in_water.y()))};
+}
+
+}  // namespace asdic

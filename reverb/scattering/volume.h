@@ -1,0 +1,30 @@
+#pragma once
+#include <string_view>
+
+#include "core/units.h"
+#include "reverb/scattering/geometry.h"
+
+namespace asdic {
+
+/// A horizontal sheet of water that scatters alike in all directions: σ = s_v·h per unit of its
+/// horizontal area, 10·log₁₀ s_v the volume scattering strength S_v [dB re 1 m⁻¹], −70 in strong
+/// layers … −95 in the quiet deep; 10·log₁₀ of the sum of all s_v·h is the column strength. Urick,
+/// Principles of Underwater Sound (1983), ch. 8.
+struct VolumeSheet {
+  static constexpr std::string_view name = "volume";
+  double strength_db = -80.0;  ///< S_v [dB re 1 m⁻¹]
+  double thickness = 1.0;      ///< h [m]
+
+  void describe(auto&& field) {
+    field("strength_db", strength_db, Range{-200.0, 0.0});
+    field("thickness", thickness, Range{0.0, 1e4});
+  }
+
+  [[nodiscard]] double cross_section(const ScatterGeometry& /*any direction*/,
+                                     double /*frequency*/) const noexcept {
+    return power_from_db(strength_db) * thickness;
+  }
+};
+static_assert(ScatteringModel<VolumeSheet>);
+
+}  // namespace asdic

@@ -1,0 +1,112 @@
+#include "sonar/boundary_fans.h"
+
+#include <tbb/collaborative_call_once.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+constexpr std::size_t most_places = 24;
+
+/// How each cell's facet lies. A slope h′ along the transect is h′·cos β in the plane: the angle to
+/// the facet is that to its line in the plane, corrected for the part of its normal that sticks out
+/// of the plane.
+std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const GroundPaths& paths) {
+  std::vector<CellTilt> tilt;
+  if (!boundary.shape || cos_beta == 0.0) return tilt;
+  for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
+    const double in_plane = boundary.shape->at(paths.range(cell)).slope;
+    const double stretch = std::hypot(1.0, in_plane / cos_beta);  // √(1 + h′²)
+    tilt.push_back({.grazing = std::hypot(1.0, in_plane) / stretch, .area = stretch});
+  }
+  return tilt;
+}
+
+/// \param speed  of sound at the fan's source [m/s]
+std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
+  std::vector<PathEnds> ends;
+  ends.reserve(paths.size());
+  for (const GroundPath& p : paths.all())
+    ends.push_back({.launch_level = std::cos(p.launch_elevation) / speed,
+                    .launch_down = -std::sin(p.launch_elevation) / speed,
+                    .sine = std::sin(p.grazing),
+                    .down = p.downward * p.horizontal_slowness * std::tan(p.grazing)});
+  return ends;
+}
+
+}  // namespace
+
+const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
+  if (planes.size() == 1) return planes.front();
+  const double turns = (bearing - first_bearing) / (2.0 * pi);
+  const int sector = std::min(sectors - 1, static_cast<int>((turns - std::floor(turns)) * sectors));
+  return planes[static_cast<std::size_t>(std::min(sector, sectors - 1 - sector))];
+}
+
+struct BoundaryFans::Entry {
+  tbb::collaborative_once_flag traced;  // who waits for the planes helps to trace them
+  BoundaryFan fan;
+};
+
+BoundaryFans::BoundaryFans(const PropagationPaths& paths) : paths_(paths) {}
+
+BoundaryFans::~BoundaryFans() = default;
+
+std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const GroundLevel& level,
+                                                        const Settings& settings) const {
+  const bool layered = paths_.layered();
+  const Key key(level.boundary ? static_cast<int>(*level.boundary) : -1, level.depth,
+                layered ? 0.0 : paths_.plane(place, 0.0).origin, place.z(), settings.frequency,
+                settings.spacing, settings.max_range, layered ? 0 : settings.sectors);
+  std::shared_ptr<Entry> entry;
+  {
+    const std::scoped_lock lock(lock_);
+    auto& kept = kept_[key];
+    if (!kept) {
+      kept = std::make_shared<Entry>();
+      entry = kept;
+      // a platform that moves all the time: keep the newest only
+      if (kept_.size() > most_places) kept_ = {{key, entry}};
+    } else {
+      entry = kept;
+    }
+  }
+  tbb::collaborative_call_once(entry->traced, [&] { entry->fan = trace(place, level, settings); });
+  return {entry, &entry->fan};
+}
+
+BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
+                                const Settings& settings) const {
+  const auto ground = [&](const EigenraySolver& solver) {
+    return std::make_shared<const GroundPaths>(ground_paths(solver, place.z(), level,
+                                                            settings.spacing, settings.max_range,
+                                                            settings.frequency, settings.limits));
+  };
+  const double speed = paths_.speed_at(place);
+  if (paths_.layered()) {
+    const auto paths = ground(paths_.along_transect());
+    return {.planes = {{.paths = paths, .ends = ends_of(*paths, speed), .tilt = {}}}};
+  }
+  const int n = settings.sectors;
+  BoundaryFan fan{.planes = std::vector<FanPlane>(static_cast<std::size_t>((n + 1) / 2)),
+                  .first_bearing = paths_.transect_bearing(),
+                  .sectors = n};
+  const double origin = paths_.plane(place, 0.0).origin;
+  tbb::parallel_for(std::size_t{0}, fan.planes.size(), [&](std::size_t i) {
+    const Plane plane{.origin = origin,
+                      .cos_beta = std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / n)};
+    const auto solver = paths_.solver(plane);
+    const Environment& ocean = solver->environment();
+    fan.planes[i].paths = ground(*solver);
+    fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
+    fan.planes[i].tilt =
+        tilts(level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
+              plane.cos_beta, *fan.planes[i].paths);
+  });
+  return fan;
+}
+
+}  // namespace asdic

@@ -1,0 +1,40 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/units.h"
+#include "sonar/processing/array_shape.h"
+
+namespace asdic {
+
+/// Where and how a thing may be that answers like this, by the paths of sound.
+struct Location {
+  Vec3 position = Vec3::Zero();  ///< when the sound struck it [m]
+  double range = 0.0;            ///< horizontal, from the array when it heard it [m]
+  double bearing = 0.0;     ///< from there, clockwise from north; NaN if the array tells none [rad]
+  double elevation = 0.0;   ///< look elevation of the returning path, positive up [rad]
+  double range_rate = 0.0;  ///< of half the horizontal way there and back [m/s]; from the Doppler
+                            ///< factor and the paths' slowness
+  double range_slope = 0.0;                     ///< dr/dτ: range per delay [m/s]
+  int surface_bounces = 0, bottom_bounces = 0;  ///< there and back together
+};
+
+/// One thing heard that is not background.
+struct Detection {
+  int ping = 1;
+  int array = 0;
+  double time = 0.0;          ///< of its leading edge after the ping's start [s]
+  double doppler = 1.0;       ///< factor η
+  Vec3 look = Vec3::UnitY();  ///< unit vector towards it; on a cone around a line, see `cosine`
+  double cosine = 0.0;        ///< line: of the angle between look and axis; else NaN
+  double bearing = 0.0;       ///< of `look`; NaN for an upright line or a point [rad]
+  double elevation = 0.0;     ///< of `look`; NaN for a line that is not upright, or a point [rad]
+  double snr_db = 0.0;        ///< |peak|² over the mean square of the envelope around it [dB]
+  double excess_db = 0.0;     ///< peak over threshold [dB]
+  double level_db = 0.0;      ///< of an echo from `look`, peak envelope/√2 [dB re 1 µPa]
+  /// One; two where left and right cannot be told apart (right of the line's axis first, or the two
+  /// mirror images of a plane); none where no path fits.
+  std::vector<Location> locations;
+};
+
+}  // namespace asdic

@@ -1,0 +1,255 @@
+#include "sonar/processing/localiser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "raytrace/environment.h"
+#include "raytrace/ray_path.h"
+#include "sonar/geometry.h"
+#include "sonar/processing/delay_table.h"
+
+namespace asdic {
+namespace {
+
+constexpr std::size_t most_tables = 256;
+
+/// The path of a kind among eigenrays; of two, the one nearer in angle.
+const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double elevation) {
+  const Arrival* best = nullptr;
+  for (const Arrival& path : paths)
+    if (history_of(path) == history &&
+        (best == nullptr || std::abs(path.launch_elevation - elevation) <
+                                std::abs(best->launch_elevation - elevation)))
+      best = &path;
+  return best;
+}
+
+}  // namespace
+
+struct Localiser::Tables {
+  using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
+  std::map<Key, std::shared_ptr<const DelayTable>> made;
+  std::mutex lock;
+};
+
+/// One detection with one bearing.
+struct Localiser::Query {
+  const Detection& detection;
+  const SonarPlaces& places;
+  Vec3 heard_at = Vec3::Zero();  ///< the array when the echo came
+  double bearing = 0.0;
+  std::optional<double> elevation;  ///< measured
+  double elevation_sigma = 0.0;
+};
+
+Localiser::Localiser(const PropagationPaths& paths, const LocaliserSettings& settings)
+    : paths_(paths), settings_(settings), tables_(std::make_unique<Tables>()) {}
+Localiser::~Localiser() = default;
+
+std::optional<Location> Localiser::at_depth(const Query& query, double depth) const {
+  const Vec3 from = query.places.source.position, back = query.heard_at;
+  const Vec3 across = direction(query.bearing, 0.0);
+  const auto point = [&](double range) {
+    Vec3 p = back + range * across;
+    p.z() = depth;
+    return p;
+  };
+  Location found;
+  found.bearing = query.bearing;
+  if (settings_.speed) {  // straight rays
+    const double c = *settings_.speed;
+    double low = 0.0, high = 0.5 * c * query.detection.time + (from - back).norm();
+    const auto delay = [&](double r) {
+      return ((point(r) - from).norm() + (point(r) - back).norm()) / c;
+    };
+    if (delay(0.0) > query.detection.time) return std::nullopt;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (delay(middle) < query.detection.time ? low : high) = middle;
+    }
+    found.range = low;
+    found.position = point(low);
+    found.elevation = std::atan2(back.z() - depth, low);
+    const double xi = std::cos(found.elevation) / c;
+    found.range_rate = -(query.detection.doppler - 1.0) / (2.0 * xi);
+    found.range_slope = 1.0 / (2.0 * xi);
+    return found;
+  }
+  // The farthest that sound of 1600 m/s comes, rounded so that tables serve many detections.
+  const double offset = std::hypot((from - back).x(), (from - back).y());
+  const double longest = std::exp2(
+      std::ceil(2.0 * std::log2(0.5 * 1600.0 * query.detection.time + offset + 1.0)) / 2.0);
+  std::vector<double> ranges(settings_.ranges);
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    ranges[i] = longest * static_cast<double>(i + 1) / static_cast<double>(ranges.size());
+  const auto table = [&](const Vec3& platform, double bearing) {
+    const bool layered = paths_.layered();
+    const Plane plane = paths_.plane(platform, bearing);
+    // In a layered ocean all planes are one. Places that move by less than a metre share a table.
+    const Tables::Key key(layered ? 0.0 : std::round(plane.origin), layered ? 1.0 : plane.cos_beta,
+                          platform.z(), depth, longest);
+    {
+      const std::scoped_lock lock(tables_->lock);
+      if (const auto known = tables_->made.find(key); known != tables_->made.end())
+        return known->second;
+    }
+    auto made = std::make_shared<const DelayTable>(*paths_.solver(plane), platform.z(), depth,
+                                                   ranges, settings_.frequency, settings_.limits);
+    const std::scoped_lock lock(tables_->lock);
+    if (tables_->made.size() >= most_tables) tables_->made.clear();
+    return tables_->made.emplace(key, std::move(made)).first->second;
+  };
+  const auto home = table(back, query.bearing);
+  // The other leg's plane turns with the range unless both ends are in one place: its table is that
+  // of the plane towards the point where a straight ray would put it.
+  const Vec3 guess = point(0.5 * 1500.0 * query.detection.time);
+  const auto out = table(from, offset < 1.0 ? query.bearing : separation(from, guess).bearing);
+
+  struct Candidate {
+    const DelayTable::Branch *out, *home;
+    double range, score, elevation_out, elevation_home;
+  };
+  std::optional<Candidate> best;
+  for (const auto& there : out->branches())
+    for (const auto& here : home->branches()) {
+      double last_range = 0.0, last_excess = 0.0;
+      bool has_last = false;
+      for (const DelayTable::Node& node : here.nodes) {
+        const auto leg = out->at(there, separation(from, point(node.range)).range);
+        const double excess = leg ? leg->delay + node.delay - query.detection.time : 0.0;
+        if (leg && has_last && node.range - last_range < 1.5 * home->step() && last_excess <= 0.0 &&
+            excess > 0.0) {
+          const double range =
+              last_range + (node.range - last_range) * last_excess / (last_excess - excess);
+          double score = leg->amplitude * node.amplitude;
+          if (query.places.pattern != nullptr)
+            score *= std::abs((*query.places.pattern)(leg->elevation));
+          if (query.elevation) {
+            const double off = (node.elevation - *query.elevation) / query.elevation_sigma;
+            score *= std::exp(-0.5 * off * off) + 1e-12;
+          }
+          if (!best || score > best->score)
+            best = Candidate{&there, &here, range, score, leg->elevation, node.elevation};
+        }
+        has_last = leg.has_value();
+        last_range = node.range;
+        last_excess = excess;
+      }
+    }
+  if (!best) return std::nullopt;
+
+  // Newton with exact eigenrays.
+  found.range = best->range;
+  double slowness = 0.0;
+  found.elevation = best->elevation_home;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3 p = point(found.range);
+    const Arrivals homes = paths_.find(back, p, settings_.frequency, settings_.limits);
+    const Arrivals outs = paths_.find(from, p, settings_.frequency, settings_.limits);
+    const Arrival* h = of_kind(homes, best->home->history, found.elevation);
+    const Arrival* o = of_kind(outs, best->out->history, best->elevation_out);
+    if (h == nullptr || o == nullptr) break;  // at the end of a branch: the table's answer stands
+    const double turn = std::cos(separation(from, p).bearing - query.bearing);
+    slowness = o->horizontal_slowness * turn + h->horizontal_slowness;
+    const double step = (query.detection.time - o->delay - h->delay) / slowness;
+    if (!std::isfinite(step) || std::abs(step) > 2.0 * home->step()) break;
+    found.range += step;
+    found.elevation = h->launch_elevation;
+    found.surface_bounces = o->surface_bounces + h->surface_bounces;
+    found.bottom_bounces = o->bottom_bounces + h->bottom_bounces;
+    if (std::abs(step) < 1e-3) break;
+  }
+  if (!(slowness > 0.0)) slowness = 2.0 * std::cos(found.elevation) / paths_.speed_at(back);
+  found.position = point(found.range);
+  found.range_rate = -(query.detection.doppler - 1.0) / slowness;
+  found.range_slope = 1.0 / slowness;
+  return found;
+}
+
+std::optional<Location> Localiser::along_ray(const Query& query) const {
+  // Out and back by the same ray from where the echo was heard: the point at half the delay, and
+  // then, at that depth, as at_depth() does it with both ends where they are.
+  const Environment& ocean = paths_.along_transect().environment();
+  double depth = settings_.shallow;
+  if (settings_.speed) {
+    depth = query.heard_at.z() -
+            0.5 * *settings_.speed * query.detection.time * std::sin(*query.elevation);
+  } else {
+    const Plane plane = paths_.plane(query.heard_at, query.bearing);
+    const double reach = 800.0 * query.detection.time + 1.0;
+    const RayPath ray = paths_.layered()
+                            ? trace_ray(ocean, query.heard_at.z(), *query.elevation, reach, 5.0)
+                            : trace_ray(paths_.solver(plane)->environment(), query.heard_at.z(),
+                                        *query.elevation, reach, 5.0);
+    const double half = 0.5 * query.detection.time;
+    const auto after = std::find_if(ray.points.begin(), ray.points.end(),
+                                    [&](const RayPoint& p) { return p.time >= half; });
+    if (after == ray.points.end() || after == ray.points.begin()) return std::nullopt;
+    const RayPoint &a = *(after - 1), &b = *after;
+    const double t = b.time > a.time ? (half - a.time) / (b.time - a.time) : 0.0;
+    depth = a.depth + t * (b.depth - a.depth);
+  }
+  const Vec3 there = query.heard_at + 750.0 * query.detection.time * direction(query.bearing, 0.0);
+  const double top = paths_.surface_depth(there) + 1.0, bottom = paths_.bottom_depth(there) - 1.0;
+  return at_depth(query, std::clamp(depth, std::min(top, bottom), bottom));
+}
+
+std::optional<Location> Localiser::towards(Query query, std::optional<double> bearing) const {
+  query.bearing = bearing.value_or(0.0);
+  std::optional<Location> found =
+      !settings_.depth && query.elevation
+          ? along_ray(query)
+          : at_depth(query, settings_.depth.value_or(settings_.shallow));
+  if (found && !bearing) found->bearing = std::numeric_limits<double>::quiet_NaN();
+  return found;
+}
+
+std::vector<Location> Localiser::locate(const Detection& detection, const SonarPlaces& places,
+                                        double elevation_sigma) const {
+  const ArrayShape& shape = places.shape;
+  Query query{.detection = detection,
+              .places = places,
+              .heard_at = places.array.position + detection.time * places.array.velocity};
+  std::vector<Location> result;
+  const auto keep = [&](std::optional<Location> found) {
+    if (found) result.push_back(*found);
+  };
+  query.elevation_sigma = std::max(elevation_sigma, 1e-3);
+  if (shape.kind == ArrayKind::point) {
+    keep(towards(query, std::nullopt));
+  } else if (shape.upright()) {
+    query.elevation = detection.elevation;
+    keep(towards(query, std::nullopt));
+  } else if (shape.kind == ArrayKind::line) {
+    // look·axis = cos e·(a_x sin β + a_y cos β) − a_z sin e: two bearings for the path's elevation.
+    const double along = std::hypot(shape.axis.x(), shape.axis.y());
+    const double axis_bearing = std::atan2(shape.axis.x(), shape.axis.y());
+    for (const double side : {1.0, -1.0}) {
+      std::optional<Location> found;
+      double elevation = 0.0;
+      for (int i = 0; i < 4; ++i) {
+        const double cosine = (detection.cosine + shape.axis.z() * std::sin(elevation)) /
+                              (along * std::cos(elevation));
+        const double bearing = axis_bearing + side * std::acos(std::clamp(cosine, -1.0, 1.0));
+        found = towards(query, std::remainder(bearing, 2.0 * pi));
+        if (!found || std::abs(found->elevation - elevation) < 1e-4) break;
+        elevation = found->elevation;
+      }
+      keep(found);
+    }
+  } else {
+    std::vector<Vec3> looks{detection.look};
+    if (shape.kind == ArrayKind::plane)
+      looks.push_back(detection.look - 2.0 * detection.look.dot(shape.normal) * shape.normal);
+    for (const Vec3& look : looks) {
+      query.elevation = std::asin(std::clamp(-look.z(), -1.0, 1.0));
+      keep(towards(query, std::atan2(look.x(), look.y())));
+    }
+  }
+  return result;
+}
+
+}  // namespace asdic

@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sonar/processing/array_shape.h"
+#include "sonar/processing/detection.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/track.h"
+#include "sonar/transmitter.h"
+
+namespace asdic {
+
+struct LocaliserSettings {
+  double frequency = 4000.0;  ///< sets losses, by which one pair of paths is preferred [Hz]
+  PathLimits limits;
+  std::optional<double> depth;  ///< of what answers [m]; none: where the ray that came in at the
+                                ///< measured elevation was, and `shallow` if none was measured
+  double shallow = 100.0;       ///< [m]
+  std::size_t ranges = 300;     ///< of the table
+  std::optional<double> speed;  ///< straight rays of this speed instead of the ray model [m/s]
+};
+
+/// Who sent and who heard one ping. Times count from the ping's start.
+struct SonarPlaces {
+  Kinematics source;                     ///< when the ping starts
+  Kinematics array;                      ///< the same of the array's reference point
+  const BeamPattern* pattern = nullptr;  ///< of the transmitter; none: all round
+  ArrayShape shape;                      ///< of the array
+};
+
+/// From delay, direction and Doppler factor to a place, by the paths of sound.
+///
+/// The delay of every pair of paths, out to a point in the direction looked at and back, is
+/// tabulated over its range, one branch per history of the path; the ranges at which a pair's delay
+/// is the measured one are candidates, and the one whose echo would be loudest (and whose elevation
+/// fits, where it was measured) is taken and refined by Newton's method with exact eigenrays. A
+/// line's cone is cut with the elevation of the path itself. The array has moved since the ping.
+/// Built once per run; const and shared by threads, as far as PropagationPaths is.
+/// Source: docs/theory/processing.md, eq. (8)
+class Localiser {
+ public:
+  Localiser(const PropagationPaths& paths, const LocaliserSettings& settings);
+  ~Localiser();
+
+  /// \param elevation_sigma  of the measured elevation, where there is one [rad]
+  /// \return as Detection::locations
+  [[nodiscard]] std::vector<Location> locate(const Detection& detection, const SonarPlaces& places,
+                                             double elevation_sigma) const;
+
+ private:
+  struct Tables;
+  struct Query;
+  [[nodiscard]] std::optional<Location> at_depth(const Query& query, double depth) const;
+  [[nodiscard]] std::optional<Location> along_ray(const Query& query) const;
+  [[nodiscard]] std::optional<Location> towards(Query query, std::optional<double> bearing) const;
+
+  const PropagationPaths& paths_;
+  LocaliserSettings settings_;
+  std::unique_ptr<Tables> tables_;
+};
+
+}  // namespace asdic

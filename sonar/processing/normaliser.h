@@ -1,0 +1,51 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace asdic {
+
+/// How the background around a cell is estimated.
+enum class Normaliser {
+  cell_averaging,  ///< the mean of the reference cells on both sides (CA-CFAR)
+  split_window,  ///< the same, and twice again with what stands out of the last mean put back to it
+};
+
+/// A cell is 1/noise bandwidth of the matched filter: values so far apart are independent.
+struct NormaliserSettings {
+  Normaliser method = Normaliser::split_window;
+  double guard_cells = 2.0;               ///< left out on either side: the echo itself
+  double reference_cells = 12.0;          ///< averaged on either side
+  double false_alarm_probability = 1e-6;  ///< of a cell
+};
+
+/// Threshold over the mean of `cells` independent exponential cells (Rayleigh envelope) for a
+/// constant false-alarm rate: α = N·(P^(−1/N) − 1); −ln P for very many.
+/// Finn & Johnson, RCA Review 29, 414 (1968). docs/theory/processing.md, eq. (7)
+[[nodiscard]] double cfar_multiplier(double false_alarm_probability, double cells);
+
+/// Compares each value of a series of powers with its surroundings.
+class BackgroundEstimator {
+ public:
+  /// \param cell  samples per cell, may be a fraction
+  /// \throws InputError ("reference_cells", "guard_cells", "false_alarm_probability")
+  BackgroundEstimator(const NormaliserSettings& settings, double cell);
+
+  struct Scratch {
+    std::vector<double> sums;
+    std::vector<float> clipped;
+  };
+
+  /// \param power       [n]
+  /// \param background  [n] mean of the surroundings; ∞ where there are none
+  /// \param threshold   [n] power that a false-alarm probability allows for
+  void operator()(std::span<const float> power, std::span<float> background,
+                  std::span<float> threshold, Scratch& scratch) const;
+
+ private:
+  NormaliserSettings settings_;
+  std::size_t guard_, reference_;  // samples on either side
+  std::vector<float> multiplier_;  // [1 + 2·reference_] by number of reference samples
+};
+
+}  // namespace asdic

@@ -1,0 +1,185 @@
+#include "sonar/processing/ping_processor.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "sonar/processing/listening_band.h"
+#include "sonar/transmission.h"
+
+namespace asdic {
+namespace {
+
+/// The pulse's band with room for its flanks, stretched by all Doppler factors.
+ListeningBand listening_band(const Replica& replica, std::span<const double> dopplers,
+                             double highest_allowed) {
+  const double room = 0.25 * replica.bandwidth();
+  const double low = std::max((replica.lowest_frequency() - room) * dopplers.front(), 0.0);
+  const double high =
+      std::min((replica.highest_frequency() + room) * dopplers.back(), highest_allowed);
+  return {.centre = 0.5 * (low + high), .width = high - low};
+}
+
+/// Standard deviation of an estimate whose resolution cell is this wide: Cramér and Rao's bound is
+/// about cell/√(2·SNR)/2; nothing is trusted to better than a tenth of a cell.
+double sigma_of(double cell, double snr) {
+  return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
+}
+
+}  // namespace
+
+PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
+                             ProcessingSettings settings)
+    : scenario_(std::move(scenario)),
+      replicas_(std::move(replicas)),
+      settings_(std::move(settings)),
+      paths_(scenario_.environment, scenario_.transect) {
+  if (replicas_.empty())
+    throw InputError({.where = "replica", .got = "none", .expected = "at least one"});
+  const auto require = [](bool good, const char* where, double got, const char* expected) {
+    if (!good) throw InputError({.where = where, .got = std::to_string(got), .expected = expected});
+  };
+  require(settings_.max_speed >= 0.0 && settings_.max_speed < 700.0, "max_speed",
+          settings_.max_speed, "a speed from 0 to 700 m/s");
+  require(settings_.detector.lowest_elevation <= settings_.detector.highest_elevation, "elevations",
+          degrees(settings_.detector.lowest_elevation), "no more than the highest");
+  require(settings_.tracker.start_hits >= 1 &&
+              settings_.tracker.start_hits <= settings_.tracker.start_pings,
+          "track_start", settings_.tracker.start_hits, "hits from 1 to the number of pings");
+  for (const Replica& replica : replicas_) {
+    // The slowest sound of any ocean, so that no echo falls outside the bank.
+    banks_.push_back(
+        doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0, settings_.bank_loss_db));
+    localisers_.push_back(std::make_unique<Localiser>(
+        paths_, LocaliserSettings{.frequency = replica.centre_frequency(),
+                                  .limits = limits_of(scenario_.propagation),
+                                  .depth = settings_.target_depth,
+                                  .speed = settings_.range_speed}));
+  }
+}
+
+ProcessedArray PingProcessor::process(const ArrayRecording& recording,
+                                      const std::function<bool()>& proceed) const {
+  const Replica& pulse = replica(recording.transmitter);
+  const std::span<const double> factors = dopplers(recording.transmitter);
+  const std::size_t channels = recording.phones.size();
+  const double top = recording.carrier ? *recording.carrier + 0.5 * recording.sample_rate
+                                       : 0.5 * recording.sample_rate;
+  ListeningBand band = listening_band(pulse, factors, top);
+  if (recording.carrier) {
+    const double bottom = *recording.carrier - 0.5 * recording.sample_rate;
+    const double low = std::max(band.centre - 0.5 * band.width, bottom);
+    const double high = band.centre + 0.5 * band.width;
+    band = {.centre = 0.5 * (low + high), .width = high - low};
+  }
+  const double silence = pulse.duration() / factors.front();
+  const Baseband baseband = recording.carrier
+                                ? to_baseband(recording.envelope, channels, recording.sample_rate,
+                                              *recording.carrier, recording.start, band, silence)
+                                : to_baseband(recording.pressure, channels, recording.sample_rate,
+                                              recording.start, band, silence);
+
+  ProcessedArray done{.ping = recording.ping, .array = recording.array};
+  done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
+  done.places.array = array_at(scenario_, recording.array, recording.ping_time);
+  done.sound_speed = paths_.speed_at(done.places.array.position);
+  std::vector<Vec3> phones;
+  for (const Vec3& x : recording.phones) phones.push_back(x - done.places.array.position);
+  const double wavelength = done.sound_speed / pulse.centre_frequency();
+  done.shape = shape_of(phones, wavelength);
+  done.places.shape = done.shape;
+  done.elevation_sigma = 0.25 * wavelength / std::max(done.shape.height, 0.25 * wavelength);
+
+  DetectorSettings detector = settings_.detector;
+  detector.first_time = std::max(detector.first_time, recording.start);
+  done.result = detect(baseband, phones, done.sound_speed, pulse, factors, detector, proceed);
+
+  // The transmitter as it was for that ping.
+  const std::vector<Transmission> sent = transmissions(scenario_);
+  const auto ping = static_cast<std::size_t>(recording.ping - 1);
+  const Transmitter projector =
+      ping < sent.size() ? projector_of(scenario_, sent[ping])
+                         : scenario_.transmitters[static_cast<std::size_t>(recording.transmitter)];
+  const BeamPattern pattern(
+      projector, paths_.speed_at(done.places.source.position) / pulse.centre_frequency());
+  SonarPlaces places = done.places;
+  places.pattern = &pattern;
+  const Localiser& localiser =
+      *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(recording.transmitter) : 0];
+  tbb::parallel_for(std::size_t{0}, done.result.detections.size(), [&](std::size_t i) {
+    Detection& d = done.result.detections[i];
+    d.ping = recording.ping;
+    d.array = recording.array;
+    d.locations = localiser.locate(d, places, done.elevation_sigma);
+  });
+  return done;
+}
+
+std::vector<double> PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
+                                             std::span<const double> times) const {
+  const Localiser& localiser =
+      *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(sender) : 0];
+  std::vector<double> ranges(times.size(), std::numeric_limits<double>::quiet_NaN());
+  SonarPlaces places = processed.places;
+  places.shape.kind = ArrayKind::point;  // no direction is needed
+  tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
+    const auto found = localiser.locate({.time = times[i]}, places, 1.0);
+    if (!found.empty()) ranges[i] = found[0].range;
+  });
+  return ranges;
+}
+
+Resolution PingProcessor::resolution(const ProcessedArray& processed) const {
+  const double wavelength = processed.sound_speed / replica(0).centre_frequency();
+  return {.time = processed.result.time_cell,
+          .doppler = 2.0 * processed.result.doppler_cell,
+          .delay_per_doppler = processed.result.delay_per_doppler,
+          .direction =
+              processed.shape.kind == ArrayKind::point ? 2.0 : wavelength / processed.shape.length};
+}
+
+std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, double ping_time,
+                                             int side) const {
+  std::vector<Contact> result;
+  const double wavelength = processed.sound_speed / replica(0).centre_frequency();
+  for (std::size_t i = 0; i < processed.result.detections.size(); ++i) {
+    const Detection& d = processed.result.detections[i];
+    if (d.locations.size() <= static_cast<std::size_t>(side)) continue;
+    const Location& place = d.locations[static_cast<std::size_t>(side)];
+    const double snr = power_from_db(d.snr_db);
+    Contact c{.detection = static_cast<int>(i), .time = ping_time + 0.5 * d.time};
+    c.range = place.range;
+    c.range_rate = place.range_rate;
+    const double doppler_sigma = sigma_of(2.0 * processed.result.doppler_cell, snr);
+    c.range_sigma = std::hypot(sigma_of(processed.result.time_cell, snr),
+                               processed.result.delay_per_doppler * doppler_sigma) *
+                    place.range_slope;
+    // η − 1 = −(ξ_out + ξ_home)·ṙ, and range_slope is 1/(ξ_out + ξ_home)
+    c.range_rate_sigma = doppler_sigma * place.range_slope;
+    if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
+      c.bearing = 0.0;
+      c.bearing_sigma = 1e-3;
+    } else {
+      c.bearing = place.bearing;
+      // A line's cell widens as 1/sin of the angle with its axis, to its square root at endfire.
+      double across = 1.0;
+      if (processed.shape.kind == ArrayKind::line)
+        across = std::max(std::sqrt(std::max(1.0 - d.cosine * d.cosine, 0.0)),
+                          std::sqrt(wavelength / processed.shape.length));
+      c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
+      const Vec3 heard = processed.places.array.position + d.time * processed.places.array.velocity;
+      c.array = heard.head<2>();
+      c.array_velocity = processed.places.array.velocity.head<2>();
+      c.source = processed.places.source.position.head<2>();
+      c.source_velocity = processed.places.source.velocity.head<2>();
+    }
+    result.push_back(c);
+  }
+  return result;
+}
+
+}  // namespace asdic

@@ -1,0 +1,91 @@
+#include "sonar/processing/scoring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sonar/geometry.h"
+
+namespace asdic {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// How far a direction is from where an echo comes from, in what the array can tell.
+double off_direction(const Detection& d, const TrueEcho& echo, const ArrayShape& shape) {
+  const Vec3 from = -echo.travel;
+  switch (shape.kind) {
+    case ArrayKind::point:
+      return 0.0;
+    case ArrayKind::line:
+      return std::abs(from.dot(shape.axis) - d.cosine);
+    case ArrayKind::plane: {
+      const Vec3 mirrored = from - 2.0 * from.dot(shape.normal) * shape.normal;
+      return std::acos(std::clamp(std::max(from.dot(d.look), mirrored.dot(d.look)), -1.0, 1.0));
+    }
+    case ArrayKind::volume:
+      return std::acos(std::clamp(from.dot(d.look), -1.0, 1.0));
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+PingScore score_detections(std::span<const Detection> detections, std::span<const TrueEcho> echoes,
+                           std::span<const TrueTarget> targets, const ArrayShape& shape,
+                           const Vec3& array_position, const Resolution& resolution, double first,
+                           double last) {
+  PingScore score;
+  score.owner.assign(detections.size(), -1);
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const Detection& d = detections[i];
+    double loudest = -infinity;
+    for (const TrueEcho& echo : echoes) {
+      const double off = std::isnan(echo.doppler) ? 0.0 : d.doppler - echo.doppler;
+      const double along_ridge = resolution.delay_per_doppler * off;
+      if (std::abs(d.time - echo.time - along_ridge) > resolution.time ||
+          std::abs(off) > resolution.doppler ||
+          off_direction(d, echo, shape) > resolution.direction || echo.level_db <= loudest)
+        continue;
+      loudest = echo.level_db;
+      score.owner[i] = echo.target;
+    }
+    if (score.owner[i] == -1) ++score.false_alarms;
+  }
+  for (const TrueTarget& target : targets) {
+    TargetScore row{.target = target.target,
+                    .present = target.present,
+                    .position_error = none,
+                    .range_error = none,
+                    .bearing_error = none};
+    row.audible = std::any_of(echoes.begin(), echoes.end(), [&](const TrueEcho& echo) {
+      return echo.target == target.target && echo.time >= first && echo.time <= last;
+    });
+    for (std::size_t i = 0; i < detections.size(); ++i)
+      if (score.owner[i] == target.target &&
+          (row.detection < 0 ||
+           detections[i].snr_db > detections[static_cast<std::size_t>(row.detection)].snr_db))
+        row.detection = static_cast<int>(i);
+    row.hit = row.detection >= 0;
+    if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
+    if (row.hit) {
+      const Separation truth = separation(array_position, target.position);
+      for (const Location& place : detections[static_cast<std::size_t>(row.detection)].locations) {
+        const Vec3 off = place.position - target.position;
+        const double error = std::isnan(place.bearing) ? std::abs(place.range - truth.range)
+                                                       : std::hypot(off.x(), off.y());
+        if (!std::isnan(row.position_error) && error >= row.position_error) continue;
+        const Separation seen = separation(array_position, place.position);
+        row.position_error = std::isnan(place.bearing) ? none : error;
+        row.range_error = (std::isnan(place.bearing) ? place.range : seen.range) - truth.range;
+        row.bearing_error = std::isnan(place.bearing)
+                                ? none
+                                : std::remainder(seen.bearing - truth.bearing, 2.0 * pi);
+      }
+    }
+    score.targets.push_back(row);
+  }
+  return score;
+}
+
+}  // namespace asdic

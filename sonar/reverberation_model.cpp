@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/ping_bounds.h"
+#include "sonar/reverberation.h"
+
+namespace asdic {
+namespace {
+
+/// The law of a boundary out of the scenario's shorter lists.
+template <class... Model>
+ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
+  return std::visit([](const auto& model) { return ScatteringSheet::Law(model); }, law);
+}
+
+/// Sectors so narrow that neither an array nor its Doppler tells them apart: λ/(2L) for a length L,
+/// and 1/T of Doppler, 2v/λ·Δφ, for a platform's speed v.
+int resolved_sectors(const Scenario& scenario, const ReverberationContext& context, double speed,
+                     double sound_speed) {
+  double length = 0.0;
+  const auto& phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones;
+  for (const Vec3& phone : phones)
+    length = std::max(length, 2.0 * (phone - phones.front()).head<2>().norm());
+  const double wavelength = sound_speed / context.pulse.centre_frequency();
+  const double by_array = 2.0 * pi * length / wavelength;
+  const double by_doppler = 2.0 * pi * 2.0 * speed / wavelength * context.pulse.duration();
+  constexpr double most = 3600.0;
+  return static_cast<int>(std::ceil(std::min(most, std::max(by_array, by_doppler))));
+}
+
+}  // namespace
+
+ReverberationModel::ReverberationModel(const Scenario& scenario, const PropagationPaths& paths,
+                                       const Pulse& widest)
+    : scenario_(scenario),
+      paths_(paths),
+      fans_(paths),
+      spacing_(asdic::ground_spacing(scenario, widest, paths)),
+      fastest_water_(asdic::fastest_water(scenario.environment)) {}
+
+std::vector<ReverberationModel::Part> ReverberationModel::parts() const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  std::vector<Part> found;
+  if (!settings.enabled) return found;
+  if (settings.surface_scatters) {
+    AnySurfaceScattering law = settings.surface;
+    set_sea(law, scenario_.wind_speed, speed_at_surface(scenario_, paths_));
+    found.push_back({BoundaryKind::surface, law_of(law), settings.surface_field,
+                     Draw::surface_weight, std::uint64_t{0}});
+  }
+  if (settings.bottom)
+    found.push_back({BoundaryKind::bottom, law_of(*settings.bottom), settings.bottom_field,
+                     Draw::bottom_weight, std::uint64_t{1}});
+  std::uint64_t id = 2;
+  for (const VolumeLayer& layer : settings.volume) {
+    const double height = layer.bottom - layer.top;
+    const int sheets =
+        layer.sheets.value_or(std::max(1, static_cast<int>(std::ceil(height / 50.0))));
+    const double thickness = height / sheets;
+    for (int i = 0; i < sheets; ++i)
+      found.push_back({GroundLevel(layer.top + (i + 0.5) * thickness),
+                       VolumeSheet{layer.strength_db, thickness}, layer.field, Draw::volume_weight,
+                       id++, thickness});
+  }
+  return found;
+}
+
+namespace {
+
+/// A sheet through the very depth of a platform has no paths but along it: moved aside.
+GroundLevel off(const GroundLevel& level, double thickness, double depth) {
+  const double aside = 0.1 * thickness;
+  if (level.boundary || std::abs(level.depth - depth) >= 0.5 * aside) return level;
+  return GroundLevel(depth + (level.depth < depth ? -aside : aside));
+}
+
+}  // namespace
+
+ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  const ScattererField& field = part.field;
+  const SheetEnds ends = {.source = transmitter_at(scenario_, context.transmitter, context.time),
+                          .receiver = array_at(scenario_, context.array, context.time),
+                          .source_speed = 0.0,
+                          .receiver_speed = 0.0,
+                          .frequency = context.pulse.centre_frequency(),
+                          .latest = context.latest};
+
+  // Around the middle of the two platforms.
+  const auto middle = [&](double time) -> Vec2 {
+    const auto platform = [&](int i) -> Vec2 {
+      return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
+    };
+    return 0.5 *
+           (platform(
+                scenario_.transmitters[static_cast<std::size_t>(context.transmitter)].platform) +
+            platform(scenario_.arrays[static_cast<std::size_t>(context.array)].platform));
+  };
+  const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
+  const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
+                                  field.motion.current, reach / 8.0, part.id);
+  const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
+  const double moved = ends.receiver.velocity.norm() * context.latest;
+  const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
+  const double apart = (source - receiver).norm() + moved;
+
+  BoundaryFans::Settings fan = {.sectors = settings.azimuths,
+                                .spacing = spacing_,
+                                // in steps, so that a slow drift finds what is kept
+                                .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
+                                .frequency = ends.frequency,
+                                .limits = limits_of(scenario_.propagation)};
+  SheetEnds here = ends;
+  here.source_speed = paths_.speed_at(ends.source.position);
+  here.receiver_speed = paths_.speed_at(ends.receiver.position);
+  part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
+                   ends.receiver.position.z());
+  int azimuths = settings.azimuths;
+  if (settings.resolve_azimuth) {
+    const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
+    azimuths = std::max(azimuths, resolved_sectors(scenario_, context, speed, here.receiver_speed));
+  }
+  const auto depth = [&](const Vec3& place) {
+    if (!part.level.boundary) return part.level.depth;
+    return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
+                                                         : paths_.bottom_depth(place);
+  };
+  return {.sheet = ScatteringSheet(fans_.around(ends.source.position, part.level, fan),
+                                   fans_.around(ends.receiver.position, part.level, fan),
+                                   std::move(part.law), here, context.pattern),
+          .grid = {.anchor = anchor.place,
+                   .identity = anchor.identity,
+                   .spacing = spacing_,
+                   .azimuths = azimuths,
+                   .per_cell = settings.scatterers_per_cell,
+                   .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
+                   .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
+          .field = field,
+          .weights = part.weights,
+          .boundary = part.id,
+          .depth = depth(ends.source.position),
+          .thickness = part.thickness};
+}
+
+PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
+  std::vector<ScatteringField> fields;
+  for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
+  return {scenario_, context, std::move(fields)};
+}
+
+}  // namespace asdic

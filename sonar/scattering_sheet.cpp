@@ -1,0 +1,171 @@
+#include "sonar/scattering_sheet.h"
+
+#include <algorithm>
+
+#include "reverb/scattering/motion.h"
+
+namespace asdic {
+namespace {
+
+/// From a cell's centre on: the delay's Taylor series to the second order, whose last term is held
+/// where a caustic makes it large.
+double delay_beyond(const GroundPath& path, double beyond) noexcept {
+  const double bend = std::clamp(0.5 * path.slowness_slope * beyond,
+                                 -0.1 * path.horizontal_slowness, 0.1 * path.horizontal_slowness);
+  return path.delay + (path.horizontal_slowness + bend) * beyond;
+}
+
+double grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt* tilt) noexcept {
+  return tilt ? std::asin(std::min(1.0, ends.sine * tilt->grazing)) : path.grazing;
+}
+
+}  // namespace
+
+ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
+                                 std::shared_ptr<const BoundaryFan> back, Law law,
+                                 const SheetEnds& ends, const TransmitPattern& pattern)
+    : out_(std::move(out)),
+      back_(std::move(back)),
+      law_(std::move(law)),
+      ends_(ends),
+      pattern_(pattern),
+      all_round_pattern_(pattern.all_round() && out_->planes.size() == 1),
+      receiver_moves_(!ends.receiver.velocity.isZero()),
+      moving_(receiver_moves_ || !ends.source.velocity.isZero()) {
+  if (!all_round_pattern_) return;
+  for (const GroundPath& path : out_->planes.front().paths->all())
+    beam_.push_back(pattern_.towards(0.0, path.launch_elevation));
+}
+
+bool ScatteringSheet::all_round() const noexcept {
+  return all_round_pattern_ && back_->planes.size() == 1 &&
+         (ends_.source.position - ends_.receiver.position).head<2>().norm() < 1e-3;
+}
+
+ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& end,
+                                          const Vec2& place, bool bearing) const noexcept {
+  Leg found;
+  const Vec2 way = place - end;
+  const double range = way.norm();
+  found.direction = range > 0.0 ? Vec2(way / range) : Vec2(0.0, 1.0);
+  if (bearing || fan.planes.size() > 1)
+    found.bearing = std::atan2(found.direction.x(), found.direction.y());
+  const FanPlane& plane = fan.towards(found.bearing);
+  const GroundPaths& paths = *plane.paths;
+  const double cells = range / paths.spacing();
+  if (!(cells < static_cast<double>(paths.cells()))) return found;
+  const auto cell = static_cast<std::size_t>(cells);
+  found.paths = paths.paths(cell);
+  found.beyond = range - paths.range(cell);
+  if (!plane.tilt.empty()) found.tilt = &plane.tilt[cell];
+  found.first = static_cast<std::size_t>(found.paths.data() - paths.all().data());
+  found.ends = plane.ends.data() + found.first;
+  return found;
+}
+
+void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
+                               const AudibleLimits* limits, double ring, double below) const {
+  constexpr double strongest = 2.0;  // [1/sr] no law says more
+  pairs.clear();
+  const Leg out = leg(*out_, ends_.source.position.head<2>(), place, !all_round_pattern_);
+  if (out.paths.empty()) return;
+  Vec2 receiver = ends_.receiver.position.head<2>();
+  Leg back = leg(*back_, receiver, place, false);
+  if (back.paths.empty()) return;
+  // Where the receiver is when the first path is heard: all others are heard metres from there.
+  double heard = 0.0;
+  if (receiver_moves_) {
+    heard = out.paths.front().delay + back.paths.front().delay;
+    receiver += ends_.receiver.velocity.head<2>() * heard;
+    back = leg(*back_, receiver, place, false);
+    if (back.paths.empty()) return;
+  }
+  const Vec2 coming = -back.direction;
+  // Towards the scatterer [m/s]: the way back shrinks by closing·(t − heard).
+  const double closing = ends_.receiver.velocity.head<2>().dot(back.direction);
+  const double sinking = ends_.receiver.velocity.z();
+  const double turn = std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
+  for (std::size_t i = 0; i < out.paths.size(); ++i) {
+    const GroundPath& a = out.paths[i];
+    const PathEnds& a_ends = out.ends[i];
+    const std::complex<double> beam = all_round_pattern_
+                                          ? beam_[out.first + i]
+                                          : pattern_.towards(out.bearing, a.launch_elevation);
+    const std::complex<double> sent = a.amplitude * beam;
+    if (sent == 0.0) continue;
+    const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
+    for (std::size_t j = 0; j < back.paths.size(); ++j) {
+      const GroundPath& b = back.paths[j];
+      const PathEnds& b_ends = back.ends[j];
+      double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
+      if (receiver_moves_) {
+        // t = τ_out + τ_back − ξ·closing·(t − heard) + s_z·v_z·t, solved for t. The sound arrives
+        // against the direction in which b was launched: s_z is minus its vertical slowness.
+        const double along = b.horizontal_slowness * closing;
+        const double down = -b_ends.launch_down * sinking;
+        delay = (delay + along * heard) / (1.0 + along - down);
+      }
+      if (delay > ends_.latest) continue;
+      const double least = limits ? limits->at(delay) : 0.0;
+      const double power = std::norm(sent) * std::norm(b.amplitude) * ring;
+      if (limits && power * strongest < least) continue;
+      const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
+                                     .grazing_out = grazing_of(b, b_ends, back.tilt),
+                                     .azimuth = turn};
+      const double sigma = std::visit(
+          [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
+      if (sigma <= 0.0 || (limits && power * sigma < least)) continue;
+      pairs.push_back({.out = &a,
+                       .back = &b,
+                       .out_index = static_cast<std::uint32_t>(i),
+                       .back_index = static_cast<std::uint32_t>(j),
+                       .out_ends = &a_ends,
+                       .back_ends = &b_ends,
+                       .delay = delay,
+                       .amplitude = sent * b.amplitude * std::sqrt(sigma),
+                       .cross_section = sigma,
+                       .grazing_in = geometry.grazing_in,
+                       .grazing_out = geometry.grazing_out,
+                       .area = out.tilt ? out.tilt->area : 1.0,
+                       .leaving = out.direction,
+                       .coming = coming});
+    }
+  }
+}
+
+Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
+  const double level = pair.back_ends->launch_level;
+  return {level * pair.coming.x(), level * pair.coming.y(), -pair.back_ends->launch_down};
+}
+
+double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
+                                double bragg) const noexcept {
+  double factor = 1.0;
+  if (moving_) {
+    const double level = pair.out_ends->launch_level;
+    const Vec3 leaving(level * pair.leaving.x(), level * pair.leaving.y(),
+                       pair.out_ends->launch_down);
+    factor = (1.0 - ends_.receiver.velocity.dot(arriving(pair))) /
+             (1.0 - ends_.source.velocity.dot(leaving));
+  }
+  const Vec2 in = pair.out->horizontal_slowness * pair.leaving;
+  const Vec2 home = pair.back->horizontal_slowness * pair.coming;
+  if (!velocity.isZero()) {  // slowness at the scatterer; what came down goes up again
+    const Vec3 comes(in.x(), in.y(), pair.out_ends->down);
+    const Vec3 goes(home.x(), home.y(), -pair.back_ends->down);
+    factor *= (1.0 - velocity.dot(comes)) / (1.0 - velocity.dot(goes));
+  }
+  if (bragg != 0.0)
+    factor *= 1.0 + bragg * bragg_shift(scattering_wavenumber(in, home, ends_.frequency)) /
+                        ends_.frequency;
+  return factor;
+}
+
+double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexcept {
+  const auto distance = [&](const Vec3& end) {
+    return std::hypot((place - end.head<2>()).norm(), end.z() - depth);
+  };
+  return std::min(distance(ends_.source.position), distance(ends_.receiver.position));
+}
+
+}  // namespace asdic

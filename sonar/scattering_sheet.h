@@ -1,0 +1,110 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "reverb/scatterer_field.h"
+#include "reverb/scattering/models.h"
+#include "sonar/boundary_fans.h"
+#include "sonar/reverberation_settings.h"
+#include "sonar/track.h"
+#include "sonar/transmit_pattern.h"
+
+namespace asdic {
+
+/// A way for sound to take from the source to a scatterer and on to the receiver.
+struct PathPair {
+  const GroundPath* out = nullptr;
+  const GroundPath* back = nullptr;             ///< as launched from the receiver
+  std::uint32_t out_index = 0, back_index = 0;  ///< among the paths of their cells
+  const PathEnds* out_ends = nullptr;
+  const PathEnds* back_ends = nullptr;
+  double delay = 0.0;                    ///< of the leading edge when it is heard [s]
+  std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
+  double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
+  double grazing_in = 0.0, grazing_out = 0.0;  ///< to the boundary itself [rad]
+  double area = 1.0;                           ///< of the boundary over its horizontal projection
+  Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
+  Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
+};
+
+/// What is too faint to be heard: in every stretch of delay, the power below which a pair through a
+/// whole ring is left out.
+struct AudibleLimits {
+  double stretch = 1.0;       ///< length [s]
+  std::vector<double> least;  ///< [stretches] [1]
+
+  [[nodiscard]] double at(double delay) const noexcept {
+    const auto i = static_cast<std::size_t>(std::max(0.0, delay) / stretch);
+    return i < least.size() ? least[i] : 0.0;
+  }
+};
+
+/// A law over the ends of one ping: which the boundary is, who sends and who hears.
+struct SheetEnds {
+  Kinematics source, receiver;                            ///< at the ping's start
+  double source_speed = 1500.0, receiver_speed = 1500.0;  ///< of sound there [m/s]
+  double frequency = 1000.0;                              ///< [Hz]
+  double latest = infinity;                               ///< end of the record [s]
+};
+
+/// One scattering boundary of one ping: joins the paths out and the paths back at any place.
+class ScatteringSheet {
+ public:
+  /// Every law there is, as one list.
+  using Law = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert,
+                           EllisCrowe, VolumeSheet>;
+
+  ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
+                  Law law, const SheetEnds& ends, const TransmitPattern& pattern);
+
+  /// All pairs of paths through a place, in the order of the tables, heard before the record ends.
+  /// Nothing is allocated once `pairs` is long enough. \param limits  pairs that are fainter are
+  /// left out; null: none   \param ring  area of the whole ring around [m²]
+  /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
+  void pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
+                const AudibleLimits* limits = nullptr, double ring = 0.0, double below = 0.0) const;
+
+  /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
+  /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
+  [[nodiscard]] double doppler(const PathPair& pair, const Vec3& velocity,
+                               double bragg) const noexcept;
+  /// The sound's slowness at the receiver.
+  [[nodiscard]] Vec3 arriving(const PathPair& pair) const noexcept;
+
+  /// Distance of a place on the sheet from the nearer of source and receiver, depth included [m].
+  [[nodiscard]] double nearest_end(const Vec2& place, double depth) const noexcept;
+  [[nodiscard]] const SheetEnds& ends() const noexcept { return ends_; }
+  /// Source and receiver share a fan: the paths of a cell are the same out and back.
+  [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }
+  /// The same at every bearing around the grid's middle.
+  [[nodiscard]] bool all_round() const noexcept;
+
+ private:
+  /// One leg at one place.
+  struct Leg {
+    std::span<const GroundPath> paths;
+    const PathEnds* ends = nullptr;  // [paths]
+    const CellTilt* tilt = nullptr;
+    Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
+    double bearing = 0.0;           // of it, where a table has bearings
+    double beyond = 0.0;            // of the place past the cell's centre [m]
+    std::size_t first = 0;          // of the paths in their table
+  };
+  [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
+                        bool bearing) const noexcept;
+
+  std::shared_ptr<const BoundaryFan> out_, back_;
+  Law law_;
+  SheetEnds ends_;
+  const TransmitPattern& pattern_;
+  bool all_round_pattern_, receiver_moves_, moving_;
+  std::vector<std::complex<double>> beam_;  // of every outgoing path, if the same all round
+};
+
+}  // namespace asdic

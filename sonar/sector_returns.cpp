@@ -1,0 +1,117 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sonar/reverberation.h"
+
+namespace asdic {
+namespace {
+
+constexpr int elevations = 6;  // ranges of arrival elevation, alike in its sine
+
+/// What a sector's scatterers put into one bin: their power, and the one that stands for all.
+struct Bin {
+  float power = 0.0F, chosen = 0.0F;  // of all; of that one (both ways of a reciprocal pair)
+  std::uint32_t ring = 0, copies = 0, copy = 0;
+  std::uint16_t out = 0, back = 0;
+};
+
+/// The same pair the other way round, if it is among them and not the pair itself.
+const PathPair* reciprocal(std::span<const PathPair> pairs, const PathPair& pair) {
+  for (const PathPair& other : pairs)
+    if (other.out_index == pair.back_index && other.back_index == pair.out_index && &other != &pair)
+      return &other;
+  return nullptr;
+}
+
+double uniform(std::uint64_t a, std::uint64_t b) noexcept {
+  return (static_cast<double>(mixed(a, b) >> 11) + 0.5) * 0x1p-53;
+}
+
+}  // namespace
+
+void PingReverberation::add_sector(const ScatteringField& field, int sector, double bin,
+                                   const ScattererWeights& weights, Returns& returns) const {
+  const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
+  std::vector<Bin> bins(count * elevations);
+  std::vector<PathPair> pairs;
+  const double speed = field.sheet.ends().receiver_speed;
+  const bool one_fan = field.sheet.one_fan();
+  for (std::uint32_t ring = 0; ring < field.grid.rings; ++ring) {
+    const std::uint32_t copies = copies_of(field, ring, sector);
+    for (std::uint32_t copy = 0; copy < copies; ++copy) {
+      const ScattererKey key{.ring = ring,
+                             .sector = static_cast<std::uint32_t>(sector),
+                             .copies = copies,
+                             .copy = copy};
+      const std::uint64_t entity = key.entity(field.grid.identity);
+      const Met met = meet(field, key, entity, pairs);
+      for (const PathPair& pair : pairs) {
+        const PathPair* other = one_fan ? reciprocal(pairs, pair) : nullptr;
+        if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
+        const double power =
+            std::norm(met.strength) *
+            (std::norm(pair.amplitude) + (other ? std::norm(other->amplitude) : 0.0));
+        const double sine = -field.sheet.arriving(pair).z() * speed;
+        const int elevation =
+            std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
+        const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / bin);
+        Bin& into =
+            bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
+        into.power += static_cast<float>(power);
+        const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
+        if (uniform(entity, number) * static_cast<double>(into.power) >= power) continue;
+        into = {.power = into.power,
+                .chosen = static_cast<float>(power),
+                .ring = ring,
+                .copies = copies,
+                .copy = copy,
+                .out = static_cast<std::uint16_t>(pair.out_index),
+                .back = static_cast<std::uint16_t>(pair.back_index)};
+      }
+    }
+  }
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const Bin& full = bins[i];
+    if (full.chosen <= 0.0F) continue;
+    const ScattererKey key{.ring = full.ring,
+                           .sector = static_cast<std::uint32_t>(sector),
+                           .copies = full.copies,
+                           .copy = full.copy};
+    const Met met = meet(field, key, key.entity(field.grid.identity), pairs);
+    const std::uint64_t entity = mixed(mixed(field.grid.identity, ~std::uint64_t(sector)), i);
+    const std::complex<double> weight =
+        std::sqrt(static_cast<double>(full.power) / static_cast<double>(full.chosen)) *
+        weights(entity);
+    for (const PathPair& pair : pairs)
+      if (pair.out_index == full.out && pair.back_index == full.back) {
+        returns.push_back(heard(field, pair, met, weight));
+        const PathPair* other = one_fan ? reciprocal(pairs, pair) : nullptr;
+        if (other) returns.push_back(heard(field, *other, met, weight));
+        break;
+      }
+  }
+}
+
+Returns PingReverberation::sector_returns() const {
+  Returns all;
+  for (const ScatteringField& field : fields_) {
+    const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
+                                   context_.time, context_.ping);
+    // Half of 1/B, or as much as the limit asks for.
+    const double bins_allowed = static_cast<double>(scenario_.reverberation.most_returns) /
+                                (2.0 * field.grid.azimuths * static_cast<double>(fields_.size()));
+    const double bin =
+        std::max(0.5 / context_.pulse.bandwidth_40db(), context_.latest / bins_allowed);
+    std::vector<Returns> parts(static_cast<std::size_t>(field.grid.azimuths));
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t sector) {
+      add_sector(field, static_cast<int>(sector), bin, weights, parts[sector]);
+    });
+    for (const Returns& part : parts) all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+}  // namespace asdic

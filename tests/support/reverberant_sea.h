@@ -1,0 +1,83 @@
+#pragma once
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sonar/ping_bounds.h"
+#include "sonar/reverberation.h"
+#include "sonar/synthesis.h"
+#include "support/thesis.h"
+
+namespace asdic::support {
+
+/// 1500 m/s everywhere, a vehicle at 4500 m, 4 kHz, 220 dB all round, one phone, no bounces: the
+/// sea of reverb_isovelocity.csv but for its pulse.
+inline Scenario even_sea() {
+  Scenario s = thesis(SoundSpeedProfile::isovelocity(1500.0));
+  s.transmitters[0].source_level_db = 220.0;
+  s.arrays[0].phones = {Vec3::Zero()};
+  s.reverberation.enabled = true;
+  s.reverberation.azimuths = 12;
+  return s;
+}
+
+/// The reverberation alone of a scenario's pings, from its first transmitter to its first array.
+class ReverberantSea {
+ public:
+  /// \param pattern  of the transmitter; null: the scenario's vertical line
+  explicit ReverberantSea(Scenario s, std::unique_ptr<TransmitPattern> pattern = nullptr)
+      : scenario_(std::move(s)),
+        paths_(scenario_.environment, scenario_.transect),
+        pulse_(scenario_.pulse),
+        pattern_(pattern ? std::move(pattern)
+                         : std::make_unique<BeamPattern>(
+                               scenario_.transmitters[0],
+                               paths_.speed_at(source()) / pulse_.centre_frequency())),
+        model_(scenario_, paths_, pulse_),
+        synthesizer_(pulse_, recording(), doppler_bound(scenario_)) {}
+
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const Pulse& pulse() const { return pulse_; }
+  [[nodiscard]] double spacing() const { return model_.ground_spacing(); }
+  [[nodiscard]] Recording recording() const {
+    return {.sample_rate = scenario_.pings.sample_rate,
+            .start = scenario_.pings.recording_start,
+            .samples = static_cast<std::size_t>(scenario_.pings.recording_duration *
+                                                scenario_.pings.sample_rate)};
+  }
+
+  [[nodiscard]] PingReverberation ping(std::uint32_t ping, double time = 0.0) const {
+    return model_.ping(
+        {.pattern = *pattern_,
+         .pulse = pulse_,
+         .time = time,
+         .ping = ping,
+         .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration});
+  }
+  [[nodiscard]] Baseband hear(std::span<const Return> returns) const {
+    return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
+  }
+  [[nodiscard]] Baseband hear(std::uint32_t number, double time = 0.0) const {
+    return hear(ping(number, time).returns());
+  }
+
+ private:
+  [[nodiscard]] Vec3 source() const { return scenario_.platforms[0].track.at(0.0).position; }
+
+  Scenario scenario_;
+  PropagationPaths paths_;
+  Pulse pulse_;
+  std::unique_ptr<TransmitPattern> pattern_;
+  ReverberationModel model_;
+  Synthesizer synthesizer_;
+};
+
+/// The complex envelope of a phone at a time, nearest sample.
+inline std::complex<double> at(const Baseband& heard, std::size_t channel, double t) {
+  const auto i = static_cast<std::size_t>(std::lround((t - heard.start) * heard.sample_rate));
+  return std::complex<double>(heard.channel(channel)[i]);
+}
+
+}  // namespace asdic::support

@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/random.h"
+#include "core/units.h"
+#include "sonar/processing/assignment.h"
+#include "sonar/processing/tracker.h"
+
+namespace asdic {
+namespace {
+
+// Against every permutation of small problems.
+TEST(Assignment, IsTheCheapestOfAll) {
+  RandomStream draw(1, Draw::ambient_noise, 0, 0);
+  for (int run = 0; run < 200; ++run) {
+    const int rows = 1 + static_cast<int>(4.0 * draw.uniform()),
+              columns = 1 + static_cast<int>(4.0 * draw.uniform());
+    std::vector<double> cost(static_cast<std::size_t>(rows * columns));
+    for (double& x : cost) x = draw.uniform() < 0.3 ? infinity : draw.uniform();
+    const auto value = [&](const std::vector<int>& column) {  // pairs, then the sum
+      double sum = 0.0;
+      int pairs = 0;
+      for (int i = 0; i < rows; ++i)
+        if (column[static_cast<std::size_t>(i)] >= 0) {
+          sum += cost[static_cast<std::size_t>(i * columns + column[static_cast<std::size_t>(i)])];
+          ++pairs;
+        }
+      return std::pair(-pairs, sum);
+    };
+    std::vector<int> order(4), best_column(static_cast<std::size_t>(rows), -1);
+    std::iota(order.begin(), order.end(), 0);
+    std::pair<int, double> best{0, 0.0};
+    do {
+      std::vector<int> column(static_cast<std::size_t>(rows), -1);
+      for (int i = 0; i < rows; ++i) {
+        const int j = order[static_cast<std::size_t>(i)];
+        if (j < columns && std::isfinite(cost[static_cast<std::size_t>(i * columns + j)]))
+          column[static_cast<std::size_t>(i)] = j;
+      }
+      best = std::min(best, value(column));
+    } while (std::next_permutation(order.begin(), order.end()));
+    const auto found = value(assign(cost, rows, columns));
+    EXPECT_EQ(found.first, best.first);
+    EXPECT_NEAR(found.second, best.second, 1e-12);
+  }
+}
+
+/// What a platform at rest at the origin measures of a thing, with errors.
+Contact measure(const Vec2& position, const Vec2& velocity, double time, RandomStream& error,
+                int detection) {
+  Contact c{.detection = detection, .time = time};
+  c.bearing_sigma = radians(0.5);
+  c.range_sigma = 30.0;
+  c.range_rate_sigma = 0.2;
+  c.bearing = std::atan2(position.x(), position.y()) + c.bearing_sigma * error.normal();
+  c.range = position.norm() + c.range_sigma * error.normal();
+  c.range_rate = velocity.dot(position.normalized()) + c.range_rate_sigma * error.normal();
+  return c;
+}
+
+// Measured slopes of the filter's linearisation against central differences of its own prediction,
+// for a bistatic pair that moves.
+TEST(TrackStateTest, SlopeIsThatOfTheMeasurement) {
+  Contact c{.bearing_sigma = 0.01, .range_sigma = 10.0, .range_rate_sigma = 0.1};
+  c.array = {300.0, -200.0};
+  c.source = {-4000.0, 1000.0};
+  c.array_velocity = {1.0, 2.0};
+  c.source_velocity = {-2.0, 0.5};
+  TrackState state;
+  state.mean << 5000.0, 7000.0, -3.0, 2.0;
+  const auto slope = state.innovation(c).slope;
+  for (int i = 0; i < 4; ++i) {
+    const double h = i < 2 ? 1.0 : 1e-3;
+    TrackState more = state, less = state;
+    more.mean[i] += h;
+    less.mean[i] -= h;
+    // residual = measured − expected
+    const Eigen::Vector3d difference =
+        (less.innovation(c).residual - more.innovation(c).residual) / (2.0 * h);
+    for (int row = 0; row < 3; ++row)
+      EXPECT_NEAR(slope(row, i), difference[row], 1e-6 + 1e-4 * std::abs(difference[row]));
+  }
+}
+
+// With the right model the squared, normalised errors of the state have the mean 4 (χ² of four
+// degrees): over 200 runs it is within 4 ± 5·√(8/200) = ±1. With a claimed noise of a third of the
+// true one it is far above: the wrong model fails.
+TEST(TrackStateTest, CovarianceIsThatOfItsErrors) {
+  const auto mean_square = [](double claimed) {
+    double sum = 0.0;
+    const int runs = 200;
+    for (int run = 0; run < runs; ++run) {
+      RandomStream error(3, Draw::ambient_noise, static_cast<std::uint32_t>(run), 0);
+      const Vec2 start(3000.0, 8000.0), velocity(-4.0, 1.5);
+      TrackState state;
+      for (int k = 0; k < 15; ++k) {
+        const double t = 60.0 * k;
+        Contact c = measure(start + t * velocity, velocity, t, error, 0);
+        c.bearing_sigma *= claimed;
+        c.range_sigma *= claimed;
+        c.range_rate_sigma *= claimed;
+        if (k == 0) {
+          state = TrackState::from(c, 10.0);
+          continue;
+        }
+        state.predict(t, 1e-4);
+        state.update(c, state.innovation(c));
+      }
+      Eigen::Vector4d truth;
+      truth << start.x() + 840.0 * velocity.x(), start.y() + 840.0 * velocity.y(), velocity.x(),
+          velocity.y();
+      const Eigen::Vector4d off = state.mean - truth;
+      sum += off.dot(state.covariance.inverse() * off);
+    }
+    return sum / runs;
+  };
+  EXPECT_NEAR(mean_square(1.0), 4.0, 1.0);
+  EXPECT_GT(mean_square(1.0 / 3.0), 12.0);
+}
+
+struct Sea {
+  std::vector<std::vector<Contact>> pings;
+  std::vector<double> times;
+};
+/// Two targets that cross, each seen nine times in ten, among `clutter` false alarms a ping.
+Sea two_targets(int clutter, std::uint32_t run) {
+  Sea sea;
+  RandomStream draw(17, Draw::ambient_noise, run, 0);
+  for (int k = 0; k < 25; ++k) {
+    const double t = 60.0 * k;
+    std::vector<Contact> contacts;
+    const Vec2 v1(4.0, 0.0), v2(-3.0, -2.0);
+    if (draw.uniform() < 0.9)
+      contacts.push_back(measure(Vec2(-3000.0, 8000.0) + t * v1, v1, t, draw, 1));
+    if (draw.uniform() < 0.9)
+      contacts.push_back(measure(Vec2(2500.0, 9500.0) + t * v2, v2, t, draw, 2));
+    for (int i = 0; i < clutter; ++i) {
+      const double range = 1000.0 + 14000.0 * draw.uniform(), bearing = 2.0 * pi * draw.uniform();
+      const Vec2 place = range * Vec2(std::sin(bearing), std::cos(bearing));
+      Contact c = measure(place, Vec2::Zero(), t, draw, 100 + i);
+      c.range_rate = 20.0 * (draw.uniform() - 0.5);
+      contacts.push_back(c);
+    }
+    sea.pings.push_back(contacts);
+    sea.times.push_back(t);
+  }
+  return sea;
+}
+
+TEST(TrackerTest, FollowsTwoCrossingTargetsThroughClutter) {
+  for (std::uint32_t run = 0; run < 10; ++run) {
+    const Sea sea = two_targets(5, run);
+    const auto tracks = track_contacts(sea.pings, sea.times, {});
+    for (const auto& [start, velocity] : {std::pair(Vec2(-3000.0, 8000.0), Vec2(4.0, 0.0)),
+                                          std::pair(Vec2(2500.0, 9500.0), Vec2(-3.0, -2.0))}) {
+      int covered = 0;
+      for (const ContactTrack& track : tracks)
+        for (const TrackPoint& p : track.points) {
+          const Vec2 truth = start + p.time * velocity;
+          if ((p.position - truth).norm() < 300.0 && (p.velocity - velocity).norm() < 3.0)
+            ++covered;
+        }
+      EXPECT_GE(covered, 18) << run;  // of 25, two or three of which go before a track is believed
+    }
+    // False alarms everywhere make few tracks, and short ones.
+    EXPECT_LE(tracks.size(), 5U) << run;
+  }
+}
+
+TEST(TrackerTest, StartsByMOfNAndStopsAfterMisses) {
+  RandomStream draw(5, Draw::ambient_noise, 0, 0);
+  const Vec2 start(0.0, 5000.0), velocity(2.0, 1.0);
+  const auto run = [&](const std::vector<int>& seen) {
+    std::vector<std::vector<Contact>> pings;
+    std::vector<double> times;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const double t = 30.0 * static_cast<double>(k);
+      times.push_back(t);
+      pings.emplace_back();
+      if (seen[k] != 0) pings.back().push_back(measure(start + t * velocity, velocity, t, draw, 0));
+    }
+    return track_contacts(pings, times, {.start_hits = 3, .start_pings = 4, .stop_misses = 3});
+  };
+  EXPECT_EQ(run({1, 0, 1, 0, 0, 0, 0}).size(), 0U);  // two of four
+  EXPECT_EQ(run({1, 1, 0, 1, 0, 0, 0}).size(), 1U);  // three of four
+  EXPECT_EQ(run({1, 0, 0, 1, 0, 0, 1, 0, 0, 1}).size(), 0U);
+  const auto kept = run({1, 1, 1, 0, 0, 1, 1});  // two misses do not end it
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept[0].points.size(), 7U);
+  EXPECT_EQ(kept[0].points[3].detection, -1);
+  const auto two = run({1, 1, 1, 0, 0, 0, 1, 1, 1});  // three do
+  ASSERT_EQ(two.size(), 2U);
+  EXPECT_EQ(two[0].points.size(), 3U);  // ends with its last hit
+}
+
+}  // namespace
+}  // namespace asdic
