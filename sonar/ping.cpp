@@ -44,6 +44,7 @@ PingSimulator::PingSimulator(Scenario scenario)
       transmissions_(asdic::transmissions(scenario_)),
       paths_(scenario_.environment, scenario_.transect),
       noise_(scenario_, paths_),
+      interference_(scenario_, paths_),
       max_doppler_(doppler_bound(scenario_)) {
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
     pulses_.emplace_back(pulse_of(scenario_, static_cast<int>(t)));
@@ -172,6 +173,7 @@ PingRecord PingSimulator::sound(int ping) const {
 
 void PingSimulator::complete(PingRecord& record) const {
   Stopwatch watch;
+  interference_.add(record);
   noise_.add(record);
   if (scenario_.pings.blanking) blank(record);
   record.timings.noise += watch.lap();

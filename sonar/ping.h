@@ -6,6 +6,7 @@
 #include "raytrace/eigenrays.h"
 #include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
+#include "sonar/interference.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
@@ -59,6 +60,7 @@ class PingSimulator {
   std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
   AmbientNoise noise_;
+  Interference interference_;
   std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;
 };

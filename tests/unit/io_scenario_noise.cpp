@@ -109,5 +109,52 @@ TEST(ScenarioNoise, SaysWhatIsWrong) {
       "noise.profile.elevation_deg[1]", "above the one before it");
 }
 
+TEST(ScenarioInterferer, ShipsAndTheirFaults) {
+  const auto read = [](const std::string& ship) {
+    return parse_scenario(ocean_and_sonar + "[[interferer]]\n" + ship, "s.toml").interferers;
+  };
+  const auto ships = read(
+      "name = \"tanker\"\nposition = [0, 5000, 6]\nvelocity = [7, 0, 0]\nlevel_db = 145\n"
+      "tonal = [{ frequency = 60, level_db = 160 }]");
+  ASSERT_EQ(ships.size(), 1U);
+  EXPECT_EQ(ships[0].level_db, 145.0);
+  EXPECT_EQ(ships[0].slope_db_per_decade, -20.0);
+  EXPECT_EQ(ships[0].tonals[0].level_db, 160.0);
+  const auto expect = [&](const std::string& ship, const std::string& where,
+                          const std::string& expected) {
+    try {
+      static_cast<void>(read(ship));
+      ADD_FAILURE() << ship;
+    } catch (const InputError& error) {
+      EXPECT_NE(error.fault().where.find(where), std::string::npos) << error.fault().where;
+      EXPECT_NE(error.fault().expected.find(expected), std::string::npos) << error.fault().expected;
+    }
+  };
+  expect("position = [0, 0, 6]", "interferer[0].level_db", "a level, a spectrum or a tonal");
+  expect("level_db = 145", "interferer[0].position", "[");
+  expect("position = [0, 0, 6000]\nlevel_db = 145", "interferer[0].position",
+         "between the surface");
+  expect("position = [0, 0, 6]\nlevel_db = 145\nspectrum = { frequency = [10], level_db = [9] }",
+         "interferer[0].level_db", "spectrum");
+  expect("position = [0, 0, 6]\ntonal = [{ frequency = -1, level_db = 1 }]", "tonal[0].frequency",
+         "frequency");
+}
+
+TEST(ScenarioRoughness, OfASurfaceByHeightOrByWind) {
+  const auto read = [](const std::string& surface) {
+    return parse_scenario(ocean_and_sonar + "[environment.surface]\n" + surface, "s.toml")
+        .environment.surface.roughness;
+  };
+  EXPECT_TRUE(read("").smooth());
+  EXPECT_EQ(read("roughness = 0.3").rms_height, 0.3);
+  EXPECT_EQ(read("roughness = 0.3\nroughness_floor_db = -10").floor_db, -10.0);
+  EXPECT_EQ(read("roughness = \"wind\"").rms_height, pierson_moskowitz_height(5.0));
+  for (const std::string wrong :
+       {"roughness = -1", "roughness = \"rain\"", "roughness = 1\nroughness_floor_db = 3",
+        "roughness_floor_db = -3"}) {
+    EXPECT_THROW(static_cast<void>(read(wrong)), InputError) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace asdic
