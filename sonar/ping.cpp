@@ -14,7 +14,6 @@
 #include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
-#include "sonar/noise.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/sampling.h"
@@ -44,6 +43,8 @@ PingSimulator::PingSimulator(Scenario scenario)
     : scenario_(std::move(scenario)),
       transmissions_(asdic::transmissions(scenario_)),
       paths_(scenario_.environment, scenario_.transect),
+      noise_(scenario_, paths_),
+      interference_(scenario_, paths_),
       max_doppler_(doppler_bound(scenario_)) {
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
     pulses_.emplace_back(pulse_of(scenario_, static_cast<int>(t)));
@@ -162,9 +163,7 @@ PingRecord PingSimulator::sound(int ping) const {
   synthesizer.add_samples(heard, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();
 
-  if (scenario_.noise.spectral_level_db)
-    levels.add_noise(
-        white_noise_variance(*scenario_.noise.spectral_level_db, scenario_.pings.sample_rate));
+  levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
   record.summary = summarise(record, scenario_, sent_pulse,
                              [&](double t) { return reverberation.front().expected_db(t); });
@@ -174,14 +173,8 @@ PingRecord PingSimulator::sound(int ping) const {
 
 void PingSimulator::complete(PingRecord& record) const {
   Stopwatch watch;
-  const double rate = record.recording.sample_rate;
-  if (scenario_.noise.spectral_level_db && !record.pressure.empty()) {
-    const double level = *scenario_.noise.spectral_level_db;
-    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate)
-                                                          : white_noise_variance(level, rate);
-    add_white_noise(record.pressure, record.phones.size(), variance, scenario_.seed,
-                    static_cast<std::uint32_t>(record.ping));
-  }
+  interference_.add(record);
+  noise_.add(record);
   if (scenario_.pings.blanking) blank(record);
   record.timings.noise += watch.lap();
 }
