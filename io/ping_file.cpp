@@ -29,6 +29,7 @@ std::vector<GrowingTable::Column> echo_columns() {
           {"target", "number of the target", "", Type::int32},
           {"array", "number of the array", "", Type::int32},
           {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
+          {"highlight", "number of the target's highlight, -1: a point", "", Type::int32},
           {"outgoing", "path of the leg source to target", "", Type::int32},
           {"returning", "path of the leg target to array", "", Type::int32},
           {"delay", "from the start of the ping to the echo's leading edge", "s"},
@@ -152,7 +153,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
   growing<double>("target_velocity", "velocity of the target", "m/s", vector, {targets, 3});
-  growing<double>("target_strength_db", "target strength", "dB", scale, {targets});
+  growing<double>("target_strength_db",
+                  "target strength at its aspect from the transmitter, without fluctuation", "dB",
+                  scale, {targets});
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
@@ -245,7 +248,7 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
     const Target& target = scenario.targets[i];
     for (const double x : record.targets[i].position) position.push_back(x);
     for (const double v : record.targets[i].velocity) velocity.push_back(v);
-    strength.push_back(target.strength_db);
+    strength.push_back(strength_towards(target, record.platform.position, record.start_time));
     present.push_back(record.ping >= target.first_ping && record.ping <= target.last_ping ? 1 : 0);
   }
   file.append<double>("target_position", position);
@@ -261,8 +264,9 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
     const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
     echoes.row({double(record.ping), double(echo.target), double(echo.array),
-                double(echo.heard.channel), double(echo.outgoing), double(echo.returning),
-                echo.heard.delay, echo.heard.doppler, echo.level_db, degrees(elevation), bearing});
+                double(echo.heard.channel), double(echo.highlight), double(echo.outgoing),
+                double(echo.returning), echo.heard.delay, echo.heard.doppler, echo.level_db,
+                degrees(elevation), bearing});
   }
   const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
   every = std::max(every, step);

@@ -10,6 +10,7 @@
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
+#include "sonar/receiver_electronics.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
 #include "sonar/transmission.h"
@@ -30,8 +31,9 @@ class PingSimulator {
   /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
   /// add these up (sonar/stream.h) and complete() the sum.
   [[nodiscard]] PingRecord sound(int ping) const;
-  /// Adds what does not come of a ping: noise, then blanking.
-  void complete(PingRecord& record) const;
+  /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
+  /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
+  void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
@@ -52,7 +54,8 @@ class PingSimulator {
 
  private:
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
-  [[nodiscard]] Returns sparse_returns(const EchoContext& context, PingRecord& record) const;
+  [[nodiscard]] std::vector<EchoPath> sparse_returns(const EchoContext& context,
+                                                     PingRecord& record) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;
@@ -61,6 +64,7 @@ class PingSimulator {
   PropagationPaths paths_;
   AmbientNoise noise_;
   Interference interference_;
+  ReceiverElectronics receivers_;
   std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;
 };

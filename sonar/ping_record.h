@@ -1,8 +1,11 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "raytrace/arrivals.h"
+#include "sonar/band_response.h"
+#include "sonar/delay_curve.h"
 #include "sonar/returns.h"
 #include "sonar/synthesis.h"
 #include "sonar/track.h"
@@ -21,14 +24,17 @@ struct Leg {
   Arrivals arrivals;
 };
 
-/// One echo: one path out, one path back.
+/// One echo: one path out, one path back, one place of the target.
 struct EchoPath {
   int target = 0;
   int array = 0;
+  int highlight = -1;     ///< of the target, an index; −1: it is a point
   int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
   Return heard;           ///< at the array's reference point (or the phone)
+  PathColour colour;      ///< for other frequencies than the pulse's centre
+  std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };
 
 /// What scatters back from one ground cell, by one path pair: from the whole ring in a layered

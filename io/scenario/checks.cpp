@@ -119,6 +119,24 @@ std::string depth_at_time(double depth, double time) {
   return "depth " + to_text(depth) + " m" + at_time(time);
 }
 
+/// An array whose shape changes is looked at when each ping is sent.
+void check_shapes(const Scenario& scenario, int array, TomlTable& table) {
+  int ping = 0;
+  for (const Transmission& sent : transmissions(scenario)) {
+    const Vec3 reference = array_at(scenario, array, sent.time).position;
+    int phone = 0;
+    for (const Vec3& offset : phones_at(scenario, array, ++ping, sent.time)) {
+      const Vec3 place = reference + offset;
+      const WaterColumn water(scenario, place);
+      if (!water.holds(place.z()))
+        throw table.fault(
+            table.has("shapes") ? "shapes" : "behind", water.expected(),
+            "phone " + std::to_string(phone) + " at " + depth_at_time(place.z(), sent.time));
+      ++phone;
+    }
+  }
+}
+
 void check_platforms(TomlTable& root, const Scenario& scenario) {
   std::vector<TomlTable> platforms = root.one_or_more("platform"),
                          transmitters = root.one_or_more("transmitter"),
@@ -138,6 +156,10 @@ void check_platforms(TomlTable& root, const Scenario& scenario) {
   }
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     const ReceiverArray& array = scenario.arrays[i];
+    if (array.towed || !array.shapes.empty()) {
+      check_shapes(scenario, static_cast<int>(i), arrays[i]);
+      continue;
+    }
     for (std::size_t n = 0; n < array.phones.size(); ++n)
       check_carried(scenario, array.platform, array.offset + array.phones[n], end,
                     platforms[static_cast<std::size_t>(array.platform)],
