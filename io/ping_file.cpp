@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "core/error.h"
@@ -52,6 +53,22 @@ std::vector<GrowingTable::Column> patch_columns() {
           {"level_db", "expected, of that area, pulse not windowed, re 1 uPa", "dB"}};
 }
 
+std::vector<GrowingTable::Column> interference_columns() {
+  return {{"ping", "number of the ping", "", Type::int32},
+          {"interferer", "number of the ship", "", Type::int32},
+          {"array", "number of the array", "", Type::int32},
+          {"delay", "since it left the ship, at the record's first sample", "s"},
+          {"doppler_factor", "heard over sent frequency", ""},
+          {"range", "from where the ship was, horizontal", "m"},
+          {"bearing_deg", "of travel", "degree"},
+          {"launch_elevation_deg", "at the ship, positive up", "degree"},
+          {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
+          {"amplitude_real", "re 1 m", ""},
+          {"amplitude_imag", "re 1 m", ""},
+          {"surface_bounces", "", "", Type::int32},
+          {"bottom_bounces", "", "", Type::int32}};
+}
+
 std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
@@ -78,6 +95,7 @@ struct PingFileWriter::Impl {
   bool finished = false;
   ArrivalTable arrivals;
   GrowingTable echoes, patches;
+  std::optional<GrowingTable> interference;  // where there are interferers
   std::size_t every = 1;
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
@@ -88,7 +106,14 @@ struct PingFileWriter::Impl {
         scenario(s),
         arrivals(file),
         echoes(file, "echoes", "echo", echo_columns()),
-        patches(file, "patches", "patch", patch_columns()) {}
+        patches(file, "patches", "patch", patch_columns()) {
+    if (scenario.interferers.empty()) return;
+    interference.emplace(file, "interference", "heard_path", interference_columns());
+    std::string names;
+    for (const Interferer& ship : scenario.interferers)
+      names += (names.empty() ? "" : ",") + ship.name;
+    file.set_attribute("interference", "names", names);
+  }
 
   template <class T>
   void growing(const std::string& dataset, const std::string& long_name, const std::string& units,
@@ -251,6 +276,13 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
                  degrees(p.grazing_in), degrees(p.grazing_out), degrees(p.launch_elevation),
                  degrees(p.arrival_elevation), p.scattering_strength_db, p.level_db});
   }
+  for (const HeardPath& p : record.interference)
+    interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,
+                       p.doppler, p.range, compass_degrees(p.bearing),
+                       degrees(p.path.launch_elevation), degrees(p.path.arrival_elevation),
+                       p.path.amplitude.real(), p.path.amplitude.imag(),
+                       double(p.path.surface_bounces), double(p.path.bottom_bounces)});
+  if (interference) interference->write();
   arrivals.write();
   echoes.write();
   patches.write();

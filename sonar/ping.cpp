@@ -14,7 +14,6 @@
 #include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
-#include "sonar/noise.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/sampling.h"
@@ -45,6 +44,8 @@ PingSimulator::PingSimulator(Scenario scenario)
     : scenario_(std::move(scenario)),
       transmissions_(asdic::transmissions(scenario_)),
       paths_(scenario_.environment, scenario_.transect),
+      noise_(scenario_, paths_),
+      interference_(scenario_, paths_),
       receivers_(scenario_),
       max_doppler_(doppler_bound(scenario_)) {
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
@@ -176,9 +177,7 @@ PingRecord PingSimulator::sound(int ping) const {
   synthesizer.add_samples(heard, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();
 
-  if (scenario_.noise.spectral_level_db)
-    levels.add_noise(
-        white_noise_variance(*scenario_.noise.spectral_level_db, scenario_.pings.sample_rate));
+  levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
   record.summary = summarise(record, scenario_, sent_pulse,
                              [&](double t) { return reverberation.front().expected_db(t); });
@@ -188,24 +187,17 @@ PingRecord PingSimulator::sound(int ping) const {
 
 void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
   Stopwatch watch;
-  const double rate = record.recording.sample_rate;
-  if (scenario_.noise.spectral_level_db && !record.pressure.empty()) {
-    const double level = *scenario_.noise.spectral_level_db;
-    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate)
-                                                          : white_noise_variance(level, rate);
-    const auto add = [&](std::vector<float>& to) {
-      add_white_noise(to, record.phones.size(), variance, scenario_.seed,
-                      static_cast<std::uint32_t>(record.ping));
-    };
-    if (receivers_.is_flat()) {
-      add(record.pressure);
-    } else {
-      std::vector<float> noise(record.pressure.size(), 0.0F);
-      add(noise);
-      receivers_.respond(noise, record.recording, carried);
-      std::transform(noise.begin(), noise.end(), record.pressure.begin(), record.pressure.begin(),
-                     std::plus<>{});
-    }
+  if (receivers_.is_flat()) {
+    interference_.add(record);
+    noise_.add(record);
+  } else {  // the sound of the ping has passed the receivers; this has to as well
+    std::vector<float> heard =
+        std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
+    interference_.add(record);
+    noise_.add(record);
+    receivers_.respond(record.pressure, record.recording, carried);
+    std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
+                   std::plus<>{});
   }
   if (scenario_.pings.blanking) blank(record);
   receivers_.convert(record.pressure, record.recording);

@@ -4,7 +4,9 @@
 #include <stop_token>
 
 #include "raytrace/eigenrays.h"
+#include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
+#include "sonar/interference.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
@@ -60,6 +62,8 @@ class PingSimulator {
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
+  AmbientNoise noise_;
+  Interference interference_;
   ReceiverElectronics receivers_;
   std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;

@@ -61,6 +61,19 @@ struct LevelSeries {
   std::vector<float> echo, reverberation, noise;
 };
 
+/// One path along which an interfering ship is heard, at the record's first sample.
+struct HeardPath {
+  int interferer = 0;            ///< index in the scenario
+  int array = 0;                 ///< index in the scenario
+  double delay = 0.0;            ///< since it left the ship [s]
+  double doppler = 1.0;          ///< heard over sent frequency
+  double range = 0.0;            ///< horizontal, from where the ship was [m]
+  double bearing = 0.0;          ///< direction of travel, clockwise from north [rad]
+  Vec3 slowness = Vec3::Zero();  ///< at the array [s/m]
+  Vec3 moveout = Vec3::Zero();  ///< ∇τ there: the slowness over 1 − s·v of the moving ship [s/m]
+  Arrival path;
+};
+
 struct TargetSummary {
   std::string name;
   bool present = false;
@@ -94,6 +107,7 @@ struct PingRecord {
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
   std::vector<PatchRow> patches;
+  std::vector<HeardPath> interference;
   LevelSeries levels;
   std::vector<TargetSummary> summary;
   Timings timings;

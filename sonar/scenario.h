@@ -5,6 +5,7 @@
 
 #include "raytrace/environment.h"
 #include "sonar/array.h"
+#include "sonar/interferer.h"
 #include "sonar/noise_settings.h"
 #include "sonar/ping_schedule.h"
 #include "sonar/platform.h"
@@ -38,6 +39,7 @@ struct Scenario {
   PulseSettings pulse;                           ///< of the transmitters without one of their own
   std::vector<ReceiverArray> arrays = {{}};      ///< [n ≥ 1]
   std::vector<Target> targets;
+  std::vector<Interferer> interferers;
   NoiseSettings noise;
   ReverberationSettings reverberation;
   PropagationSettings propagation;

@@ -202,6 +202,22 @@ void check_targets(TomlTable& root, const Scenario& scenario) {
   }
 }
 
+/// Interfering ships are in the water as long as there is sound that is recorded.
+void check_interferers(TomlTable& root, const Scenario& scenario) {
+  auto tables = root.tables("interferer");
+  double end = 0.0;
+  for (const PingTimes& ping : ping_times(scenario)) end = std::max(end, ping.end);
+  for (std::size_t i = 0; i < scenario.interferers.size(); ++i) {
+    const Track& track = scenario.interferers[i].track;
+    for (const Moment& moment : moments(scenario, track, Vec3::Zero(), tables[i], 0.0, end)) {
+      const Vec3 place = track.at(moment.time).position;
+      const WaterColumn water(scenario, place);
+      if (!water.holds(place.z()))
+        throw tables[i].fault(moment.key, water.expected(), depth_at_time(place.z(), moment.time));
+    }
+  }
+}
+
 /// fs > 2·(f_c + B/2)·η_max, B the width outside which the pulse's spectrum is 40 dB down: what the
 /// synthesizer asks for as well.
 void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettings& settings) {
@@ -265,6 +281,7 @@ void check_size(TomlTable& root, const Scenario& scenario) {
 void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_platforms(root, scenario);
   check_targets(root, scenario);
+  check_interferers(root, scenario);
   check_size(root, scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
     check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));
