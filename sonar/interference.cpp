@@ -196,7 +196,7 @@ void Interference::add(PingRecord& record) const {
       }
       const std::vector<Stretch> all = stretches(ship, array, clock);
       if (all.empty()) continue;
-      const auto& phones = scenario_.arrays[a].phones;
+      const std::vector<Vec3> phones = phones_at(scenario_, array, record.ping, record.start_time);
       // The source's samples that any phone hears.
       double reach = 0.0, least = infinity, most = -infinity;
       for (const Vec3& phone : phones) reach = std::max(reach, phone.norm() / 1000.0);
