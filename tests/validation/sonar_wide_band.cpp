@@ -90,12 +90,13 @@ double error_db(const Scenario& s) {
 
 // The response is interpolated to −80 dB of the unsteered level, and the beam's side is 10 dB down:
 // −65 dB of the echo's own peak leaves that and the synthesis' error room. One amplitude for the
-// whole band must fail.
+// whole band must fail: over 7.8 km the loss at the sweep's half-power points is about 0.6 dB off
+// its centre's, 7 %, −23 dB.
 TEST(WideBand, IsTheSpectrumTimesTheResponse) {
   Scenario s = wide();
   EXPECT_LT(error_db(s), -65.0);
   s.propagation.wide_band = false;
-  EXPECT_GT(error_db(s), -20.0);
+  EXPECT_GT(error_db(s), -30.0);
 }
 
 // Where nothing depends on frequency, wide and narrow are the same but for rounding.
