@@ -59,7 +59,7 @@ bool hidden(const Hull& hull, const Vec3& offset, double aspect) noexcept {
   if (discriminant <= 0.0) return false;
   const double root = std::sqrt(discriminant);
   const double enter = std::max(0.0, (-b - root) / a), leave = (-b + root) / a;
-  return leave - enter > 0.5 * hull.beam * (1.0 + 1e-9);
+  return leave - enter > 0.75 * hull.beam;
 }
 
 double strength_db(const Target& target, double aspect) {

@@ -64,7 +64,7 @@ struct Target {
 /// length   \return [0, 2π)
 [[nodiscard]] double aspect_of(const Vec3& in, const Vec3& out, double heading) noexcept;
 
-/// Whether more than half a beam of hull lies in the way from a place on or in it.
+/// Whether more than three quarters of a beam of hull lies in the way from a place on or in it.
 /// \param offset  of the place, body's axes [m]   \param aspect  of the direction [rad]
 [[nodiscard]] bool hidden(const Hull& hull, const Vec3& offset, double aspect) noexcept;
 

@@ -53,7 +53,7 @@ TEST(AspectTable, IsStraightInDecibelsAndClosesOnItself) {
   EXPECT_NEAR(around.at(radians(15.0)), 1.5, 1e-9);
 }
 
-TEST(Hull, HidesWhatLiesBehindMoreThanHalfABeam) {
+TEST(Hull, HidesWhatLiesBehindMostOfABeam) {
   const Hull hull{.length = 100.0, .beam = 10.0};
   const Vec3 bow(50, 0, 0), stern(-50, 0, 0), port(0, -5, 0);
   EXPECT_FALSE(hidden(hull, bow, 0.0));
@@ -62,11 +62,11 @@ TEST(Hull, HidesWhatLiesBehindMoreThanHalfABeam) {
   for (const Vec3& end : {bow, stern}) EXPECT_FALSE(hidden(hull, end, 0.5 * pi)) << "abeam";
   EXPECT_TRUE(hidden(hull, port, 0.5 * pi)) << "from starboard";
   EXPECT_FALSE(hidden(hull, port, 1.5 * pi));
-  EXPECT_FALSE(hidden(hull, Vec3::Zero(), 0.5 * pi)) << "half a beam exactly";
+  EXPECT_FALSE(hidden(hull, Vec3::Zero(), 0.5 * pi)) << "half a beam";
   // A chord of the ellipse from the stern at angle a is 2(cos a/A)/(cos²a/A² + sin²a/B²), A = 50,
-  // B = 5: half a beam at a = 24.7°.
-  EXPECT_TRUE(hidden(hull, stern, radians(20.0)));
-  EXPECT_FALSE(hidden(hull, stern, radians(30.0)));
+  // B = 5: three quarters of a beam at a = 20.0°.
+  EXPECT_TRUE(hidden(hull, stern, radians(15.0)));
+  EXPECT_FALSE(hidden(hull, stern, radians(25.0)));
 }
 
 Scenario fluctuating(Fluctuation kind, int scan) {
