@@ -83,6 +83,8 @@ std::string depth_of_water(const Environment& ocean) {
 
 std::string boundary_text(const Boundary& boundary) {
   std::string text = material_text(boundary.material);
+  if (!boundary.roughness.smooth())
+    text += fmt::format(", rms height {:.3g} m", boundary.roughness.rms_height);
   if (!boundary.shape) return text;
   const auto ranges = boundary.shape->ranges();
   text += fmt::format(", {}, {} from {:g} to {:g} km, {:g} to {:g} m deep",
@@ -197,6 +199,12 @@ std::string sonar_text(const PingSimulator& simulator) {
         fmt::format("target     {}: {:g} dB, {}, range {:.3f} km, bearing {:.1f} deg, {}\n",
                     target.name, target.strength_db, position(k.position), way.range / 1000.0,
                     degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0), motion(k.velocity));
+  }
+  for (const Interferer& ship : s.interferers) {
+    const Kinematics k = ship.track.at(0.0);
+    text += fmt::format("interferer {}: {}, {}, {}{}\n", ship.name, position(k.position),
+                        motion(k.velocity), ship.level_db || ship.table ? "broadband, " : "",
+                        count_of(ship.tonals.size(), "tonal"));
   }
   text += noise_text(simulator);
   text += reverberation_text(s, simulator.ground_spacing());
