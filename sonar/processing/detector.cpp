@@ -43,7 +43,9 @@ class Search {
         weights_(shading(phones, settings.hann_shading)),
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
-        channels_(channel_spectra(baseband)) {}
+        channels_(channel_spectra(baseband)),
+        cut_(fast_fft_length(static_cast<std::size_t>(
+            std::ceil(1.5 * replica.duration() / dopplers.front() * baseband.sample_rate) + 64))) {}
 
   DetectorResult run(const std::function<bool()>& proceed) {
     const BeamSpectra beams =
@@ -126,14 +128,15 @@ class Search {
         for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
         estimator_(work.power, work.background, work.threshold, work.scratch);
         pick(b, f, work, found[b]);
-        for (std::size_t i = 0; i < n; ++i) {
-          if (!(work.background[i] > 0.0F)) continue;
-          const float ratio = work.power[i] / work.background[i];
-          const std::size_t column = i * columns / n;
+        for (std::size_t column = 0; column < columns; ++column) {
+          float most = 0.0F;
+          for (std::size_t i = column * n / columns; i < (column + 1) * n / columns; ++i)
+            if (work.background[i] > 0.0F)
+              most = std::max(most, work.power[i] / work.background[i]);
           float& by_beam = maps.beam_time[b * columns + column];
-          by_beam = std::max(by_beam, ratio);
+          by_beam = std::max(by_beam, most);
           float& by_doppler = work.doppler_time[f * columns + column];
-          by_doppler = std::max(by_doppler, ratio);
+          by_doppler = std::max(by_doppler, most);
         }
       }
     });
@@ -193,37 +196,52 @@ class Search {
     return d;
   }
 
-  /// The phones' own outputs at a time and factor, delays taken out as the beam does.
+  /// The phones' own outputs at a time and factor, delays taken out as the beam does. Only the
+  /// stretch of the record that the replica covers is transformed: the rest would add nothing.
   std::vector<std::complex<double>> snapshot(double time, double doppler, const Vec3& look) const {
-    const double spacing = baseband_.sample_rate / static_cast<double>(baseband_.samples);
-    const auto half = static_cast<std::ptrdiff_t>(baseband_.samples / 2);
+    const double rate = baseband_.sample_rate, spacing = rate / static_cast<double>(cut_);
+    // The cut begins an eighth of its length before the echo, as far as the record goes.
+    const double before = 0.125 * static_cast<double>(cut_);
+    const auto wanted = std::lround((time - baseband_.start) * rate - before);
+    const auto first_sample = static_cast<std::ptrdiff_t>(wanted);
+    const auto half = static_cast<std::ptrdiff_t>(cut_ / 2);
     const double room = 0.25 * replica_.bandwidth();
     const auto bin = [&](double f) {
       return static_cast<std::ptrdiff_t>(std::floor((f * doppler - baseband_.carrier) / spacing));
     };
     const std::ptrdiff_t first = std::max(bin(replica_.lowest_frequency() - room), 1 - half);
     const std::ptrdiff_t last = std::min(bin(replica_.highest_frequency() + room), half - 1);
-    std::vector<std::complex<double>> sums(phones_.size(), 0.0);
-    std::vector<std::complex<double>> turn, step;  // of each phone, from bin to bin
-    for (const Vec3& x : phones_) {
-      const double lag = time - baseband_.start - look.dot(x) / sound_speed_;  // [s]
-      const double turns = spacing * lag;
-      step.push_back(std::polar(1.0, 2.0 * pi * turns));
-      turn.push_back(
-          std::polar(1.0, 2.0 * pi * std::remainder(turns * static_cast<double>(first), 1.0)));
-    }
-    for (std::ptrdiff_t k = first; k <= last; ++k) {
-      const double f = baseband_.carrier + static_cast<double>(k) * spacing;
-      const std::complex<double> weight = std::conj(replica_.spectrum(f, doppler));
-      const std::size_t at =
-          static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(baseband_.samples) : k);
-      for (std::size_t n = 0; n < phones_.size(); ++n) {
-        sums[n] += weight * std::complex<double>(channels_.beam(n)[at]) * turn[n];
-        turn[n] *= step[n];
+    std::vector<std::complex<double>> weights;
+    for (std::ptrdiff_t k = first; k <= last; ++k)
+      weights.push_back(std::conj(
+          replica_.spectrum(baseband_.carrier + static_cast<double>(k) * spacing, doppler)));
+    const double scale = doppler / (replica_.energy() * static_cast<double>(cut_));
+    const ComplexFft<float> fft(cut_);
+    FftBuffer<std::complex<float>> work(cut_);
+    std::vector<std::complex<double>> sums;
+    for (std::size_t n = 0; n < phones_.size(); ++n) {
+      const auto row = baseband_.channel(n);
+      for (std::size_t i = 0; i < cut_; ++i) {
+        const std::ptrdiff_t at = first_sample + static_cast<std::ptrdiff_t>(i);
+        work[i] = at >= 0 && at < std::ssize(row) ? row[static_cast<std::size_t>(at)]
+                                                  : std::complex<float>(0.0F);
       }
+      fft.forward(work.data());
+      // From bin to bin the phase of the delay turns by a constant step.
+      const double lag = time - baseband_.start - static_cast<double>(first_sample) / rate -
+                         look.dot(phones_[n]) / sound_speed_;  // [s]
+      const double turns = spacing * lag;
+      const std::complex<double> step = std::polar(1.0, 2.0 * pi * turns);
+      std::complex<double> turn =
+          std::polar(1.0, 2.0 * pi * std::remainder(turns * static_cast<double>(first), 1.0));
+      std::complex<double> sum = 0.0;
+      for (std::ptrdiff_t k = first; k <= last; ++k) {
+        const auto at = static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(cut_) : k);
+        sum += weights[static_cast<std::size_t>(k - first)] * std::complex<double>(work[at]) * turn;
+        turn *= step;
+      }
+      sums.push_back(sum * scale);
     }
-    const double scale = doppler / (replica_.energy() * static_cast<double>(baseband_.samples));
-    for (std::size_t n = 0; n < phones_.size(); ++n) sums[n] *= scale;
     return sums;
   }
 
@@ -279,6 +297,7 @@ class Search {
   MatchedFilterBank bank_;
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
+  std::size_t cut_;  // samples of baseband that a snapshot looks at
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace asdic {
 namespace {
 
 constexpr std::size_t most_tables = 256;
+constexpr double farthest_apart = 30.0;  // ends of a pair that counts as one place, per delay [m/s]
 
 /// The path of a kind among eigenrays; of two, the one nearer in angle.
 const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double elevation) {
@@ -218,6 +219,10 @@ std::vector<Location> Localiser::locate(const Detection& detection, const SonarP
     if (found) result.push_back(*found);
   };
   query.elevation_sigma = std::max(elevation_sigma, 1e-3);
+  // Without a bearing a pair that lies apart puts it on an ellipse, not at a range.
+  const bool bearing_known = shape.kind != ArrayKind::point && !shape.upright();
+  const double apart = separation(places.source.position, query.heard_at).range;
+  if (!bearing_known && apart > farthest_apart * detection.time) return result;
   if (shape.kind == ArrayKind::point) {
     keep(towards(query, std::nullopt));
   } else if (shape.upright()) {

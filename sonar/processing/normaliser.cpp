@@ -46,7 +46,7 @@ void BackgroundEstimator::operator()(std::span<const float> power, std::span<flo
     scratch.sums[0] = 0.0;
     for (std::size_t i = 0; i < n; ++i)
       scratch.sums[i + 1] = scratch.sums[i] + static_cast<double>(values[i]);
-    for (std::size_t i = 0; i < n; ++i) {
+    const auto at_edge = [&](std::size_t i) {
       const std::size_t left_end = i > guard_ ? i - guard_ : 0;
       const std::size_t left = left_end > reference_ ? left_end - reference_ : 0;
       const std::size_t right = std::min(i + 1 + guard_, n);
@@ -58,7 +58,21 @@ void BackgroundEstimator::operator()(std::span<const float> power, std::span<flo
                           ? std::numeric_limits<float>::infinity()
                           : static_cast<float>(correction * sum / static_cast<double>(count));
       threshold[i] = multiplier_[count] * background[i];
+    };
+    const std::size_t wing = guard_ + reference_;  // inside, both windows are whole
+    const std::size_t begin = std::min(wing, n),
+                      end = n > wing + 1 ? std::max(begin, n - wing) : begin;
+    for (std::size_t i = 0; i < begin; ++i) at_edge(i);
+    const double share = correction / static_cast<double>(2 * reference_);
+    const float multiplier = multiplier_[2 * reference_];
+    const double* const sums = scratch.sums.data();
+    for (std::size_t i = begin; i < end; ++i) {
+      const double sum =
+          (sums[i - guard_] - sums[i - wing]) + (sums[i + 1 + wing] - sums[i + 1 + guard_]);
+      background[i] = static_cast<float>(share * sum);
+      threshold[i] = multiplier * background[i];
     }
+    for (std::size_t i = end; i < n; ++i) at_edge(i);
   };
   average(power, 1.0);
   if (settings_.method == Normaliser::cell_averaging) return;

@@ -24,6 +24,22 @@ ListeningBand listening_band(const Replica& replica, std::span<const double> dop
   return {.centre = 0.5 * (low + high), .width = high - low};
 }
 
+/// The factors whose echoes lie within a recorded baseband; always one.
+std::span<const double> heard_factors(const Replica& replica, std::span<const double> all,
+                                      double carrier, double rate) {
+  const auto heard = [&](double factor) {
+    return std::abs(replica.centre_frequency() * factor - carrier) < 0.45 * rate;
+  };
+  const auto first = std::find_if(all.begin(), all.end(), heard);
+  const auto last = std::find_if_not(first, all.end(), heard);
+  if (first == all.end())
+    throw InputError(
+        {.where = "replica",
+         .got = "a centre frequency of " + std::to_string(replica.centre_frequency()) + " Hz",
+         .expected = "one within the recorded baseband"});
+  return {first, last};
+}
+
 /// Standard deviation of an estimate whose resolution cell is this wide: Cramér and Rao's bound is
 /// about cell/√(2·SNR)/2; nothing is trusted to better than a tenth of a cell.
 double sigma_of(double cell, double snr) {
@@ -65,7 +81,9 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
 ProcessedArray PingProcessor::process(const ArrayRecording& recording,
                                       const std::function<bool()>& proceed) const {
   const Replica& pulse = replica(recording.transmitter);
-  const std::span<const double> factors = dopplers(recording.transmitter);
+  std::span<const double> factors = dopplers(recording.transmitter);
+  if (recording.carrier)
+    factors = heard_factors(pulse, factors, *recording.carrier, recording.sample_rate);
   const std::size_t channels = recording.phones.size();
   const double top = recording.carrier ? *recording.carrier + 0.5 * recording.sample_rate
                                        : 0.5 * recording.sample_rate;
