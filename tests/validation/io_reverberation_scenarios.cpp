@@ -25,11 +25,13 @@ double mean_db(const PingRecord& record, double from, double to) {
   return db_from_power(sum / count);
 }
 
-// Nothing is heard of the layer before sound has been at its top and back, 0.33 s; then it is loud.
+// Nothing is heard of the layer before sound has been at its top and back, 0.32 s; then it is loud.
+// Fish that swim widen the synthesis' band, and a mean over other samples of the same sound differs
+// by less than 0.1 dB.
 TEST(ReverberationScenarios, TheLayerIsHeardWhenSoundHasBeenThere) {
   const PingRecord layer = run("deep_scattering_layer");
   const PingRecord without = run("deep_scattering_layer", {"reverberation.volume=[]"});
-  EXPECT_NEAR(mean_db(layer, 0.0, 0.3), mean_db(without, 0.0, 0.3), 0.01);
+  EXPECT_NEAR(mean_db(layer, 0.0, 0.3), mean_db(without, 0.0, 0.3), 0.1);
   EXPECT_GT(mean_db(layer, 0.7, 2.0), mean_db(without, 0.7, 2.0) + 10.0);
 }
 
