@@ -74,7 +74,8 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
   const Transmitter transmitter = simulator.transmitter(options.ping);
   const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
   const double c = simulator.paths().speed_at(scenario.platforms[0].track.at(time).position);
-  const BeamPattern pattern(transmitter, c / frequency);
+  const BeamPattern pattern(transmitter, c / frequency, c,
+                            platform_heading(scenario, transmitter.platform, time));
   const EchoContext context{.paths = simulator.paths(),
                             .scenario = scenario,
                             .pattern = pattern,

@@ -11,6 +11,7 @@
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
 #include "sonar/geometry.h"
+#include "sonar/noise_spectrum.h"
 #include "sonar/ping.h"
 #include "sonar/sampling.h"
 #include "sonar/stream.h"
@@ -47,6 +48,21 @@ std::pair<double, double> speeds(const Environment& ocean) {
 }
 
 /// Where the transect lies along which the ocean varies.
+std::string reverberation_text(const Scenario& s, double spacing) {
+  const ReverberationSettings& r = s.reverberation;
+  std::string text =
+      r.enabled && r.surface_scatters
+          ? fmt::format("surface reverberation  {}, {} azimuths, ground grid of {:.3g} m\n",
+                        name_of(r.surface), r.azimuths, spacing)
+          : "surface reverberation  none\n";
+  if (!r.enabled) return text;
+  if (r.bottom) text += fmt::format("bottom reverberation   {}\n", name_of(*r.bottom));
+  for (const VolumeLayer& layer : r.volume)
+    text += fmt::format("volume reverberation   {:g} dB re 1/m from {:g} to {:g} m\n",
+                        layer.strength_db, layer.top, layer.bottom);
+  return text;
+}
+
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   const Environment& ocean = s.environment;
@@ -137,6 +153,29 @@ std::string array_text(const Scenario& s, const ReceiverArray& array) {
          fmt::format("{}, {:g} m across\n", count_of(array.phones.size(), "phone"), aperture);
 }
 
+/// Which spectrum, and what it comes to at the pulse; between the phones.
+std::string noise_text(const PingSimulator& simulator) {
+  const NoiseSettings& noise = simulator.scenario().noise;
+  if (!noise.any()) return "noise      none\n";
+  const double f = simulator.pulse().centre_frequency();
+  std::string text = "noise      ";
+  if (!noise.law) text += fmt::format("{:g} dB re 1 µPa²/Hz", *noise.spectral_level_db);
+  if (noise.law) {
+    if (const auto* wenz = std::get_if<WenzNoise>(&*noise.law))
+      text += fmt::format("Wenz, shipping {:g}, wind {:g} m/s", wenz->shipping, wenz->wind_speed);
+    else if (const auto* knudsen = std::get_if<KnudsenNoise>(&*noise.law))
+      text += fmt::format("Knudsen, sea state {:.2g}", knudsen->sea_state);
+    else
+      text += "by a table";
+  }
+  if (noise.thermal) text += ", thermal";
+  if (noise.law || noise.thermal)
+    text += fmt::format(": {:.1f} dB re 1 µPa²/Hz at {:g} Hz", noise_level_db(noise, f), f);
+  constexpr const char* between[] = {"", ", isotropic", ", from a sheet under the surface",
+                                     ", by a profile over elevation"};
+  return text + between[static_cast<int>(noise.coherence)] + "\n";
+}
+
 std::string sonar_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   const Kinematics platform = s.platforms[0].track.at(0.0);
@@ -159,15 +198,8 @@ std::string sonar_text(const PingSimulator& simulator) {
                     target.name, target.strength_db, position(k.position), way.range / 1000.0,
                     degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0), motion(k.velocity));
   }
-  text += s.noise.spectral_level_db
-              ? fmt::format("noise      {:g} dB re 1 µPa²/Hz\n", *s.noise.spectral_level_db)
-              : "noise      none\n";
-  text +=
-      s.reverberation.enabled
-          ? fmt::format("surface reverberation  {}, {} azimuths, ground grid of {:.3g} m\n",
-                        std::visit([](const auto& m) { return m.name; }, s.reverberation.surface),
-                        s.reverberation.azimuths, simulator.ground_spacing())
-          : "surface reverberation  none\n";
+  text += noise_text(simulator);
+  text += reverberation_text(s, simulator.ground_spacing());
   return text;
 }
 

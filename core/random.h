@@ -15,6 +15,12 @@ enum class Draw : std::uint32_t {
   scatterer_velocity = 11,
   scatterer_texture = 12,
   sector_weight = 13,
+  target_fluctuation = 20,
+  element_gain = 21,
+  element_phase = 22,
+  coherent_noise = 30,
+  ship_noise = 31,
+  ship_tonal = 32,
 };
 
 /// Philox's key of all streams of one seed and purpose.

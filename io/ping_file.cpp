@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "core/error.h"
@@ -28,6 +29,7 @@ std::vector<GrowingTable::Column> echo_columns() {
           {"target", "number of the target", "", Type::int32},
           {"array", "number of the array", "", Type::int32},
           {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
+          {"highlight", "number of the target's highlight, -1: a point", "", Type::int32},
           {"outgoing", "path of the leg source to target", "", Type::int32},
           {"returning", "path of the leg target to array", "", Type::int32},
           {"delay", "from the start of the ping to the echo's leading edge", "s"},
@@ -49,6 +51,22 @@ std::vector<GrowingTable::Column> patch_columns() {
           {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
           {"scattering_strength_db", "of this pair of angles", "dB"},
           {"level_db", "expected, of that area, pulse not windowed, re 1 uPa", "dB"}};
+}
+
+std::vector<GrowingTable::Column> interference_columns() {
+  return {{"ping", "number of the ping", "", Type::int32},
+          {"interferer", "number of the ship", "", Type::int32},
+          {"array", "number of the array", "", Type::int32},
+          {"delay", "since it left the ship, at the record's first sample", "s"},
+          {"doppler_factor", "heard over sent frequency", ""},
+          {"range", "from where the ship was, horizontal", "m"},
+          {"bearing_deg", "of travel", "degree"},
+          {"launch_elevation_deg", "at the ship, positive up", "degree"},
+          {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
+          {"amplitude_real", "re 1 m", ""},
+          {"amplitude_imag", "re 1 m", ""},
+          {"surface_bounces", "", "", Type::int32},
+          {"bottom_bounces", "", "", Type::int32}};
 }
 
 std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -77,6 +95,7 @@ struct PingFileWriter::Impl {
   bool finished = false;
   ArrivalTable arrivals;
   GrowingTable echoes, patches;
+  std::optional<GrowingTable> interference;  // where there are interferers
   std::size_t every = 1;
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
@@ -87,7 +106,14 @@ struct PingFileWriter::Impl {
         scenario(s),
         arrivals(file),
         echoes(file, "echoes", "echo", echo_columns()),
-        patches(file, "patches", "patch", patch_columns()) {}
+        patches(file, "patches", "patch", patch_columns()) {
+    if (scenario.interferers.empty()) return;
+    interference.emplace(file, "interference", "heard_path", interference_columns());
+    std::string names;
+    for (const Interferer& ship : scenario.interferers)
+      names += (names.empty() ? "" : ",") + ship.name;
+    file.set_attribute("interference", "names", names);
+  }
 
   template <class T>
   void growing(const std::string& dataset, const std::string& long_name, const std::string& units,
@@ -127,7 +153,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
   growing<double>("target_velocity", "velocity of the target", "m/s", vector, {targets, 3});
-  growing<double>("target_strength_db", "target strength", "dB", scale, {targets});
+  growing<double>("target_strength_db",
+                  "target strength at its aspect from the transmitter, without fluctuation", "dB",
+                  scale, {targets});
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
@@ -220,7 +248,7 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
     const Target& target = scenario.targets[i];
     for (const double x : record.targets[i].position) position.push_back(x);
     for (const double v : record.targets[i].velocity) velocity.push_back(v);
-    strength.push_back(target.strength_db);
+    strength.push_back(strength_towards(target, record.platform.position, record.start_time));
     present.push_back(record.ping >= target.first_ping && record.ping <= target.last_ping ? 1 : 0);
   }
   file.append<double>("target_position", position);
@@ -236,8 +264,9 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
     const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
     echoes.row({double(record.ping), double(echo.target), double(echo.array),
-                double(echo.heard.channel), double(echo.outgoing), double(echo.returning),
-                echo.heard.delay, echo.heard.doppler, echo.level_db, degrees(elevation), bearing});
+                double(echo.heard.channel), double(echo.highlight), double(echo.outgoing),
+                double(echo.returning), echo.heard.delay, echo.heard.doppler, echo.level_db,
+                degrees(elevation), bearing});
   }
   const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
   every = std::max(every, step);
@@ -247,6 +276,13 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
                  degrees(p.grazing_in), degrees(p.grazing_out), degrees(p.launch_elevation),
                  degrees(p.arrival_elevation), p.scattering_strength_db, p.level_db});
   }
+  for (const HeardPath& p : record.interference)
+    interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,
+                       p.doppler, p.range, compass_degrees(p.bearing),
+                       degrees(p.path.launch_elevation), degrees(p.path.arrival_elevation),
+                       p.path.amplitude.real(), p.path.amplitude.imag(),
+                       double(p.path.surface_bounces), double(p.path.bottom_bounces)});
+  if (interference) interference->write();
   arrivals.write();
   echoes.write();
   patches.write();

@@ -50,7 +50,8 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& path
   scenario::read_transmitters(std::move(transmitters), folder, scenario);
   scenario::read_arrays(root.one_or_more("array"), scenario);
   scenario::read_targets(root.tables("target"), scenario);
-  scenario::read_noise(root.table("noise"), scenario);
+  scenario::read_interferers(root.tables("interferer"), folder, scenario);
+  scenario::read_noise(root.table("noise"), folder, scenario);
   scenario::read_reverberation(root.table("reverberation"), scenario);
   scenario::read_propagation(root.table("propagation"), scenario);
   scenario::read_pings(root.table("pings"), has_elevation, scenario);

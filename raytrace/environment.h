@@ -6,6 +6,7 @@
 #include "raytrace/ocean/boundary.h"
 #include "raytrace/ocean/boundary_shape.h"
 #include "raytrace/ocean/depth_function.h"
+#include "raytrace/ocean/roughness.h"
 #include "raytrace/ocean/sound_speed.h"
 #include "raytrace/ocean/sound_speed_section.h"
 
@@ -17,6 +18,7 @@ struct Boundary {
       0.0;  ///< of a flat boundary [m], positive down; with a shape: its depth at range 0
   BoundaryMaterial material = Vacuum{};
   std::optional<BoundaryShape> shape;  ///< where the boundary is not flat
+  Roughness roughness = {};            ///< of all of it
 
   [[nodiscard]] double depth_at(double range) const noexcept {
     return shape ? shape->depth_at(range) : depth;

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -6,13 +7,50 @@
 
 namespace asdic {
 
+/// What a phone's electronics do to its signal. Lists have one entry per phone, or are empty.
+struct Electronics {
+  std::vector<double> gain_db;  ///< [n] re the nominal gain
+  std::vector<double> phase;    ///< [n] of frequencies above 0 [rad]
+  double gain_std_db = 0.0;     ///< standard deviation of further, drawn gain errors [dB]
+  double phase_std = 0.0;       ///< the same of phases [rad]
+  std::vector<int> dead;        ///< phones, from 0, that give nothing
+
+  /// Butterworth magnitude, no phase: |H|² = 1/(1 + ((f² − f_l·f_h)/((f_h − f_l)·f))^{2n}).
+  struct BandPass {
+    int order = 4;
+    double low = 0.0, high = 0.0;  ///< −3 dB [Hz]
+  };
+  std::optional<BandPass> band_pass;
+
+  struct Converter {
+    int bits = 16;
+    double full_scale = 1.0;  ///< peak pressure that is just not clipped [Pa]
+  };
+  std::optional<Converter> converter;
+
+  [[nodiscard]] bool is_ideal() const noexcept {
+    return gain_db.empty() && phase.empty() && gain_std_db == 0.0 && phase_std == 0.0 &&
+           dead.empty() && !band_pass && !converter;
+  }
+};
+
+/// A towed line: its phones lie on the path of the tow point, the array's reference point.
+struct TowedLine {
+  std::vector<double> behind;  ///< [n] along the path [m]
+  double heading = 0.0;        ///< of a tow point that never moves [rad]
+};
+
 /// A hydrophone array: phones relative to the array's reference point, in the frame x east, y
 /// north, z down.
 struct ReceiverArray {
   std::vector<Vec3> phones;    ///< [n] offsets from the reference point [m]
   Vec3 offset = Vec3::Zero();  ///< of the reference point from the platform [m]
   std::string name = "array";
-  int platform = 0;  ///< that carries it, an index
+  int platform = 0;                       ///< that carries it, an index
+  std::vector<std::vector<Vec3>> shapes;  ///< of each ping in turn, repeated as needed, in place of
+                                          ///< `phones`; empty: it keeps its shape
+  std::optional<TowedLine> towed;         ///< in place of `phones`
+  Electronics electronics;
 };
 
 /// A straight line of n phones around its centre.

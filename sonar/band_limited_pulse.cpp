@@ -21,7 +21,8 @@ bool jumps_at_its_edges(const Pulse& pulse) {
 
 }  // namespace
 
-BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate)
+BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
+                                   const std::function<double(double)>& response)
     : centre_frequency_(pulse.centre_frequency()) {
   const PulseSpectrum spectrum = pulse_spectrum(pulse, centre_frequency_);
   const double analysed = spectrum.bin_width * static_cast<double>(spectrum.bins.size());
@@ -43,8 +44,10 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate)
     const double beyond =
         std::abs(static_cast<double>(k)) * spectrum.bin_width - 0.5 * flat - slope;
     const double filter = 0.5 * std::erfc(slope_steepness * beyond / slope);
+    const double passed =
+        response ? filter * response(static_cast<double>(k) * spectrum.bin_width) : filter;
     x[static_cast<std::size_t>(k < 0 ? k + n : k)] =
-        filter * spectrum.bin_width *
+        passed * spectrum.bin_width *
         spectrum.bins[static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(all) : k)];
   }
   ComplexFft<double>(length).inverse(x.data());

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "sonar/pulse.h"
 #include "sonar/sampled_signal.h"
 
@@ -12,7 +14,10 @@ namespace asdic {
 /// bandwidth, and its edges rise in about 1/width. Source: docs/theory/synthesis.md, "Band".
 class BandLimitedPulse {
  public:
-  BandLimitedPulse(const Pulse& pulse, double sample_rate);
+  /// \param filter  a further, real response over the frequency from the centre [Hz], smooth over
+  /// the band; none: 1
+  BandLimitedPulse(const Pulse& pulse, double sample_rate,
+                   const std::function<double(double)>& filter = {});
 
   [[nodiscard]] std::complex<double> at(double u) const noexcept { return signal_.at(u); }
   /// Nothing is heard further than this from the middle [s].

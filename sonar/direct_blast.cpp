@@ -1,19 +1,68 @@
 #include "sonar/direct_blast.h"
 
+#include <algorithm>
+
 #include "sonar/doppler.h"
 #include "sonar/moving_paths.h"
 
 namespace asdic {
 namespace {
 
+/// The curve of a path's delay, where its Doppler factor changes during the pulse.
+std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics& source,
+                                   const Track& track, const Vec3& offset, int channel,
+                                   const MetPath& met, const Return& heard) {
+  if (context.pulse == nullptr) return std::nullopt;
+  const Scenario& scenario = context.scenario;
+  const Pulse& pulse = *context.pulse;
+  const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
+  double aperture = 0.0;
+  if (channel < 0)
+    for (const Vec3& phone : phones_at(scenario, context.array, context.ping, context.ping_time))
+      aperture = std::max(aperture, phone.norm());
+  const MovingPaths closely(context.paths, limits_of(scenario.propagation), context.frequency,
+                            context.ping_time, 1e-9);
+  const auto moment = [&](double sent) -> std::optional<PulseMoment> {
+    const Vec3 from =
+        transmitter_at(scenario, context.transmitter, context.ping_time + sent).position;
+    const Way way = closely.way(from, sent, track, offset, std::span(&met.path, 1));
+    const Arrival* path = same_path(way.leg.arrivals, met.path);
+    if (path == nullptr) return std::nullopt;
+    const MetPath then = closely.meet(from, sent, track, offset, way, *path);
+    return PulseMoment{
+        .sent = sent,
+        .struck = then.time,
+        .heard = then.time,
+        .at_array = met_by(then.way.end.velocity,
+                           slowness_vector(then.way.leg.bearing, then.path.arrival_elevation,
+                                           context.paths.speed_at(then.way.end.position)))};
+  };
+  const auto& transmitter = scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
+  const auto& carrier = scenario.platforms[static_cast<std::size_t>(transmitter.platform)];
+  const MovingPath path{.moment = moment,
+                        .pulse_duration = pulse.duration(),
+                        .frequency = highest,
+                        .source_turns = turns_of(carrier.track, context.ping_time),
+                        .target_turns = {},
+                        .array_turns = turns_of(track, context.ping_time)};
+  const double phase =
+      curvature_phase(highest, pulse.duration(), (met.way.end.velocity - source.velocity).norm(),
+                      met.path.path_length, context.paths.speed_at(source.position), aperture);
+  if (phase < negligible_phase && path.source_turns.empty() && path.array_turns.empty())
+    return std::nullopt;
+  return delay_curve(pulse_moments(path), heard, Vec3::Zero(), highest, aperture);
+}
+
 /// The blast at one phone, or at the reference point for all of them.
 void hear(const EchoContext& context, int channel, DirectBlast& blast) {
   const Scenario& scenario = context.scenario;
   const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
   const Track& track = scenario.platforms[static_cast<std::size_t>(array.platform)].track;
-  const Vec3 offset = channel < 0
-                          ? array.offset
-                          : Vec3(array.offset + array.phones[static_cast<std::size_t>(channel)]);
+  const Vec3 offset =
+      channel < 0
+          ? array.offset
+          : Vec3(array.offset + phones_at(scenario, context.array, context.ping,
+                                          context.ping_time)[static_cast<std::size_t>(channel)]);
   const Kinematics source = transmitter_at(scenario, context.transmitter, context.ping_time);
   const MovingPaths moving(context.paths, limits_of(scenario.propagation), context.frequency,
                            context.ping_time);
@@ -26,13 +75,24 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
     const MetPath met = moving.meet(source.position, 0.0, track, offset, way, path);
     const double c_array = context.paths.speed_at(met.way.end.position);
     const Vec3 leaving = slowness_vector(met.way.leg.bearing, met.path.launch_elevation, c_source);
-    const Vec3 arriving = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation, c_array);
-    blast.heard.push_back(
-        {.delay = met.time,
-         .amplitude = met.path.amplitude * context.pattern(met.path.launch_elevation),
-         .doppler = leg_doppler({source.velocity, leaving}, {met.way.end.velocity, arriving}),
-         .slowness = arriving,
-         .channel = channel < 0 ? Return::all_channels : channel});
+    const Vec3 at_array = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation, c_array);
+    const Vec3 arriving = met_by(met.way.end.velocity, at_array);
+    EchoPath path_heard;
+    path_heard.target = -1;
+    path_heard.array = context.array;
+    path_heard.heard = {
+        .delay = met.time - arriving.dot(offset - array.offset),  // at the reference point
+        .amplitude = met.path.amplitude *
+                     context.pattern.towards(met.way.leg.bearing, met.path.launch_elevation),
+        .doppler = leg_doppler({source.velocity, leaving}, {met.way.end.velocity, at_array}),
+        .slowness = arriving,
+        .channel = channel < 0 ? Return::all_channels : channel};
+    path_heard.colour = {.path_length = met.path.path_length,
+                         .bearing = met.way.leg.bearing,
+                         .elevation = met.path.launch_elevation,
+                         .without_pattern = met.path.amplitude};
+    path_heard.curve = curve_of(context, source, track, offset, channel, met, path_heard.heard);
+    blast.heard.push_back(std::move(path_heard));
   }
   blast.legs.push_back(std::move(way.leg));
 }

@@ -7,8 +7,8 @@ namespace asdic {
 /// What an array hears of the ping itself, on its way from the transmitter: no target, no
 /// scatterer.
 struct DirectBlast {
-  std::vector<Leg> legs;  ///< transmitter → array (or one to every phone)
-  Returns heard;          ///< one per path
+  std::vector<Leg> legs;        ///< transmitter → array (or one to every phone)
+  std::vector<EchoPath> heard;  ///< one per path; target −1
 };
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact

@@ -5,9 +5,22 @@
 
 #include "sonar/doppler.h"
 #include "sonar/moving_paths.h"
+#include "sonar/target_response.h"
 
 namespace asdic {
 namespace {
+
+/// One path out and one path back, met where things are by then.
+struct PathPair {
+  Kinematics source, target;
+  MetPath there, home;
+};
+
+double radius(std::span<const Vec3> places) {
+  double furthest = 0.0;
+  for (const Vec3& place : places) furthest = std::max(furthest, place.norm());
+  return furthest;
+}
 
 class EchoFinder {
  public:
@@ -15,11 +28,14 @@ class EchoFinder {
       : context_(context),
         scenario_(context.scenario),
         array_(scenario_.arrays[static_cast<std::size_t>(context.array)]),
+        phones_(phones_at(scenario_, context.array, context.ping, context.ping_time)),
         array_track_(scenario_.platforms[static_cast<std::size_t>(array_.platform)].track),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
         moving_(context.paths, limits_of(scenario_.propagation), context.frequency,
-                context.ping_time) {}
+                context.ping_time),
+        closely_(context.paths, limits_of(scenario_.propagation), context.frequency,
+                 context.ping_time, 1e-9) {}
 
   TargetEchoes find() {
     const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);
@@ -30,7 +46,7 @@ class EchoFinder {
     result.legs.push_back(out.leg);
     if (out.leg.arrivals.empty()) return result;
     if (scenario_.propagation.exact_per_phone) {
-      for (std::size_t n = 0; n < array_.phones.size(); ++n)
+      for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, static_cast<int>(n), result);
     } else {
       pair_up(source, out, -1, result);
@@ -41,8 +57,7 @@ class EchoFinder {
  private:
   void pair_up(const Kinematics& source, const Way& out, int channel, TargetEchoes& result) const {
     const Vec3 offset =
-        array_.offset +
-        (channel < 0 ? Vec3::Zero() : array_.phones[static_cast<std::size_t>(channel)]);
+        array_.offset + (channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)]);
     Way back = moving_.way(out.end.position, out.reference_time, array_track_, offset);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
@@ -60,56 +75,149 @@ class EchoFinder {
         const Arrival* path =
             moved ? same_path(home.leg.arrivals, back.leg.arrivals[j]) : &back.leg.arrivals[j];
         if (path == nullptr) continue;  // by then it is gone
-        EchoPath echo =
-            pair(source, there, struck,
-                 moving_.meet(struck.position, there.time, array_track_, offset, home, *path));
-        echo.outgoing = static_cast<int>(i);
-        echo.returning = static_cast<int>(j);
-        echo.heard.channel = channel < 0 ? Return::all_channels : channel;
-        result.echoes.push_back(echo);
+        const PathPair pair{
+            .source = source,
+            .target = struck,
+            .there = there,
+            .home = moving_.meet(struck.position, there.time, array_track_, offset, home, *path)};
+        for (EchoPath& echo : answer(pair, offset, channel)) {
+          echo.outgoing = static_cast<int>(i);
+          echo.returning = static_cast<int>(j);
+          result.echoes.push_back(std::move(echo));
+        }
       }
     }
     result.legs.push_back(std::move(back.leg));
   }
 
-  EchoPath pair(const Kinematics& source, const MetPath& there, const Kinematics& target,
-                const MetPath& home) const {
-    const Kinematics& phone = home.way.end;
-    const double c_source = context_.paths.speed_at(source.position),
-                 c_target = context_.paths.speed_at(target.position),
-                 c_phone = context_.paths.speed_at(phone.position);
-    const Vec3 at_source =
-        slowness_vector(there.way.leg.bearing, there.path.launch_elevation, c_source);
-    const Vec3 into_target =
-        slowness_vector(there.way.leg.bearing, there.path.arrival_elevation, c_target);
-    const Vec3 out_of_target =
-        slowness_vector(home.way.leg.bearing, home.path.launch_elevation, c_target);
-    const Vec3 at_phone =
-        slowness_vector(home.way.leg.bearing, home.path.arrival_elevation, c_phone);
+  /// Slownesses at the four ends of a pair.
+  struct Slownesses {
+    Vec3 at_source, into_target, out_of_target, at_phone;
+  };
+  Slownesses slownesses(const PathPair& pair) const {
+    const auto speed = [&](const Kinematics& k) { return context_.paths.speed_at(k.position); };
+    const double c_source = speed(pair.source), c_target = speed(pair.target),
+                 c_phone = speed(pair.home.way.end);
+    const double there = pair.there.way.leg.bearing, home = pair.home.way.leg.bearing;
+    return {.at_source = slowness_vector(there, pair.there.path.launch_elevation, c_source),
+            .into_target = slowness_vector(there, pair.there.path.arrival_elevation, c_target),
+            .out_of_target = slowness_vector(home, pair.home.path.launch_elevation, c_target),
+            .at_phone = slowness_vector(home, pair.home.path.arrival_elevation, c_phone)};
+  }
 
+  /// What all glints of the target send back by one pair of paths.
+  std::vector<EchoPath> answer(const PathPair& pair, const Vec3& offset, int channel) const {
+    const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
+    const Kinematics& phone = pair.home.way.end;
     EchoPath echo;
     echo.target = index_;
     echo.array = context_.array;
-    echo.heard.delay = home.time;
-    echo.heard.amplitude = there.path.amplitude * home.path.amplitude *
-                           context_.pattern(there.path.launch_elevation) *
-                           amplitude_from_db(target_.strength_db);
-    echo.heard.doppler = echo_doppler({source.velocity, at_source}, {target.velocity, into_target},
-                                      {target.velocity, out_of_target}, {phone.velocity, at_phone});
-    echo.heard.slowness = at_phone;
-    echo.level_db =
-        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
-        db_from_amplitude(std::abs(echo.heard.amplitude));
-    return echo;
+    echo.heard.channel = channel < 0 ? Return::all_channels : channel;
+    echo.heard.doppler =
+        echo_doppler({pair.source.velocity, at_source}, {pair.target.velocity, into_target},
+                     {pair.target.velocity, out_of_target}, {phone.velocity, at_phone});
+    echo.heard.slowness = met_by(phone.velocity, at_phone);
+    const double bearing = pair.there.way.leg.bearing, elevation = pair.there.path.launch_elevation;
+    const std::complex<double> crossed = pair.there.path.amplitude * pair.home.path.amplitude;
+    const std::complex<double> carried = crossed * context_.pattern.towards(bearing, elevation);
+    echo.colour = {.path_length = pair.there.path.path_length + pair.home.path.path_length,
+                   .bearing = bearing,
+                   .elevation = elevation};
+    const Look look{.transmitter = context_.transmitter,
+                    .platform = array_.platform,
+                    .ping = context_.ping,
+                    .turn = context_.turn};
+    const std::vector<Glint> seen = glints(scenario_, index_, look, into_target, out_of_target,
+                                           context_.ping_time + pair.there.time);
+    // A return tells of the reference point, also where its path is a phone's own.
+    const Vec3 x = offset - array_.offset;
+    std::vector<EchoPath> echoes;
+    for (const Glint& glint : seen) {
+      // The front passes a glint s_in·x after the reference point; what it sends back arrives
+      // s_out·x earlier.
+      echo.highlight = glint.highlight;
+      echo.heard.delay = pair.home.time + (into_target - out_of_target).dot(glint.offset) -
+                         echo.heard.slowness.dot(x);
+      echo.heard.amplitude = carried * glint.amplitude;
+      echo.colour.without_pattern = crossed * glint.amplitude;
+      echo.level_db =
+          scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
+          db_from_amplitude(std::abs(echo.heard.amplitude));
+      echoes.push_back(echo);
+    }
+    bend(pair, offset, channel, seen, echoes);
+    return echoes;
+  }
+
+  /// Gives the echoes curves where the ranges change at changing rates during the pulse.
+  void bend(const PathPair& pair, const Vec3& offset, int channel, const std::vector<Glint>& seen,
+            std::vector<EchoPath>& echoes) const {
+    if (context_.pulse == nullptr || echoes.empty()) return;
+    const Pulse& pulse = *context_.pulse;
+    double aperture = channel < 0 ? radius(phones_) : 0.0;
+    for (const Glint& glint : seen) aperture = std::max(aperture, 2.0 * glint.offset.norm());
+    const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
+    const MovingPath path = follow(pair, offset, highest);
+    const Vec3 out = pair.target.velocity - pair.source.velocity,
+               back = pair.home.way.end.velocity - pair.target.velocity;
+    const double c = context_.paths.speed_at(pair.target.position);
+    const double phase = curvature_phase(highest, pulse.duration(), out.norm(),
+                                         pair.there.path.path_length, c, aperture) +
+                         curvature_phase(highest, pulse.duration(), back.norm(),
+                                         pair.home.path.path_length, c, aperture);
+    const bool turns =
+        !(path.source_turns.empty() && path.target_turns.empty() && path.array_turns.empty());
+    if (phase < negligible_phase && !turns) return;
+    const std::vector<PulseMoment> moments = pulse_moments(path);
+    for (std::size_t i = 0; i < echoes.size(); ++i)
+      echoes[i].curve = delay_curve(moments, echoes[i].heard, seen[i].offset, highest, aperture);
+  }
+
+  MovingPath follow(const PathPair& pair, const Vec3& offset, double highest) const {
+    const auto& transmitter =
+        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
+    const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
+    return {.moment = [this, &pair, offset](double sent) { return moment(pair, offset, sent); },
+            .pulse_duration = context_.pulse->duration(),
+            .frequency = highest,
+            .source_turns = turns_of(carrier.track, context_.ping_time),
+            .target_turns = turns_of(target_.track, context_.ping_time),
+            .array_turns = turns_of(array_track_, context_.ping_time)};
+  }
+
+  /// The same pair of paths for what leaves `sent` after the leading edge.
+  std::optional<PulseMoment> moment(const PathPair& pair, const Vec3& offset, double sent) const {
+    PathPair then;
+    then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
+    const Way out = closely_.way(then.source.position, sent, target_.track, Vec3::Zero(),
+                                 std::span(&pair.there.path, 1));
+    const Arrival* path = same_path(out.leg.arrivals, pair.there.path);
+    if (path == nullptr) return std::nullopt;
+    then.there = closely_.meet(then.source.position, sent, target_.track, Vec3::Zero(), out, *path);
+    then.target = target_.track.at(context_.ping_time + then.there.time);
+    const Way home = closely_.way(then.target.position, then.there.time, array_track_, offset,
+                                  std::span(&pair.home.path, 1));
+    path = same_path(home.leg.arrivals, pair.home.path);
+    if (path == nullptr) return std::nullopt;
+    then.home =
+        closely_.meet(then.target.position, then.there.time, array_track_, offset, home, *path);
+    const Slownesses s = slownesses(then);
+    return PulseMoment{.sent = sent,
+                       .struck = then.there.time,
+                       .heard = then.home.time,
+                       .into_target = s.into_target,
+                       .out_of_target = s.out_of_target,
+                       .at_array = met_by(then.home.way.end.velocity, s.at_phone)};
   }
 
   const EchoContext& context_;
   const Scenario& scenario_;
   const ReceiverArray& array_;
+  std::vector<Vec3> phones_;
   const Track& array_track_;
   const Target& target_;
   int index_;
-  MovingPaths moving_;
+  MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
 };
 
 }  // namespace

@@ -12,14 +12,18 @@ namespace asdic {
 struct EchoContext {
   const PropagationPaths& paths;
   const Scenario& scenario;
-  const BeamPattern& pattern;
-  double frequency;     ///< centre of the pulse [Hz]
-  double ping_time;     ///< since the start of the scenario [s]
-  int transmitter = 0;  ///< that pings, an index
-  int array = 0;        ///< that hears it
+  const TransmitPattern& pattern;
+  double frequency;              ///< centre of the pulse [Hz]
+  double ping_time;              ///< since the start of the scenario [s]
+  int transmitter = 0;           ///< that pings, an index
+  int array = 0;                 ///< that hears it
+  int ping = 1;                  ///< of the run, counted from 1
+  int turn = 1;                  ///< of the transmitter's own pings, counted from 1
+  const Pulse* pulse = nullptr;  ///< none: its leading edge alone is followed
 };
 
-/// The echoes of one target: eigenrays out, eigenrays back, and every pair of them.
+/// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
+/// highlight.
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;
@@ -27,8 +31,9 @@ struct TargetEchoes {
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is
 /// heard, path by path: 7 m/s over 20 s is 144 m. Each pair has its exact Doppler factor from
-/// velocities, ray directions and local speeds. The legs hold the eigenrays at the times of the
-/// first arrivals. Source: docs/theory/echoes.md
+/// velocities, ray directions and local speeds, and a curve of its own where ranges change at
+/// changing rates during the pulse. The legs hold the eigenrays at the times of the first arrivals.
+/// Source: docs/theory/echoes.md, docs/theory/target.md
 [[nodiscard]] TargetEchoes target_echoes(const EchoContext& context, int target);
 
 }  // namespace asdic

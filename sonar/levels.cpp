@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/noise_spectrum.h"
+
 namespace asdic {
 
 LevelMeter::LevelMeter(const Recording& recording) {
@@ -89,9 +91,7 @@ std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& s
     row.echo_level_db = row.echo_peak_db = row.signal_excess_db = -infinity;
     row.echo_time = std::nan("");
     row.reverberation_db = -infinity;
-    row.noise_db = scenario.noise.spectral_level_db
-                       ? *scenario.noise.spectral_level_db + db_from_power(pulse.bandwidth_40db())
-                       : -infinity;
+    row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
     if (strongest != nullptr) {
       row.echo_time = strongest->heard.delay;
       row.echo_level_db = strongest->level_db;

@@ -76,12 +76,12 @@ Way MovingPaths::way(const Vec3& from, double start, const Track& track, const V
   return way;
 }
 
-/// The linear step neglects the curvature of τ, d²/(2rc) for a displacement d: less than 0.1 µs?
-/// Over slopes it also neglects that the plane turns with the end, a slowness across the plane of
-/// the order of the slope times sin θ/c: a millimetre of displacement is less than 0.1 µs.
+/// The linear step neglects the curvature of τ, d²/(2rc) for a displacement d: less than the
+/// tolerance? Over slopes it also neglects that the plane turns with the end, a slowness across the
+/// plane of the order of the slope times sin θ/c: a millimetre of displacement is less than 0.1 µs.
 bool MovingPaths::settled(double moved, double c, double range) const {
-  if (!paths_.layered()) return moved <= 1e-3;
-  return moved * moved <= 1e-7 * 2.0 * c * range;
+  if (!paths_.layered()) return moved <= 1e4 * tolerance_;
+  return moved * moved <= tolerance_ * 2.0 * c * range;
 }
 
 MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, const Vec3& offset,

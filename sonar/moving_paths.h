@@ -10,6 +10,12 @@ namespace asdic {
 /// Unit vector of travel over the local speed of sound [s/m].
 [[nodiscard]] Vec3 slowness_vector(double bearing, double elevation, double sound_speed);
 
+/// The slowness of a front as an array that moves meets it, s/(1 − s·v): its phone at x hears what
+/// the reference point hears s'·x later, having moved meanwhile.
+[[nodiscard]] inline Vec3 met_by(const Vec3& velocity, const Vec3& slowness) noexcept {
+  return slowness / (1.0 - slowness.dot(velocity));
+}
+
 /// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
 /// a reference time. Times count from the start of the ping.
 struct Way {
@@ -34,9 +40,14 @@ struct MetPath {
 class MovingPaths {
  public:
   /// \param frequency  [Hz]   \param ping_time  since the start of the scenario [s]
+  /// \param tolerance  of a delay that the linear step below leaves [s]
   MovingPaths(const PropagationPaths& paths, const PathLimits& limits, double frequency,
-              double ping_time)
-      : paths_(paths), limits_(limits), frequency_(frequency), ping_time_(ping_time) {}
+              double ping_time, double tolerance = 1e-7)
+      : paths_(paths),
+        limits_(limits),
+        frequency_(frequency),
+        ping_time_(ping_time),
+        tolerance_(tolerance) {}
 
   /// Eigenrays from a point, left at `start`, to where a track is when the first of them comes.
   /// \param offset  from the track [m]   \param known  the same paths when something was metres
@@ -57,7 +68,7 @@ class MovingPaths {
 
   const PropagationPaths& paths_;
   PathLimits limits_;
-  double frequency_, ping_time_;
+  double frequency_, ping_time_, tolerance_;
 };
 
 }  // namespace asdic

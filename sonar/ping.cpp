@@ -14,10 +14,10 @@
 #include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
-#include "sonar/noise.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/sampling.h"
+#include "sonar/sparse_sound.h"
 #include "sonar/stream.h"
 #include "sonar/transmitter.h"
 
@@ -44,6 +44,9 @@ PingSimulator::PingSimulator(Scenario scenario)
     : scenario_(std::move(scenario)),
       transmissions_(asdic::transmissions(scenario_)),
       paths_(scenario_.environment, scenario_.transect),
+      noise_(scenario_, paths_),
+      interference_(scenario_, paths_),
+      receivers_(scenario_),
       max_doppler_(doppler_bound(scenario_)) {
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
     pulses_.emplace_back(pulse_of(scenario_, static_cast<int>(t)));
@@ -74,7 +77,8 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
     record.targets.push_back(target.track.at(sent.time));
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const Vec3 reference = array_at(scenario_, static_cast<int>(a), sent.time).position;
-    for (const Vec3& phone : scenario_.arrays[a].phones) record.phones.push_back(reference + phone);
+    for (const Vec3& phone : phones_at(scenario_, static_cast<int>(a), ping, sent.time))
+      record.phones.push_back(reference + phone);
   }
   record.recording = recording_of(scenario_);
   if (schedule.continuous) record.recording.epoch = sent.time;
@@ -84,15 +88,16 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
 }
 
 /// Echoes, source → target × target → array, and the ping itself on its way to arrays elsewhere.
-Returns PingSimulator::sparse_returns(const EchoContext& context, PingRecord& record) const {
-  Returns returns;
+std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
+                                                    PingRecord& record) const {
+  std::vector<EchoPath> heard;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
     const Target& target = scenario_.targets[i];
     if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
-      returns.push_back(echo.heard);
+      heard.push_back(echo);
       record.echoes.push_back(echo);
     }
   }
@@ -104,9 +109,9 @@ Returns PingSimulator::sparse_returns(const EchoContext& context, PingRecord& re
           platform_of(scenario_.arrays, context.array)) {
     DirectBlast blast = direct_blast(context);
     for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
-    returns.insert(returns.end(), blast.heard.begin(), blast.heard.end());
+    heard.insert(heard.end(), blast.heard.begin(), blast.heard.end());
   }
-  return returns;
+  return heard;
 }
 
 PingRecord PingSimulator::sound(int ping) const {
@@ -118,7 +123,8 @@ PingRecord PingSimulator::sound(int ping) const {
   PingRecord record = blank_record(ping, sent);
 
   const double local_speed = paths_.speed_at(record.platform.position);
-  const BeamPattern pattern(projector, local_speed / frequency);
+  const double heading = platform_heading(scenario_, projector.platform, sent.time);
+  const BeamPattern pattern(projector, local_speed / frequency, local_speed, heading);
   const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
   const Synthesizer synthesizer(sent_pulse, record.recording, max_doppler_);
@@ -128,16 +134,24 @@ PingRecord PingSimulator::sound(int ping) const {
   Baseband heard, reverberated;                  // of all channels
   std::vector<PingReverberation> reverberation;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    const std::vector<Vec3> phones = phones_at(scenario_, static_cast<int>(a), ping, sent.time);
     const EchoContext context{.paths = paths_,
                               .scenario = scenario_,
                               .pattern = pattern,
                               .frequency = frequency,
                               .ping_time = sent.time,
                               .transmitter = sent.transmitter,
-                              .array = static_cast<int>(a)};
-    const Returns sparse = sparse_returns(context, record);
+                              .array = static_cast<int>(a),
+                              .ping = ping,
+                              .turn = sent.turn,
+                              .pulse = &sent_pulse};
+    const std::vector<EchoPath> sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
-    append_channels(heard, synthesizer.baseband(sparse, scenario_.arrays[a].phones));
+    Baseband of_array =
+        scenario_.propagation.wide_band
+            ? wide_band_sound(context, projector, sparse, phones, record.recording, max_doppler_)
+            : narrow_band_sound(synthesizer, sparse, phones);
+    append_channels(heard, std::move(of_array));
     // Reverberation: source → scatterer → array.
     reverberation.push_back(reverberation_->ping(
         {.pattern = pattern,
@@ -152,19 +166,18 @@ PingRecord PingSimulator::sound(int ping) const {
     const Returns scattered = reverberation.back().returns();
     if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
-    append_channels(reverberated, synthesizer.baseband(scattered, scenario_.arrays[a].phones));
+    append_channels(reverberated, synthesizer.baseband(scattered, phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
   std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
                  heard.values.begin(), std::plus<>{});
+  receivers_.respond(heard);
   synthesizer.add_samples(heard, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();
 
-  if (scenario_.noise.spectral_level_db)
-    levels.add_noise(
-        white_noise_variance(*scenario_.noise.spectral_level_db, scenario_.pings.sample_rate));
+  levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
   record.summary = summarise(record, scenario_, sent_pulse,
                              [&](double t) { return reverberation.front().expected_db(t); });
@@ -172,17 +185,22 @@ PingRecord PingSimulator::sound(int ping) const {
   return record;
 }
 
-void PingSimulator::complete(PingRecord& record) const {
+void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
   Stopwatch watch;
-  const double rate = record.recording.sample_rate;
-  if (scenario_.noise.spectral_level_db && !record.pressure.empty()) {
-    const double level = *scenario_.noise.spectral_level_db;
-    const double variance = record.recording.is_complex() ? white_baseband_variance(level, rate)
-                                                          : white_noise_variance(level, rate);
-    add_white_noise(record.pressure, record.phones.size(), variance, scenario_.seed,
-                    static_cast<std::uint32_t>(record.ping));
+  if (receivers_.is_flat()) {
+    interference_.add(record);
+    noise_.add(record);
+  } else {  // the sound of the ping has passed the receivers; this has to as well
+    std::vector<float> heard =
+        std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
+    interference_.add(record);
+    noise_.add(record);
+    receivers_.respond(record.pressure, record.recording, carried);
+    std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
+                   std::plus<>{});
   }
   if (scenario_.pings.blanking) blank(record);
+  receivers_.convert(record.pressure, record.recording);
   record.timings.noise += watch.lap();
 }
 
@@ -217,6 +235,7 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
   const int count = simulator.pings();
   const bool continuous = simulator.scenario().pings.continuous;
   Stream stream(simulator.scenario());
+  ReceiverElectronics::Carried carried;
   int next = 1, done = 0;
   // Two pings in flight a thread keep the writer fed; more would only cost memory.
   const auto in_flight =
@@ -241,7 +260,7 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
               tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
                 if (continuous) {
                   stream.take(*record);
-                  simulator.complete(*record);
+                  simulator.complete(*record, &carried);
                 }
                 sink(std::move(*record));
                 ++done;

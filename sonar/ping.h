@@ -4,10 +4,13 @@
 #include <stop_token>
 
 #include "raytrace/eigenrays.h"
+#include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
+#include "sonar/interference.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
+#include "sonar/receiver_electronics.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
 #include "sonar/transmission.h"
@@ -28,8 +31,9 @@ class PingSimulator {
   /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
   /// add these up (sonar/stream.h) and complete() the sum.
   [[nodiscard]] PingRecord sound(int ping) const;
-  /// Adds what does not come of a ping: noise, then blanking.
-  void complete(PingRecord& record) const;
+  /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
+  /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
+  void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
@@ -50,13 +54,17 @@ class PingSimulator {
 
  private:
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
-  [[nodiscard]] Returns sparse_returns(const EchoContext& context, PingRecord& record) const;
+  [[nodiscard]] std::vector<EchoPath> sparse_returns(const EchoContext& context,
+                                                     PingRecord& record) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
   PropagationPaths paths_;
+  AmbientNoise noise_;
+  Interference interference_;
+  ReceiverElectronics receivers_;
   std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;
 };

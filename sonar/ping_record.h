@@ -1,8 +1,11 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "raytrace/arrivals.h"
+#include "sonar/band_response.h"
+#include "sonar/delay_curve.h"
 #include "sonar/returns.h"
 #include "sonar/synthesis.h"
 #include "sonar/track.h"
@@ -21,14 +24,17 @@ struct Leg {
   Arrivals arrivals;
 };
 
-/// One echo: one path out, one path back.
+/// One echo: one path out, one path back, one place of the target.
 struct EchoPath {
   int target = 0;
   int array = 0;
+  int highlight = -1;     ///< of the target, an index; −1: it is a point
   int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
   Return heard;           ///< at the array's reference point (or the phone)
+  PathColour colour;      ///< for other frequencies than the pulse's centre
+  std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };
 
 /// What scatters back from one ground cell, by one path pair: from the whole ring in a layered
@@ -53,6 +59,19 @@ struct PatchRow {
 struct LevelSeries {
   double time_step = 0.05;  ///< [s]
   std::vector<float> echo, reverberation, noise;
+};
+
+/// One path along which an interfering ship is heard, at the record's first sample.
+struct HeardPath {
+  int interferer = 0;            ///< index in the scenario
+  int array = 0;                 ///< index in the scenario
+  double delay = 0.0;            ///< since it left the ship [s]
+  double doppler = 1.0;          ///< heard over sent frequency
+  double range = 0.0;            ///< horizontal, from where the ship was [m]
+  double bearing = 0.0;          ///< direction of travel, clockwise from north [rad]
+  Vec3 slowness = Vec3::Zero();  ///< at the array [s/m]
+  Vec3 moveout = Vec3::Zero();  ///< ∇τ there: the slowness over 1 − s·v of the moving ship [s/m]
+  Arrival path;
 };
 
 struct TargetSummary {
@@ -88,6 +107,7 @@ struct PingRecord {
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
   std::vector<PatchRow> patches;
+  std::vector<HeardPath> interference;
   LevelSeries levels;
   std::vector<TargetSummary> summary;
   Timings timings;

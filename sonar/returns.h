@@ -16,8 +16,9 @@ struct Return {
   std::complex<double> amplitude = 0.0;  ///< pressure at the phone over peak pressure of the pulse
                                          ///< at 1 m; carrier phase of `delay` not included
   double doppler = 1.0;                  ///< η: frequency × η, duration ÷ η
-  Vec3 slowness =
-      Vec3::Zero();  ///< direction of travel at the array over the local sound speed [s/m]
+  Vec3 slowness = Vec3::Zero();  ///< direction of travel at the array over the local sound speed,
+                                 ///< over 1 − s·v for an array that
+                                 ///< moves [s/m]
   int channel =
       all_channels;  ///< the one phone that hears it (exact per-phone eigenrays), or all of them
 

@@ -34,7 +34,7 @@ std::vector<Item> over_rings(std::uint32_t rings, F&& f) {
   const std::size_t blocks = (rings + block - 1) / block;
   std::vector<std::vector<Item>> parts(blocks);
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-    std::vector<PathPair> scratch;
+    PathPairs scratch;
     const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(rings, (b + 1) * block));
     for (auto ring = static_cast<std::uint32_t>(b * block); ring < end; ++ring)
       f(ring, scratch, parts[b]);
@@ -91,15 +91,14 @@ void PingReverberation::find_limits() {
     const std::vector<int> sectors = sample_sectors(field);
     const auto count = static_cast<std::uint32_t>(sectors.size());
     const auto found = over_rings<Found>(
-        field.grid.rings,
-        [&](std::uint32_t ring, std::vector<PathPair>& pairs, std::vector<Found>& out) {
+        field.grid.rings, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
           for (std::uint32_t i = 0; i < count; ++i) {
             field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
             const double share = 1.0 / count, area = ring_area(field.grid, ring);
             double loudest = 0.0;
-            for (const PathPair& pair : pairs)
+            for (const PathPair& pair : pairs.found)
               loudest = std::max(loudest, std::norm(pair.amplitude));
-            for (const PathPair& pair : pairs) {
+            for (const PathPair& pair : pairs.found) {
               if (std::norm(pair.amplitude) < faintest * loudest) continue;
               out.push_back({{.place = first_place + ring * count + i,
                               .delay = pair.delay,
@@ -135,10 +134,12 @@ void PingReverberation::find_limits() {
       if (dropped > left_out * total) break;
     }
     limits_.least.resize(entries[begin].stretch + 1, 0.0);
-    limits_.least.back() = entries[std::min(first, end - 1)].power;
+    // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
+    // that lies a little nearer than its middle would be left out of this stretch for it.
+    limits_.least.back() = first > begin ? entries[first - 1].power : 0.0;
   }
   for (const Found& f : all)
-    if (f.ring_power >= limits_.at(f.sample.delay)) {
+    if (f.ring_power > limits_.at(f.sample.delay)) {
       samples_.push_back(f.sample);
       expected_returns_ += f.share * f.scatterers;
     }
@@ -157,16 +158,16 @@ std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::ui
 
 PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
                                                const ScattererKey& key, std::uint64_t entity,
-                                               std::vector<PathPair>& pairs) const {
+                                               PathPairs& pairs) const {
   const ScattererMotion& motion = field.field.motion;
   const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
   field.sheet.pairs_at(scatterer.place, pairs, &limits_, ring_area(field.grid, key.ring),
                        (scatterer.depth_share - 0.5) * field.thickness);
   Met met;
-  if (pairs.empty()) return met;
+  if (pairs.found.empty()) return met;
   const Vec2 in_water = scatterer.place - motion.current * context_.time;
   met.strength =
-      std::sqrt(scatterer.area * pairs.front().area) *
+      std::sqrt(scatterer.area * pairs.found.front().area) *
       texture_amplitude(field.field.statistics, in_water, field.boundary, scenario_.seed);
   met.velocity = {motion.current.x(), motion.current.y(), 0.0};
   if (motion.kind == ScattererMotion::Kind::bragg)
@@ -185,7 +186,7 @@ Return PingReverberation::heard(const ScatteringField& field, const PathPair& pa
 }
 
 void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t ring,
-                                    const ScattererWeights& weights, std::vector<PathPair>& scratch,
+                                    const ScattererWeights& weights, PathPairs& scratch,
                                     Returns& returns) const {
   for (int sector = 0; sector < field.grid.azimuths; ++sector) {
     const std::uint32_t copies = copies_of(field, ring, sector);
@@ -196,9 +197,9 @@ void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t 
                              .copy = copy};
       const std::uint64_t entity = key.entity(field.grid.identity);
       const Met met = meet(field, key, entity, scratch);
-      if (scratch.empty()) continue;
+      if (scratch.found.empty()) continue;
       const std::complex<double> weight = weights(entity);
-      for (const PathPair& pair : scratch) returns.push_back(heard(field, pair, met, weight));
+      for (const PathPair& pair : scratch.found) returns.push_back(heard(field, pair, met, weight));
     }
   }
 }
@@ -208,10 +209,10 @@ Returns PingReverberation::plain_returns() const {
   for (const ScatteringField& field : fields_) {
     const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
                                    context_.time, context_.ping);
-    Returns found = over_rings<Return>(
-        field.grid.rings, [&](std::uint32_t ring, std::vector<PathPair>& scratch, Returns& out) {
-          add_returns(field, ring, weights, scratch, out);
-        });
+    Returns found = over_rings<Return>(field.grid.rings,
+                                       [&](std::uint32_t ring, PathPairs& scratch, Returns& out) {
+                                         add_returns(field, ring, weights, scratch, out);
+                                       });
     if (all.empty())
       all = std::move(found);
     else
@@ -243,7 +244,7 @@ double PingReverberation::expected_db(double t) const {
 }
 
 PatchRows PingReverberation::rows(std::size_t most) const {
-  std::vector<PathPair> pairs;
+  PathPairs pairs;
   const double source_level =
       scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
   const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
@@ -251,7 +252,7 @@ PatchRows PingReverberation::rows(std::size_t most) const {
     const ScattererGrid& grid = field.grid;
     const double ring_of = ring_area(grid, ring);
     field.sheet.pairs_at(centre(grid, ring, sector), pairs, &limits_, ring_of);
-    for (const PathPair& pair : pairs)
+    for (const PathPair& pair : pairs.found)
       rows.push_back(
           {.bearing = field.sheet.all_round() ? std::nan("") : sector_bearing(grid, sector),
            .range = (ring + 0.5) * grid.spacing,

@@ -83,14 +83,13 @@ class PingReverberation {
                                         int sector) const;
   /// Its pairs of paths into `pairs`; nothing if there are none.
   Met meet(const ScatteringField& field, const ScattererKey& key, std::uint64_t entity,
-           std::vector<PathPair>& pairs) const;
+           PathPairs& pairs) const;
   [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
                              std::complex<double> weight) const;
   void add_sector(const ScatteringField& field, int sector, double bin,
                   const ScattererWeights& weights, Returns& returns) const;
   void add_returns(const ScatteringField& field, std::uint32_t ring,
-                   const ScattererWeights& weights, std::vector<PathPair>& scratch,
-                   Returns& returns) const;
+                   const ScattererWeights& weights, PathPairs& scratch, Returns& returns) const;
   [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
 
   const Scenario& scenario_;

@@ -31,7 +31,9 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       pattern_(pattern),
       all_round_pattern_(pattern.all_round() && out_->planes.size() == 1),
       receiver_moves_(!ends.receiver.velocity.isZero()),
-      moving_(receiver_moves_ || !ends.source.velocity.isZero()) {
+      moving_(receiver_moves_ || !ends.source.velocity.isZero()),
+      one_place_(out_ == back_ && !receiver_moves_ &&
+                 ends.source.position == ends.receiver.position) {
   if (!all_round_pattern_) return;
   for (const GroundPath& path : out_->planes.front().paths->all())
     beam_.push_back(pattern_.towards(0.0, path.launch_elevation));
@@ -47,6 +49,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
   Leg found;
   const Vec2 way = place - end;
   const double range = way.norm();
+  found.range = range;
   found.direction = range > 0.0 ? Vec2(way / range) : Vec2(0.0, 1.0);
   if (bearing || fan.planes.size() > 1)
     found.bearing = std::atan2(found.direction.x(), found.direction.y());
@@ -63,28 +66,40 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
   return found;
 }
 
-void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
-                               const AudibleLimits* limits, double ring, double below) const {
+void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits,
+                               double ring, double below) const {
   constexpr double strongest = 2.0;  // [1/sr] no law says more
-  pairs.clear();
+  pairs.found.clear();
   const Leg out = leg(*out_, ends_.source.position.head<2>(), place, !all_round_pattern_);
   if (out.paths.empty()) return;
-  Vec2 receiver = ends_.receiver.position.head<2>();
-  Leg back = leg(*back_, receiver, place, false);
+  const Vec2 receiver = ends_.receiver.position.head<2>();
+  Leg back = one_place_ ? out : leg(*back_, receiver, place, false);
   if (back.paths.empty()) return;
   // Where the receiver is when the first path is heard: all others are heard metres from there.
   double heard = 0.0;
   if (receiver_moves_) {
     heard = out.paths.front().delay + back.paths.front().delay;
-    receiver += ends_.receiver.velocity.head<2>() * heard;
-    back = leg(*back_, receiver, place, false);
+    back = leg(*back_, receiver + ends_.receiver.velocity.head<2>() * heard, place, false);
     if (back.paths.empty()) return;
   }
   const Vec2 coming = -back.direction;
   // Towards the scatterer [m/s]: the way back shrinks by closing·(t − heard).
   const double closing = ends_.receiver.velocity.head<2>().dot(back.direction);
   const double sinking = ends_.receiver.velocity.z();
-  const double turn = std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
+  const double across2 =  // v² across the way over its length: how fast the way bends [m/s²]
+      (ends_.receiver.velocity.head<2>().squaredNorm() - closing * closing) /
+      std::max(1.0, back.range);
+  const double turn = one_place_ ? pi : std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
+  constexpr double same_turn = 1e-6;  // [rad]
+  if (out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
+      pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
+      pairs.sigma_.size() != out.paths.size() * back.paths.size()) {
+    pairs.sheet_ = this;
+    pairs.out_ = out.first;
+    pairs.back_ = back.first;
+    pairs.turn_ = turn;
+    pairs.sigma_.assign(out.paths.size() * back.paths.size(), -1.0);
+  }
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
     const GroundPath& a = out.paths[i];
     const PathEnds& a_ends = out.ends[i];
@@ -104,31 +119,37 @@ void ScatteringSheet::pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
         const double along = b.horizontal_slowness * closing;
         const double down = -b_ends.launch_down * sinking;
         delay = (delay + along * heard) / (1.0 + along - down);
+        // What is not linear: the way bends, and the slowness changes along it.
+        const double later = delay - heard, held = 0.2 * b.horizontal_slowness;
+        const double bend = std::clamp(b.slowness_slope * closing * later, -held, held);
+        delay += 0.5 * later * (b.horizontal_slowness * across2 * later + bend * closing);
       }
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
       const double power = std::norm(sent) * std::norm(b.amplitude) * ring;
-      if (limits && power * strongest < least) continue;
+      if (limits && power * strongest <= least) continue;
       const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
                                      .grazing_out = grazing_of(b, b_ends, back.tilt),
                                      .azimuth = turn};
-      const double sigma = std::visit(
-          [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
-      if (sigma <= 0.0 || (limits && power * sigma < least)) continue;
-      pairs.push_back({.out = &a,
-                       .back = &b,
-                       .out_index = static_cast<std::uint32_t>(i),
-                       .back_index = static_cast<std::uint32_t>(j),
-                       .out_ends = &a_ends,
-                       .back_ends = &b_ends,
-                       .delay = delay,
-                       .amplitude = sent * b.amplitude * std::sqrt(sigma),
-                       .cross_section = sigma,
-                       .grazing_in = geometry.grazing_in,
-                       .grazing_out = geometry.grazing_out,
-                       .area = out.tilt ? out.tilt->area : 1.0,
-                       .leaving = out.direction,
-                       .coming = coming});
+      double& sigma = pairs.sigma_[i * back.paths.size() + j];
+      if (sigma < 0.0)
+        sigma = std::visit(
+            [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
+      if (sigma <= 0.0 || (limits && power * sigma <= least)) continue;
+      pairs.found.push_back({.out = &a,
+                             .back = &b,
+                             .out_index = static_cast<std::uint32_t>(i),
+                             .back_index = static_cast<std::uint32_t>(j),
+                             .out_ends = &a_ends,
+                             .back_ends = &b_ends,
+                             .delay = delay,
+                             .amplitude = sent * b.amplitude * std::sqrt(sigma),
+                             .cross_section = sigma,
+                             .grazing_in = geometry.grazing_in,
+                             .grazing_out = geometry.grazing_out,
+                             .area = out.tilt ? out.tilt->area : 1.0,
+                             .leaving = out.direction,
+                             .coming = coming});
     }
   }
 }

@@ -33,7 +33,23 @@ struct PathPair {
   Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
 };
 
-/// What is too faint to be heard: in every stretch of delay, the power below which a pair through a
+class ScatteringSheet;
+
+/// The pairs of paths through a place, and the memory that finding them takes: used again from
+/// place to place, nothing is allocated once it is large enough. Places of one ring that see the
+/// same cells under the same angles share their cross-sections.
+struct PathPairs {
+  std::vector<PathPair> found;
+
+ private:
+  friend class ScatteringSheet;
+  const ScatteringSheet* sheet_ = nullptr;
+  std::size_t out_ = 0, back_ = 0;  // first paths of the cells whose cross-sections these are
+  double turn_ = 0.0;
+  std::vector<double> sigma_;  // [out × back], below 0 where not known yet
+};
+
+/// What is too faint to be heard: in every stretch of delay, the power up to which a pair through a
 /// whole ring is left out.
 struct AudibleLimits {
   double stretch = 1.0;       ///< length [s]
@@ -64,11 +80,11 @@ class ScatteringSheet {
                   Law law, const SheetEnds& ends, const TransmitPattern& pattern);
 
   /// All pairs of paths through a place, in the order of the tables, heard before the record ends.
-  /// Nothing is allocated once `pairs` is long enough. \param limits  pairs that are fainter are
+  /// \param limits  pairs that are fainter are
   /// left out; null: none   \param ring  area of the whole ring around [m²]
   /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
-  void pairs_at(const Vec2& place, std::vector<PathPair>& pairs,
-                const AudibleLimits* limits = nullptr, double ring = 0.0, double below = 0.0) const;
+  void pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits = nullptr,
+                double ring = 0.0, double below = 0.0) const;
 
   /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
   /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
@@ -93,6 +109,7 @@ class ScatteringSheet {
     const CellTilt* tilt = nullptr;
     Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
     double bearing = 0.0;           // of it, where a table has bearings
+    double range = 0.0;             // of the place [m]
     double beyond = 0.0;            // of the place past the cell's centre [m]
     std::size_t first = 0;          // of the paths in their table
   };
@@ -103,7 +120,7 @@ class ScatteringSheet {
   Law law_;
   SheetEnds ends_;
   const TransmitPattern& pattern_;
-  bool all_round_pattern_, receiver_moves_, moving_;
+  bool all_round_pattern_, receiver_moves_, moving_, one_place_;
   std::vector<std::complex<double>> beam_;  // of every outgoing path, if the same all round
 };
 

@@ -5,6 +5,7 @@
 
 #include "raytrace/environment.h"
 #include "sonar/array.h"
+#include "sonar/interferer.h"
 #include "sonar/noise_settings.h"
 #include "sonar/ping_schedule.h"
 #include "sonar/platform.h"
@@ -22,6 +23,7 @@ struct PropagationSettings {
   int max_bottom_bounces = 3;
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
+  bool wide_band = false;        ///< echoes' losses and patterns at every frequency of the pulse
   bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
 };
 
@@ -37,6 +39,7 @@ struct Scenario {
   PulseSettings pulse;                           ///< of the transmitters without one of their own
   std::vector<ReceiverArray> arrays = {{}};      ///< [n ≥ 1]
   std::vector<Target> targets;
+  std::vector<Interferer> interferers;
   NoiseSettings noise;
   ReverberationSettings reverberation;
   PropagationSettings propagation;
@@ -53,6 +56,13 @@ struct Scenario {
 [[nodiscard]] Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time);
 /// The same of an array's reference point.
 [[nodiscard]] Kinematics array_at(const Scenario& scenario, int array, double time);
+/// Its phones as they lie in a ping, from its reference point: frozen for that ping, and carried
+/// along by the platform. \param ping  of the run, counted from 1   \param time  when it is sent
+/// [s]
+[[nodiscard]] std::vector<Vec3> phones_at(const Scenario& scenario, int array, int ping,
+                                          double time);
+/// The course of a platform, north if it never moves [rad].
+[[nodiscard]] double platform_heading(const Scenario& scenario, int platform, double time);
 /// The pulse that a transmitter sends: its own or the scenario's.
 [[nodiscard]] const PulseSettings& pulse_of(const Scenario& scenario, int transmitter);
 /// Phones of all arrays, one after the other: the channels of a record.

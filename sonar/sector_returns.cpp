@@ -36,7 +36,7 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector, dou
                                    const ScattererWeights& weights, Returns& returns) const {
   const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
   std::vector<Bin> bins(count * elevations);
-  std::vector<PathPair> pairs;
+  PathPairs pairs;
   const double speed = field.sheet.ends().receiver_speed;
   const bool one_fan = field.sheet.one_fan();
   for (std::uint32_t ring = 0; ring < field.grid.rings; ++ring) {
@@ -48,8 +48,8 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector, dou
                              .copy = copy};
       const std::uint64_t entity = key.entity(field.grid.identity);
       const Met met = meet(field, key, entity, pairs);
-      for (const PathPair& pair : pairs) {
-        const PathPair* other = one_fan ? reciprocal(pairs, pair) : nullptr;
+      for (const PathPair& pair : pairs.found) {
+        const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
         if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
         const double power =
             std::norm(met.strength) *
@@ -85,10 +85,10 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector, dou
     const std::complex<double> weight =
         std::sqrt(static_cast<double>(full.power) / static_cast<double>(full.chosen)) *
         weights(entity);
-    for (const PathPair& pair : pairs)
+    for (const PathPair& pair : pairs.found)
       if (pair.out_index == full.out && pair.back_index == full.back) {
         returns.push_back(heard(field, pair, met, weight));
-        const PathPair* other = one_fan ? reciprocal(pairs, pair) : nullptr;
+        const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
         if (other) returns.push_back(heard(field, *other, met, weight));
         break;
       }

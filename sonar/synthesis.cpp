@@ -46,9 +46,11 @@ void multiply_add(const std::complex<float>* grid, const std::complex<float>* sp
 
 }  // namespace
 
-Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler) {
-  plan_.emplace_back(pulse, recording, max_doppler);
+Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+                         const std::function<double(double)>& filter) {
+  plan_.emplace_back(pulse, recording, max_doppler, filter);
 }
+double Synthesizer::half_band() const noexcept { return plan_.front().pulse.half_band(); }
 Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 

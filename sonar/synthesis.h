@@ -1,9 +1,11 @@
 #pragma once
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "sonar/delay_curve.h"
 #include "sonar/pulse.h"
 #include "sonar/returns.h"
 
@@ -53,7 +55,10 @@ class Synthesizer {
  public:
   /// \param max_doppler  largest |η − 1| any return will have
   /// \throws InputError ("sample_rate") if the phones' sampling is too slow for the band
-  Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler);
+  /// \param filter  real response that the pulse is passed through, over the frequency from its
+  /// centre [Hz]; none: 1. What is added up of several is of the same shape whatever the filter.
+  Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+              const std::function<double(double)>& filter = {});
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
@@ -62,6 +67,13 @@ class Synthesizer {
   /// the record are cut, not wrapped.
   [[nodiscard]] Baseband baseband(std::span<const Return> returns,
                                   std::span<const Vec3> phones) const;
+
+  /// Adds returns whose delays are curves, one by one: cost phones × returns × samples of a pulse.
+  void add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
+                  Baseband& baseband) const;
+
+  /// The pulse has nothing further than this from its centre frequency [Hz].
+  [[nodiscard]] double half_band() const noexcept;
 
   /// Adds scale·p₊ to the phones' samples: its real part where they are pressure, p₊·e^{−i2πf(t +
   /// epoch)}, real and imaginary part in turn, where they are complex. \param samples [channels ×

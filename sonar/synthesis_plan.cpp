@@ -46,12 +46,14 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
 
 }  // namespace
 
-Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler)
+Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
+                        const std::function<double(double)>& filter)
     : recording((check(sent, record, doppler), record)),
       max_doppler(doppler),
       pulse_duration(sent.duration()),
       pulse(sent,
-            record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate),
+            record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate,
+            filter),
       expansion(pulse) {
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
   const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;

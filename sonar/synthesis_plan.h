@@ -18,7 +18,8 @@ namespace asdic {
 /// P·sample_rate and P·baseband rate are both whole and products of 2, 3, 5, 7, and the carrier is
 /// a whole number of 1/P: bin k of the baseband's FFT is bin k + carrier_bin of the passband's.
 struct Synthesizer::Plan {
-  Plan(const Pulse& pulse, const Recording& recording, double max_doppler);
+  Plan(const Pulse& pulse, const Recording& recording, double max_doppler,
+       const std::function<double(double)>& filter);
 
   Recording recording;
   double max_doppler;

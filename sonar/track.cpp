@@ -1,6 +1,7 @@
 #include "sonar/track.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace asdic {
 
@@ -14,6 +15,21 @@ Kinematics Track::at(double time) const {
   const Waypoint& from = *std::prev(next);
   const Vec3 velocity = (next->position - from.position) / (next->time - from.time);
   return {.position = from.position + (time - from.time) * velocity, .velocity = velocity};
+}
+
+std::optional<double> Track::course_at(double time) const {
+  const auto bearing = [](const Vec3& v) -> std::optional<double> {
+    if (v.x() == 0.0 && v.y() == 0.0) return std::nullopt;
+    return std::atan2(v.x(), v.y());
+  };
+  if (waypoints.empty()) return bearing(start.velocity);
+  std::optional<double> course;
+  for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
+    if (course && waypoints[i].time > time) break;
+    const auto leg = bearing(waypoints[i + 1].position - waypoints[i].position);
+    if (leg) course = leg;
+  }
+  return course;
 }
 
 }  // namespace asdic

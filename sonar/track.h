@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core/units.h"
@@ -22,6 +23,10 @@ struct Track {
   std::vector<Waypoint> waypoints;  ///< strictly increasing in time
 
   [[nodiscard]] Kinematics at(double time) const;
+
+  /// Bearing of its horizontal motion [rad]: at rest before the first waypoint the one it will
+  /// take, after the last (or between two in one place) the one it took. None if it never moves.
+  [[nodiscard]] std::optional<double> course_at(double time) const;
 };
 
 }  // namespace asdic

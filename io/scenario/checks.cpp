@@ -119,6 +119,24 @@ std::string depth_at_time(double depth, double time) {
   return "depth " + to_text(depth) + " m" + at_time(time);
 }
 
+/// An array whose shape changes is looked at when each ping is sent.
+void check_shapes(const Scenario& scenario, int array, TomlTable& table) {
+  int ping = 0;
+  for (const Transmission& sent : transmissions(scenario)) {
+    const Vec3 reference = array_at(scenario, array, sent.time).position;
+    int phone = 0;
+    for (const Vec3& offset : phones_at(scenario, array, ++ping, sent.time)) {
+      const Vec3 place = reference + offset;
+      const WaterColumn water(scenario, place);
+      if (!water.holds(place.z()))
+        throw table.fault(
+            table.has("shapes") ? "shapes" : "behind", water.expected(),
+            "phone " + std::to_string(phone) + " at " + depth_at_time(place.z(), sent.time));
+      ++phone;
+    }
+  }
+}
+
 void check_platforms(TomlTable& root, const Scenario& scenario) {
   std::vector<TomlTable> platforms = root.one_or_more("platform"),
                          transmitters = root.one_or_more("transmitter"),
@@ -138,6 +156,10 @@ void check_platforms(TomlTable& root, const Scenario& scenario) {
   }
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     const ReceiverArray& array = scenario.arrays[i];
+    if (array.towed || !array.shapes.empty()) {
+      check_shapes(scenario, static_cast<int>(i), arrays[i]);
+      continue;
+    }
     for (std::size_t n = 0; n < array.phones.size(); ++n)
       check_carried(scenario, array.platform, array.offset + array.phones[n], end,
                     platforms[static_cast<std::size_t>(array.platform)],
@@ -176,6 +198,22 @@ void check_targets(TomlTable& root, const Scenario& scenario) {
             "a target at least 1 m from the " +
                 std::string(scenario.transmitters.size() > 1 ? "transmitter" : "platform"),
             to_text(distance) + " m" + at_time(one.time));
+    }
+  }
+}
+
+/// Interfering ships are in the water as long as there is sound that is recorded.
+void check_interferers(TomlTable& root, const Scenario& scenario) {
+  auto tables = root.tables("interferer");
+  double end = 0.0;
+  for (const PingTimes& ping : ping_times(scenario)) end = std::max(end, ping.end);
+  for (std::size_t i = 0; i < scenario.interferers.size(); ++i) {
+    const Track& track = scenario.interferers[i].track;
+    for (const Moment& moment : moments(scenario, track, Vec3::Zero(), tables[i], 0.0, end)) {
+      const Vec3 place = track.at(moment.time).position;
+      const WaterColumn water(scenario, place);
+      if (!water.holds(place.z()))
+        throw tables[i].fault(moment.key, water.expected(), depth_at_time(place.z(), moment.time));
     }
   }
 }
@@ -243,6 +281,7 @@ void check_size(TomlTable& root, const Scenario& scenario) {
 void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_platforms(root, scenario);
   check_targets(root, scenario);
+  check_interferers(root, scenario);
   check_size(root, scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
     check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));

@@ -8,6 +8,8 @@
 namespace asdic::scenario {
 namespace {
 
+const double default_wind_speed = Scenario{}.wind_speed;
+
 /// Ranges at which two boundaries can be nearest: all nodes, and places between where one is
 /// curved.
 std::vector<double> places_to_look(const Environment& ocean) {
@@ -41,6 +43,23 @@ void check_water(TomlTable& bottom, const Environment& ocean) {
                        "none");
 }
 
+/// `roughness` [m], or "wind": that of the wind's sea.
+void read_roughness(TomlTable& surface, TomlTable& environment, Boundary& boundary) {
+  if (!surface.has("roughness")) return;
+  if (surface.is_text("roughness")) {
+    surface.choice("roughness", {"wind"});
+    constexpr Quantity wind{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
+    boundary.roughness.rms_height =
+        pierson_moskowitz_height(environment.number("wind_speed", wind, default_wind_speed));
+  } else {
+    boundary.roughness.rms_height =
+        surface.number("roughness", {.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0});
+  }
+  boundary.roughness.floor_db = surface.number(
+      "roughness_floor_db", {.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0},
+      boundary.roughness.floor_db);
+}
+
 Transect read_transect(TomlTable table) {
   Transect transect;
   if (table.has("origin")) {
@@ -68,6 +87,7 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   read_boundary_materials(bottom, reading, ocean, std::nullopt, ocean.bottom);
   bottom.finish();
   read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
+  read_roughness(surface, table, ocean.surface);
   surface.finish();
   return ocean;
 }

@@ -72,9 +72,15 @@ void read_field(TomlTable& table, bool moves, ScattererField& field) {
       field.motion.current = {current[0], current[1]};
     }
   }
-  if (table.has("coherence_time"))
+  const bool timed = table.has("coherence_time");
+  if (table.flag("frozen", !timed && std::isinf(field.statistics.coherence_time))) {
+    if (timed)
+      throw table.fault("coherence_time", "none for scatterers that never change (frozen = true)");
+    field.statistics.coherence_time = infinity;
+  } else {
     field.statistics.coherence_time =
-        table.number("coherence_time", {.noun = "time", .unit = "s", .low = 0.0, .high = infinity});
+        table.number("coherence_time", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9}, 0.0);
+  }
   if (table.has("k_shape")) {
     field.statistics.k_shape = table.number("k_shape", {.noun = "shape", .low = 0.05, .high = 1e4});
     field.statistics.correlation_length = table.number(
@@ -83,11 +89,16 @@ void read_field(TomlTable& table, bool moves, ScattererField& field) {
   }
 }
 
-VolumeLayer read_layer(TomlTable& table) {
+VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {
   VolumeLayer layer;
   const std::vector<double> depth = table.numbers("depth", depth_quantity);
   if (depth.size() != 2 || depth[1] <= depth[0])
     throw table.fault("depth", "two depths, the deeper one last");
+  if (!is_layered(ocean))
+    throw table.fault("depth", "no layers of the volume where the ocean varies with range");
+  if (depth[0] < ocean.surface.depth || depth[1] > ocean.bottom.depth)
+    throw table.fault("depth", "a layer between the surface (" + to_text(ocean.surface.depth) +
+                                   " m) and the bottom (" + to_text(ocean.bottom.depth) + " m)");
   layer.top = depth[0];
   layer.bottom = depth[1];
   layer.strength_db = table.number("strength_db", strength);
@@ -122,7 +133,8 @@ void read_reverberation(TomlTable table, Scenario& scenario) {
     read_field(bottom, false, settings.bottom_field);
     bottom.finish();
   }
-  for (TomlTable& layer : table.tables("volume")) settings.volume.push_back(read_layer(layer));
+  for (TomlTable& layer : table.tables("volume"))
+    settings.volume.push_back(read_layer(layer, scenario.environment));
   table.finish();
   set_sea(settings.surface, scenario.wind_speed,
           scenario.environment.water.at(scenario.environment.surface.depth).c);

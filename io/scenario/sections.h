@@ -18,8 +18,10 @@ void read_platforms(std::vector<TomlTable> tables, Scenario& scenario);
 void read_transmitters(std::vector<TomlTable> tables, const std::filesystem::path& folder,
                        Scenario& scenario);
 void read_arrays(std::vector<TomlTable> tables, Scenario& scenario);
+void read_interferers(std::vector<TomlTable> tables, const std::filesystem::path& folder,
+                      Scenario& scenario);
 void read_targets(std::vector<TomlTable> tables, Scenario& scenario);
-void read_noise(TomlTable table, Scenario& scenario);
+void read_noise(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
 void read_reverberation(TomlTable table, Scenario& scenario);
 void read_propagation(TomlTable table, Scenario& scenario);
 void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scenario);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -5,6 +6,93 @@
 #include "io/scenario/tracks.h"
 
 namespace asdic::scenario {
+
+namespace {
+
+constexpr Quantity strength_quantity{
+    .noun = "target strength", .unit = "dB", .low = -200.0, .high = 200.0};
+
+/// `bow_db`, `beam_db`, `stern_db`, or `angle_deg` and `level_db`.
+AspectTable read_aspect(TomlTable table) {
+  AspectTable aspect;
+  if (table.has("angle_deg")) {
+    exclude(table, "angle_deg", {"bow_db", "beam_db", "stern_db"});
+    const std::vector<double> angles = table.numbers(
+        "angle_deg", {.noun = "aspect", .unit = "degrees", .low = 0.0, .high = 360.0});
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      if (i > 0 && angles[i] <= angles[i - 1])
+        throw table.fault(
+            "angle_deg[" + std::to_string(i) + "]",
+            "an aspect above the one before it, " + to_text(angles[i - 1]) + " degrees",
+            to_text(angles[i]) + " degrees");
+      aspect.aspect.push_back(radians(angles[i]));
+    }
+    aspect.strength_db = table.numbers("level_db", strength_quantity);
+    if (aspect.strength_db.size() != angles.size())
+      throw table.fault("level_db", "as many values as angles, " + std::to_string(angles.size()));
+  } else {
+    aspect.aspect = {0.0, 0.5 * pi, pi};
+    for (const char* key : {"bow_db", "beam_db", "stern_db"})
+      aspect.strength_db.push_back(table.number(key, strength_quantity));
+  }
+  table.finish();
+  return aspect;
+}
+
+Highlight read_highlight(TomlTable table) {
+  constexpr Quantity length{.noun = "offset", .unit = "m", .low = -1000.0, .high = 1000.0};
+  Highlight highlight;
+  highlight.offset = table.vector("offset", length);
+  if (table.has("aspect")) {
+    exclude(table, "aspect", {"strength_db"});
+    highlight.aspect = read_aspect(table.table("aspect"));
+  } else {
+    highlight.strength_db = table.number("strength_db", strength_quantity);
+  }
+  table.finish();
+  return highlight;
+}
+
+Fluctuation read_fluctuation(TomlTable& table) {
+  const std::vector<std::string> names{"none", "swerling-1", "swerling-2", "swerling-3",
+                                       "swerling-4"};
+  const std::string name = table.choice("fluctuation", names, names.front());
+  return static_cast<Fluctuation>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// What sends sound back, and how much.
+void read_body(TomlTable& table, Target& target) {
+  constexpr Quantity heading{.noun = "heading", .unit = "degrees", .low = -360.0, .high = 360.0};
+  constexpr Quantity axis{.noun = "length", .unit = "m", .low = 0.0, .high = 2000.0, .above = true};
+  if (table.has("highlight")) {
+    exclude(table, "highlight", {"strength_db", "aspect"});
+    for (TomlTable& one : table.tables("highlight"))
+      target.highlights.push_back(read_highlight(std::move(one)));
+  } else if (table.has("aspect")) {
+    exclude(table, "aspect", {"strength_db"});
+    target.aspect = read_aspect(table.table("aspect"));
+  } else {
+    target.strength_db = table.number("strength_db", strength_quantity);
+  }
+  if (table.has("hull")) {
+    TomlTable hull = table.table("hull");
+    target.hull = Hull{.length = hull.number("length", axis), .beam = hull.number("beam", axis)};
+    hull.finish();
+    if (target.highlights.empty())
+      throw table.fault("hull", "no \"hull\" without highlights that it could hide");
+  }
+  if (table.has("heading_deg")) {
+    target.heading = radians(table.number("heading_deg", heading));
+  } else if (!(target.highlights.empty() && !target.aspect) && !target.track.course_at(0.0)) {
+    static_cast<void>(table.number("heading_deg", heading));  // required: it never moves
+  }
+  target.fluctuation = read_fluctuation(table);
+  const bool by_scan = target.fluctuation == Fluctuation::swerling_1 ||
+                       target.fluctuation == Fluctuation::swerling_3;
+  if (by_scan) target.scan_pings = static_cast<int>(table.integer("scan_pings", 1, 1'000'000));
+}
+
+}  // namespace
 
 void read_targets(std::vector<TomlTable> tables, Scenario& scenario) {
   for (TomlTable& table : tables) {
@@ -31,8 +119,7 @@ void read_targets(std::vector<TomlTable> tables, Scenario& scenario) {
     }
     if (target.track.waypoints.empty())
       target.track.start.velocity = table.vector("velocity", velocity_component, Vec3::Zero());
-    target.strength_db = table.number(
-        "strength_db", {.noun = "target strength", .unit = "dB", .low = -200.0, .high = 200.0});
+    read_body(table, target);
     constexpr int most = std::numeric_limits<int>::max();
     target.first_ping = static_cast<int>(table.integer("first_ping", 1, most, 1));
     target.last_ping = static_cast<int>(table.integer("last_ping", 1, most, most));

@@ -42,6 +42,10 @@ void write_boundary(TomlWriter& out, const std::string& path, const Boundary& bo
   out.table(path);
   if (!boundary.shape) out.number("depth", boundary.depth);
   write_material(out, boundary.material);
+  if (!boundary.roughness.smooth()) {
+    out.number("roughness", boundary.roughness.rms_height);
+    out.number("roughness_floor_db", boundary.roughness.floor_db);
+  }
   if (!boundary.shape) return;
   out.table(path + ".shape");
   out.text("interpolation", name(boundary.shape->interpolation()));

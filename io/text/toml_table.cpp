@@ -101,6 +101,11 @@ bool TomlTable::is_table(const std::string& key) {
   return value != nullptr && value->table() != nullptr;
 }
 
+bool TomlTable::is_text(const std::string& key) {
+  const TomlValue* value = find(key);
+  return value != nullptr && std::holds_alternative<std::string>(value->data);
+}
+
 bool TomlTable::is_array(const std::string& key) {
   const TomlValue* value = find(key);
   return value != nullptr && std::holds_alternative<TomlValue::Array>(value->data);

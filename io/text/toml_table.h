@@ -33,6 +33,7 @@ class TomlTable {
 
   [[nodiscard]] bool has(const std::string& key);
   [[nodiscard]] bool is_table(const std::string& key);  ///< there, and a table
+  [[nodiscard]] bool is_text(const std::string& key);   ///< there, and a string
   [[nodiscard]] bool is_array(const std::string& key);  ///< there, and an array
 
   double number(const std::string& key, const Quantity& quantity);

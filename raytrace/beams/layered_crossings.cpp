@@ -52,9 +52,11 @@ std::optional<LayeredCrossings> LayeredCrossings::make(const Environment& enviro
       !water.munk_parameters() &&
       (water.interpolation() == Interpolation::c_linear || water.depths().size() == 1);
   const double top = environment.surface.depth, bottom = environment.bottom.depth;
-  if (!c_linear || environment.section || environment.surface.shape || environment.bottom.shape ||
-      !alpha.is_constant() || limits.max_depth <= bottom || ranges.front() < 0.0 ||
-      !(source_depth > top && source_depth < bottom))
+  const bool rough =
+      !environment.surface.roughness.smooth() || !environment.bottom.roughness.smooth();
+  if (!c_linear || rough || environment.section || environment.surface.shape ||
+      environment.bottom.shape || !alpha.is_constant() || limits.max_depth <= bottom ||
+      ranges.front() < 0.0 || !(source_depth > top && source_depth < bottom))
     return std::nullopt;
   constexpr double same_line = 1e-7;  // [m]
   LayeredCrossings result;

@@ -39,6 +39,13 @@ double grazing_at(const RayParameter& ray, double speed) {
   return std::atan2(std::sqrt(std::max(0.0, ray.sine2(speed))), ray.slowness * speed);
 }
 
+/// Of the coherent wave, by so many bounces. Exactly 1 where the boundary is smooth.
+double left_by_roughness(const Roughness& rough, double sine, double sound_speed, double frequency,
+                         int bounces) noexcept {
+  if (rough.smooth() || bounces == 0) return 1.0;
+  return std::pow(coherent_reflection(rough, sine, 2.0 * pi * frequency / sound_speed), bounces);
+}
+
 }  // namespace
 
 PathBuilder::PathBuilder(const Environment& environment, const Column& column, double frequency)
@@ -46,6 +53,7 @@ PathBuilder::PathBuilder(const Environment& environment, const Column& column, d
       column_(column),
       absorption_db_per_metre_(1e-3 * (absorption_db_per_km(environment.absorption, frequency) +
                                        environment.attenuation_db_per_km.at(0.0))),
+      frequency_(frequency),
       water_at_surface_{.speed = column.surface_speed(),
                         .density = environment.water_density.at(environment.surface.depth)},
       water_at_bottom_{.speed = column.bottom_speed(),
@@ -111,6 +119,18 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
                      rays.slowness * c_surface, p.surface_grazing, tops) *
       reflections_of(environment_.bottom.material, water_at_bottom_, rays.sine(c_bottom),
                      rays.slowness * c_bottom, p.bottom_grazing, bottoms);
+
+  for (const bool top : {true, false}) {
+    const Roughness& rough = (top ? environment_.surface : environment_.bottom).roughness;
+    if (rough.smooth()) continue;
+    const Rays& grazing = top ? p.surface_grazing : p.bottom_grazing;
+    for (std::size_t i = 0; i < rays_at_once; ++i) {
+      const double left = left_by_roughness(rough, std::sin(grazing[i]), top ? c_surface : c_bottom,
+                                            frequency_, top ? tops[i] : bottoms[i]);
+      p.reflection.real[i] *= left;
+      p.reflection.imag[i] *= left;
+    }
+  }
 
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   p.q = abs(p.range_per_slowness) * rays.sine(column_.source_speed()) / column_.source_speed() *
@@ -180,12 +200,16 @@ std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surfa
   std::complex<double> product = 1.0;
   if (surface_bounces > 0) {
     const double c = column_.surface_speed();
+    product *= left_by_roughness(environment_.surface.roughness, std::sin(grazing_at(ray, c)), c,
+                                 frequency_, surface_bounces);
     product *= integer_power(reflection_coefficient(environment_.surface.material,
                                                     grazing_at(ray, c), water_at_surface_),
                              surface_bounces);
   }
   if (bottom_bounces > 0) {
     const double c = column_.bottom_speed();
+    product *= left_by_roughness(environment_.bottom.roughness, std::sin(grazing_at(ray, c)), c,
+                                 frequency_, bottom_bounces);
     product *= integer_power(
         reflection_coefficient(environment_.bottom.material, grazing_at(ray, c), water_at_bottom_),
         bottom_bounces);

@@ -45,6 +45,7 @@ class PathBuilder {
   const Environment& environment_;
   const Column& column_;
   double absorption_db_per_metre_;
+  double frequency_;
   WaterAtBoundary water_at_surface_, water_at_bottom_;
 };
 

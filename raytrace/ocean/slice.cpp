@@ -31,10 +31,14 @@ SoundSpeedSection section_along(const SoundSpeedSection& section, double x0, dou
 Boundary boundary_along(const Boundary& boundary, double x0, double cos_beta) {
   if (!boundary.shape) return boundary;
   if (std::abs(cos_beta) < across)
-    return {.depth = boundary.depth_at(x0), .material = boundary.material_at(x0), .shape = {}};
+    return {.depth = boundary.depth_at(x0),
+            .material = boundary.material_at(x0),
+            .shape = {},
+            .roughness = boundary.roughness};
   return {.depth = boundary.depth_at(x0),
           .material = boundary.material,
-          .shape = boundary.shape->along(x0, cos_beta)};
+          .shape = boundary.shape->along(x0, cos_beta),
+          .roughness = boundary.roughness};
 }
 
 }  // namespace

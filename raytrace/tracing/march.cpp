@@ -316,7 +316,12 @@ bool March::reflect_at(BoundaryKind kind) {
   }
   const WaterAtBoundary beside{.speed = water.c,
                                .density = ocean_.environment.water_density.at(y_.depth)};
-  const std::complex<double> coefficient = reflection_coefficient(*material, grazing, beside);
+  std::complex<double> coefficient = reflection_coefficient(*material, grazing, beside);
+  const Roughness& rough =
+      (surface ? ocean_.environment.surface : ocean_.environment.bottom).roughness;
+  if (!rough.smooth())
+    coefficient *=
+        coherent_reflection(rough, std::sin(grazing), 2.0 * pi * ocean_.frequency / water.c);
   out_.bounces.push_back({.boundary = kind, .grazing = grazing, .range = y_.range - source_range_});
   history_.reflection *= coefficient;
   history_.reflection_phase += std::arg(coefficient);

@@ -106,6 +106,85 @@ TEST(ScenarioReader, EveryScatteringLawCanBeChosen) {
   EXPECT_EQ(std::get<NrlSurface>(s.reverberation.surface).gamma2, 3.8);
 }
 
+TEST(ScenarioReader, ReverberationIsReadKeyByKey) {
+  const auto read = [](std::vector<std::string> overrides) {
+    return parse_scenario(small_scenario, "small.toml", overrides).reverberation;
+  };
+  const ReverberationSettings plain = read({});
+  EXPECT_FALSE(plain.bottom);
+  EXPECT_TRUE(plain.volume.empty());
+  EXPECT_TRUE(plain.surface_scatters);
+  EXPECT_EQ(plain.azimuths, 36);
+  EXPECT_EQ(plain.surface_field.statistics.coherence_time, 0.0);
+  EXPECT_EQ(plain.surface_field.motion.kind, ScattererMotion::Kind::still);
+
+  const ReverberationSettings all = read(
+      {"reverberation.resolve_azimuth=true", "reverberation.scatterers_per_cell=3",
+       "reverberation.most_returns=50000",
+       R"(reverberation.surface={kind="table", grazing_deg=[5, 40], strength_db=[-50, -30], )"
+       R"(motion="bragg", receding_share=0.25, current=[1, -2], coherence_time=4})",
+       R"(reverberation.bottom={kind="ellis-crowe", nu_db=-18, k_shape=0.8, correlation_length=80})",
+       R"(reverberation.volume=[{depth=[100, 300], strength_db=-72, sheets=2, )"
+       R"(motion="spread", speed_rms=0.5}])"});
+  EXPECT_TRUE(all.resolve_azimuth);
+  EXPECT_EQ(all.scatterers_per_cell, 3);
+  EXPECT_EQ(all.most_returns, 50'000U);
+  const auto& table = std::get<ScatteringTable>(all.surface);
+  EXPECT_NEAR(table.strength(radians(22.5)), -40.0, 1e-9);
+  EXPECT_EQ(table.strength(0.0), -50.0);
+  EXPECT_EQ(all.surface_field.motion.kind, ScattererMotion::Kind::bragg);
+  EXPECT_EQ(all.surface_field.motion.receding_share, 0.25);
+  EXPECT_EQ(all.surface_field.motion.current, Vec2(1.0, -2.0));
+  EXPECT_EQ(all.surface_field.statistics.coherence_time, 4.0);
+  ASSERT_TRUE(all.bottom);
+  EXPECT_EQ(std::get<EllisCrowe>(*all.bottom).nu_db, -18.0);
+  EXPECT_EQ(all.bottom_field.statistics.k_shape, 0.8);
+  EXPECT_EQ(all.bottom_field.statistics.correlation_length, 80.0);
+  EXPECT_TRUE(std::isinf(all.bottom_field.statistics.coherence_time));  // a bottom stays
+  ASSERT_EQ(all.volume.size(), 1U);
+  EXPECT_EQ(all.volume[0].bottom, 300.0);
+  EXPECT_EQ(all.volume[0].sheets, 2);
+  EXPECT_EQ(all.volume[0].field.motion.speed_rms, 0.5);
+  EXPECT_TRUE(std::isinf(
+      read({"reverberation.surface.frozen=true"}).surface_field.statistics.coherence_time));
+}
+
+TEST(ScenarioReader, FaultsOfReverberationNameTheKey) {
+  const auto fault = [](std::string override) -> std::string {
+    const std::vector<std::string> overrides{std::move(override)};
+    try {
+      static_cast<void>(parse_scenario(small_scenario, "small.toml", overrides));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"reverberation.azimuths=0", "reverberation.azimuths"},
+      {"reverberation.scatterers_per_cell=0", "reverberation.scatterers_per_cell"},
+      {"reverberation.most_returns=5", "reverberation.most_returns"},
+      {"reverberation.surface.kind=marsh", "reverberation.surface.kind"},
+      {"reverberation.surface.motion=waltz", "reverberation.surface.motion"},
+      {R"(reverberation.surface={motion="bragg", receding_share=2})", "receding_share"},
+      {R"(reverberation.surface={motion="spread"})", "speed_rms"},
+      {R"(reverberation.surface={current=[1]})", "two numbers"},
+      {R"(reverberation.surface={frozen=true, coherence_time=3})", "coherence_time"},
+      {R"(reverberation.surface={kind="table", grazing_deg=[5, 4], strength_db=[-3, -4]})",
+       "grazing_deg[1]"},
+      {R"(reverberation.surface={kind="table", grazing_deg=[5], strength_db=[-3, -4]})",
+       "strength_db"},
+      {R"(reverberation.bottom={kind="lambert", mu_db=5})", "reverberation.bottom.mu_db"},
+      {R"(reverberation.bottom={motion="bragg"})", "reverberation.bottom.motion"},
+      {R"(reverberation.bottom={k_shape=0})", "reverberation.bottom.k_shape"},
+      {R"(reverberation.volume=[{depth=[300, 100], strength_db=-70}])", "the deeper one last"},
+      {R"(reverberation.volume=[{depth=[100, 300]}])", "strength_db"},
+      {R"(reverberation.volume=[{depth=[100, 30000], strength_db=-70}])", "depth"},
+      {R"(reverberation.volume=[{depth=[100, 11000], strength_db=-70}])", "and the bottom"},
+  };
+  for (const auto& [override, told] : faults)
+    EXPECT_NE(fault(override).find(told), std::string::npos) << override << ": " << fault(override);
+}
+
 TEST(ScenarioReader, IncludedOceanGivesWhatTheScenarioDoesNot) {
   const support::TemporaryDirectory folder;
   std::filesystem::create_directory(folder / "oceans");

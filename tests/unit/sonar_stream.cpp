@@ -171,7 +171,7 @@ TEST(DirectBlast, ComesStraightAndWithItsOwnDoppler) {
   const DirectBlast blast = direct_blast(context);
   ASSERT_EQ(blast.heard.size(), 1U);
   const double closing = 10.0 * 1500.0 / distance;
-  EXPECT_NEAR(blast.heard[0].doppler, 1.0 / (1.0 - closing / 1500.0), 1e-12);
+  EXPECT_NEAR(blast.heard[0].heard.doppler, 1.0 / (1.0 - closing / 1500.0), 1e-12);
 }
 
 TEST(DirectBlast, IsNotHeardWhereItIsNotWanted) {

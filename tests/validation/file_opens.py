@@ -62,7 +62,7 @@ TABLES = {
     "bounces":
         "boundary grazing_deg range",
     "echoes":
-        "ping target channel outgoing returning delay doppler_factor level_db "
+        "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg",
     "patches":
         "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
@@ -71,7 +71,7 @@ TABLES = {
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
 SUMMARY = "present paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
-INTEGERS = {"ping", "leg", "target", "channel", "path", "outgoing", "returning", "surface_bounces",
+INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning", "surface_bounces",
             "bottom_bounces", "upper_turns",
             "lower_turns", "caustics", "first_bounce", "bounce_count", "boundary"}
 

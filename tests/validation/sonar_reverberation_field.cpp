@@ -148,8 +148,8 @@ TEST(ReverberationField, CoherenceOfARingIsABesselFunction) {
 }
 
 // Directions from all sides alike: sin(kd)/(kd), whichever way the phones lie. A layer 2 km up and
-// down around the vehicle, heard before its edges: a sphere of scatterers. N = 50·15, 4.9 sigma
-// 0.13.
+// down around the vehicle, heard before its edges: a sphere of scatterers. N = 30·15, 4.9 sigma
+// 0.16.
 TEST(ReverberationField, CoherenceOfAnIsotropicSeaIsASinc) {
   Scenario s = quiet_sea();
   s.platforms[0].track.start.position.z() = 2200.0;
@@ -163,7 +163,7 @@ TEST(ReverberationField, CoherenceOfAnIsotropicSeaIsASinc) {
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0.6, 0.64, 0.48)})
       s.arrays[0].phones.emplace_back(share * wavelength * way);
   const Sea sea(s);
-  const Coherence found = coherence(sea, 50, 1.67, 2.56, 0.06);
+  const Coherence found = coherence(sea, 30, 1.67, 2.56, 0.06);
   for (std::size_t n = 0; n < found.of.size(); ++n) {
     const double kd = 2.0 * pi / wavelength * s.arrays[0].phones[n + 1].norm();
     EXPECT_NEAR(found.of[n].real(), std::sin(kd) / kd, 4.9 / std::sqrt(2.0 * found.count)) << n;
@@ -363,27 +363,33 @@ Scenario bistatic() {
   return s;
 }
 
-// Source and receiver exchanged: the same returns, pair by pair (i, j) as (j, i): the delays agree
-// to rounding and amplitudes with them; only the directions are the other end's.
+// Source and receiver exchanged: the same returns, pair by pair (i, j) as (j, i), with the same
+// delays and amplitudes to rounding; only the directions are the other end's. A pair that is at the
+// very limit of what is heard may be on either side of it.
 TEST(ReverberationField, SourceAndReceiverMayChangePlaces) {
   Scenario s = bistatic();
   const Returns there = Sea(s).ping(1).returns();
   s.transmitters[0].platform = 1;
   s.arrays[0].platform = 0;
   const Returns back = Sea(s).ping(1).returns();
+  struct Sums {
+    std::complex<double> phased = 0.0;
+    double power = 0.0, size = 0.0;
+  };
   const auto sums = [](const Returns& returns) {
-    std::complex<double> sum = 0.0;
-    double power = 0.0;
+    Sums found;
     for (const Return& r : returns) {
-      sum += r.amplitude * std::polar(1.0, 40.0 * r.delay);
-      power += std::norm(r.amplitude);
+      found.phased += r.amplitude * std::polar(1.0, 40.0 * r.delay);
+      found.power += std::norm(r.amplitude);
+      found.size += std::abs(r.amplitude);
     }
-    return std::pair(sum, power);
+    return found;
   };
   EXPECT_GT(there.size(), 10'000U);
-  EXPECT_EQ(there.size(), back.size());
-  EXPECT_NEAR(sums(there).second, sums(back).second, 1e-9 * sums(back).second);
-  EXPECT_LT(std::abs(sums(there).first - sums(back).first), 1e-8 * std::abs(sums(there).first));
+  EXPECT_NEAR(double(there.size()), double(back.size()), 10.0);
+  const Sums one = sums(there), other = sums(back);
+  EXPECT_NEAR(one.power, other.power, 1e-6 * other.power);
+  EXPECT_LT(std::abs(one.phased - other.phased), 1e-6 * other.size);
 }
 
 // A bistatic pair brought together is the monostatic sonar, bit for bit.
@@ -436,16 +442,15 @@ TEST(ReverberationField, SuccessivePingsForgetAsTheLawSays) {
 
 // Sectors in place of scatterers: the same mean, covariance between phones and Doppler spectrum. A
 // vehicle that moves under Bragg waves, paths by the bottom (so that reciprocal pairs add
-// coherently), 100 pings of 16 samples. Power to √(2/1600) = 3.5 %, 4.9 sigma 17 %; coherences to
-// 4.9·√(2/3200) = 0.12; of the spectrum (bins of 1 Hz, 400 windows) every bin above a tenth of the
-// largest to 4.9·√(2/400) = 35 % of the largest.
+// coherently), 60 pings of 16 samples. Power to 4.9·√(2/960) = 22 %; coherences to 4.9·√(2/1920) =
+// 0.16; every bin of the spectrum (of 1 Hz, 240 windows) to 4.9·√(2/240) = 45 % of the largest.
 TEST(ReverberationField, SectorsAreTheScatterersStatistically) {
   Scenario s = support::even_sea();
   s.environment.bottom = {.depth = 1000.0, .material = FluidHalfSpace{}};
   s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
   s.platforms[0].track.start = {.position = {0.0, 0.0, 300.0}, .velocity = {5.0, 2.0, 0.0}};
   s.reverberation.surface_field.motion.kind = ScattererMotion::Kind::bragg;
-  s.reverberation.azimuths = 36;
+  s.reverberation.azimuths = 18;
   s.pulse = {.frequency = 1500.0, .duration = 0.25};
   s.arrays[0].phones = {Vec3::Zero(), Vec3(0.15, 0.1, 0.0), Vec3(0.0, 0.0, 0.2)};
   s.pings.sample_rate = 4000.0;
@@ -463,7 +468,7 @@ TEST(ReverberationField, SectorsAreTheScatterersStatistically) {
   const auto observe = [&](bool sectors) {
     Statistics found{.spectrum = std::vector<double>(frequencies.size())};
     const std::complex<double> one = 1.0;
-    for (std::uint32_t number = 1; number <= 100; ++number) {
+    for (std::uint32_t number = 1; number <= 60; ++number) {
       const PingReverberation ping = sea.ping(number);
       const Returns returns = sectors ? ping.sector_returns() : ping.plain_returns();
       found.returns = returns.size();
@@ -485,12 +490,12 @@ TEST(ReverberationField, SectorsAreTheScatterersStatistically) {
   };
   const Statistics plain = observe(false), fast = observe(true);
   EXPECT_LT(fast.returns, plain.returns / 2);
-  EXPECT_NEAR(fast.power / plain.power, 1.0, 0.17);
-  EXPECT_LT(std::abs(fast.across / fast.power - plain.across / plain.power), 0.12);
-  EXPECT_LT(std::abs(fast.down / fast.power - plain.down / plain.power), 0.12);
+  EXPECT_NEAR(fast.power / plain.power, 1.0, 0.22);
+  EXPECT_LT(std::abs(fast.across / fast.power - plain.across / plain.power), 0.16);
+  EXPECT_LT(std::abs(fast.down / fast.power - plain.down / plain.power), 0.16);
   const double most = *std::max_element(plain.spectrum.begin(), plain.spectrum.end());
   for (std::size_t k = 0; k < frequencies.size(); ++k)
-    EXPECT_NEAR(fast.spectrum[k] / most, plain.spectrum[k] / most, 0.35) << frequencies[k];
+    EXPECT_NEAR(fast.spectrum[k] / most, plain.spectrum[k] / most, 0.45) << frequencies[k];
   // The limit switches.
   Scenario limited = s;
   limited.reverberation.most_returns = plain.returns / 2;

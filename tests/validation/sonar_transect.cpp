@@ -261,7 +261,7 @@ TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {
       {.source = {.position = platform}, .receiver = {.position = platform}, .frequency = 4000.0},
       omni);
   int compared = 0;
-  std::vector<PathPair> pairs;
+  PathPairs pairs;
   for (int sector = 0; sector < 6; ++sector) {
     const double beta = 2.0 * pi * (sector + 0.5) / 6.0, bearing = s.transect.bearing + beta;
     if (fan->towards(bearing).tilt.empty()) continue;
@@ -269,7 +269,7 @@ TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {
     for (double range = 10.0; range < 4000.0; range += 20.0) {
       sheet.pairs_at(platform.head<2>() + range * Vec2(std::sin(bearing), std::cos(bearing)),
                      pairs);
-      for (const PathPair& pair : pairs) {
+      for (const PathPair& pair : pairs.found) {
         const double theta = pair.out->launch_elevation;  // straight rays, no bounces
         const double sine = std::abs(std::cos(theta) * std::cos(beta) * slope + std::sin(theta)) /
                             std::hypot(1.0, slope);

@@ -1,0 +1,56 @@
+#include "sonar/ambient_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/noise.h"
+#include "sonar/noise_spectrum.h"
+#include "sonar/sampling.h"
+
+namespace asdic {
+
+AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& paths)
+    : settings_(scenario.noise),
+      seed_(scenario.seed),
+      continuous_(scenario.pings.continuous),
+      rate_(recorded_rate(scenario)),
+      carrier_(recorded_carrier(scenario)) {
+  if (!settings_.any()) return;
+  const double low = carrier_ > 0.0 ? std::max(0.0, carrier_ - 0.5 * rate_) : 0.0;
+  recorded_power_ = noise_power(settings_, low, carrier_ + 0.5 * rate_);
+  if (settings_.plain()) return;
+  for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
+    first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
+    const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
+    arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
+                         scenario.arrays[a].phones, settings_.coherence, settings_.directions, c,
+                         NoiseKey{.seed = seed_,
+                                  .purpose = Draw::coherent_noise,
+                                  .first_channel = first_channels_.back()});
+  }
+  first_channels_.push_back(channels_of(scenario));
+}
+
+void AmbientNoise::add(PingRecord& record) const {
+  if (!settings_.any() || record.pressure.empty()) return;
+  const auto ping = static_cast<std::uint32_t>(record.ping);
+  if (settings_.plain()) {
+    const double level = *settings_.spectral_level_db;
+    add_white_noise(record.pressure, record.phones.size(),
+                    record.recording.is_complex() ? white_baseband_variance(level, rate_)
+                                                  : white_noise_variance(level, rate_),
+                    seed_, ping);
+    return;
+  }
+  const std::size_t row = record.recording.samples * record.recording.components();
+  // Pings of a stream leave at whole samples: the first sample of this part, counted from the
+  // scenario's start.
+  const std::int64_t first = continuous_ ? std::llround(record.start_time * rate_) : 0;
+  for (std::size_t a = 0; a < arrays_.size(); ++a)
+    arrays_[a].add(
+        std::span(record.pressure)
+            .subspan(first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row),
+        first, continuous_ ? 0 : ping);
+}
+
+}  // namespace asdic

@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "sonar/block_noise.h"
+#include "sonar/ping_record.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/scenario.h"
+
+namespace asdic {
+
+/// The sea's own noise at all phones of a scenario.
+///
+/// White noise, independent from phone to phone, is drawn sample by sample, ping by ping
+/// (sonar/noise.h). All other noise is BlockNoise: one coherent group an array, arrays independent
+/// of one another; separate pings are draws of their own, a stream is one draw of its absolute
+/// time.
+class AmbientNoise {
+ public:
+  AmbientNoise(const Scenario& scenario, const PropagationPaths& paths);
+
+  /// Adds the noise to a record's pressure.
+  void add(PingRecord& record) const;
+
+  /// Mean-square pressure within the recorded band [Pa²].
+  [[nodiscard]] double recorded_power() const noexcept { return recorded_power_; }
+
+ private:
+  const NoiseSettings settings_;
+  std::uint64_t seed_;
+  bool continuous_;
+  double rate_, carrier_, recorded_power_ = 0.0;
+  std::vector<BlockNoise> arrays_;           // [arrays], empty for plain noise
+  std::vector<std::size_t> first_channels_;  // [arrays + 1]
+};
+
+}  // namespace asdic

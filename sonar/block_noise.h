@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/random.h"
+#include "sonar/noise_coherence.h"
+
+namespace asdic {
+
+/// Which random numbers a noise is made of.
+struct NoiseKey {
+  std::uint64_t seed = 1;
+  Draw purpose = Draw::coherent_noise;
+  std::uint64_t first_channel = 0;  ///< of the first phone: < 2¹⁶ in all
+};
+
+/// Stationary Gaussian noise of a given spectrum and coherence, a function of a sample's number
+/// alone: whatever part of it is asked for, the same bits come out.
+///
+/// Blocks of N samples lie on a grid of N/2. Each is one period of keyed complex normals, scaled by
+/// the root of the density, correlated between phones by the factor of that frequency, transformed,
+/// and weighted by w = sin(π(n + ½)/N): w² of the two blocks at a sample add up to 1, so the
+/// variance is exact, and the spectrum is the given one smoothed by |W|², three bins of fs/N wide.
+/// N is at least a quarter of a second and 32 times the travel time across the array; the cross
+/// spectra of the farthest phones are smoothed likewise. docs/theory/noise.md.
+class BlockNoise {
+ public:
+  /// \param density  one-sided, of frequency [Pa²/Hz]; asked for at frequencies above 0
+  /// \param carrier  of complex baseband p₊·e^{−i2πft} [Hz]; 0: real pressure
+  /// \param phones   [n] positions [m]   \param coherence  between them
+  BlockNoise(const std::function<double(double)>& density, double sample_rate, double carrier,
+             std::span<const Vec3> phones, NoiseCoherence coherence,
+             const NoiseDirections& directions, double sound_speed, const NoiseKey& key);
+
+  /// Adds the samples `first` … to rows. \param rows  [phones × samples × components] [Pa]
+  void add(std::span<float> rows, std::int64_t first, std::uint32_t realisation) const;
+
+  [[nodiscard]] std::size_t block() const noexcept { return block_; }  ///< N
+  /// Of the coherence; null where phones are independent.
+  [[nodiscard]] const CoherenceFactors* factors() const noexcept {
+    return factors_ ? &*factors_ : nullptr;
+  }
+
+ private:
+  struct Scratch;
+  void draw(std::span<const std::int64_t> blocks, std::uint32_t realisation, Scratch& s) const;
+  void correlate(std::size_t blocks, Scratch& s) const;
+  void sound(std::size_t block, std::size_t phone, Scratch& s) const;
+
+  std::size_t phones_, block_, bins_;
+  bool complex_;
+  NoiseKey key_;
+  std::vector<float> scale_;   // [bins] of the normals
+  std::vector<float> window_;  // [block]
+  std::optional<CoherenceFactors> factors_;
+};
+
+}  // namespace asdic

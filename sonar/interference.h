@@ -1,0 +1,44 @@
+#pragma once
+#include <vector>
+
+#include "sonar/block_noise.h"
+#include "sonar/ping_record.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/scenario.h"
+
+namespace asdic {
+
+/// The noise of a scenario's interfering ships at its phones.
+///
+/// A ship's broadband signal is one BlockNoise of absolute time, its tonals run through. Each array
+/// hears it along the eigenrays from where the ship was to where the array's reference point is,
+/// found at nodes about half a second apart. Between nodes delay, amplitude and slowness of each
+/// path are straight lines in time, so the signal q(t − τ(t)) is shifted and stretched
+/// continuously; a path that is not there at one of them fades. A plane wave crosses the array.
+/// Nodes lie on the grid of absolute time in a stream: its parts join without a seam, and do not
+/// depend on where they begin. docs/theory/interference.md
+class Interference {
+ public:
+  Interference(const Scenario& scenario, const PropagationPaths& paths);
+
+  /// Adds the ships to a record's pressure, and to the record how they are heard at its first
+  /// sample.
+  void add(PingRecord& record) const;
+
+ private:
+  struct Clock;
+  struct Stretch;
+  [[nodiscard]] std::vector<HeardPath> heard_at(const Interferer& ship, int array,
+                                                double time) const;
+  [[nodiscard]] std::vector<Stretch> stretches(const Interferer& ship, int array,
+                                               const Clock& clock) const;
+
+  const Scenario& scenario_;
+  const PropagationPaths& paths_;
+  double frequency_;  ///< of the eigenrays' losses [Hz]
+  double rate_, carrier_;
+  std::vector<BlockNoise> sources_;  // [interferers]
+  double source_rate_, source_carrier_;
+};
+
+}  // namespace asdic
