@@ -19,7 +19,7 @@ def draw(data, ping):
     beams = panels[0, 0]
     mesh = style.image(beams, edges, style.cell_edges(m.angle), m.beam_db, LIMITS)
     processed.angle_axis(beams, m)
-    handles = processed.mark(beams, t["time"], m.angle_of(t), t)
+    handles = processed.mark(beams, t["time"], m.angle_of(t), t, data.target_names)
     handles += true_echoes(beams, data, ping, edges, lambda e: m.angle_of_travel(e.direction))
     style.subtitle(beams, f"{data.heading(ping)}  ·  {len(t['time'])} detections")
     style.colour_bar(fig, mesh, panels[:, 0] if several else beams,

@@ -128,7 +128,7 @@ def angle_axis(axes, m: Maps, vertical=True) -> None:
         axes.set_xlim(*((high, low) if m.kind == "line" else (low, high)))  # angles rise
 
 
-def mark(axes, x, y, t) -> list:
+def mark(axes, x, y, t, names=()) -> list:
     """Circles: targets' detections in their colours, others grey. → handles for a legend"""
     handles = []
     owner = t["target"].astype(int)
@@ -138,7 +138,7 @@ def mark(axes, x, y, t) -> list:
             continue
         colour = style.colour(target) if target >= 0 else "white"
         label = {-2: "the transmitter's own sound", -1: "other detections"}.get(
-            target, "detections of the target")
+            target, f"{style.name(names[target])}: found" if 0 <= target < len(names) else "found")
         handles += axes.plot(x[mine], y[mine], ls="none", marker="o", mfc="none",
                              ms=10 if target >= 0 else 5, mec=colour,
                              mew=1.6 if target >= 0 else 0.9, zorder=5,

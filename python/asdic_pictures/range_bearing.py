@@ -36,7 +36,7 @@ def draw(data, ping):
     mesh = axes.pcolormesh(m.angle, span, m.beam_db[:, good].T, cmap=style.MAP, vmin=LIMITS[0],
                            vmax=LIMITS[1], shading="nearest", rasterized=True)
     processed.angle_axis(axes, m, vertical=False)
-    handles = processed.mark(axes, m.angle_of(t), t["range"] / 1000.0, t)
+    handles = processed.mark(axes, m.angle_of(t), t["range"] / 1000.0, t, data.target_names)
     centre = data.phones(ping).mean(axis=0)
     for index, name, place, present in data.targets(ping):
         if not present:

@@ -1,5 +1,7 @@
 #include "sonar/processing/matched_filter.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -137,24 +139,25 @@ MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const dou
   const auto half_row = static_cast<std::ptrdiff_t>(like.samples / 2);
   for (const double doppler : dopplers_) {
     const double low = (replica.lowest_frequency() - room) * doppler - like.carrier;
-    const auto first = static_cast<std::ptrdiff_t>(std::floor(low / spacing));
+    first_.push_back(static_cast<std::ptrdiff_t>(std::floor(low / spacing)));
     const double centre = replica.centre_frequency() * doppler - like.carrier;
     if (std::abs(centre) > 0.5 * like.sample_rate)
       throw InputError({.where = "dopplers",
                         .got = "a factor of " + std::to_string(doppler),
                         .expected = "one whose echo lies within the band"});
-    first_.push_back(first);
-    const double energy = replica.energy() / doppler;
+  }
+  weights_.resize(dopplers_.size() * bins_);
+  tbb::parallel_for(std::size_t{0}, dopplers_.size(), [&](std::size_t f) {
+    const double energy = replica.energy() / dopplers_[f];
     const double scale = 1.0 / (static_cast<double>(like.samples) * energy);
     for (std::size_t k = 0; k < bins_; ++k) {
-      const std::ptrdiff_t bin = first + static_cast<std::ptrdiff_t>(k);
-      std::complex<double> weight = 0.0;  // nothing outside the row's band
-      if (std::abs(bin) < half_row)
-        weight = scale * std::conj(replica.spectrum(
-                             like.carrier + static_cast<double>(bin) * spacing, doppler));
-      weights_.emplace_back(weight);
+      const std::ptrdiff_t bin = first_[f] + static_cast<std::ptrdiff_t>(k);
+      if (std::abs(bin) < half_row)  // nothing outside the row's band
+        weights_[f * bins_ + k] = std::complex<float>(
+            scale * std::conj(replica.spectrum(like.carrier + static_cast<double>(bin) * spacing,
+                                               dopplers_[f])));
     }
-  }
+  });
 }
 
 void MatchedFilterBank::transform(std::span<const std::complex<float>> row,
@@ -166,12 +169,23 @@ void MatchedFilterBank::transform(std::span<const std::complex<float>> row,
 
 void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectrum,
                                std::complex<float>* out) const {
-  const auto n = static_cast<std::ptrdiff_t>(row_);
+  // Bins below the carrier lie at the end of the row; what would lie beyond either has no weight.
+  const auto n = static_cast<std::ptrdiff_t>(row_), count = static_cast<std::ptrdiff_t>(bins_);
   const std::complex<float>* weight = weights_.data() + k * bins_;
-  for (std::size_t i = 0; i < bins_; ++i) {
-    const std::ptrdiff_t bin = first_[k] + static_cast<std::ptrdiff_t>(i);
-    out[i] = spectrum[((bin % n) + n) % n] * weight[i];
-  }
+  const auto multiply = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t shift) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) {
+      const std::complex<float> x = spectrum[first_[k] + i + shift], w = weight[i];
+      out[i] = {x.real() * w.real() - x.imag() * w.imag(),
+                x.real() * w.imag() + x.imag() * w.real()};
+    }
+  };
+  const auto within = [&](std::ptrdiff_t i) { return std::clamp<std::ptrdiff_t>(i, 0, count); };
+  const std::ptrdiff_t lowest = within(-n - first_[k]), zero = within(-first_[k]),
+                       end = within(n - first_[k]);
+  std::fill(out, out + lowest, 0.0F);
+  multiply(lowest, zero, n);
+  multiply(zero, end, 0);
+  std::fill(out + end, out + count, 0.0F);
   std::fill(out + bins_, out + length_, 0.0F);
   ComplexFft<float>(length_).inverse(out);
 }

@@ -271,14 +271,14 @@ TEST(CellAveraging, FalseAlarmRateIsTheOneThatWasSet) {
   EXPECT_GT(naive, 1.2e-3);
 }
 
-// The second window's mean scatters a little less than the first's, and is not exactly exponential:
-// the 20 %.
+// The split window's mean is not that of exponential cells; its number of them is a measured one.
+// It must hold to the 5 % that normaliser.cpp tells; the count's own deviation is 0.6 %.
 TEST(SplitWindow, FalseAlarmRateIsNearlyTheOneThatWasSet) {
   const auto [rate_set, naive] = alarm_rates({.method = Normaliser::split_window,
                                               .guard_cells = 2.0,
                                               .reference_cells = 12.0,
                                               .false_alarm_probability = 1e-3});
-  EXPECT_NEAR(rate_set, 1e-3, 0.2e-3);
+  EXPECT_NEAR(rate_set, 1e-3, 0.05e-3);
   EXPECT_GT(naive, 1.2e-3);
 }
 

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/processing/delay_table.h"
+#include "sonar/processing/scoring.h"
+
+namespace asdic {
+namespace {
+
+// Between its nodes a branch is Hermite's cubic through delays and slopes: over 200 m steps of a
+// Munk ocean, where delays bend by h⁴/384·τ'''' ≈ 10⁻⁹ s, within a microsecond of the eigenray
+// itself away from caustics. Straight lines between nodes would be off by h²/8·τ'' ≈ 10⁻⁵ s.
+TEST(DelayTableTest, IsTheEigenraysDelayBetweenItsNodes) {
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::munk();
+  ocean.bottom = {.depth = 5000.0, .material = Rigid{}};
+  const EigenraySolver solver(ocean);
+  const PathLimits limits{.max_surface_bounces = 1, .max_bottom_bounces = 1};
+  std::vector<double> ranges;
+  for (int i = 1; i <= 100; ++i) ranges.push_back(200.0 * i);
+  const DelayTable table(solver, 4500.0, 125.0, ranges, 4000.0, limits);
+  int compared = 0;
+  for (const double range : {3050.0, 7777.0, 12510.0, 18130.0})
+    for (const Arrival& path : solver.find(4500.0, 125.0, range, 4000.0, limits))
+      for (const auto& branch : table.branches()) {
+        if (branch.history != history_of(path)) continue;
+        const auto node = table.at(branch, range);
+        if (!node || std::abs(node->elevation - path.launch_elevation) > 0.01) continue;
+        EXPECT_NEAR(node->delay, path.delay, 1e-6) << range;
+        EXPECT_NEAR(node->slope, path.horizontal_slowness, 1e-6);
+        ++compared;
+      }
+  EXPECT_GE(compared, 12);
+  EXPECT_FALSE(table.at(table.branches().front(), 1e6).has_value());
+}
+
+Detection at(double time, double doppler, const Vec3& look, double snr_db = 20.0) {
+  return {.time = time, .doppler = doppler, .look = look, .cosine = look.y(), .snr_db = snr_db};
+}
+
+// A line to the north hears an echo from the east, and its own transmitter from the north.
+TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
+  const ArrayShape line{.kind = ArrayKind::line, .axis = Vec3::UnitY(), .length = 10.0};
+  const std::vector<TrueEcho> echoes{
+      {.target = 0, .time = 10.0, .doppler = 1.002, .level_db = 80.0, .travel = -Vec3::UnitX()},
+      {.target = direct_sound,
+       .time = 3.0,
+       .doppler = std::nan(""),
+       .level_db = infinity,
+       .travel = -Vec3::UnitY()}};
+  const std::vector<TrueTarget> targets{{.target = 0, .present = true, .position = {7500.0, 0, 0}},
+                                        {.target = 1, .present = true, .position = {0, 9000.0, 0}}};
+  const Resolution cell{.time = 0.1, .doppler = 0.001, .direction = 0.1};
+  Detection right = at(10.05, 1.0025, Vec3::UnitX());
+  right.locations = {{.position = {7450.0, 30.0, 0.0}, .range = 7450.0, .bearing = 1.5668},
+                     {.position = {-7450.0, 30.0, 0.0}, .range = 7450.0, .bearing = -1.5668}};
+  const std::vector<Detection> found{
+      right,
+      at(10.05, 1.0025, -Vec3::UnitX(), 10.0),  // the other side of a line is the same to it
+      at(10.2, 1.002, Vec3::UnitX()),           // too late
+      at(10.0, 1.004, Vec3::UnitX()),           // another speed
+      at(10.0, 1.002, Vec3::UnitY()),           // another direction
+      at(3.02, 0.99, Vec3::UnitY())};           // the transmitter itself
+  const PingScore score =
+      score_detections(found, echoes, targets, line, Vec3::Zero(), cell, 1.0, 20.0);
+  EXPECT_EQ(score.owner, (std::vector<int>{0, 0, -1, -1, -1, direct_sound}));
+  EXPECT_EQ(score.hits, 1);
+  EXPECT_EQ(score.misses, 0);  // target 1 has no echo: it is not missed
+  EXPECT_EQ(score.false_alarms, 3);
+  EXPECT_TRUE(score.targets[0].hit);
+  EXPECT_EQ(score.targets[0].detection, 0);  // the louder one
+  EXPECT_NEAR(score.targets[0].position_error, std::hypot(50.0, 30.0), 1e-9);
+  EXPECT_FALSE(score.targets[1].audible);
+  // Nothing is missed that was not searched for.
+  const PingScore nothing =
+      score_detections({}, echoes, targets, line, Vec3::Zero(), cell, 11.0, 20.0);
+  EXPECT_EQ(nothing.misses, 0);
+  EXPECT_EQ(score_detections({}, echoes, targets, line, Vec3::Zero(), cell, 1.0, 20.0).misses, 1);
+}
+
+// On a sweep's ridge an error of the Doppler factor moves the time by κ times it.
+TEST(Scoring, FollowsASweepsRidge) {
+  const ArrayShape point;
+  const std::vector<TrueEcho> echoes{{.target = 0, .time = 10.0, .doppler = 1.0}};
+  const std::vector<TrueTarget> targets{{.target = 0, .present = true}};
+  const Resolution cell{.time = 0.01, .doppler = 0.01, .delay_per_doppler = 40.0, .direction = 2.0};
+  const std::vector<Detection> along{at(10.2, 1.005, Vec3::UnitX())},
+      across{at(10.2, 0.995, Vec3::UnitX())};
+  const auto hits = [&](const std::vector<Detection>& found) {
+    return score_detections(found, echoes, targets, point, Vec3::Zero(), cell, 1.0, 20.0).hits;
+  };
+  EXPECT_EQ(hits(along), 1);
+  EXPECT_EQ(hits(across), 0);
+}
+
+}  // namespace
+}  // namespace asdic
