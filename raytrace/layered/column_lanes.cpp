@@ -162,10 +162,39 @@ bool to_vertex(const std::vector<Layer>& layers, std::size_t from, const RayLane
   return false;
 }
 
+/// Cuts inside an analytic law are no knots of the fan: rays of one interval turn in different
+/// layers there, and each is walked by itself.
+template <bool detailed>
+ColumnLanes walk_one_by_one(const Column& column, const RayLanes& rays) noexcept {
+  ColumnLanes sums;
+  for (std::size_t i = 0; i < rays_at_once; ++i) {
+    const RayParameter ray(rays.reference_speed, rays.sigma[i]);
+    const ColumnSums one = column.sums(ray);
+    LegLanes* const legs[3] = {&sums.up, &sums.middle, &sums.down};
+    const Pass* const passes[3] = {&one.up, &one.middle, &one.down};
+    for (std::size_t leg = 0; leg < 3; ++leg) {
+      legs[leg]->per_slowness[i] = passes[leg]->range / ray.slowness;
+      legs[leg]->d_range[i] = passes[leg]->d_range;
+    }
+    if constexpr (detailed) {
+      const ColumnDetails detail = column.details(ray);
+      const PassDetail* const details[3] = {&detail.up, &detail.middle, &detail.down};
+      for (std::size_t leg = 0; leg < 3; ++leg) {
+        legs[leg]->intercept[i] = details[leg]->time - ray.slowness * passes[leg]->range;
+        legs[leg]->length[i] = details[leg]->length;
+      }
+    }
+    sums.turns_above = one.turns_above;
+    sums.turns_below = one.turns_below;
+  }
+  return sums;
+}
+
 template <bool detailed>
 ColumnLanes walk(const Column& column, const RayLanes& rays) noexcept {
   ColumnLanes sums;
   const auto& layers = column.layers();
+  if (layers.front().law == Layer::Law::munk) return walk_one_by_one<detailed>(column, rays);
   if (column.upper() < column.lower()) {
     Rays top = rays.sine(layers[column.upper()].c_top);
     for (std::size_t i = column.upper(); i < column.lower(); ++i) {
