@@ -12,6 +12,22 @@ namespace {
 
 constexpr std::size_t most_slices = 64;
 
+/// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
+/// to a degree beyond (as same_path in moving_paths.h).
+PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
+  PathLimits needed{.max_surface_bounces = 0, .max_bottom_bounces = 0, .max_launch_angle = 0.0};
+  for (const Arrival& path : known) {
+    needed.max_surface_bounces = std::max(needed.max_surface_bounces, path.surface_bounces);
+    needed.max_bottom_bounces = std::max(needed.max_bottom_bounces, path.bottom_bounces);
+    needed.max_launch_angle =
+        std::max(needed.max_launch_angle, std::abs(path.launch_elevation) + radians(1.0));
+  }
+  limits.max_surface_bounces = std::min(limits.max_surface_bounces, needed.max_surface_bounces);
+  limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);
+  limits.max_launch_angle = std::min(limits.max_launch_angle, needed.max_launch_angle);
+  return limits;
+}
+
 }  // namespace
 
 PathLimits limits_of(const PropagationSettings& settings) noexcept {
@@ -68,7 +84,7 @@ Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequen
 
 Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits) const {
-  if (layered_) return find(from, to, frequency, limits);
+  if (layered_) return find(from, to, frequency, limits_around(known, limits));
   const Plane line = plane(from, to);
   const RayTracer tracer(slice(along_.environment(), line.origin, line.cos_beta), frequency);
   Arrivals followed;
