@@ -167,26 +167,29 @@ bool to_vertex(const std::vector<Layer>& layers, std::size_t from, const RayLane
 template <bool detailed>
 ColumnLanes walk_one_by_one(const Column& column, const RayLanes& rays) noexcept {
   ColumnLanes sums;
+  LegLanes* const legs[3] = {&sums.up, &sums.middle, &sums.down};
+  Column::All one;
   for (std::size_t i = 0; i < rays_at_once; ++i) {
     const RayParameter ray(rays.reference_speed, rays.sigma[i]);
-    const ColumnSums one = column.sums(ray);
-    LegLanes* const legs[3] = {&sums.up, &sums.middle, &sums.down};
-    const Pass* const passes[3] = {&one.up, &one.middle, &one.down};
+    if (i == 0 || rays.sigma[i] != rays.sigma[i - 1]) {  // lanes left over repeat the last one
+      if constexpr (detailed)
+        one = column.all(ray);
+      else
+        one.sums = column.sums(ray);
+    }
+    const Pass* const passes[3] = {&one.sums.up, &one.sums.middle, &one.sums.down};
+    const PassDetail* const details[3] = {&one.details.up, &one.details.middle, &one.details.down};
     for (std::size_t leg = 0; leg < 3; ++leg) {
       legs[leg]->per_slowness[i] = passes[leg]->range / ray.slowness;
       legs[leg]->d_range[i] = passes[leg]->d_range;
-    }
-    if constexpr (detailed) {
-      const ColumnDetails detail = column.details(ray);
-      const PassDetail* const details[3] = {&detail.up, &detail.middle, &detail.down};
-      for (std::size_t leg = 0; leg < 3; ++leg) {
+      if constexpr (detailed) {
         legs[leg]->intercept[i] = details[leg]->time - ray.slowness * passes[leg]->range;
         legs[leg]->length[i] = details[leg]->length;
       }
     }
-    sums.turns_above = one.turns_above;
-    sums.turns_below = one.turns_below;
   }
+  sums.turns_above = one.sums.turns_above;
+  sums.turns_below = one.sums.turns_below;
   return sums;
 }
 
