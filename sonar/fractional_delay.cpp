@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "sonar/kaiser_window.h"
 
 namespace asdic {
 
@@ -13,12 +14,9 @@ FractionalDelay::FractionalDelay() : weights_((places + 1) * taps) {
   for (int place = 0; place <= places; ++place) {
     for (int tap = 0; tap < taps; ++tap) {
       const double x = tap - (taps / 2 - 1) - static_cast<double>(place) / places;
-      const double inside = 1.0 - x * x / (half * half);
-      const double window = inside < 0.0 ? 0.0
-                                         : std::cyl_bessel_i(0.0, beta * std::sqrt(inside)) /
-                                               std::cyl_bessel_i(0.0, beta);
       const double sinc = x == 0.0 ? 1.0 : std::sin(pi * x) / (pi * x);
-      weights_[static_cast<std::size_t>(place * taps + tap)] = static_cast<float>(sinc * window);
+      weights_[static_cast<std::size_t>(place * taps + tap)] =
+          static_cast<float>(sinc * kaiser_window(x / half, beta));
     }
   }
 }

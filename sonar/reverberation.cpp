@@ -188,20 +188,13 @@ Return PingReverberation::heard(const ScatteringField& field, const PathPair& pa
 void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t ring,
                                     const ScattererWeights& weights, PathPairs& scratch,
                                     Returns& returns) const {
-  for (int sector = 0; sector < field.grid.azimuths; ++sector) {
-    const std::uint32_t copies = copies_of(field, ring, sector);
-    for (std::uint32_t copy = 0; copy < copies; ++copy) {
-      const ScattererKey key{.ring = ring,
-                             .sector = static_cast<std::uint32_t>(sector),
-                             .copies = copies,
-                             .copy = copy};
-      const std::uint64_t entity = key.entity(field.grid.identity);
-      const Met met = meet(field, key, entity, scratch);
-      if (scratch.found.empty()) continue;
-      const std::complex<double> weight = weights(entity);
-      for (const PathPair& pair : scratch.found) returns.push_back(heard(field, pair, met, weight));
-    }
-  }
+  for (int sector = 0; sector < field.grid.azimuths; ++sector)
+    for_each_scatterer(field, ring, sector, scratch,
+                       [&](const ScattererKey&, std::uint64_t entity, const Met& met) {
+                         const std::complex<double> weight = weights(entity);
+                         for (const PathPair& pair : scratch.found)
+                           returns.push_back(heard(field, pair, met, weight));
+                       });
 }
 
 Returns PingReverberation::plain_returns() const {

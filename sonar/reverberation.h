@@ -84,6 +84,21 @@ class PingReverberation {
   /// Its pairs of paths into `pairs`; nothing if there are none.
   Met meet(const ScatteringField& field, const ScattererKey& key, std::uint64_t entity,
            PathPairs& pairs) const;
+  /// Calls visit(key, entity, met) for every scatterer of a cell; its pairs are in `pairs` then.
+  template <class Visit>
+  void for_each_scatterer(const ScatteringField& field, std::uint32_t ring, int sector,
+                          PathPairs& pairs, Visit&& visit) const {
+    const std::uint32_t copies = copies_of(field, ring, sector);
+    for (std::uint32_t copy = 0; copy < copies; ++copy) {
+      const ScattererKey key{.ring = ring,
+                             .sector = static_cast<std::uint32_t>(sector),
+                             .copies = copies,
+                             .copy = copy};
+      const std::uint64_t entity = key.entity(field.grid.identity);
+      const Met met = meet(field, key, entity, pairs);
+      if (!pairs.found.empty()) visit(key, entity, met);
+    }
+  }
   [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
                              std::complex<double> weight) const;
   void add_sector(const ScatteringField& field, int sector, double bin,

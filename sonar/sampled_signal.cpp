@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "sonar/kaiser_window.h"
 
 namespace asdic {
 namespace {
@@ -15,13 +16,12 @@ constexpr double kaiser_beta = 4.0 * pi;  // stop band of −110 dB, reached wit
 
 using WindowTable = std::array<double, table_steps + 3>;
 
-/// I₀(β√(1 − x²))/I₀(β), x = 0…1.
+/// x = 0…1.
 WindowTable make_window() {
   WindowTable table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double x = std::min(1.0, static_cast<double>(i) / table_steps);
-    table[i] = std::cyl_bessel_i(0.0, kaiser_beta * std::sqrt(1.0 - x * x)) /
-               std::cyl_bessel_i(0.0, kaiser_beta);
+    table[i] = kaiser_window(x, kaiser_beta);
   }
   return table;
 }

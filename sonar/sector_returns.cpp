@@ -39,40 +39,32 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector, dou
   PathPairs pairs;
   const double speed = field.sheet.ends().receiver_speed;
   const bool one_fan = field.sheet.one_fan();
-  for (std::uint32_t ring = 0; ring < field.grid.rings; ++ring) {
-    const std::uint32_t copies = copies_of(field, ring, sector);
-    for (std::uint32_t copy = 0; copy < copies; ++copy) {
-      const ScattererKey key{.ring = ring,
-                             .sector = static_cast<std::uint32_t>(sector),
-                             .copies = copies,
-                             .copy = copy};
-      const std::uint64_t entity = key.entity(field.grid.identity);
-      const Met met = meet(field, key, entity, pairs);
-      for (const PathPair& pair : pairs.found) {
-        const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
-        if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
-        const double power =
-            std::norm(met.strength) *
-            (std::norm(pair.amplitude) + (other ? std::norm(other->amplitude) : 0.0));
-        const double sine = -field.sheet.arriving(pair).z() * speed;
-        const int elevation =
-            std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
-        const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / bin);
-        Bin& into =
-            bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
-        into.power += static_cast<float>(power);
-        const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
-        if (uniform(entity, number) * static_cast<double>(into.power) >= power) continue;
-        into = {.power = into.power,
-                .chosen = static_cast<float>(power),
-                .ring = ring,
-                .copies = copies,
-                .copy = copy,
-                .out = static_cast<std::uint16_t>(pair.out_index),
-                .back = static_cast<std::uint16_t>(pair.back_index)};
-      }
+  const auto put = [&](const ScattererKey& key, std::uint64_t entity, const Met& met) {
+    for (const PathPair& pair : pairs.found) {
+      const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
+      if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
+      const double power = std::norm(met.strength) * (std::norm(pair.amplitude) +
+                                                      (other ? std::norm(other->amplitude) : 0.0));
+      const double sine = -field.sheet.arriving(pair).z() * speed;
+      const int elevation =
+          std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
+      const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / bin);
+      Bin& into =
+          bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
+      into.power += static_cast<float>(power);
+      const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
+      if (uniform(entity, number) * static_cast<double>(into.power) >= power) continue;
+      into = {.power = into.power,
+              .chosen = static_cast<float>(power),
+              .ring = key.ring,
+              .copies = key.copies,
+              .copy = key.copy,
+              .out = static_cast<std::uint16_t>(pair.out_index),
+              .back = static_cast<std::uint16_t>(pair.back_index)};
     }
-  }
+  };
+  for (std::uint32_t ring = 0; ring < field.grid.rings; ++ring)
+    for_each_scatterer(field, ring, sector, pairs, put);
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const Bin& full = bins[i];
     if (full.chosen <= 0.0F) continue;

@@ -14,8 +14,7 @@ std::vector<Waypoint> read_waypoints(TomlTable& table);
 /// Keys that cannot stand beside another one. \throws InputError at the first that does
 void exclude(TomlTable& table, const std::string& key, const std::vector<std::string>& others);
 
-/// The index of the one in a list that a key names; without the key the first. \param plural  what
-/// the list is of, for the message
+/// The index of the one in a list that a key names; without the key the first.
 template <class Named>
 int read_reference(TomlTable& table, const std::string& key, const std::vector<Named>& list) {
   if (!table.has(key)) return 0;
