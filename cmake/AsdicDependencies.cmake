@@ -7,6 +7,7 @@ find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
+find_package(SQLite3 3.35 REQUIRED)
 
 # asdic_pkg_config(<target> <module>...): an imported interface target out of pkg-config modules.
 function(asdic_pkg_config target)
@@ -25,3 +26,7 @@ asdic_pkg_config(sndfile::sndfile sndfile)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 add_library(random123::random123 INTERFACE IMPORTED GLOBAL)
 set_target_properties(random123::random123 PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${RANDOM123_INCLUDE_DIR}")
+
+find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)
+add_library(asio::asio INTERFACE IMPORTED GLOBAL)  # standalone: no Boost
+set_target_properties(asio::asio PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${ASIO_INCLUDE_DIR}" INTERFACE_COMPILE_DEFINITIONS ASIO_STANDALONE)

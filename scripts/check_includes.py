@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 """The folders include one another in one direction only, and each borrowed library stays where it belongs.
 
-core <- raytrace <- reverb <- sonar <- io <- study <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; FFTW in one file of
-sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
+core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
+study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
 """
 import pathlib
 import re
 import sys
 
-ORDER = ["core", "raytrace", "reverb", "sonar", "io", "study", "app"]
+ORDER = ["core", "raytrace", "reverb", "sonar", "io", "study", "serve", "app"]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
-    "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io"],
-    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "study", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "study", "app"],
-    "Random123": ["core"], "nlohmann": ["io", "study", "app"], "CLI": ["app"], "spdlog": ["app"], "fmt/": ["app"],
+    "sqlite3": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
+    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "study", "serve", "app"],
+    "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "spdlog": ["app"], "fmt/": ["app"],
 }
 
 
