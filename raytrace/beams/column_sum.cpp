@@ -181,43 +181,6 @@ void ColumnSum::add_narrow_hats(const Crossings& x) {
   }
 }
 
-/// A Gaussian of constant width: over D = lanes·(row spacing) its logarithm changes by −a(2·dz·D +
-/// D²), a = cos²θ/2σ², and that by −2aD²; the phase turns evenly.
-void ColumnSum::add_evenly(std::size_t i, float* real, float* imaginary) const {
-  const auto row_spacing = static_cast<float>(spacing_);
-  const float step = static_cast<float>(lanes) * row_spacing;
-  const float a = sharpness_[i];
-  Lanes dz = offset_[i] + row_spacing * ramp();
-  Lanes bell = height_[i] * exponential(-a * dz * dz);
-  Lanes ratio = exponential(-a * step * (2.0F * dz + step));
-  const float ratio_of_ratio = ratio_of_ratio_[i];
-  Lanes c, s;
-  cos_sin(phase_[i] + wave_number_[i] * dz, c, s);
-  const float turn_c = turn_cosine_[i], turn_s = turn_sine_[i];
-  const float q_slope = q_[i] < 0.0F ? -growth_[i] : growth_[i];
-  Lanes q = std::abs(q_[i]) + q_slope * dz;
-  const float growth = q_slope * step;
-  auto k = static_cast<std::size_t>(first_[i]);
-  const auto last = static_cast<std::size_t>(last_[i]);
-  const auto put = [&](const Lanes& weight) {
-    store(load(real + k) + weight * c, real + k);
-    store(load(imaginary + k) + weight * s, imaginary + k);
-  };
-  for (; k + lanes <= last; k += lanes) {
-    put(bell * sqrt(q));
-    q += growth;
-    bell *= ratio;
-    ratio *= ratio_of_ratio;
-    const Lanes c_next = c * turn_c - s * turn_s;
-    s = s * turn_c + c * turn_s;
-    c = c_next;
-  }
-  if (k == last) return;
-  Lanes weight = bell * sqrt(q);  // not a number where q would be negative: behind the last row
-  where(ramp() >= static_cast<float>(last - k), weight) = 0.0F;
-  put(weight);
-}
-
 void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
   const Crossing crossing{.depth = x.depth[i],
                           .cosine = x.cosine[i],
