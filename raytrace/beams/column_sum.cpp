@@ -54,6 +54,26 @@ void ColumnSum::prepare_recurrences(std::size_t n) {
     store(load(&amplitude_[i]) * share_scale * per_sigma, &height_[i]);
     store(exponential(-(u * u) * (step * step)), &ratio_of_ratio_[i]);  // exp(−2aD²)
   }
+  find_even_ways(n);
+}
+
+/// Which crossings add_evenly is for: Way::even, told for all at once.
+void ColumnSum::find_even_ways(std::size_t n) {
+  is_even_.resize(n);
+  const auto spacing = static_cast<float>(setting_.spacing);
+  const float *growth_of = growth_.data(), *q_of = q_.data(), *cosine = cosine_.data(),
+              *least = least_.data();
+  const double *above = above_.data(), *below = below_.data();
+  const std::int32_t *first = first_.data(), *last = last_.data();
+  std::int32_t* is_even = is_even_.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const float growth = std::abs(growth_of[i]), q = std::abs(q_of[i]);
+    const auto reach = static_cast<float>(above[i] > below[i] ? above[i] : below[i]);
+    // the least width holds all over the beam, and q has no zero in it
+    const bool constant = (q > growth * reach) & ((q + growth * reach) * spacing < least[i]);
+    is_even[i] = constant & (cosine[i] >= 8.0F * spacing * growth) & (last[i] > first[i]);
+  }
 }
 
 ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
@@ -63,15 +83,20 @@ ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
   if (q == 0.0F) return Way::none;
   if (cosine_[i] < (is_hat ? 2.0F : 8.0F) * spacing * growth) return Way::plain;
   if (last_[i] <= first_[i]) return Way::none;
-  if (is_hat || !setting_.coherent || !(spacing_ > 0.0)) return Way::lanes;
-  const auto reach = static_cast<float>(std::max(above_[i], below_[i]));
-  const bool constant = q > growth * reach && (q + growth * reach) * spacing < least_[i];
-  return constant ? Way::even : Way::lanes;
+  return Way::lanes;
 }
 
 template <bool coherent, bool is_hat>
 void ColumnSum::add_rows(const Crossings& x) {
-  for (std::size_t i = 0; i < x.size(); ++i) add_crossing_rows<coherent, is_hat>(x, i);
+  const bool some_even = coherent && !is_hat && spacing_ > 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (some_even && is_even_[i] != 0) {
+      const std::size_t at = x.column[i] * stride_;
+      add_evenly(i, real_.data() + at, imaginary_.data() + at);
+    } else {
+      add_crossing_rows<coherent, is_hat>(x, i);
+    }
+  }
 }
 
 template <bool coherent, bool is_hat>
@@ -81,7 +106,6 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
   if (how == Way::plain) return add_plainly(x, i);
   float* real = real_.data() + x.column[i] * stride_;
   float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
-  if (how == Way::even) return add_evenly(i, real, imaginary);
   const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
   const float share_scale = spacing / root_of_two_pi;
   const auto row_spacing = static_cast<float>(spacing_);
