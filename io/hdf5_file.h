@@ -24,8 +24,8 @@ struct DatasetInfo {
 struct VirtualRows {
   std::filesystem::path file;  ///< relative: to the folder of the file that shows them
   std::string dataset;
-  Shape shape;                 ///< of that dataset; its rows may be smaller than those that show it
-  std::size_t first = 0;       ///< its first row to show
+  Shape shape;            ///< of that dataset; its rows may be smaller than those that show it
+  std::size_t first = 0;  ///< its first row to show
   std::size_t rows = 0;
 };
 

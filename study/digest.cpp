@@ -17,8 +17,7 @@ struct Digest::Impl {
 };
 
 Digest::Digest() : impl_(std::make_unique<Impl>()) {
-  if (impl_->context == nullptr ||
-      EVP_DigestInit_ex(impl_->context, EVP_sha256(), nullptr) != 1)
+  if (impl_->context == nullptr || EVP_DigestInit_ex(impl_->context, EVP_sha256(), nullptr) != 1)
     throw RunError("SHA-256 failed");
 }
 

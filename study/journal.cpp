@@ -140,9 +140,10 @@ struct Journal::Impl {
 void Journal::Impl::check_rows() {
   std::vector<std::uint64_t> bad;
   {
-    sqlite::Statement get(database,
-                          "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1) FROM row r"
-                          " LEFT JOIN series s ON s.idx=r.idx ORDER BY r.idx");
+    sqlite::Statement get(
+        database,
+        "SELECT r.idx,r.valid,r.fault,r.vals,r.kept,r.checksum,COALESCE(s.idx,-1) FROM row r"
+        " LEFT JOIN series s ON s.idx=r.idx ORDER BY r.idx");
     while (get.step()) {
       const Row row = row_at(get);
       const bool kept = get.integer(4) != 0;
@@ -343,8 +344,8 @@ void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row
   while (get.step()) {
     Row row = impl_->row_at(get);
     const bool kept = get.integer(4) != 0;
-    const bool good = get.text(5) == checksum(row, kept) &&
-                      (!kept || !pressure || impl_->add_series(row));
+    const bool good =
+        get.text(5) == checksum(row, kept) && (!kept || !pressure || impl_->add_series(row));
     if (!good) {
       const std::uint64_t index = row.index;
       get.reset();
@@ -354,6 +355,16 @@ void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row
     }
     take(std::move(row));
   }
+}
+
+void Journal::series_shapes(
+    IndexRange range,
+    const std::function<void(std::uint64_t, std::vector<std::size_t>&&)>& take) const {
+  const std::lock_guard lock(impl_->mutex);
+  sqlite::Statement get(impl_->database,
+                        "SELECT idx,shape FROM series WHERE idx>=? AND idx<? ORDER BY idx");
+  get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
+  while (get.step()) take(static_cast<std::uint64_t>(get.integer(0)), shape_of(get.text(1)));
 }
 
 std::filesystem::path journal_of(const std::filesystem::path& output) {

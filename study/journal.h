@@ -13,8 +13,8 @@ namespace asdic::study {
 ///
 /// What append() took is on the disk within a second, whatever happens to the process or to the
 /// machine (synchronous = FULL; a thread commits what waits for half a second). Each row carries a
-/// checksum; a row that does not match it is as if it had never been made. One process at a time has
-/// a journal open; the methods may be called by any thread, one at a time.
+/// checksum; a row that does not match it is as if it had never been made. One process at a time
+/// has a journal open; the methods may be called by any thread, one at a time.
 class Journal {
  public:
   /// Opens or makes it.
@@ -46,6 +46,10 @@ class Journal {
   /// \param pressure  with the time series
   /// \throws RunError if a row has been damaged since the journal was opened
   void rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const;
+  /// Which of them have a time series, and its shape.
+  void series_shapes(
+      IndexRange range,
+      const std::function<void(std::uint64_t index, std::vector<std::size_t>&& shape)>& take) const;
 
  private:
   struct Impl;

@@ -60,8 +60,9 @@ void Hdf5File::write_virtual(const std::string& dataset, const Shape& shape,
     if (part.rows == 0) continue;
     const Handle target = rows_of(shape, at, part.rows, part.shape);
     const Handle source = rows_of(part.shape, part.first, part.rows, part.shape);
-    impl_->check(H5Pset_virtual(properties, target, part.file.c_str(), part.dataset.c_str(), source),
-                 dataset, "referring to " + part.file.string());
+    impl_->check(
+        H5Pset_virtual(properties, target, part.file.c_str(), part.dataset.c_str(), source),
+        dataset, "referring to " + part.file.string());
     at += part.rows;
   }
   if (at != shape.front()) throw std::logic_error(dataset + ": parts do not fill the shape");
@@ -75,7 +76,7 @@ void Hdf5File::write_virtual(const std::string& dataset, const Shape& shape,
                   H5Dclose);
 }
 
-#define ASDIC_HDF5_ELEMENT(T)                                        \
+#define ASDIC_HDF5_ELEMENT(T)                                                \
   template void Hdf5File::write_virtual<T>(const std::string&, const Shape&, \
                                            std::span<const VirtualRows>, T);
 ASDIC_HDF5_ELEMENT(std::int8_t)
