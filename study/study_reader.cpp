@@ -5,9 +5,10 @@
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
-#include "study/realisation.h"
+#include "study/measure_reader.h"
 #include "study/sampler.h"
 #include "study/study.h"
+#include "study/summary_reader.h"
 #include "study/target_keys.h"
 #include "study/vary_reader.h"
 
@@ -73,17 +74,6 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
       keep(scenario::read_document(study.scenario_text, study.scenario_path, overrides), false);
 }
 
-void read_measures(TomlTable table, Study& study) {
-  study.measure.echo_level = table.flag("echo_level", false);
-  table.finish();
-}
-
-void read_summary(TomlTable table, Study& study) {
-  study.summary.confidence =
-      table.number("confidence", {.noun = "probability", .low = 0.5, .high = 0.999999}, 0.95);
-  table.finish();
-}
-
 }  // namespace
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
@@ -103,10 +93,10 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   TomlTable own(study.document);
   study.variables = read_vary(study.document, study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
-  read_measures(own.table("measure"), study);
-  read_summary(own.table("summary"), study);
   make_room(study.variables, study.scenario_path, study.scenario);
-  static_cast<void>(example_of(study));
+  study.measure = read_measure(own.table("measure"), example_of(study));
+  study.summary =
+      read_summary(own.table("summary"), study.document.find("summary"), columns(study));
   return study;
 }
 
