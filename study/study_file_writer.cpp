@@ -194,9 +194,10 @@ void Writer::write_pressure(const SeriesSource& series, const Shape& row) {
   const std::size_t inner =
       product({row.begin() + static_cast<std::ptrdiff_t>(axis) + 1, row.end()});
   const std::size_t lines = product(row) / std::max<std::size_t>(row[axis] * inner, 1);
-  Shape all = row, chunk = row;
-  all.insert(all.begin(), series.index.size());
-  chunk.insert(chunk.begin(), 1);
+  Shape all(row.size() + 1, 1);  // first of one, then of all
+  std::copy(row.begin(), row.end(), all.begin() + 1);
+  const Shape chunk = all;
+  all[0] = series.index.size();
   if (catalogue_.empty()) {
     file_.create_growing<float>(path, row, chunk);
   } else {

@@ -28,8 +28,8 @@ bool is_of_study(const std::string& assignment) {
 
 /// Keeps the study's own tables, or all but them.
 TomlValue keep(TomlValue document, bool own) {
-  std::erase_if(*document.table(),
-                [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
+  if (TomlValue::Table* table = document.table())
+    std::erase_if(*table, [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
   return document;
 }
 
@@ -60,7 +60,7 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
     if (!std::filesystem::exists(study.scenario_path))
       throw head.fault("scenario", "a scenario file",
                        "no such file \"" + study.scenario_path.string() + '"');
-    for (const TomlEntry& entry : *document.table())
+    for (const TomlEntry& entry : std::get<TomlValue::Table>(document.data))
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
