@@ -101,8 +101,7 @@ void PingReverberation::find_limits() {
     const auto count = static_cast<std::uint32_t>(sectors.size());
     const std::uint32_t step = sample_step(field);
     const auto found = over_rings<Found>(
-        field.grid.rings, step,
-        [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+        field.grid.rings, step, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
           const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
           for (std::uint32_t i = 0; i < count; ++i) {
             field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
