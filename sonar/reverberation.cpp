@@ -194,8 +194,9 @@ std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::ui
   // A cell is seen from source and receiver under no more than twice the angle of a sector: near
   // them, far from the anchor, it is divided.
   auto copies = static_cast<std::uint32_t>(field.grid.per_cell);
-  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
   const double range = (ring + 0.5) * field.grid.spacing;
+  if (range >= field.divided_below) return copies;
+  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
   for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
   return copies;
 }

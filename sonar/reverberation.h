@@ -36,8 +36,9 @@ struct ScatteringField {
   ScattererField field;  ///< motion and statistics
   Draw weights;          ///< purpose of their draws
   std::uint64_t boundary = 0;
-  double depth = 0.0;      ///< near the ends [m]
-  double thickness = 0.0;  ///< of a sheet of the volume [m]
+  double depth = 0.0;               ///< near the ends [m]
+  double thickness = 0.0;           ///< of a sheet of the volume [m]
+  double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
 };
 
 /// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
