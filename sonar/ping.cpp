@@ -114,9 +114,8 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return heard;
 }
 
-PingRecord PingSimulator::sound(int ping) const {
+PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   Stopwatch watch;
-  const Transmission& sent = transmission(ping);
   const Transmitter projector = projector_of(scenario_, sent);
   const Pulse& sent_pulse = pulse(sent.transmitter);
   const double frequency = sent_pulse.centre_frequency();
@@ -223,8 +222,10 @@ void PingSimulator::blank(PingRecord& record) const {
   }
 }
 
-PingRecord PingSimulator::simulate(int ping) const {
-  PingRecord record = sound(ping);
+PingRecord PingSimulator::simulate(int ping) const { return simulate(ping, transmission(ping)); }
+
+PingRecord PingSimulator::simulate(int ping, const Transmission& sent) const {
+  PingRecord record = sound(ping, sent);
   complete(record);
   return record;
 }

@@ -28,9 +28,13 @@ class PingSimulator {
   /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
   /// counted from 1
   [[nodiscard]] PingRecord simulate(int ping) const;
+  /// The same for a ping that is sent when and how the schedule does not say (serve/session.h).
+  /// \param ping  its number from 1, by which random numbers are drawn
+  [[nodiscard]] PingRecord simulate(int ping, const Transmission& sent) const;
   /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
   /// add these up (sonar/stream.h) and complete() the sum.
-  [[nodiscard]] PingRecord sound(int ping) const;
+  [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
+  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent) const;
   /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
   /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
   void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;

@@ -3,6 +3,8 @@
 namespace asdic::study {
 
 /// What is made of the rows.
-struct SummaryPlan {};
+struct SummaryPlan {
+  double confidence = 0.95;
+};
 
 }  // namespace asdic::study
