@@ -162,10 +162,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
          .latest = record.recording.start +
                    static_cast<double>(record.recording.samples) / record.recording.sample_rate}));
     record.timings.rays += watch.lap();
-    const Returns scattered = reverberation.back().returns();
     if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
-    append_channels(reverberated, synthesizer.baseband(scattered, phones));
+    append_channels(reverberated, synthesizer.baseband(reverberation.back(), phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);

@@ -139,7 +139,10 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
           .weights = part.weights,
           .boundary = part.id,
           .depth = depth(ends.source.position),
-          .thickness = part.thickness};
+          .thickness = part.thickness,
+          // Who lies this far off an end is nearer to it than half its range only within:
+          .divided_below =
+              2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm())};
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
