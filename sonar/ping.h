@@ -13,6 +13,7 @@
 #include "sonar/receiver_electronics.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
+#include "sonar/shared_propagation.h"
 #include "sonar/transmission.h"
 
 namespace asdic {
@@ -22,23 +23,29 @@ namespace asdic {
 /// come out.
 class PingSimulator {
  public:
-  /// \throws InputError naming the key at fault ("pings.sample_rate", "pulse.duration", …)
-  explicit PingSimulator(Scenario scenario);
+  /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
+  /// what comes out \throws InputError naming the key at fault ("pings.sample_rate",
+  /// "pulse.duration", …)
+  explicit PingSimulator(Scenario scenario, std::shared_ptr<SharedPropagation> shared = nullptr);
 
   /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
   /// counted from 1
   [[nodiscard]] PingRecord simulate(int ping) const;
+  /// The same for a ping that is sent when and how the schedule does not say (serve/session.h).
+  /// \param ping  its number from 1, by which random numbers are drawn
+  [[nodiscard]] PingRecord simulate(int ping, const Transmission& sent) const;
   /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
   /// add these up (sonar/stream.h) and complete() the sum.
-  [[nodiscard]] PingRecord sound(int ping) const;
+  [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
+  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent) const;
   /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
   /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
   void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
-  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_.along_transect(); }
-  [[nodiscard]] const PropagationPaths& paths() const noexcept { return paths_; }
+  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_->along_transect(); }
+  [[nodiscard]] const PropagationPaths& paths() const noexcept { return *paths_; }
   [[nodiscard]] const Pulse& pulse(int transmitter = 0) const noexcept {
     return pulses_[static_cast<std::size_t>(transmitter)];
   }
@@ -61,7 +68,8 @@ class PingSimulator {
   Scenario scenario_;
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
-  PropagationPaths paths_;
+  bool known_ocean_ = false;   // written before paths_
+  std::shared_ptr<const PropagationPaths> paths_;
   AmbientNoise noise_;
   Interference interference_;
   ReceiverElectronics receivers_;
