@@ -32,6 +32,13 @@ if [ "${1:-}" != --no-asan ]; then
   fi
 fi
 
+# Instructions of the kernels, on the portable build: what noise cannot disturb.
+if said=$(scripts/bench.sh --check 2>&1); then
+  verdict kernels good "$(grep -c ' %' <<<"$said") kernels within their counts"
+else
+  verdict kernels FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 if [ -z "${ASDIC:-}" ]; then
   cmake --preset ci >/dev/null && cmake --build --preset ci --target asdic_app >/dev/null
   ASDIC=$root/build/ci/bin/asdic

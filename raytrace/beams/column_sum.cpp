@@ -193,9 +193,12 @@ void ColumnSum::add_narrow_hats(const Crossings& x) {
       }
       dz += row_spacing;
     }
+    // A hat is zero beyond its rows, and columns are padded: as many rows for all cost less than
+    // branches that nobody can foretell.
+    const bool alike = half_ == Half::both && rows <= static_cast<int>(lanes);
     for (std::size_t l = 0; l < used; ++l) {
       const std::size_t base = x.column[i + l] * stride_ + static_cast<std::size_t>(first_[i + l]);
-      const int count = last_[i + l] - first_[i + l];
+      const int count = alike ? rows : last_[i + l] - first_[i + l];
       for (int m = 0; m < count; ++m) {
         const std::size_t from = static_cast<std::size_t>(m) * lanes + l;
         real_[base + static_cast<std::size_t>(m)] += re[from];

@@ -104,6 +104,20 @@ void BM_MarchingEigenrays(benchmark::State& state) {
 }
 BENCHMARK(BM_MarchingEigenrays)->DenseRange(0, 9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// To one receiver, at the far end and half way down.
+void BM_MarchingEigenraysToOne(benchmark::State& state) {
+  const support::CurvedOcean ocean =
+      support::curved_oceans()[static_cast<std::size_t>(state.range(0))];
+  const RayTracer tracer(ocean.environment, 500.0);
+  const ReceiverPoint receiver{ocean.range, 200.0};
+  for (auto _ : state)
+    benchmark::DoNotOptimize(marching_eigenrays(
+        tracer, 0.0, ocean.source_depth, std::span(&receiver, 1),
+        {.lowest = -1.2, .highest = 1.2, .max_surface_bounces = 6, .max_bottom_bounces = 6}));
+  state.SetLabel(ocean.name);
+}
+BENCHMARK(BM_MarchingEigenraysToOne)->DenseRange(0, 9)->Unit(benchmark::kMillisecond);
+
 void BM_TraceRay(benchmark::State& state) {
   const Environment ocean = deep_ocean(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(trace_ray(ocean, 4500.0, 0.1, 100e3));
