@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/layered/followed_branch.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
 #include "raytrace/tracing/marching_eigenrays.h"
@@ -190,6 +191,23 @@ BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
   }
   return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
           water_->fan ? &*water_->fan : nullptr, water_->layers};
+}
+
+std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
+                                              double receiver_depth, double range, double frequency,
+                                              const PathLimits& limits) const {
+  const bool horizontal = known.launch_elevation == 0.0;  // a ray that stays at its depth
+  if (!layered_ || horizontal || !(range >= least_range)) return std::nullopt;
+  if (source_depth == receiver_depth) {  // as in table()
+    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
+    receiver_depth += room_below ? depth_offset : -depth_offset;
+  }
+  return followed_branch(environment_, layers_,
+                         {.source_depth = source_depth,
+                          .receiver_depth = receiver_depth,
+                          .range = range,
+                          .frequency = frequency},
+                         known, limits);
 }
 
 Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,
