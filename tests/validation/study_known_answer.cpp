@@ -74,9 +74,12 @@ TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
   }
   // False alarms: 4000 chances of 1e-4; more than 6 have a probability below 1e-6.
   const SummaryTable& statistics = named(summary, "statistics");
-  for (std::size_t i = 0; i < statistics.values[0].size(); ++i)
-    if (statistics.columns[0].labels[i] == "false_alarm")
+  for (std::size_t i = 0; i < statistics.values[0].size(); ++i) {
+    const bool alarms = statistics.columns[0].labels[i] == "false_alarm";
+    if (alarms) {
       EXPECT_LE(value(statistics, "mean", i) * 4000.0, 6.0);
+    }
+  }
 }
 
 TEST(KnownAnswer, ATargetThatDoesNotFluctuateIsAnother) {
