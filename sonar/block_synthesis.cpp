@@ -99,10 +99,14 @@ BlockSynthesis::BlockSynthesis(const Synthesizer::Plan& plan, std::vector<Dopple
             .last_position = plan.last_position,
             .stride = stride_} {}
 
-std::vector<BlockSynthesis::Batch> BlockSynthesis::batches() const {
-  // As much memory as the grids may take, or as the phones' baseband takes if that is more.
+std::vector<BlockSynthesis::Batch> BlockSynthesis::batches(bool kept) const {
+  // Grids that are kept are transformed once, and batches may be small: what stays in cache is
+  // ordered faster. Others are transformed after every batch: as much memory as the grids may
+  // take, or as the phones' baseband takes if that is more.
+  constexpr std::size_t cached = std::size_t{8} << 20;
   const std::size_t bytes =
-      std::max(most_kept, phones_.size() * plan_.length * sizeof(std::complex<float>));
+      kept ? cached
+           : std::max(most_kept, phones_.size() * plan_.length * sizeof(std::complex<float>));
   const std::size_t most = bytes / returns_.bytes_each();
   std::vector<Batch> found;
   std::size_t held = 0;
@@ -149,12 +153,15 @@ Baseband BlockSynthesis::run() {
                                                       plan_.recording.sample_rate * plan_.rate) +
                                  1);
   result.values.resize(phones_.size() * plan_.length);
-  const std::vector<Batch> all = batches();
-  if (all.empty() || returns_.nodes.empty()) return result;
-
-  find_spectra();
+  if (returns_.nodes.empty()) return result;
   const std::size_t grids = phones_.size() * colours_ * returns_.nodes.size();
-  const bool keep = grids * stride_ * sizeof(std::complex<float>) <= most_kept;
+  // One batch for many phones: grids that stay in a thread's cache are faster.
+  constexpr std::size_t many = 8;
+  const bool keep = grids * stride_ * sizeof(std::complex<float>) <= most_kept &&
+                    (phones_.size() < many || batches(false).size() > 1);
+  const std::vector<Batch> all = batches(keep);
+  if (all.empty()) return result;
+  find_spectra();
   if (keep) kept_ = FftBuffer<std::complex<float>>(grids * stride_);
   for (const Batch& batch : all) {
     blocks_.resize(std::max(blocks_.size(), batch.end - batch.begin));

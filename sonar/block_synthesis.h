@@ -30,7 +30,7 @@ class BlockSynthesis {
   struct Batch {
     std::size_t begin = 0, end = 0;  // of the source's blocks
   };
-  [[nodiscard]] std::vector<Batch> batches() const;
+  [[nodiscard]] std::vector<Batch> batches(bool kept) const;
   void find_spectra();
   void lay_into_kept();
   [[nodiscard]] std::vector<std::size_t> cuts(const OrderedReturns::Band& band) const;

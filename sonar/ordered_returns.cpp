@@ -37,7 +37,7 @@ OrderedReturns::OrderedReturns(std::vector<DopplerBand> found, const Grid& grid,
 std::size_t OrderedReturns::bytes_each() const noexcept {
   std::size_t most = 0;
   for (const Band& band : bands) most = std::max(most, band.nodes);
-  return sizeof(Return) + 4 * sizeof(double) + 6 * sizeof(std::uint32_t) +
+  return sizeof(Return) + 5 * sizeof(double) + 6 * sizeof(std::uint32_t) +
          colours_ * 2 * sizeof(std::complex<float>) + (most > 1 ? most * sizeof(float) : 0);
 }
 
@@ -48,7 +48,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   const std::size_t n = first.back();
   source_.resize(n);
   for (auto* keys : {&sample_, &group_, &by_sample_, &order_}) keys->resize(n);
-  for (auto* array : {&middle, &slowness_x, &slowness_y, &slowness_z}) array->resize(n);
+  for (auto* array : {&middle, &slowness_x, &slowness_y, &slowness_z, &doppler_}) array->resize(n);
   for (auto* array : {&real, &imag}) array->resize(colours_ * n);
 
   const auto middle_of = [&](const Return& r) {
@@ -72,23 +72,20 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   });
   sort(n);
 
-  const auto return_at = [&](std::size_t i) -> const Return& {
-    const std::uint64_t source = source_[order_[i]];
-    return blocks[source >> 32].returns[source & 0xFFFFFFFFU];
-  };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 8192), [&](const auto& some) {
     for (std::size_t i = some.begin(); i < some.end(); ++i) {
-      const Return& r = return_at(i);
+      const std::uint64_t source = source_[order_[i]], in_block = source & 0xFFFFFFFFU;
+      const ReturnBlock& block = blocks[source >> 32];
+      const Return& r = block.returns[in_block];
       middle[i] = middle_of(r);
+      doppler_[i] = r.doppler;
       slowness_x[i] = r.slowness.x();
       slowness_y[i] = r.slowness.y();
       slowness_z[i] = r.slowness.z();
-      const std::uint64_t source = source_[order_[i]];
-      const auto& colours = blocks[source >> 32].colours;
       for (std::size_t k = 0; k < colours_; ++k) {
-        const std::complex<float> amplitude = colours.empty()
+        const std::complex<float> amplitude = block.colours.empty()
                                                   ? std::complex<float>(r.amplitude)
-                                                  : colours[(source & 0xFFFFFFFFU) * colours_ + k];
+                                                  : block.colours[in_block * colours_ + k];
         real[k * n + i] = amplitude.real();
         imag[k * n + i] = amplitude.imag();
       }
@@ -118,7 +115,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
     tbb::parallel_for(all, [&](const auto& some) {
       for (std::size_t i = some.begin(); i < some.end(); ++i) {
         const std::size_t row = band.first_weight + (i - band.ends.front()) * band.nodes;
-        expansion_[b].weights(return_at(i).doppler, std::span(weights).subspan(row, band.nodes));
+        expansion_[b].weights(doppler_[i], std::span(weights).subspan(row, band.nodes));
       }
     });
   }

@@ -55,6 +55,7 @@ class OrderedReturns {
   double pulse_duration_;
   std::size_t channels_, colours_;
   std::vector<std::uint64_t> source_;             // block << 32 | index in it
+  std::vector<double> doppler_;                   // in order
   std::vector<std::uint32_t> sample_, group_;     // of each, as they came
   std::vector<std::uint32_t> by_sample_, order_;  // permutations
   std::vector<std::uint32_t> counts_;
