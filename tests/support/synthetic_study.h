@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "study/run_study.h"
+#include "support/program.h"
 
 namespace asdic::support {
 
@@ -37,16 +38,18 @@ struct SyntheticStudy {
   [[nodiscard]] study::Work work() const {
     using study::Column;
     study::Work work;
-    work.imprint = {.identity = identity,
-                    .title = "synthetic",
-                    .seed = 1,
-                    .realisations = realisations,
-                    .design = "random",
-                    .text = "[study]\n",
-                    .scenario_text = "seed = 1\n",
-                    .columns = {{.name = "x", .unit = "m", .meaning = "input", .role = Column::Role::input},
-                                {.name = "y", .unit = "m", .meaning = "measure"},
-                                {.name = "reused", .unit = "1", .meaning = "how", .role = Column::Role::reuse}}};
+    work.imprint = {
+        .identity = identity,
+        .title = "synthetic",
+        .seed = 1,
+        .realisations = realisations,
+        .design = "random",
+        .text = "[study]\n",
+        .scenario_text = "seed = 1\n",
+        .columns = {
+            {.name = "x", .unit = "m", .meaning = "input", .role = Column::Role::input},
+            {.name = "y", .unit = "m", .meaning = "measure"},
+            {.name = "reused", .unit = "1", .meaning = "how", .role = Column::Role::reuse}}};
     work.realise = [*this](std::uint64_t index) { return row(index); };
     work.summarise = [](const study::Table& table) {
       double sum = 0.0;
@@ -62,12 +65,21 @@ struct SyntheticStudy {
     return work;
   }
 
-  /// Of the mean of y, the first measure.
+  /// Of the mean of y, the first measure: a real study with as many inputs gives its kind.
   [[nodiscard]] static study::RunningEstimate estimate() {
-    study::Study study;
-    study.variables = {{.name = "x"}};
-    study.measure.echo_level = true;
-    return study::RunningEstimate(study);
+    static const study::RunningEstimate empty = [] {
+      const TemporaryDirectory folder;
+      const auto path = folder.write("study.toml", std::string(small_scenario) + R"(
+[study]
+realisations = 100
+[vary]
+"target.0.strength_db" = { law = "uniform", low = 0, high = 10 }
+[measure]
+echo_level = true
+)");
+      return study::RunningEstimate(study::read_study(path));
+    }();
+    return empty;
   }
 };
 
