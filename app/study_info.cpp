@@ -60,7 +60,8 @@ std::string origin_of(const study::StudyFile& file) {
 }  // namespace
 
 bool is_study_file(const std::string& path) {
-  if (!is_hdf5(path)) return false;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || !is_hdf5(path)) return false;
   const Hdf5File file = Hdf5File::open(path);
   return file.has_attribute("", "filetype") && file.attribute_text("", "filetype") == "asdic study";
 }

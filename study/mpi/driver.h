@@ -4,7 +4,7 @@
 
 #include "study/run_study.h"
 
-// Studies over MPI: the only place that knows it. docs/theory/study-runs.md
+// Studies over MPI: the only place that knows it. docs/formats/study-results.md, "How a run goes"
 namespace asdic::study::mpi {
 
 /// MPI from here to the end of the program. Its calls are made by this thread alone.
