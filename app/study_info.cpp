@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/console.h"
 #include "io/result_file.h"
@@ -19,6 +20,8 @@ std::string short_number(double value) {
 
 /// A line per column: what lies between which values.
 std::string columns_of(const study::Table& table) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Table text({{.name = "column", .left = true},
               {.name = "unit", .left = true},
               {.name = "from"},
@@ -27,7 +30,7 @@ std::string columns_of(const study::Table& table) {
               {.name = "missing"},
               {.name = "meaning", .left = true}});
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    double low = INFINITY, high = -INFINITY, sum = 0.0;
+    double low = infinity, high = -infinity, sum = 0.0;
     std::size_t count = 0;
     for (const double value : table.values[c]) {
       if (!std::isfinite(value)) continue;
@@ -38,7 +41,7 @@ std::string columns_of(const study::Table& table) {
     }
     const study::Column& column = table.columns[c];
     text.row({column.name, column.unit, short_number(low),
-              short_number(count > 0 ? sum / static_cast<double>(count) : NAN), short_number(high),
+              short_number(count > 0 ? sum / static_cast<double>(count) : none), short_number(high),
               std::to_string(table.values[c].size() - count), column.meaning});
   }
   return text.text();
