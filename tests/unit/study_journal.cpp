@@ -107,12 +107,12 @@ TEST(Journal, ADamagedRowIsThrownAway) {
   const support::TemporaryDirectory folder;
   const SyntheticStudy synthetic{.skips = true, .series_every = 5};
   const auto path = filled(folder, 40);
-  const double value = synthetic.row(17).values[1];
+  const double value = synthetic.row(18).values[1];
   static_cast<void>(
       folder.write("study.h5.journal", content_with_flipped_bit(path, pattern(value))));
   Journal journal(path, synthetic.work().imprint);
   EXPECT_EQ(journal.damaged(), 1U);
-  EXPECT_FALSE(journal.done().contains(17));
+  EXPECT_FALSE(journal.done().contains(18));
   EXPECT_EQ(journal.done().size(), 39U);
 }
 
