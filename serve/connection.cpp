@@ -74,7 +74,8 @@ class Connection::Impl {
   // In: bytes, lines, commands ---------------------------------------------------------------
 
   [[nodiscard]] bool paused() const {
-    return outgoing_bytes_ > limits_.answer_bytes || (waits_ && queue_.full());
+    return outgoing_bytes_ > limits_.answer_bytes || (waits_ && queue_.full()) ||
+           (worker_.joinable() && !greeted_);
   }
 
   /// Takes the lines that are there, then reads on. Called whenever one of them may have become
@@ -150,6 +151,10 @@ class Connection::Impl {
     try {
       Session session(engine_.settings, engine_.clock);
       deliver(session.greeting());
+      asio::post(io_, [this] {
+        greeted_ = true;
+        process();
+      });
       while (auto command = queue_.pop()) {
         asio::post(io_, [this] { process(); });  // there is room again
         bool last = false;
@@ -351,6 +356,7 @@ class Connection::Impl {
 
   bool waits_ = false;    // the client would rather wait than be told "busy"
   bool reading_ = false;  // a read is under way
+  bool greeted_ = false;  // the session has begun; nothing is answered before it says so
   bool ended_ = false;    // the client has sent its last byte
   bool deaf_ = false;     // nothing more is read
   bool closing_ = false;  // when the answers are out, it is over
