@@ -21,6 +21,10 @@ enum class Draw : std::uint32_t {
   coherent_noise = 30,
   ship_noise = 31,
   ship_tonal = 32,
+  study_input = 40,
+  study_noise = 41,
+  study_permutation = 42,
+  study_scramble = 43,
 };
 
 /// Philox's key of all streams of one seed and purpose.

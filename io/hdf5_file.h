@@ -20,6 +20,15 @@ struct DatasetInfo {
   Shape shape;  ///< empty: a scalar
 };
 
+/// Rows of a dataset of another file that a virtual dataset shows as its own.
+struct VirtualRows {
+  std::filesystem::path file;  ///< relative: to the folder of the file that shows them
+  std::string dataset;
+  Shape shape;            ///< of that dataset; its rows may be smaller than those that show it
+  std::size_t first = 0;  ///< its first row to show
+  std::size_t rows = 0;
+};
+
 /// An HDF5 file: the only place that knows the C library.
 ///
 /// Elements are std::int8_t, int32_t, int64_t, float or double; what is read is converted to the
@@ -48,6 +57,11 @@ class Hdf5File {
   /// A whole dataset at once. \param values  [product of shape] row-major
   template <class T>
   void write(const std::string& dataset, std::span<const T> values, const Shape& shape);
+  /// A dataset that shows rows of others, one part after the other; `fill` where they have none.
+  /// \param shape  {sum of the parts' rows, …}
+  template <class T>
+  void write_virtual(const std::string& dataset, const Shape& shape,
+                     std::span<const VirtualRows> parts, T fill);
   /// A scalar string, of any length (UTF-8).
   void write_text(const std::string& dataset, std::string_view text);
 

@@ -16,13 +16,16 @@ Scenario read_scenario(const std::filesystem::path& path, std::span<const std::s
 
 Scenario parse_scenario(std::string_view text, const std::filesystem::path& path,
                         std::span<const std::string> overrides) {
-  const std::filesystem::path folder = path.parent_path();
-  const TomlValue document = scenario::read_document(text, path, overrides);
-
-  Scenario scenario;
+  Scenario scenario = scenario_of(scenario::read_document(text, path, overrides), path);
   scenario.text = text;
-  scenario.path = path.string();
   scenario.overrides.assign(overrides.begin(), overrides.end());
+  return scenario;
+}
+
+Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  Scenario scenario;
+  scenario.path = path.string();
 
   TomlTable root(document);
   static_cast<void>(root.has("include"));

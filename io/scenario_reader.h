@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/text/toml_value.h"
 #include "sonar/scenario.h"
 
 namespace asdic {
@@ -18,5 +19,9 @@ namespace asdic {
 /// relative to its folder
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& path,
                                       std::span<const std::string> overrides = {});
+
+/// The same of a tree that was read before, with its includes and overrides in it
+/// (scenario::read_document): what a study does for every realisation.
+[[nodiscard]] Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path);
 
 }  // namespace asdic

@@ -13,11 +13,12 @@ void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<co
                              Baseband& baseband) const {
   const Plan& plan = plan_.front();
   assert(baseband.channels == phones.size() && baseband.samples == plan.length);
+  const BandLimitedPulse& pulse = plan.pulses.front();
   const auto period = static_cast<std::ptrdiff_t>(plan.length);
   const double start = plan.recording.start;
   const double record_end =
       start + static_cast<double>(plan.recording.samples) / plan.recording.sample_rate;
-  const double longest = plan.pulse.half_duration() / (1.0 - plan.max_doppler);
+  const double longest = pulse.half_duration() / (1.0 - plan.max_doppler);
   oneapi::tbb::parallel_for(std::size_t{0}, phones.size(), [&](std::size_t channel) {
     std::complex<float>* row = baseband.values.data() + channel * plan.length;
     for (const CurvedReturn& r : returns) {
@@ -27,7 +28,7 @@ void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<co
       const bool own = r.straight.channel != Return::all_channels;
       const Vec3 x = own ? Vec3(Vec3::Zero()) : phones[channel];
       const double ringing =
-          (plan.pulse.half_duration() - 0.5 * plan.pulse_duration) / (1.0 - plan.max_doppler);
+          (pulse.half_duration() - 0.5 * plan.pulse_duration) / (1.0 - plan.max_doppler);
       const auto& pieces = r.curve.pieces();
       const double from = r.curve.first_heard() + pieces.front().first_slowness.dot(x) - ringing;
       const double to = r.curve.last_heard() + pieces.back().last_slowness.dot(x) + ringing;
@@ -38,9 +39,9 @@ void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<co
            ++i) {
         const double t = start + static_cast<double>(i) / plan.rate;
         const double u = r.curve.sent_at(t, x) - 0.5 * plan.pulse_duration;
-        const double cycles = plan.pulse.centre_frequency() * u - plan.carrier * t;
+        const double cycles = pulse.centre_frequency() * u - plan.carrier * t;
         const std::complex<double> value =
-            r.straight.amplitude * plan.pulse.at(u) *
+            r.straight.amplitude * pulse.at(u) *
             std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
         row[(i % period + period) % period] += std::complex<float>(value);
       }

@@ -1,6 +1,7 @@
 #include "sonar/doppler_expansion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -45,19 +46,33 @@ DopplerBand chebyshev_band(double lowest, double highest, std::size_t count) {
 }  // namespace
 
 void DopplerBand::weights(double doppler, std::span<float> weights) const noexcept {
-  const std::size_t n = nodes.size();
-  double sum = 0.0;
-  for (std::size_t m = 0; m < n; ++m) {
-    const double distance = doppler - nodes[m];
-    if (std::abs(distance) < 1e-15 || n == 1) {  // on the node
-      std::fill(weights.begin(), weights.end(), 0.0F);
-      weights[m] = 1.0F;
-      return;
-    }
-    sum += barycentric[m] / distance;
+  if (nodes.size() == 1) {
+    weights[0] = 1.0F;
+    return;
   }
-  for (std::size_t m = 0; m < n; ++m)
-    weights[m] = static_cast<float>(barycentric[m] / ((doppler - nodes[m]) * sum));
+  // q_m = b_m/(η − η_m), ℓ_m = q_m/Σq. On a node its q is so large that no other counts.
+  constexpr double on_node = 1e-15;
+  const auto share = [&](std::size_t m) {
+    const double distance = doppler - nodes[m];
+    return barycentric[m] / (std::abs(distance) < on_node ? on_node : distance);
+  };
+  constexpr std::size_t lanes = 8;
+  std::array<double, lanes> sums{}, q;
+  std::size_t m = 0;
+  for (; m + lanes <= nodes.size(); m += lanes) {
+    for (std::size_t j = 0; j < lanes; ++j) q[j] = share(m + j);
+    for (std::size_t j = 0; j < lanes; ++j) sums[j] += q[j];
+    for (std::size_t j = 0; j < lanes; ++j) weights[m + j] = static_cast<float>(q[j]);
+  }
+  double sum = 0.0;
+  for (; m < nodes.size(); ++m) {
+    const double rest = share(m);
+    sum += rest;
+    weights[m] = static_cast<float>(rest);
+  }
+  for (const double s : sums) sum += s;
+  const auto scale = static_cast<float>(1.0 / sum);
+  for (float& w : weights) w *= scale;
 }
 
 DopplerExpansion::DopplerExpansion(const BandLimitedPulse& pulse)
@@ -120,6 +135,58 @@ std::vector<DopplerBand> DopplerExpansion::bands(std::vector<double> dopplers) c
     found.push_back(chebyshev_band(dopplers[s.first], dopplers[s.last], s.cost));
   }
   return found;
+}
+
+std::vector<DopplerBand> DopplerExpansion::bands_over(std::vector<DopplerSpan> spans) const {
+  std::sort(spans.begin(), spans.end(),
+            [](const DopplerSpan& a, const DopplerSpan& b) { return a.lowest < b.lowest; });
+  std::vector<DopplerBand> found;
+  for (std::size_t i = 0; i < spans.size();) {
+    DopplerSpan joined = spans[i];
+    std::size_t cost = nodes_needed(joined.highest - joined.lowest);
+    for (++i; i < spans.size(); ++i) {  // the next too, if one band for both is no dearer
+      const DopplerSpan& next = spans[i];
+      const double highest = std::max(joined.highest, next.highest);
+      const std::size_t both = nodes_needed(highest - joined.lowest);
+      if (next.lowest > joined.highest && both > cost + nodes_needed(next.highest - next.lowest))
+        break;
+      joined.highest = highest;
+      cost = both;
+    }
+    found.push_back(chebyshev_band(joined.lowest, joined.highest, cost));
+  }
+  return found;
+}
+
+std::vector<DopplerBand> DopplerExpansion::cut(std::vector<DopplerBand> bands, double returns,
+                                               double grid_cost) const {
+  std::vector<DopplerBand> narrower;
+  for (DopplerBand& band : bands) {
+    const double span = band.highest - band.lowest;
+    std::size_t best = 1, nodes = band.nodes.size();
+    double least = static_cast<double>(nodes) * (returns + grid_cost);
+    for (const std::size_t parts : {2U, 3U, 4U, 6U, 8U, 12U, 16U}) {
+      if (nodes <= 4) break;
+      const std::size_t each = nodes_needed(span / static_cast<double>(parts));
+      const double cost =
+          static_cast<double>(each) * (returns + static_cast<double>(parts) * grid_cost);
+      if (cost >= least) continue;
+      least = cost;
+      best = parts;
+    }
+    if (best == 1) {
+      narrower.push_back(std::move(band));
+      continue;
+    }
+    const std::size_t each = nodes_needed(span / static_cast<double>(best));
+    const auto edge = [&](std::size_t i) {
+      return i == best ? band.highest
+                       : band.lowest + span * static_cast<double>(i) / static_cast<double>(best);
+    };
+    for (std::size_t i = 0; i < best; ++i)
+      narrower.push_back(chebyshev_band(edge(i), edge(i + 1), each));
+  }
+  return narrower;
 }
 
 }  // namespace asdic

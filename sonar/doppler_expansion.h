@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sonar/band_limited_pulse.h"
+#include "sonar/return_source.h"
 
 namespace asdic {
 
@@ -32,6 +33,14 @@ class DopplerExpansion {
   /// Covers the factors by the cheapest set of bands found: gaps are skipped, and a few distinct
   /// factors get a node each. \param dopplers in any order \return bands in rising order
   [[nodiscard]] std::vector<DopplerBand> bands(std::vector<double> dopplers) const;
+  /// Covers stretches of factors, which may overlap. \return bands in rising order
+  [[nodiscard]] std::vector<DopplerBand> bands_over(std::vector<DopplerSpan> spans) const;
+
+  /// Cuts bands into narrower ones, with more nodes in all but fewer for each return, as long as
+  /// that is cheaper. \param returns  how many there are   \param grid_cost  what one more node
+  /// costs, counted in returns laid down for one node
+  [[nodiscard]] std::vector<DopplerBand> cut(std::vector<DopplerBand> bands, double returns,
+                                             double grid_cost) const;
 
  private:
   struct EnvelopePoint {

@@ -1,11 +1,6 @@
 #include "sonar/impulse_grid.h"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
-#include <cassert>
-#include <tuple>
 
 namespace asdic {
 namespace {
@@ -65,77 +60,9 @@ struct Run {
 
 }  // namespace
 
-OrderedReturns::OrderedReturns(std::span<const Return> returns, const DopplerExpansion& expansion,
-                               double pulse_duration, std::size_t channels) {
-  std::vector<double> dopplers(returns.size());
-  std::transform(returns.begin(), returns.end(), dopplers.begin(),
-                 [](const Return& r) { return r.doppler; });
-  const std::vector<DopplerBand> found = expansion.bands(std::move(dopplers));
-
-  struct Place {
-    std::size_t band, listener;
-    double middle;
-    std::size_t index;
-    bool operator<(const Place& o) const noexcept {
-      return std::tie(band, listener, middle, index) <
-             std::tie(o.band, o.listener, o.middle, o.index);
-    }
-  };
-  std::vector<Place> order(returns.size());
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    const Return& r = returns[i];
-    const auto after = std::upper_bound(
-        found.begin(), found.end(), r.doppler,
-        [](double doppler, const DopplerBand& band) { return doppler < band.lowest; });
-    order[i] = {.band = static_cast<std::size_t>(after - found.begin()) - 1,
-                .listener = static_cast<std::size_t>(r.channel - Return::all_channels),
-                .middle = r.delay + 0.5 * pulse_duration / r.doppler,
-                .index = i};
-  }
-  tbb::parallel_sort(order.begin(), order.end());
-
-  const std::size_t n = returns.size();
-  for (auto* array : {&middle, &slowness_x, &slowness_y, &slowness_z, &real, &imag})
-    array->resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Return& r = returns[order[i].index];
-    middle[i] = order[i].middle;
-    slowness_x[i] = r.slowness.x();
-    slowness_y[i] = r.slowness.y();
-    slowness_z[i] = r.slowness.z();
-    real[i] = r.amplitude.real();
-    imag[i] = r.amplitude.imag();
-  }
-
-  std::size_t next = 0, weight_count = 0;
-  for (std::size_t b = 0; b < found.size(); ++b) {
-    Band& band = bands.emplace_back();
-    band.first_node = nodes.size();
-    band.nodes = found[b].nodes.size();
-    band.first_weight = weight_count;
-    nodes.insert(nodes.end(), found[b].nodes.begin(), found[b].nodes.end());
-    band.ends.push_back(next);
-    for (std::size_t listener = 0; listener <= channels; ++listener) {
-      while (next < n && order[next].band == b && order[next].listener == listener) ++next;
-      band.ends.push_back(next);
-    }
-    if (band.nodes > 1) weight_count += (next - band.ends[0]) * band.nodes;
-  }
-  weights.resize(weight_count);
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    const Band& band = bands[b];
-    if (band.nodes == 1) continue;
-    tbb::parallel_for(band.ends.front(), band.ends.back(), [&](std::size_t i) {
-      const std::size_t row = band.first_weight + (i - band.ends.front()) * band.nodes;
-      found[b].weights(returns[order[i].index].doppler,
-                       std::span(weights).subspan(row, band.nodes));
-    });
-  }
-}
-
 void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band& band,
-                      std::size_t first_node, std::size_t count, std::size_t channel,
-                      const Vec3& phone, std::complex<float>* grids) const noexcept {
+                      const Part& part, const Vec3& phone,
+                      std::complex<float>* grids) const noexcept {
   const Lanes even = Lanes::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
   const Lanes odd = 1.0F - even;
   const float unit_weight = 1.0F;
@@ -144,48 +71,44 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
   std::array<Lanes, block> taps;
   std::array<std::size_t, block> below;  // the sample at or below the impulse
 
-  const auto lay_segment = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t start = begin; start < end; start += block) {
-      const std::size_t n = std::min(block, end - start);
-      locate(returns, start, n, phone, at);
-      for (std::size_t i = 0; i < n; ++i) {
-        const double position = at.position[i];
-        const bool heard = position >= DelayKernel::taps && position <= last_position;
-        below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
-        if (!heard) continue;
-        const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
-        taps[i] = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
-      }
-      const float* weights = row == 0 ? &unit_weight
-                                      : returns.weights.data() + band.first_weight +
-                                            (start - band.ends[0]) * row + first_node;
-      // Sorted by delay, neighbours mostly fall between the same two samples: summed in registers.
-      for (std::size_t i = 0, next = 0; i < n; i = next) {
-        for (next = i + 1; next < n && below[next] == below[i];) ++next;
-        if (below[i] == not_heard) continue;
-        const Run run = {
-            .taps = taps.data() + i, .count = next - i, .weights = weights + i * row, .row = row};
-        float* grid = reinterpret_cast<float*>(grids + (below[i] - DelayKernel::before));
-        std::size_t m = 0;
-        for (; m + 8 <= count; m += 8) run.add<8>(m, grid, 2 * stride);
-        if (m + 4 <= count) run.add<4>(m, grid, 2 * stride), m += 4;
-        for (; m < count; ++m) run.add<1>(m, grid, 2 * stride);
-      }
+  for (std::size_t start = part.begin; start < part.end; start += block) {
+    const std::size_t n = std::min(block, part.end - start);
+    locate(returns, start, n, part.colour, phone, at);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double position = at.position[i];
+      const bool heard = position >= DelayKernel::taps && position <= last_position;
+      below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
+      if (!heard) continue;
+      const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
+      taps[i] = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
     }
-  };
-  lay_segment(band.ends[0], band.ends[1]);
-  lay_segment(band.ends[channel + 1], band.ends[channel + 2]);
+    const float* weights = row == 0 ? &unit_weight
+                                    : returns.weights.data() + band.first_weight +
+                                          (start - band.ends[0]) * row + part.first_node;
+    // Sorted by sample, neighbours mostly fall between the same two: summed in registers.
+    for (std::size_t i = 0, next = 0; i < n; i = next) {
+      for (next = i + 1; next < n && below[next] == below[i];) ++next;
+      if (below[i] == not_heard) continue;
+      const Run run = {
+          .taps = taps.data() + i, .count = next - i, .weights = weights + i * row, .row = row};
+      float* grid = reinterpret_cast<float*>(grids + (below[i] - DelayKernel::before));
+      std::size_t m = 0;
+      for (; m + 8 <= part.nodes; m += 8) run.add<8>(m, grid, 2 * stride);
+      if (m + 4 <= part.nodes) run.add<4>(m, grid, 2 * stride), m += 4;
+      for (; m < part.nodes; ++m) run.add<1>(m, grid, 2 * stride);
+    }
+  }
 }
 
 void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,
-                         const Vec3& phone, Block& at) const noexcept {
+                         std::size_t colour, const Vec3& phone, Block& at) const noexcept {
   const double x = phone.x(), y = phone.y(), z = phone.z();
   const double* __restrict middle = returns.middle.data() + start;
   const double* __restrict sx = returns.slowness_x.data() + start;
   const double* __restrict sy = returns.slowness_y.data() + start;
   const double* __restrict sz = returns.slowness_z.data() + start;
-  const double* __restrict re = returns.real.data() + start;
-  const double* __restrict im = returns.imag.data() + start;
+  const float* __restrict re = returns.real.data() + colour * returns.size() + start;
+  const float* __restrict im = returns.imag.data() + colour * returns.size() + start;
   for (std::size_t i = 0; i < n; ++i) {
     const double delay = middle[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
     double a = re[i], b = im[i];

@@ -28,16 +28,16 @@ Vec2 centre(const ScattererGrid& grid, std::uint32_t ring, int sector) noexcept 
   return grid.anchor + (ring + 0.5) * grid.spacing * Vec2(std::sin(bearing), std::cos(bearing));
 }
 
-/// Runs f(ring, scratch, out) over all rings in parallel. \return what they put out, in their order
+/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \return what they put out, in
+/// their order
 template <class Item, class F>
-std::vector<Item> over_rings(std::uint32_t rings, F&& f) {
-  const std::size_t blocks = (rings + block - 1) / block;
+std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
+  const std::size_t visited = (rings + step - 1) / step, blocks = (visited + block - 1) / block;
   std::vector<std::vector<Item>> parts(blocks);
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
     PathPairs scratch;
-    const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(rings, (b + 1) * block));
-    for (auto ring = static_cast<std::uint32_t>(b * block); ring < end; ++ring)
-      f(ring, scratch, parts[b]);
+    for (std::size_t i = b * block; i < std::min(visited, (b + 1) * block); ++i)
+      f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
   std::size_t total = 0;
   for (const auto& part : parts) total += part.size();
@@ -65,6 +65,8 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
                                      std::vector<ScatteringField> fields)
     : scenario_(scenario), context_(context), fields_(std::move(fields)) {
   find_limits();
+  by_sectors_ = expected_returns_ > static_cast<double>(scenario_.reverberation.most_returns);
+  blocks_ = by_sectors_ ? sector_blocks() : rings_;
 }
 
 std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
@@ -74,6 +76,13 @@ std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field)
   std::vector<int> sectors;
   for (int i = 0; i < n; ++i) sectors.push_back(i * field.grid.azimuths / n);
   return sectors;
+}
+
+/// Rings so near each other are sampled only once that eight still lie within a stretch.
+std::uint32_t PingReverberation::sample_step(const ScatteringField& field) const {
+  constexpr double slow_sea = 1400.0, samples = 8.0;
+  const double delay = 2.0 * field.grid.spacing / slow_sea;  // from ring to ring, at most
+  return static_cast<std::uint32_t>(std::clamp(limits_.stretch / (samples * delay), 1.0, 1e6));
 }
 
 void PingReverberation::find_limits() {
@@ -90,11 +99,13 @@ void PingReverberation::find_limits() {
   for (const ScatteringField& field : fields_) {
     const std::vector<int> sectors = sample_sectors(field);
     const auto count = static_cast<std::uint32_t>(sectors.size());
+    const std::uint32_t step = sample_step(field);
     const auto found = over_rings<Found>(
-        field.grid.rings, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+        field.grid.rings, step, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+          const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
           for (std::uint32_t i = 0; i < count; ++i) {
             field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
-            const double share = 1.0 / count, area = ring_area(field.grid, ring);
+            const double share = double(stands_for) / count, area = ring_area(field.grid, ring);
             double loudest = 0.0;
             for (const PathPair& pair : pairs.found)
               loudest = std::max(loudest, std::norm(pair.amplitude));
@@ -138,11 +149,44 @@ void PingReverberation::find_limits() {
     // that lies a little nearer than its middle would be left out of this stretch for it.
     limits_.least.back() = first > begin ? entries[first - 1].power : 0.0;
   }
-  for (const Found& f : all)
-    if (f.ring_power > limits_.at(f.sample.delay)) {
+  std::vector<double> of_ring;  // returns of the field in hand
+  std::size_t next = 0;
+  first_place = 0;
+  for (std::size_t field = 0; field < fields_.size(); ++field) {
+    const std::uint32_t rings = fields_[field].grid.rings;
+    const auto count = static_cast<std::uint32_t>(sample_sectors(fields_[field]).size());
+    of_ring.assign(rings, 0.0);
+    for (; next < all.size() && all[next].sample.place < first_place + rings * count; ++next) {
+      const Found& f = all[next];
+      if (f.ring_power <= limits_.at(f.sample.delay)) continue;
       samples_.push_back(f.sample);
-      expected_returns_ += f.share * f.scatterers;
+      of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
     }
+    // What was found at one ring belongs to those that it stands for.
+    const std::uint32_t step = sample_step(fields_[field]);
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+      if (ring % step == 0)
+        of_ring[ring] /= std::min(step, rings - ring);
+      else
+        of_ring[ring] = of_ring[ring - ring % step];
+    first_place += rings * count;
+    cut_into_blocks(field, of_ring);
+  }
+}
+
+void PingReverberation::cut_into_blocks(std::size_t field, const std::vector<double>& of_ring) {
+  constexpr double most = 4096.0;  // returns
+  double held = 0.0;
+  for (std::uint32_t ring = 0; ring < of_ring.size(); ++ring) {
+    if (ring == 0 || held + of_ring[ring] > most) {
+      rings_.push_back({.field = field, .begin = ring});
+      held = 0.0;
+    }
+    held += of_ring[ring];
+    rings_.back().end = ring + 1;
+    rings_.back().expected = static_cast<std::size_t>(std::ceil(held));
+    expected_returns_ += of_ring[ring];
+  }
 }
 
 std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::uint32_t ring,
@@ -150,8 +194,9 @@ std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::ui
   // A cell is seen from source and receiver under no more than twice the angle of a sector: near
   // them, far from the anchor, it is divided.
   auto copies = static_cast<std::uint32_t>(field.grid.per_cell);
-  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
   const double range = (ring + 0.5) * field.grid.spacing;
+  if (range >= field.divided_below) return copies;
+  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
   for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
   return copies;
 }
@@ -185,39 +230,52 @@ Return PingReverberation::heard(const ScatteringField& field, const PathPair& pa
           .slowness = field.sheet.arriving(pair)};
 }
 
-void PingReverberation::add_returns(const ScatteringField& field, std::uint32_t ring,
-                                    const ScattererWeights& weights, PathPairs& scratch,
-                                    Returns& returns) const {
-  for (int sector = 0; sector < field.grid.azimuths; ++sector)
-    for_each_scatterer(field, ring, sector, scratch,
-                       [&](const ScattererKey&, std::uint64_t entity, const Met& met) {
-                         const std::complex<double> weight = weights(entity);
-                         for (const PathPair& pair : scratch.found)
-                           returns.push_back(heard(field, pair, met, weight));
-                       });
+void PingReverberation::add_rings(const ScatteringField& field, std::uint32_t begin,
+                                  std::uint32_t end, Returns& returns) const {
+  const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
+                                 context_.time, context_.ping);
+  PathPairs pairs;
+  for (std::uint32_t ring = begin; ring < end; ++ring)
+    for (int sector = 0; sector < field.grid.azimuths; ++sector)
+      for_each_scatterer(field, ring, sector, pairs,
+                         [&](const ScattererKey& /*key*/, std::uint64_t entity, const Met& met) {
+                           const std::complex<double> weight = weights(entity);
+                           for (const PathPair& pair : pairs.found)
+                             returns.push_back(heard(field, pair, met, weight));
+                         });
 }
 
-Returns PingReverberation::plain_returns() const {
+void PingReverberation::make(std::size_t block, ReturnBlock& into) const {
+  const Block& b = blocks_[block];
+  const ScatteringField& field = fields_[b.field];
+  if (!by_sectors_) return add_rings(field, b.begin, b.end, into.returns);
+  for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
+    add_sector(field, static_cast<int>(sector), into.returns);
+}
+
+std::vector<DopplerSpan> PingReverberation::dopplers() const {
+  std::vector<DopplerSpan> spans;
+  for (const ScatteringField& field : fields_)
+    for (const DopplerSpan& span : field.sheet.dopplers(field.field.motion)) spans.push_back(span);
+  return spans;
+}
+
+Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sectors) const {
+  std::vector<Returns> parts(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    const Block& b = blocks[i];
+    if (!sectors) return add_rings(fields_[b.field], b.begin, b.end, parts[i]);
+    for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
+      add_sector(fields_[b.field], static_cast<int>(sector), parts[i]);
+  });
   Returns all;
-  for (const ScatteringField& field : fields_) {
-    const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
-                                   context_.time, context_.ping);
-    Returns found = over_rings<Return>(field.grid.rings,
-                                       [&](std::uint32_t ring, PathPairs& scratch, Returns& out) {
-                                         add_returns(field, ring, weights, scratch, out);
-                                       });
-    if (all.empty())
-      all = std::move(found);
-    else
-      all.insert(all.end(), found.begin(), found.end());
-  }
+  for (const Returns& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 
-Returns PingReverberation::returns() const {
-  const auto most = static_cast<double>(scenario_.reverberation.most_returns);
-  return expected_returns_ > most ? sector_returns() : plain_returns();
-}
+Returns PingReverberation::plain_returns() const { return collect(rings_, false); }
+Returns PingReverberation::sector_returns() const { return collect(sector_blocks(), true); }
+Returns PingReverberation::returns() const { return collect(blocks_, by_sectors_); }
 
 double PingReverberation::expected_db(double t) const {
   const Pulse& pulse = context_.pulse;

@@ -6,6 +6,7 @@
 #include "sonar/boundary_fans.h"
 #include "sonar/ping_record.h"
 #include "sonar/pulse.h"
+#include "sonar/return_source.h"
 #include "sonar/scattering_sheet.h"
 #include "sonar/scenario.h"
 #include "sonar/transmit_pattern.h"
@@ -20,6 +21,7 @@ struct ReverberationContext {
   double time = 0.0;               ///< of the ping, since the start of the scenario [s]
   std::uint32_t ping = 1;          ///< counted from 1: the key of weights that last one ping
   double latest = 0.0;             ///< end of the record, since the ping [s]
+  Reuse* reuse = nullptr;          ///< is told whether anything had to be traced
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -35,15 +37,16 @@ struct ScatteringField {
   ScattererField field;  ///< motion and statistics
   Draw weights;          ///< purpose of their draws
   std::uint64_t boundary = 0;
-  double depth = 0.0;      ///< near the ends [m]
-  double thickness = 0.0;  ///< of a sheet of the volume [m]
+  double depth = 0.0;               ///< near the ends [m]
+  double thickness = 0.0;           ///< of a sheet of the volume [m]
+  double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
 };
 
 /// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
 /// its own delay, direction, Doppler factor and complex Gaussian weight, by all pairs of outgoing
 /// and returning paths. Source and receiver may be anywhere; monostatic is the same place twice.
 /// docs/theory/reverberation.md
-class PingReverberation {
+class PingReverberation final : public ReturnSource {
  public:
   PingReverberation(const Scenario& scenario, const ReverberationContext& context,
                     std::vector<ScatteringField> fields);
@@ -59,6 +62,13 @@ class PingReverberation {
   /// own, and delay, direction and Doppler factor of one of them, chosen with the chances of their
   /// powers. Reciprocal pairs share a weight. docs/theory/reverberation.md
   [[nodiscard]] Returns sector_returns() const;
+  /// returns() in blocks: some rings, or a sector, of a field each.
+  [[nodiscard]] std::size_t blocks() const override { return blocks_.size(); }
+  [[nodiscard]] std::size_t expected(std::size_t block) const override {
+    return blocks_[block].expected;
+  }
+  void make(std::size_t block, ReturnBlock& into) const override;
+  [[nodiscard]] std::vector<DopplerSpan> dopplers() const override;
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_returns_; }
 
@@ -73,6 +83,7 @@ class PingReverberation {
 
  private:
   void find_limits();
+  [[nodiscard]] std::uint32_t sample_step(const ScatteringField& field) const;
   /// A scatterer of a cell with what belongs to it alone.
   struct Met {
     std::complex<double> strength = 0.0;  // √(area·texture), times the weight if asked for
@@ -101,10 +112,20 @@ class PingReverberation {
   }
   [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
                              std::complex<double> weight) const;
-  void add_sector(const ScatteringField& field, int sector, double bin,
-                  const ScattererWeights& weights, Returns& returns) const;
-  void add_returns(const ScatteringField& field, std::uint32_t ring,
-                   const ScattererWeights& weights, PathPairs& scratch, Returns& returns) const;
+  void add_sector(const ScatteringField& field, int sector, Returns& returns) const;
+  void add_rings(const ScatteringField& field, std::uint32_t begin, std::uint32_t end,
+                 Returns& returns) const;
+  /// Rings or sectors begin…end of a field.
+  struct Block {
+    std::size_t field = 0;
+    std::uint32_t begin = 0, end = 0;
+    std::size_t expected = 0;
+  };
+  void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);
+  [[nodiscard]] std::vector<Block> sector_blocks() const;
+  /// Half of 1/B, or as much as the limit of returns asks for [s].
+  [[nodiscard]] double sector_bin(const ScatteringField& field) const;
+  [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
   [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
 
   const Scenario& scenario_;
@@ -119,6 +140,8 @@ class PingReverberation {
   };
   std::vector<Sample> samples_;
   double expected_returns_ = 0.0;
+  std::vector<Block> rings_, blocks_;  // all, if every scatterer is heard; those of returns()
+  bool by_sectors_ = false;
 };
 
 /// Makes the reverberation of any ping at any array of a scenario. Built once; shared by threads.

@@ -1,6 +1,7 @@
 #include "sonar/scattering_sheet.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "reverb/scattering/motion.h"
 
@@ -180,6 +181,64 @@ double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
     factor *= 1.0 + bragg * bragg_shift(scattering_wavenumber(in, home, ends_.frequency)) /
                         ends_.frequency;
   return factor;
+}
+
+namespace {
+
+/// The largest slownesses of a fan's paths [s/m].
+struct Slownesses {
+  double launch_level = 0.0, launch_down = 0.0;  // at the launch
+  double level = 0.0, down = 0.0;                // at the boundary
+  double least_level = infinity;
+};
+
+Slownesses slownesses(const BoundaryFan& fan) {
+  Slownesses s;
+  for (const FanPlane& plane : fan.planes) {
+    for (const PathEnds& ends : plane.ends) {
+      s.launch_level = std::max(s.launch_level, ends.launch_level);
+      s.launch_down = std::max(s.launch_down, std::abs(ends.launch_down));
+      s.down = std::max(s.down, std::abs(ends.down));
+    }
+    for (const GroundPath& path : plane.paths->all()) {
+      s.level = std::max(s.level, path.horizontal_slowness);
+      s.least_level = std::min(s.least_level, path.horizontal_slowness);
+    }
+  }
+  return s;
+}
+
+/// (1 ± a)/(1 ± b) at their extremes.
+DopplerSpan ratio(double a, double b) noexcept {
+  return {(1.0 - a) / (1.0 + b), (1.0 + a) / (1.0 - b)};
+}
+
+}  // namespace
+
+std::vector<DopplerSpan> ScatteringSheet::dopplers(const ScattererMotion& motion) const {
+  const Slownesses out = slownesses(*out_), back = slownesses(*back_);
+  const auto along = [](const Vec3& velocity, double level, double down) {
+    return velocity.head<2>().norm() * level + std::abs(velocity.z()) * down;
+  };
+  const DopplerSpan ends =
+      ratio(along(ends_.receiver.velocity, back.launch_level, back.launch_down),
+            along(ends_.source.velocity, out.launch_level, out.launch_down));
+  // A scatterer's own velocity is held at four standard deviations of each component.
+  const double own = motion.kind == ScattererMotion::Kind::spread ? 4.0 * motion.speed_rms : 0.0;
+  const Vec3 fastest(motion.current.norm() + std::numbers::sqrt2 * own, 0.0, own);
+  const DopplerSpan sea =
+      ratio(along(fastest, out.level, out.down), along(fastest, back.level, back.down));
+  const DopplerSpan both = {ends.lowest * sea.lowest, ends.highest * sea.highest};
+  if (motion.kind != ScattererMotion::Kind::bragg) return {both};
+  // √(gQ)/2π over the frequency, |Q| ≤ 2πf(ξ_out + ξ_back), and just that straight back.
+  const double k = 2.0 * pi * ends_.frequency;
+  const double most = bragg_shift(k * (out.level + back.level)) / ends_.frequency;
+  const double least =
+      one_place_
+          ? bragg_shift(2.0 * k * std::min(out.least_level, back.least_level)) / ends_.frequency
+          : 0.0;
+  return {{both.lowest * (1.0 - most), both.highest * (1.0 - least)},
+          {both.lowest * (1.0 + least), both.highest * (1.0 + most)}};
 }
 
 double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexcept {

@@ -11,6 +11,7 @@
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering/models.h"
 #include "sonar/boundary_fans.h"
+#include "sonar/return_source.h"
 #include "sonar/reverberation_settings.h"
 #include "sonar/track.h"
 #include "sonar/transmit_pattern.h"
@@ -90,6 +91,8 @@ class ScatteringSheet {
   /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
   [[nodiscard]] double doppler(const PathPair& pair, const Vec3& velocity,
                                double bragg) const noexcept;
+  /// Stretches that hold every factor that doppler() gives with scatterers that move so.
+  [[nodiscard]] std::vector<DopplerSpan> dopplers(const ScattererMotion& motion) const;
   /// The sound's slowness at the receiver.
   [[nodiscard]] Vec3 arriving(const PathPair& pair) const noexcept;
 

@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,8 +30,17 @@ double uniform(std::uint64_t a, std::uint64_t b) noexcept {
 
 }  // namespace
 
-void PingReverberation::add_sector(const ScatteringField& field, int sector, double bin,
-                                   const ScattererWeights& weights, Returns& returns) const {
+double PingReverberation::sector_bin(const ScatteringField& field) const {
+  const double bins_allowed = static_cast<double>(scenario_.reverberation.most_returns) /
+                              (2.0 * field.grid.azimuths * static_cast<double>(fields_.size()));
+  return std::max(0.5 / context_.pulse.bandwidth_40db(), context_.latest / bins_allowed);
+}
+
+void PingReverberation::add_sector(const ScatteringField& field, int sector,
+                                   Returns& returns) const {
+  const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
+                                 context_.time, context_.ping);
+  const double bin = sector_bin(field);
   const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
   std::vector<Bin> bins(count * elevations);
   PathPairs pairs;
@@ -87,23 +94,18 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector, dou
   }
 }
 
-Returns PingReverberation::sector_returns() const {
-  Returns all;
-  for (const ScatteringField& field : fields_) {
-    const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
-                                   context_.time, context_.ping);
-    // Half of 1/B, or as much as the limit asks for.
-    const double bins_allowed = static_cast<double>(scenario_.reverberation.most_returns) /
-                                (2.0 * field.grid.azimuths * static_cast<double>(fields_.size()));
-    const double bin =
-        std::max(0.5 / context_.pulse.bandwidth_40db(), context_.latest / bins_allowed);
-    std::vector<Returns> parts(static_cast<std::size_t>(field.grid.azimuths));
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t sector) {
-      add_sector(field, static_cast<int>(sector), bin, weights, parts[sector]);
-    });
-    for (const Returns& part : parts) all.insert(all.end(), part.begin(), part.end());
+std::vector<PingReverberation::Block> PingReverberation::sector_blocks() const {
+  std::vector<Block> blocks;
+  for (std::size_t field = 0; field < fields_.size(); ++field) {
+    const auto sectors = static_cast<std::uint32_t>(fields_[field].grid.azimuths);
+    const double bins = context_.latest / sector_bin(fields_[field]);
+    for (std::uint32_t sector = 0; sector < sectors; ++sector)
+      blocks.push_back({.field = field,
+                        .begin = sector,
+                        .end = sector + 1,
+                        .expected = static_cast<std::size_t>(2.0 * bins) + 1});
   }
-  return all;
+  return blocks;
 }
 
 }  // namespace asdic

@@ -7,121 +7,22 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/error.h"
 #include "core/units.h"
-#include "sonar/impulse_grid.h"
 #include "sonar/synthesis_plan.h"
 
 namespace asdic {
-namespace {
-
-struct Scratch {
-  FftBuffer<std::complex<float>> grids, sum;
-};
-
-/// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64
-/// lines that share a place in the first-level cache, five lines on, so that one impulse's taps in
-/// sixteen grids do not evict each other.
-std::size_t grid_stride(std::size_t length) {
-  std::size_t lines = FftBuffer<std::complex<float>>::row_stride(length) / 8;
-  while (lines % 64 != 5) ++lines;
-  return 8 * lines;
-}
-
-/// sum[k] += grid[k]·spectrum[k] over the band, grid in FFT order.
-void multiply_add(const std::complex<float>* grid, const std::complex<float>* spectrum,
-                  std::size_t length, std::size_t highest_bin, std::complex<float>* sum) {
-  const auto part = [&](std::size_t first, std::size_t count, const std::complex<float>* h) {
-    const float* __restrict a = reinterpret_cast<const float*>(grid + first);
-    const float* __restrict b = reinterpret_cast<const float*>(h);
-    float* __restrict c = reinterpret_cast<float*>(sum + first);
-    for (std::size_t i = 0; i < 2 * count; i += 2) {
-      c[i] += a[i] * b[i] - a[i + 1] * b[i + 1];
-      c[i + 1] += a[i] * b[i + 1] + a[i + 1] * b[i];
-    }
-  };
-  part(length - highest_bin, highest_bin, spectrum);
-  part(0, highest_bin + 1, spectrum + highest_bin);
-}
-
-}  // namespace
 
 Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
                          const std::function<double(double)>& filter) {
-  plan_.emplace_back(pulse, recording, max_doppler, filter);
+  plan_.emplace_back(pulse, recording, max_doppler, std::vector{filter});
 }
-double Synthesizer::half_band() const noexcept { return plan_.front().pulse.half_band(); }
+Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+                         const std::vector<std::function<double(double)>>& filters) {
+  plan_.emplace_back(pulse, recording, max_doppler, filters);
+}
+double Synthesizer::half_band() const noexcept { return plan_.front().pulses.front().half_band(); }
 Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
-
-Baseband Synthesizer::baseband(std::span<const Return> returns,
-                               std::span<const Vec3> phones) const {
-  const Plan& plan = plan_.front();
-  for (const Return& r : returns) {
-    assert(r.channel >= Return::all_channels && r.channel < std::ssize(phones));
-    if (!(std::abs(r.doppler - 1.0) <= plan.max_doppler + 1e-12))
-      throw InputError({.where = "returns.doppler",
-                        .got = std::to_string(r.doppler),
-                        .expected = "within the max_doppler that the synthesizer was built for"});
-  }
-
-  const OrderedReturns ordered(returns, plan.expansion, plan.pulse_duration, phones.size());
-  const ComplexFft<float> fft(plan.length);
-  const std::size_t stride = grid_stride(plan.length);
-  tbb::enumerable_thread_specific<Scratch> workspaces;
-
-  const std::size_t bins = 2 * static_cast<std::size_t>(plan.highest_bin) + 1;
-  std::vector<std::complex<float>> spectra(ordered.nodes.size() * bins);
-  tbb::parallel_for(std::size_t{0}, ordered.nodes.size(), [&](std::size_t m) {
-    Scratch& scratch = workspaces.local();
-    scratch.grids.reserve(stride);
-    plan.stretched_spectrum(ordered.nodes[m], scratch.grids.data(),
-                            std::span(spectra).subspan(m * bins, bins));
-  });
-
-  Baseband result{.carrier = plan.carrier,
-                  .sample_rate = plan.rate,
-                  .start = plan.recording.start,
-                  .channels = phones.size(),
-                  .samples = plan.length,
-                  .recorded = 0,
-                  .values = {}};
-  result.recorded =
-      std::min(plan.length, static_cast<std::size_t>(static_cast<double>(plan.recording.samples) /
-                                                     plan.recording.sample_rate * plan.rate) +
-                                1);
-  result.values.resize(phones.size() * plan.length);
-
-  const ImpulseGrid grid{.kernel = plan.kernel,
-                         .rate = plan.rate,
-                         .first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
-                         .carrier = plan.carrier,
-                         .last_position = plan.last_position,
-                         .stride = stride};
-  tbb::parallel_for(std::size_t{0}, phones.size(), [&](std::size_t channel) {
-    Scratch& scratch = workspaces.local();
-    scratch.sum.reserve(stride);
-    std::fill_n(scratch.sum.data(), plan.length, 0.0F);
-    for (const OrderedReturns::Band& band : ordered.bands) {
-      if (!band.heard_by(channel)) continue;
-      for (std::size_t m = 0; m < band.nodes; m += ImpulseGrid::most_nodes) {
-        const std::size_t count = std::min(ImpulseGrid::most_nodes, band.nodes - m);
-        scratch.grids.reserve(count * stride);
-        std::fill_n(scratch.grids.data(), count * stride, 0.0F);
-        grid.lay(ordered, band, m, count, channel, phones[channel], scratch.grids.data());
-        for (std::size_t i = 0; i < count; ++i) {
-          std::complex<float>* row = scratch.grids.data() + i * stride;
-          fft.forward(row);
-          multiply_add(row, spectra.data() + (band.first_node + m + i) * bins, plan.length,
-                       static_cast<std::size_t>(plan.highest_bin), scratch.sum.data());
-        }
-      }
-    }
-    fft.inverse(scratch.sum.data());
-    std::copy_n(scratch.sum.data(), plan.length, result.values.data() + channel * plan.length);
-  });
-  return result;
-}
 
 void append_channels(Baseband& all, Baseband&& more) {
   if (all.channels == 0) {

@@ -7,7 +7,7 @@
 
 #include "sonar/delay_curve.h"
 #include "sonar/pulse.h"
-#include "sonar/returns.h"
+#include "sonar/return_source.h"
 
 namespace asdic {
 
@@ -59,6 +59,10 @@ class Synthesizer {
   /// centre [Hz]; none: 1. What is added up of several is of the same shape whatever the filter.
   Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
               const std::function<double(double)>& filter = {});
+  /// The same of several colours: what a source's returns are across the band is Σ_k a_k·(the pulse
+  /// through filter k).
+  Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+              const std::vector<std::function<double(double)>>& filters);
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
@@ -67,6 +71,9 @@ class Synthesizer {
   /// the record are cut, not wrapped.
   [[nodiscard]] Baseband baseband(std::span<const Return> returns,
                                   std::span<const Vec3> phones) const;
+  /// The same of returns that are made on the way. Memory is that of the phones' baseband and, if
+  /// these are more, some 64 MB each for impulse responses and for returns, whatever their number.
+  [[nodiscard]] Baseband baseband(const ReturnSource& source, std::span<const Vec3> phones) const;
 
   /// Adds returns whose delays are curves, one by one: cost phones × returns × samples of a pulse.
   void add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
@@ -84,6 +91,7 @@ class Synthesizer {
   void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
   void add_complex(const Baseband& baseband, double scale, std::span<float> samples) const;
 
+  friend class BlockSynthesis;
   struct Plan;
   std::vector<Plan> plan_;  // a vector of one keeps FFTW's types out of the header
 };

@@ -44,17 +44,28 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
     throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
 }
 
+/// The pulse through every filter.
+std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& record,
+                                       const std::vector<std::function<double(double)>>& filters) {
+  const double rate =
+      record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate;
+  std::vector<BandLimitedPulse> pulses;
+  for (const auto& filter : filters) pulses.emplace_back(sent, rate, filter);
+  return pulses;
+}
+
 }  // namespace
 
 Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
-                        const std::function<double(double)>& filter)
+                        const std::vector<std::function<double(double)>>& filters)
     : recording((check(sent, record, doppler), record)),
       max_doppler(doppler),
       pulse_duration(sent.duration()),
-      pulse(sent,
-            record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate,
-            filter),
-      expansion(pulse) {
+      pulses(filtered(sent, record, filters)),
+      expansion(filters.size() == 1
+                    ? pulses.front()
+                    : filtered(sent, record, {std::function<double(double)>()}).front()) {
+  const BandLimitedPulse& pulse = pulses.front();
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
   const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;
   // The stretched pulse's band about the carrier; the last term lets the carrier move to a bin.
@@ -82,7 +93,8 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
   }
 }
 
-void Synthesizer::Plan::stretched_spectrum(double doppler, std::complex<float>* scratch,
+void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, double doppler,
+                                           std::complex<float>* scratch,
                                            std::span<std::complex<float>> spectrum) const {
   std::fill(scratch, scratch + length, 0.0F);
   // An impulse at grid sample i belongs to the time of output sample i − lead: the response stands

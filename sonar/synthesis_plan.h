@@ -19,12 +19,12 @@ namespace asdic {
 /// a whole number of 1/P: bin k of the baseband's FFT is bin k + carrier_bin of the passband's.
 struct Synthesizer::Plan {
   Plan(const Pulse& pulse, const Recording& recording, double max_doppler,
-       const std::function<double(double)>& filter);
+       const std::vector<std::function<double(double)>>& filters);
 
   Recording recording;
   double max_doppler;
-  double pulse_duration;  ///< T, unstretched [s]
-  BandLimitedPulse pulse;
+  double pulse_duration;                 ///< T, unstretched [s]
+  std::vector<BandLimitedPulse> pulses;  ///< [colours] through a filter each; alike but for that
   DopplerExpansion expansion;
   DelayKernel kernel;
 
@@ -38,9 +38,10 @@ struct Synthesizer::Plan {
   double last_position = 0.0;        ///< of an impulse in the grid, in samples
   std::vector<float> deconvolution;  ///< [2·highest_bin + 1] 1/(kernel's spectrum · length)
 
-  /// Spectrum of the pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
+  /// Spectrum of a pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
   /// \param scratch [length] \param spectrum [2·highest_bin + 1] from −highest_bin up
-  void stretched_spectrum(double doppler, std::complex<float>* scratch,
+  void stretched_spectrum(const BandLimitedPulse& pulse, double doppler,
+                          std::complex<float>* scratch,
                           std::span<std::complex<float>> spectrum) const;
 };
 

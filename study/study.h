@@ -6,14 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "study/design.h"
 #include "study/measure_plan.h"
 #include "study/summary_plan.h"
 #include "study/variable.h"
 
 namespace asdic::study {
-
-/// How the points of the input space are chosen. docs/theory/designs.md
-enum class Design { random, latin_hypercube, sobol, grid };
 
 /// What becomes of a realisation whose drawn values make no scenario (a target below the bottom).
 enum class OnError { stop, skip };
@@ -30,7 +28,10 @@ struct Study {
   MeasurePlan measure;              ///< [measure]
   SummaryPlan summary;              ///< [summary]
 
-  std::string scenario_text;            ///< what the variables edit
+  TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
+  TomlValue document;  ///< [study], [vary], [measure], [summary], with the overrides in them
+
+  std::string scenario_text;            ///< of the scenario, verbatim
   std::filesystem::path scenario_path;  ///< where it was read; files it names are relative to it
   std::string text;                     ///< the study file, verbatim
   std::filesystem::path path;

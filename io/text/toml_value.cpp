@@ -143,16 +143,10 @@ void merge_defaults(TomlValue& base, const TomlValue& fragment) {
   }
 }
 
-void apply_override(TomlValue& root, const std::string& assignment) {
-  const auto equals = assignment.find('=');
-  const std::string key = assignment.substr(0, equals);
-  const std::string origin = "--set " + key;
-  if (equals == std::string::npos || key.empty())
-    throw InputError({.where = "--set", .got = '"' + assignment + '"', .expected = "key=value"});
-
+TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& origin) {
   TomlValue* at = &root;
   std::string walked;
-  for (const std::string& part : split(key)) {
+  for (const std::string& part : split(path)) {
     if (auto* array = std::get_if<TomlValue::Array>(&at->data)) {
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
@@ -179,7 +173,17 @@ void apply_override(TomlValue& root, const std::string& assignment) {
     }
     walked += (walked.empty() ? "" : ".") + part;
   }
-  *at = override_value(std::string_view(assignment).substr(equals + 1), origin);
+  return *at;
+}
+
+void apply_override(TomlValue& root, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const std::string key = assignment.substr(0, equals);
+  const std::string origin = "--set " + key;
+  if (equals == std::string::npos || key.empty())
+    throw InputError({.where = "--set", .got = '"' + assignment + '"', .expected = "key=value"});
+  value_at(root, key, origin) =
+      override_value(std::string_view(assignment).substr(equals + 1), origin);
 }
 
 std::string to_text(double number) {

@@ -48,6 +48,12 @@ void merge_defaults(TomlValue& base, const TomlValue& fragment);
 /// \throws InputError if the path leads through something that is no table or past an array's end
 void apply_override(TomlValue& root, const std::string& assignment);
 
+/// The place at a dotted path with array indices, made (as an empty table) where there is none.
+/// \param origin  "--set pulse.duration": named in messages, and where new tables come from
+/// \throws InputError as apply_override
+[[nodiscard]] TomlValue& value_at(TomlValue& root, std::string_view path,
+                                  const std::string& origin);
+
 /// The shortest decimal that reads back as the same number.
 [[nodiscard]] std::string to_text(double number);
 

@@ -45,6 +45,32 @@ BENCHMARK_CAPTURE(baseband, hann_sweep, hann_sweep)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
+/// Scatterers of 4 kHz of sweep on a minute of baseband. Arguments: scatterers, phones.
+void wide_sweep(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
+  const ReceiverArray many = line_array(static_cast<int>(state.range(1)), 0.1875, 0.0, 0.0);
+  const Returns returns = reverberation(static_cast<std::size_t>(state.range(0)), 0.0);
+  const Synthesizer synthesizer(Pulse({.kind = PulseKind::lfm,
+                                       .start_frequency = 3000.0,
+                                       .end_frequency = 7000.0,
+                                       .duration = 1.0}),
+                                minute, 0.0);
+  for (auto _ : state) benchmark::DoNotOptimize(synthesizer.baseband(returns, many.phones));
+  state.counters["returns·phones/s"] = benchmark::Counter(
+      double(returns.size() * many.phones.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(wide_sweep)
+    ->Args({100'000, 32})
+    ->Args({200'000, 32})
+    ->Args({400'000, 32})
+    ->Args({800'000, 32})
+    ->Args({100'000, 8})
+    ->Args({100'000, 16})
+    ->Args({100'000, 64})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
 /// A whole minute of 16 phones at 16 kHz: planning, 100 000 returns, baseband, passband.
 void whole_ping(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);

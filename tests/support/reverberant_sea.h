@@ -60,7 +60,7 @@ class ReverberantSea {
     return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
   }
   [[nodiscard]] Baseband hear(std::uint32_t number, double time = 0.0) const {
-    return hear(ping(number, time).returns());
+    return synthesizer_.baseband(ping(number, time), scenario_.arrays[0].phones);
   }
 
  private:

@@ -1,0 +1,278 @@
+#include "sonar/block_synthesis.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace asdic {
+namespace {
+
+using Scratch = FftBuffer<std::complex<float>>;
+
+/// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64
+/// lines that share a place in the first-level cache, five lines on, so that one impulse's taps in
+/// sixteen grids do not evict each other.
+std::size_t grid_stride(std::size_t length) {
+  std::size_t lines = FftBuffer<std::complex<float>>::row_stride(length) / 8;
+  while (lines % 64 != 5) ++lines;
+  return 8 * lines;
+}
+
+/// sum[k] += grid[k]·spectrum[k] over the band, grid in FFT order.
+void multiply_add(const std::complex<float>* grid, const std::complex<float>* spectrum,
+                  std::size_t length, std::size_t highest_bin, std::complex<float>* sum) {
+  const auto part = [&](std::size_t first, std::size_t count, const std::complex<float>* h) {
+    const float* __restrict a = reinterpret_cast<const float*>(grid + first);
+    const float* __restrict b = reinterpret_cast<const float*>(h);
+    float* __restrict c = reinterpret_cast<float*>(sum + first);
+    for (std::size_t i = 0; i < 2 * count; i += 2) {
+      c[i] += a[i] * b[i] - a[i + 1] * b[i + 1];
+      c[i + 1] += a[i] * b[i + 1] + a[i + 1] * b[i];
+    }
+  };
+  part(length - highest_bin, highest_bin, spectrum);
+  part(0, highest_bin + 1, spectrum + highest_bin);
+}
+
+/// What transforming a grid of that length costs, counted in returns laid down for one node.
+double cost_of_grid(std::size_t length) {
+  const auto n = static_cast<double>(length);
+  return 0.25 * n * std::log2(n);
+}
+
+}  // namespace
+
+Baseband Synthesizer::baseband(std::span<const Return> returns,
+                               std::span<const Vec3> phones) const {
+  const Plan& plan = plan_.front();
+  std::vector<double> dopplers;
+  dopplers.reserve(returns.size());
+  for (const Return& r : returns) {
+    assert(r.channel >= Return::all_channels && r.channel < std::ssize(phones));
+    if (!(std::abs(r.doppler - 1.0) <= plan.max_doppler + 1e-12))
+      throw InputError({.where = "returns.doppler",
+                        .got = std::to_string(r.doppler),
+                        .expected = "within the max_doppler that the synthesizer was built for"});
+    dopplers.push_back(r.doppler);
+  }
+  auto bands = plan.expansion.cut(plan.expansion.bands(std::move(dopplers)),
+                                  static_cast<double>(returns.size()), cost_of_grid(plan.length));
+  return BlockSynthesis(plan, std::move(bands), ReturnList(returns), phones).run();
+}
+
+Baseband Synthesizer::baseband(const ReturnSource& source, std::span<const Vec3> phones) const {
+  const Plan& plan = plan_.front();
+  std::vector<DopplerSpan> spans = source.dopplers();
+  for (DopplerSpan& span : spans) {
+    span.lowest = std::max(span.lowest, 1.0 - plan.max_doppler);
+    span.highest = std::min(span.highest, 1.0 + plan.max_doppler);
+  }
+  double returns = 0.0;
+  for (std::size_t b = 0; b < source.blocks(); ++b)
+    returns += static_cast<double>(source.expected(b));
+  auto bands = plan.expansion.cut(plan.expansion.bands_over(std::move(spans)), returns,
+                                  cost_of_grid(plan.length));
+  return BlockSynthesis(plan, std::move(bands), source, phones).run();
+}
+
+BlockSynthesis::BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
+                               const ReturnSource& source, std::span<const Vec3> phones)
+    : plan_(plan),
+      source_(source),
+      phones_(phones),
+      colours_(plan.pulses.size()),
+      stride_(grid_stride(plan.length)),
+      bins_(2 * static_cast<std::size_t>(plan.highest_bin) + 1),
+      returns_(std::move(bands),
+               {.first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
+                .rate = plan.rate,
+                .samples = plan.length},
+               plan.pulse_duration, phones.size(), colours_),
+      grid_{.kernel = plan.kernel,
+            .rate = plan.rate,
+            .first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
+            .carrier = plan.carrier,
+            .last_position = plan.last_position,
+            .stride = stride_} {}
+
+std::vector<BlockSynthesis::Batch> BlockSynthesis::batches(bool kept) const {
+  // Grids that are kept are transformed once, and batches may be small: what stays in cache is
+  // ordered faster. Others are transformed after every batch: as much memory as the grids may
+  // take, or as the phones' baseband takes if that is more.
+  constexpr std::size_t cached = std::size_t{8} << 20;
+  const std::size_t bytes =
+      kept ? cached
+           : std::max(most_kept, phones_.size() * plan_.length * sizeof(std::complex<float>));
+  const std::size_t most = bytes / returns_.bytes_each();
+  std::vector<Batch> found;
+  std::size_t held = 0;
+  for (std::size_t b = 0; b < source_.blocks(); ++b) {
+    const std::size_t more = source_.expected(b);
+    if (found.empty() || held + more > most) {
+      found.push_back({b, b});
+      held = 0;
+    }
+    held += more;
+    found.back().end = b + 1;
+  }
+  return found;
+}
+
+void BlockSynthesis::find_spectra() {
+  const std::size_t nodes = returns_.nodes.size();
+  spectra_.resize(colours_ * nodes * bins_);
+  tbb::enumerable_thread_specific<Scratch> workspaces;
+  tbb::parallel_for(std::size_t{0}, colours_ * nodes, [&](std::size_t i) {
+    Scratch& scratch = workspaces.local();
+    scratch.reserve(stride_);
+    plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], scratch.data(),
+                             std::span(spectra_).subspan(i * bins_, bins_));
+  });
+}
+
+void BlockSynthesis::add_product(const std::complex<float>* grid, std::size_t colour,
+                                 std::size_t node, std::complex<float>* sum) const {
+  multiply_add(grid, spectra_.data() + (colour * returns_.nodes.size() + node) * bins_,
+               plan_.length, static_cast<std::size_t>(plan_.highest_bin), sum);
+}
+
+Baseband BlockSynthesis::run() {
+  Baseband result{.carrier = plan_.carrier,
+                  .sample_rate = plan_.rate,
+                  .start = plan_.recording.start,
+                  .channels = phones_.size(),
+                  .samples = plan_.length,
+                  .recorded = 0,
+                  .values = {}};
+  result.recorded =
+      std::min(plan_.length, static_cast<std::size_t>(static_cast<double>(plan_.recording.samples) /
+                                                      plan_.recording.sample_rate * plan_.rate) +
+                                 1);
+  result.values.resize(phones_.size() * plan_.length);
+  if (returns_.nodes.empty()) return result;
+  const std::size_t grids = phones_.size() * colours_ * returns_.nodes.size();
+  // One batch for many phones: grids that stay in a thread's cache are faster.
+  constexpr std::size_t many = 8;
+  const bool keep = grids * stride_ * sizeof(std::complex<float>) <= most_kept &&
+                    (phones_.size() < many || batches(false).size() > 1);
+  const std::vector<Batch> all = batches(keep);
+  if (all.empty()) return result;
+  find_spectra();
+  if (keep) kept_ = FftBuffer<std::complex<float>>(grids * stride_);
+  for (const Batch& batch : all) {
+    blocks_.resize(std::max(blocks_.size(), batch.end - batch.begin));
+    tbb::parallel_for(batch.begin, batch.end, [&](std::size_t b) {
+      ReturnBlock& block = blocks_[b - batch.begin];
+      block.clear();
+      source_.make(b, block);
+    });
+    returns_.take(std::span(blocks_).first(batch.end - batch.begin));
+    if (keep)
+      lay_into_kept();
+    else
+      lay_and_transform(result);
+  }
+  transform(keep, result);
+  return result;
+}
+
+/// Where the returns that all hear may be cut into segments for tasks of their own: a segment
+/// reaches into the grid of its neighbours, but not across them.
+std::vector<std::size_t> BlockSynthesis::cuts(const OrderedReturns::Band& band) const {
+  constexpr std::size_t most = 16, fewest = 2048;  // segments; returns in one
+  const std::size_t begin = band.ends[0], end = band.ends[1];
+  double furthest = 0.0;
+  for (const Vec3& phone : phones_) furthest = std::max(furthest, phone.norm());
+  const double reach = 2.0 * furthest * returns_.largest_slowness * plan_.rate +
+                       2.0 * DelayKernel::taps + 2.0;  // [samples]
+  const std::size_t each = std::max(fewest, (end - begin) / most + 1);
+  std::vector<std::size_t> found = {begin};
+  for (std::size_t i = begin + each; i + each <= end; i += each)
+    if ((returns_.middle[i] - returns_.middle[found.back()]) * plan_.rate > reach)
+      found.push_back(i);
+  // The last one has a neighbour on one side only.
+  found.push_back(end);
+  return found;
+}
+
+void BlockSynthesis::lay_into_kept() {
+  // Segments in turn: no two of the same turn touch the same samples.
+  std::array<std::vector<Task>, 3> turns;
+  for (std::size_t b = 0; b < returns_.bands.size(); ++b) {
+    const OrderedReturns::Band& band = returns_.bands[b];
+    const std::vector<std::size_t> cut = cuts(band);
+    for (std::size_t channel = 0; channel < phones_.size(); ++channel)
+      for (std::size_t colour = 0; colour < colours_; ++colour) {
+        for (std::size_t i = 0; i + 1 < cut.size(); ++i)
+          turns[i % 2].push_back({b, channel, colour, cut[i], cut[i + 1]});
+        turns[2].push_back({b, channel, colour, band.ends[channel + 1], band.ends[channel + 2]});
+      }
+  }
+  for (const std::vector<Task>& turn : turns)
+    tbb::parallel_for(std::size_t{0}, turn.size(), [&](std::size_t i) {
+      const Task& t = turn[i];
+      const OrderedReturns::Band& band = returns_.bands[t.band];
+      grid_.lay(returns_, band,
+                {.begin = t.begin, .end = t.end, .colour = t.colour, .nodes = band.nodes},
+                phones_[t.channel], kept(t.channel, t.colour, band.first_node));
+    });
+}
+
+void BlockSynthesis::lay_and_transform(Baseband& result) {
+  const ComplexFft<float> fft(plan_.length);
+  tbb::enumerable_thread_specific<Scratch> workspaces;
+  tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+    Scratch& grids = workspaces.local();
+    std::complex<float>* sum = result.values.data() + channel * plan_.length;
+    for (const OrderedReturns::Band& band : returns_.bands) {
+      const bool heard =
+          band.ends[1] > band.ends[0] || band.ends[channel + 2] > band.ends[channel + 1];
+      for (std::size_t m = 0; heard && m < band.nodes; m += ImpulseGrid::most_nodes) {
+        const std::size_t count = std::min(ImpulseGrid::most_nodes, band.nodes - m);
+        grids.reserve(count * stride_);
+        for (std::size_t colour = 0; colour < colours_; ++colour) {
+          std::fill_n(grids.data(), count * stride_, 0.0F);
+          for (const std::size_t listener : {std::size_t{0}, channel + 1})
+            grid_.lay(returns_, band,
+                      {.begin = band.ends[listener],
+                       .end = band.ends[listener + 1],
+                       .colour = colour,
+                       .first_node = m,
+                       .nodes = count},
+                      phones_[channel], grids.data());
+          for (std::size_t i = 0; i < count; ++i) {
+            fft.forward(grids.data() + i * stride_);
+            add_product(grids.data() + i * stride_, colour, band.first_node + m + i, sum);
+          }
+        }
+      }
+    }
+  });
+}
+
+/// Whatever has been laid down or summed up, to time.
+void BlockSynthesis::transform(bool keep, Baseband& result) {
+  const ComplexFft<float> fft(plan_.length);
+  const std::size_t nodes = returns_.nodes.size();
+  if (keep)
+    tbb::parallel_for(std::size_t{0}, phones_.size() * colours_ * nodes,
+                      [&](std::size_t i) { fft.forward(kept_.data() + i * stride_); });
+  tbb::enumerable_thread_specific<Scratch> workspaces;
+  tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+    Scratch& row = workspaces.local();
+    row.reserve(stride_);
+    std::complex<float>* values = result.values.data() + channel * plan_.length;
+    std::copy_n(values, plan_.length, row.data());
+    for (std::size_t colour = 0; keep && colour < colours_; ++colour)
+      for (std::size_t node = 0; node < nodes; ++node)
+        add_product(kept(channel, colour, node), colour, node, row.data());
+    fft.inverse(row.data());
+    std::copy_n(row.data(), plan_.length, values);
+  });
+}
+
+}  // namespace asdic

@@ -1,0 +1,57 @@
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sonar/impulse_grid.h"
+#include "sonar/ordered_returns.h"
+#include "sonar/synthesis_plan.h"
+
+namespace asdic {
+
+/// Synthesizer::baseband(): a source's returns are made, ordered and laid down batch by batch.
+/// Where the grids of all phones, Doppler nodes and colours fit into `most_kept` bytes, they are
+/// kept and transformed once; otherwise phone by phone, after every batch. Private to the
+/// synthesis. docs/theory/synthesis.md, "Memory"
+class BlockSynthesis {
+ public:
+  BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
+                 const ReturnSource& source, std::span<const Vec3> phones);
+  [[nodiscard]] Baseband run();
+
+  static constexpr std::size_t most_kept = std::size_t{64} << 20;
+
+ private:
+  /// Some of a band's returns at a phone.
+  struct Task {
+    std::size_t band = 0, channel = 0, colour = 0, begin = 0, end = 0;
+  };
+  struct Batch {
+    std::size_t begin = 0, end = 0;  // of the source's blocks
+  };
+  [[nodiscard]] std::vector<Batch> batches(bool kept) const;
+  void find_spectra();
+  void lay_into_kept();
+  [[nodiscard]] std::vector<std::size_t> cuts(const OrderedReturns::Band& band) const;
+  void lay_and_transform(Baseband& result);
+  void transform(bool keep, Baseband& result);
+  void add_product(const std::complex<float>* grid, std::size_t colour, std::size_t node,
+                   std::complex<float>* sum) const;
+  [[nodiscard]] std::complex<float>* kept(std::size_t channel, std::size_t colour,
+                                          std::size_t node) {
+    return kept_.data() + ((channel * colours_ + colour) * returns_.nodes.size() + node) * stride_;
+  }
+
+  const Synthesizer::Plan& plan_;
+  const ReturnSource& source_;
+  std::span<const Vec3> phones_;
+  std::size_t colours_, stride_, bins_;
+  OrderedReturns returns_;
+  ImpulseGrid grid_;
+  std::vector<ReturnBlock> blocks_;           // of the batch in hand
+  std::vector<std::complex<float>> spectra_;  // [colours × nodes × bins]
+  FftBuffer<std::complex<float>> kept_;       // [channels × colours × nodes × stride], if it is
+};
+
+}  // namespace asdic
