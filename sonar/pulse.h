@@ -24,6 +24,8 @@ struct PulseSettings {
       {};                    ///< file: real pressure samples, scaled so that the peak envelope is 1
   double sample_rate = 0.0;  ///< file: [Hz]
   std::string file = {};     ///< file: where the samples came from, for the record
+
+  [[nodiscard]] bool operator==(const PulseSettings&) const = default;
 };
 
 /// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the
@@ -47,6 +49,8 @@ class Pulse {
   [[nodiscard]] const PulseSettings& settings() const noexcept { return settings_; }
 
  private:
+  void measure();
+
   PulseSettings settings_;
   double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, energy_ = 0.0;
   SampledSignal file_signal_;  // analytic, twice oversampled, unit peak

@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 from asdic_client import Client, Refused  # noqa: E402
 
-ASDIC = os.environ["ASDIC"]
+ASDIC = str(Path(os.environ["ASDIC"]).resolve())
 SCENARIO = """title = "SECRET"
 seed = 5
 [environment]
@@ -336,7 +336,7 @@ def ends():
 
 def does_not_grow(count):
     """Updates and pings, as a vehicle sends them."""
-    with server("--socket", "sonar.sock") as (process, _):
+    with server("--socket", "sonar.sock", "--limit", "kept_bytes=1000000") as (process, _):
         with Client.unix("sonar.sock") as client:
             def step(i):
                 now = 10.0 * i
