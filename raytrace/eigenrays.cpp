@@ -202,7 +202,7 @@ std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double sourc
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return followed_branch(environment_, layers_,
+  return followed_branch(environment_, water_->layers,
                          {.source_depth = source_depth,
                           .receiver_depth = receiver_depth,
                           .range = range,

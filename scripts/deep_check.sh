@@ -91,4 +91,12 @@ else
   verdict soak FAILED "at most $few kB over 50 pings, $many kB over 800"
 fi
 
+# 10 000 served updates and pings: none lost, no more memory after them.
+cd "$root"
+if said=$(/usr/bin/python3 tests/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then
+  verdict serve good "$(head -n 1 <<<"$said")"
+else
+  verdict serve FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 [ "$failures" = 0 ] && echo "deep check: all good" || { echo "deep check: $failures failed"; exit 1; }
