@@ -69,8 +69,14 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
   blocks_ = by_sectors_ ? sector_blocks() : rings_;
 }
 
+/// Not so where a platform has left the anchor behind: then rings around it are not hers.
+bool PingReverberation::all_round(const ScatteringField& field) const noexcept {
+  const Vec2 source = field.sheet.ends().source.position.head<2>();
+  return field.sheet.all_round() && (source - field.grid.anchor).norm() < 0.5 * field.grid.spacing;
+}
+
 std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
-  if (field.sheet.all_round()) return {0};
+  if (all_round(field)) return {0};
   const auto rings = static_cast<int>(std::max(1U, field.grid.rings));
   const int n = std::min(std::clamp(400'000 / rings, 12, 36), field.grid.azimuths);
   std::vector<int> sectors;
@@ -310,18 +316,20 @@ PatchRows PingReverberation::rows(std::size_t most) const {
     const double ring_of = ring_area(grid, ring);
     field.sheet.pairs_at(centre(grid, ring, sector), pairs, &limits_, ring_of);
     for (const PathPair& pair : pairs.found)
-      rows.push_back(
-          {.bearing = field.sheet.all_round() ? std::nan("") : sector_bearing(grid, sector),
-           .range = (ring + 0.5) * grid.spacing,
-           .area = share * ring_of * pair.area,
-           .delay = pair.delay,
-           .grazing_in = pair.grazing_in,
-           .grazing_out = pair.grazing_out,
-           .launch_elevation = pair.out->launch_elevation,
-           .arrival_elevation = -pair.back->launch_elevation,
-           .scattering_strength_db = db_from_power(pair.cross_section),
-           .level_db = source_level +
-                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
+      rows.push_back({.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
+                                : field.boundary == 1 ? PatchRow::Ground::bottom
+                                                      : PatchRow::Ground::surface,
+                      .bearing = all_round(field) ? std::nan("") : sector_bearing(grid, sector),
+                      .range = (ring + 0.5) * grid.spacing,
+                      .area = share * ring_of * pair.area,
+                      .delay = pair.delay,
+                      .grazing_in = pair.grazing_in,
+                      .grazing_out = pair.grazing_out,
+                      .launch_elevation = pair.out->launch_elevation,
+                      .arrival_elevation = -pair.back->launch_elevation,
+                      .scattering_strength_db = db_from_power(pair.cross_section),
+                      .level_db = source_level + db_from_power(std::norm(pair.amplitude) * share *
+                                                               ring_of * pair.area)});
   };
   // Every how many rings: from the number of pairs of one ring in 32.
   std::vector<PatchRow> counted;

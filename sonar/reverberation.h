@@ -127,6 +127,7 @@ class PingReverberation final : public ReturnSource {
   /// Half of 1/B, or as much as the limit of returns asks for [s].
   [[nodiscard]] double sector_bin(const ScatteringField& field) const;
   [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
+  [[nodiscard]] bool all_round(const ScatteringField& field) const noexcept;
   [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
 
   const Scenario& scenario_;
