@@ -150,6 +150,11 @@ void PingFileWriter::Impl::create_ping_datasets() {
                   {channels, 3});
   for (const char* name : {"rays", "eigenrays", "patches", "synthesis", "noise", "write"})
     growing<double>(std::string("run/time_") + name, std::string("wall time of ") + name, "s");
+  growing<std::int8_t>("run/reuse_ocean", "1 if another simulator had used an equal ocean", "");
+  growing<std::int32_t>("run/legs_searched", "sets of eigenrays that were searched for", "");
+  growing<std::int32_t>("run/legs_reused", "sets of eigenrays that were known", "");
+  growing<std::int8_t>("run/reuse_reverberation",
+                       "1 if all paths to scattering boundaries were known", "");
   if (targets == 0) return;
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
@@ -379,6 +384,12 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<double>("run/time_patches", std::array{t.patches});
   to.file.append<double>("run/time_synthesis", std::array{t.synthesis});
   to.file.append<double>("run/time_noise", std::array{t.noise});
+  const Reuse& reuse = record.reuse;
+  to.file.append<std::int8_t>("run/reuse_ocean", std::array{std::int8_t{reuse.ocean}});
+  to.file.append<std::int32_t>("run/legs_searched", std::array{std::int32_t{reuse.legs_searched}});
+  to.file.append<std::int32_t>("run/legs_reused", std::array{std::int32_t{reuse.legs_reused}});
+  to.file.append<std::int8_t>("run/reuse_reverberation",
+                              std::array{std::int8_t{reuse.reverberation}});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   to.file.append<double>("run/time_write", std::array{wall.count()});
   to.file.flush();

@@ -25,6 +25,8 @@ struct Boundary {
   }
   /// What lies behind the boundary at a range.
   [[nodiscard]] const BoundaryMaterial& material_at(double range) const noexcept;
+
+  [[nodiscard]] bool operator==(const Boundary&) const = default;
 };
 
 /// The vertical plane that sound crosses, as sound sees it: speed, boundaries and losses as
@@ -41,6 +43,8 @@ struct Environment {
   Absorption absorption = NoAbsorption{};  ///< a law of frequency, the same at every depth
   std::vector<BiologicalLayer> biology;    ///< resonant absorption of layers of fish, added to it
   DepthFunction attenuation_db_per_km = 0.0;  ///< added to both: at the one frequency of interest
+
+  [[nodiscard]] bool operator==(const Environment&) const = default;
 };
 
 /// Speed and its derivatives anywhere.

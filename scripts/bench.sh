@@ -1,20 +1,31 @@
 #!/usr/bin/env bash
-# Measures the stages of a ping with Google Benchmark and writes JSON, one file a program.
+# Measures the stages of a ping with Google Benchmark and writes JSON, one file a program; or counts the kernels' instructions.
 #   scripts/bench.sh [FILTER] [-o DIR]      FILTER: a regular expression of benchmark names; DIR: out/bench
+#   scripts/bench.sh --check [FILTER]       fails when a kernel takes 5 % more instructions than tests/bench/counts.json says
+#   scripts/bench.sh --update [FILTER]      writes them there
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/setup.sh
-filter=. directory=out/bench
+filter=. directory=out/bench counts=
 while [ $# -gt 0 ]; do
   case "$1" in
     -o) directory=$2; shift ;;
-    -h | --help) sed -n '2,3s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --check) counts=check ;;
+    --update) counts=update ;;
+    -h | --help) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 0 ;;
     -*) echo "bench.sh: unknown option $1; see --help" >&2; exit 2 ;;
     *) filter=$1 ;;
   esac
   shift
 done
 asdic_setup
+if [ -n "$counts" ]; then
+  cmake --preset portable -DASDIC_TESTS=OFF -DASDIC_BENCHMARKS=ON >/dev/null
+  cmake --build --preset portable --target count_kernels >/dev/null
+  options=(--only "$filter")
+  [ "$counts" = check ] || options+=(--update)
+  exec /usr/bin/python3 tests/bench/check_counts.py build/portable/tests/bench/count_kernels "${options[@]}"
+fi
 cmake --preset bench -DASDIC_TESTS=OFF >/dev/null
 cmake --build --preset bench
 mkdir -p "$directory"

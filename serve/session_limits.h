@@ -1,19 +1,35 @@
 #pragma once
 #include <cstddef>
+#include <span>
+#include <string>
 
 namespace asdic::serve {
 
 /// What one client may ask for; past a limit a command is refused by a message.
 struct SessionLimits {
   std::size_t line_bytes = 1 << 20;       ///< of one command
-  int nesting = 16;                       ///< of its JSON
+  std::size_t nesting = 16;               ///< of its JSON
   std::size_t samples = 1 << 22;          ///< of one channel
   std::size_t channels = 1024;            ///< of all arrays
+  std::size_t targets = 64;               ///< of the scenario
   std::size_t patches = 4'000'000;        ///< returns of the reverberation in one ping
   std::size_t memory_bytes = 1ULL << 32;  ///< that a ping may need
-  int queued_pings = 8;                   ///< further ones are answered "busy"
-  int connections = 8;                    ///< at a time
-  double idle_seconds = 600.0;            ///< after which a silent client is closed
+  std::size_t file_bytes = 16 << 20;      ///< of a file that a command names
+  std::size_t queued_pings = 8;           ///< commands that wait; further ones are answered "busy"
+  std::size_t connections = 8;            ///< at a time
+  std::size_t answer_bytes = 256U << 20;  ///< that wait for a slow reader
+  std::size_t handshake_seconds = 10;     ///< for the first line of a socket's client
+  std::size_t idle_seconds = 600;         ///< after which a silent socket is closed
 };
+
+/// The limits by name, as `--limit NAME=VALUE` and the command `limits` have them.
+struct LimitName {
+  std::string name;
+  std::size_t SessionLimits::*value;
+};
+[[nodiscard]] std::span<const LimitName> limit_names();
+
+/// Sets one limit by "NAME=VALUE". \throws InputError{where: "--limit"}
+void set_limit(SessionLimits& limits, const std::string& assignment);
 
 }  // namespace asdic::serve

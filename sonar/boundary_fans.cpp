@@ -9,8 +9,6 @@
 namespace asdic {
 namespace {
 
-constexpr std::size_t most_places = 24;
-
 /// How each cell's facet lies. A slope h′ along the transect is h′·cos β in the plane: the angle to
 /// the facet is that to its line in the plane, corrected for the part of its normal that sticks out
 /// of the plane.
@@ -37,6 +35,14 @@ std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
   return ends;
 }
 
+std::size_t bytes_of(const BoundaryFan& fan) {
+  std::size_t bytes = sizeof(BoundaryFan);
+  for (const FanPlane& plane : fan.planes)
+    bytes += sizeof(FanPlane) + plane.paths->size() * (sizeof(GroundPath) + sizeof(PathEnds)) +
+             plane.paths->cells() * sizeof(std::uint32_t) + plane.tilt.size() * sizeof(CellTilt);
+  return bytes;
+}
+
 }  // namespace
 
 const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
@@ -51,30 +57,25 @@ struct BoundaryFans::Entry {
   BoundaryFan fan;
 };
 
-BoundaryFans::BoundaryFans(const PropagationPaths& paths) : paths_(paths) {}
-
-BoundaryFans::~BoundaryFans() = default;
-
 std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const GroundLevel& level,
-                                                        const Settings& settings) const {
+                                                        const Settings& settings,
+                                                        bool* known) const {
   const bool layered = paths_.layered();
-  const Key key(level.boundary ? static_cast<int>(*level.boundary) : -1, level.depth,
-                layered ? 0.0 : paths_.plane(place, 0.0).origin, place.z(), settings.frequency,
-                settings.spacing, settings.max_range, layered ? 0 : settings.sectors);
-  std::shared_ptr<Entry> entry;
-  {
-    const std::scoped_lock lock(lock_);
-    auto& kept = kept_[key];
-    if (!kept) {
-      kept = std::make_shared<Entry>();
-      entry = kept;
-      // a platform that moves all the time: keep the newest only
-      if (kept_.size() > most_places) kept_ = {{key, entry}};
-    } else {
-      entry = kept;
-    }
-  }
-  tbb::collaborative_call_once(entry->traced, [&] { entry->fan = trace(place, level, settings); });
+  const PathLimits& limits = settings.limits;
+  ExactKey key = paths_.key(Kept::boundary_fan);
+  key.add(level.boundary ? static_cast<int>(*level.boundary) : -1).add(level.depth);
+  key.add(layered ? 0.0 : paths_.plane(place, 0.0).origin).add(place.z()).add(settings.frequency);
+  key.add(settings.spacing).add(settings.max_range).add(layered ? 0 : settings.sectors);
+  key.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
+  key.add(limits.max_vertices).add(limits.faintest);
+  PropagationMemory& memory = paths_.memory();
+  auto entry = memory.find<Entry>(key);
+  if (known != nullptr) *known = entry != nullptr;
+  if (!entry) entry = memory.keep(key, std::make_shared<Entry>(), sizeof(Entry));
+  tbb::collaborative_call_once(entry->traced, [&] {
+    entry->fan = trace(place, level, settings);
+    memory.charge(key, bytes_of(entry->fan));
+  });
   return {entry, &entry->fan};
 }
 

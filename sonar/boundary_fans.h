@@ -1,8 +1,5 @@
 #pragma once
-#include <map>
 #include <memory>
-#include <mutex>
-#include <tuple>
 #include <vector>
 
 #include "raytrace/ground_paths.h"
@@ -46,8 +43,9 @@ struct BoundaryFan {
 
 /// Where the fans of places meet boundaries.
 ///
-/// Planes are traced when first asked for and kept for a place that stays (in a layered ocean: that
-/// keeps its depth). Shared by threads; what comes out does not depend on what is kept.
+/// Planes are traced when first asked for and kept, in the memory of the paths, for a place that
+/// stays (in a layered ocean: that keeps its depth). Shared by threads; what comes out does not
+/// depend on what is kept.
 class BoundaryFans {
  public:
   struct Settings {
@@ -58,22 +56,20 @@ class BoundaryFans {
     PathLimits limits;
   };
   /// \param paths  must outlive this
-  explicit BoundaryFans(const PropagationPaths& paths);
-  ~BoundaryFans();
+  explicit BoundaryFans(const PropagationPaths& paths) : paths_(paths) {}
 
+  /// \param known  is told whether they had been traced
   [[nodiscard]] std::shared_ptr<const BoundaryFan> around(const Vec3& place,
                                                           const GroundLevel& level,
-                                                          const Settings& settings) const;
+                                                          const Settings& settings,
+                                                          bool* known = nullptr) const;
 
  private:
   struct Entry;
   [[nodiscard]] BoundaryFan trace(const Vec3& place, const GroundLevel& level,
                                   const Settings& settings) const;
-  using Key = std::tuple<int, double, double, double, double, double, double, int>;
 
   const PropagationPaths& paths_;
-  mutable std::mutex lock_;
-  mutable std::map<Key, std::shared_ptr<Entry>> kept_;
 };
 
 }  // namespace asdic

@@ -21,7 +21,7 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
     for (const Vec3& phone : phones_at(scenario, context.array, context.ping, context.ping_time))
       aperture = std::max(aperture, phone.norm());
   const MovingPaths closely(context.paths, limits_of(scenario.propagation), context.frequency,
-                            context.ping_time, 1e-9);
+                            context.ping_time, 1e-9, context.reuse);
   const auto moment = [&](double sent) -> std::optional<PulseMoment> {
     const Vec3 from =
         transmitter_at(scenario, context.transmitter, context.ping_time + sent).position;
@@ -71,7 +71,7 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
                                           context.ping_time)[static_cast<std::size_t>(channel)]);
   const Kinematics source = transmitter_at(scenario, context.transmitter, context.ping_time);
   const MovingPaths moving(context.paths, limits_of(scenario.propagation), context.frequency,
-                           context.ping_time);
+                           context.ping_time, 1e-7, context.reuse);
   Way way = moving.way(source.position, 0.0, track, offset);
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;

@@ -33,9 +33,9 @@ class EchoFinder {
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
         moving_(context.paths, limits_of(scenario_.propagation), context.frequency,
-                context.ping_time),
+                context.ping_time, 1e-7, context.reuse),
         closely_(context.paths, limits_of(scenario_.propagation), context.frequency,
-                 context.ping_time, 1e-9) {}
+                 context.ping_time, 1e-9, context.reuse) {}
 
   TargetEchoes find() {
     const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);

@@ -20,6 +20,7 @@ struct EchoContext {
   int ping = 1;                  ///< of the run, counted from 1
   int turn = 1;                  ///< of the transmitter's own pings, counted from 1
   const Pulse* pulse = nullptr;  ///< none: its leading edge alone is followed
+  Reuse* reuse = nullptr;        ///< counts the eigenrays that were known
 };
 
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every

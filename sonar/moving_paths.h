@@ -41,13 +41,15 @@ class MovingPaths {
  public:
   /// \param frequency  [Hz]   \param ping_time  since the start of the scenario [s]
   /// \param tolerance  of a delay that the linear step below leaves [s]
+  /// \param reuse  counts the eigenrays that were known; null: nobody does
   MovingPaths(const PropagationPaths& paths, const PathLimits& limits, double frequency,
-              double ping_time, double tolerance = 1e-7)
+              double ping_time, double tolerance = 1e-7, Reuse* reuse = nullptr)
       : paths_(paths),
         limits_(limits),
         frequency_(frequency),
         ping_time_(ping_time),
-        tolerance_(tolerance) {}
+        tolerance_(tolerance),
+        reuse_(reuse) {}
 
   /// Eigenrays from a point, left at `start`, to where a track is when the first of them comes.
   /// \param offset  from the track [m]   \param known  the same paths when something was metres
@@ -69,6 +71,7 @@ class MovingPaths {
   const PropagationPaths& paths_;
   PathLimits limits_;
   double frequency_, ping_time_, tolerance_;
+  Reuse* reuse_;
 };
 
 }  // namespace asdic

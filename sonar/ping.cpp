@@ -40,14 +40,20 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
+                                                 SharedPropagation* shared, bool& known) {
+  if (shared != nullptr) return shared->paths(scenario.environment, scenario.transect, &known);
+  return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect);
+}
+
 }  // namespace
 
-PingSimulator::PingSimulator(Scenario scenario)
+PingSimulator::PingSimulator(Scenario scenario, std::shared_ptr<SharedPropagation> shared)
     : scenario_(std::move(scenario)),
       transmissions_(asdic::transmissions(scenario_)),
-      paths_(scenario_.environment, scenario_.transect),
-      noise_(scenario_, paths_),
-      interference_(scenario_, paths_),
+      paths_(paths_of(scenario_, shared.get(), known_ocean_)),
+      noise_(scenario_, *paths_),
+      interference_(scenario_, *paths_),
       receivers_(scenario_),
       max_doppler_(doppler_bound(scenario_)) {
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
@@ -56,9 +62,9 @@ PingSimulator::PingSimulator(Scenario scenario)
     return a.bandwidth_40db() < b.bandwidth_40db();
   };
   reverberation_ = std::make_unique<ReverberationModel>(
-      scenario_, paths_, *std::max_element(pulses_.begin(), pulses_.end(), wider));
+      scenario_, *paths_, *std::max_element(pulses_.begin(), pulses_.end(), wider));
   set_sea(scenario_.reverberation.surface, scenario_.wind_speed,
-          speed_at_surface(scenario_, paths_));
+          speed_at_surface(scenario_, *paths_));
 }
 
 Transmitter PingSimulator::transmitter(int ping) const {
@@ -70,6 +76,7 @@ double PingSimulator::ground_spacing() const { return reverberation_->ground_spa
 PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
   const PingSchedule& schedule = scenario_.pings;
   PingRecord record;
+  record.reuse = {.ocean = known_ocean_, .reverberation = scenario_.reverberation.enabled};
   record.ping = ping;
   record.transmitter = sent.transmitter;
   record.start_time = sent.time;
@@ -123,7 +130,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   const double frequency = sent_pulse.centre_frequency();
   PingRecord record = blank_record(ping, sent);
 
-  const double local_speed = paths_.speed_at(record.platform.position);
+  const double local_speed = paths_->speed_at(record.platform.position);
   const double heading = platform_heading(scenario_, projector.platform, sent.time);
   const BeamPattern pattern(projector, local_speed / frequency, local_speed, heading);
   const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
@@ -145,7 +152,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   std::vector<PingReverberation> reverberation;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const std::vector<Vec3> phones = phones_at(scenario_, static_cast<int>(a), ping, sent.time);
-    const EchoContext context{.paths = paths_,
+    const EchoContext context{.paths = *paths_,
                               .scenario = scenario_,
                               .pattern = pattern,
                               .frequency = frequency,
@@ -154,7 +161,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                               .array = static_cast<int>(a),
                               .ping = ping,
                               .turn = sent.turn,
-                              .pulse = &sent_pulse};
+                              .pulse = &sent_pulse,
+                              .reuse = &record.reuse};
     const std::vector<EchoPath> sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
     Baseband of_array =
@@ -171,6 +179,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                               .time = sent.time,
                               .ping = static_cast<std::uint32_t>(ping),
                               .latest = record_end,
+                              .reuse = &record.reuse,
                               .band = band ? band->points() : std::span<const BandPoint>()}));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;

@@ -13,6 +13,7 @@
 #include "sonar/receiver_electronics.h"
 #include "sonar/reverberation.h"
 #include "sonar/scenario.h"
+#include "sonar/shared_propagation.h"
 #include "sonar/transmission.h"
 
 namespace asdic {
@@ -22,8 +23,10 @@ namespace asdic {
 /// come out.
 class PingSimulator {
  public:
-  /// \throws InputError naming the key at fault ("pings.sample_rate", "pulse.duration", …)
-  explicit PingSimulator(Scenario scenario);
+  /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
+  /// what comes out \throws InputError naming the key at fault ("pings.sample_rate",
+  /// "pulse.duration", …)
+  explicit PingSimulator(Scenario scenario, std::shared_ptr<SharedPropagation> shared = nullptr);
 
   /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
   /// counted from 1
@@ -41,8 +44,8 @@ class PingSimulator {
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
-  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_.along_transect(); }
-  [[nodiscard]] const PropagationPaths& paths() const noexcept { return paths_; }
+  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_->along_transect(); }
+  [[nodiscard]] const PropagationPaths& paths() const noexcept { return *paths_; }
   [[nodiscard]] const Pulse& pulse(int transmitter = 0) const noexcept {
     return pulses_[static_cast<std::size_t>(transmitter)];
   }
@@ -65,7 +68,8 @@ class PingSimulator {
   Scenario scenario_;
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
-  PropagationPaths paths_;
+  bool known_ocean_ = false;   // written before paths_
+  std::shared_ptr<const PropagationPaths> paths_;
   AmbientNoise noise_;
   Interference interference_;
   ReceiverElectronics receivers_;

@@ -7,6 +7,7 @@
 #include "sonar/band_response.h"
 #include "sonar/delay_curve.h"
 #include "sonar/returns.h"
+#include "sonar/reuse.h"
 #include "sonar/synthesis.h"
 #include "sonar/track.h"
 
@@ -113,6 +114,7 @@ struct PingRecord {
   LevelSeries levels;
   std::vector<TargetSummary> summary;
   Timings timings;
+  Reuse reuse;
 };
 
 }  // namespace asdic

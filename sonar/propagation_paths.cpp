@@ -1,7 +1,9 @@
 #include "sonar/propagation_paths.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "raytrace/ocean/slice.h"
 #include "sonar/followed_path.h"
@@ -10,7 +12,29 @@
 namespace asdic {
 namespace {
 
-constexpr std::size_t most_slices = 64;
+constexpr std::size_t own_memory = std::size_t{256} << 20;
+
+std::uint64_t next_identity() {
+  static std::atomic<std::uint64_t> next{0};
+  return next++;
+}
+
+std::size_t bytes_of(const Arrivals& arrivals) {
+  std::size_t bytes = sizeof(Arrivals) + arrivals.capacity() * sizeof(Arrival);
+  for (const Arrival& a : arrivals) bytes += a.bounces.capacity() * sizeof(Bounce);
+  return bytes;
+}
+
+/// Of a solver of a range-dependent ocean and its tracer, roughly: they hold the section's speeds
+/// and the boundaries' nodes a few times, with derivatives.
+std::size_t bytes_of(const Environment& slice) {
+  constexpr std::size_t doubles_a_sample = 16;
+  std::size_t samples = 256 + slice.water.depths().size();
+  if (slice.section) samples += slice.section->speeds().size();
+  for (const Boundary* boundary : {&slice.surface, &slice.bottom})
+    if (boundary->shape) samples += boundary->shape->ranges().size();
+  return samples * doubles_a_sample * sizeof(double);
+}
 
 /// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
 /// to a degree beyond (as same_path in moving_paths.h).
@@ -36,8 +60,13 @@ PathLimits limits_of(const PropagationSettings& settings) noexcept {
           .max_launch_angle = settings.max_launch_angle};
 }
 
-PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect)
-    : along_(ocean), transect_(transect), layered_(is_layered(ocean)) {}
+PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
+                                   std::shared_ptr<PropagationMemory> memory)
+    : along_(ocean),
+      transect_(transect),
+      layered_(is_layered(ocean)),
+      identity_(next_identity()),
+      memory_(memory ? std::move(memory) : std::make_shared<PropagationMemory>(own_memory)) {}
 
 Plane PropagationPaths::plane(const Vec3& from, double bearing) const noexcept {
   return {.origin = along(from), .cos_beta = std::cos(bearing - transect_.bearing)};
@@ -63,37 +92,71 @@ double PropagationPaths::speed_at(const Vec3& place) const noexcept {
 
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
   if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
-  const std::pair key(plane.origin, plane.cos_beta);
-  {
-    const std::scoped_lock lock(lock_);
-    if (const auto kept = slices_.find(key); kept != slices_.end()) return kept->second;
-  }
-  auto made = std::make_shared<const EigenraySolver>(
-      slice(along_.environment(), plane.origin, plane.cos_beta));
-  const std::scoped_lock lock(lock_);
-  if (slices_.size() >= most_slices) slices_.clear();
-  return slices_.emplace(key, std::move(made)).first->second;
+  const ExactKey kept_as = key(Kept::slice).add(plane.origin).add(plane.cos_beta);
+  if (auto kept = memory_->find<EigenraySolver>(kept_as)) return kept;
+  auto made =
+      std::make_shared<EigenraySolver>(slice(along_.environment(), plane.origin, plane.cos_beta));
+  const std::size_t bytes = bytes_of(made->environment());
+  return memory_->keep(kept_as, std::move(made), bytes);
 }
 
-Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
-                                const PathLimits& limits) const {
+/// All that a search depends on: in a layered ocean depths and range, otherwise the plane, too.
+ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
+                                   const PathLimits& limits) const {
+  ExactKey leg = key(kind);
+  leg.add(from.z()).add(to.z()).add(separation(from, to).range).add(frequency);
+  leg.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
+  leg.add(limits.max_vertices).add(limits.faintest);
+  if (layered_) return leg;
+  const Plane line = plane(from, to);
+  return leg.add(line.origin).add(line.cos_beta);
+}
+
+template <class Find>
+Arrivals PropagationPaths::recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const {
+  const auto known = memory_->find<Arrivals>(key);
+  if (reuse != nullptr) ++(known ? reuse->legs_reused : reuse->legs_searched);
+  if (known) return *known;
+  Arrivals found = find();
+  memory_->keep(key, std::make_shared<Arrivals>(found), bytes_of(found));
+  return found;
+}
+
+Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
+                                  const PathLimits& limits) const {
   const double range = separation(from, to).range;
   if (layered_) return along_.find(from.z(), to.z(), range, frequency, limits);
   return solver(plane(from, to))->find(from.z(), to.z(), range, frequency, limits);
 }
 
+Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
+                                const PathLimits& limits, Reuse* reuse) const {
+  return recall_or(leg_key(Kept::legs, from, to, frequency, limits), reuse,
+                   [&] { return search(from, to, frequency, limits); });
+}
+
 Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
-                                  double frequency, const PathLimits& limits) const {
-  if (layered_) return find(from, to, frequency, limits_around(known, limits));
-  const Plane line = plane(from, to);
-  const RayTracer tracer(slice(along_.environment(), line.origin, line.cos_beta), frequency);
-  Arrivals followed;
-  for (const Arrival& path : known) {
-    auto same = followed_path(tracer, path, from.z(), to.z(), separation(from, to).range);
-    if (!same) return find(from, to, frequency, limits);
-    followed.push_back(std::move(*same));
-  }
-  return followed;
+                                  double frequency, const PathLimits& limits, Reuse* reuse) const {
+  if (layered_) return find(from, to, frequency, limits_around(known, limits), reuse);
+  ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
+  for (const Arrival& path : known)  // launch angle and history: all that a path is followed by
+    key.add(path.launch_elevation)
+        .add(path.surface_bounces)
+        .add(path.bottom_bounces)
+        .add(path.upper_turns)
+        .add(path.lower_turns)
+        .add(path.caustics);
+  return recall_or(key, reuse, [&] {
+    const Plane line = plane(from, to);
+    const RayTracer tracer(slice(along_.environment(), line.origin, line.cos_beta), frequency);
+    Arrivals followed;
+    for (const Arrival& path : known) {
+      auto same = followed_path(tracer, path, from.z(), to.z(), separation(from, to).range);
+      if (!same) return search(from, to, frequency, limits);
+      followed.push_back(std::move(*same));
+    }
+    return followed;
+  });
 }
 
 }  // namespace asdic

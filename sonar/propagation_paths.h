@@ -1,10 +1,11 @@
 #pragma once
-#include <map>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 
 #include "raytrace/eigenrays.h"
+#include "sonar/propagation_memory.h"
+#include "sonar/reuse.h"
 #include "sonar/scenario.h"
 
 namespace asdic {
@@ -19,15 +20,24 @@ struct Plane {
 ///
 /// In a layered ocean one solver serves all places. Where the ocean varies along a transect, sound
 /// travels in the vertical plane through both places (N × 2D), and each plane is a slice of the
-/// ocean with a solver of its own; the latest are kept. Shared by threads; what comes out does not
-/// depend on what is kept. docs/theory/transect.md
+/// ocean with a solver of its own. The slices and eigenrays that were used last are kept. Shared by
+/// threads; what comes out does not depend on what is kept. docs/theory/transect.md
 class PropagationPaths {
  public:
-  PropagationPaths(const Environment& ocean, const Transect& transect);
+  /// \param memory  of what was found; none: one of its own
+  PropagationPaths(const Environment& ocean, const Transect& transect,
+                   std::shared_ptr<PropagationMemory> memory = nullptr);
+  PropagationPaths(const PropagationPaths&) = delete;
+  PropagationPaths& operator=(const PropagationPaths&) = delete;
 
   /// Of the ocean as it is given: from the transect's origin along it.
   [[nodiscard]] const EigenraySolver& along_transect() const noexcept { return along_; }
   [[nodiscard]] bool layered() const noexcept { return layered_; }
+  [[nodiscard]] const Transect& transect() const noexcept { return transect_; }
+
+  [[nodiscard]] PropagationMemory& memory() const noexcept { return *memory_; }
+  /// A key of this ocean, to which is added what else a result depends on.
+  [[nodiscard]] ExactKey key(Kept kind) const { return ExactKey(kind, identity_); }
 
   /// The plane through a place in a direction [rad, clockwise from north].
   [[nodiscard]] Plane plane(const Vec3& from, double bearing) const noexcept;
@@ -46,23 +56,30 @@ class PropagationPaths {
   /// Speed of sound at a place [m/s].
   [[nodiscard]] double speed_at(const Vec3& place) const noexcept;
 
-  /// All eigenrays from one place to another, sorted by delay.
+  /// All eigenrays from one place to another, sorted by delay. \param reuse  counts what was known
   [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
-                              const PathLimits& limits) const;
+                              const PathLimits& limits, Reuse* reuse = nullptr) const;
   /// The same paths after the places have moved by metres: searched anew in a layered ocean, where
   /// that costs microseconds, otherwise each followed from what it was (and searched anew if one
   /// cannot be). \param known  paths between two places nearby
   [[nodiscard]] Arrivals follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
-                                double frequency, const PathLimits& limits) const;
+                                double frequency, const PathLimits& limits,
+                                Reuse* reuse = nullptr) const;
 
  private:
   [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
+  [[nodiscard]] Arrivals search(const Vec3& from, const Vec3& to, double frequency,
+                                const PathLimits& limits) const;
+  [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
+                                 const PathLimits& limits) const;
+  template <class Find>
+  Arrivals recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const;
 
   EigenraySolver along_;
   Transect transect_;
   bool layered_;
-  mutable std::mutex lock_;
-  mutable std::map<std::pair<double, double>, std::shared_ptr<const EigenraySolver>> slices_;
+  std::uint64_t identity_;  // of this ocean in a memory that several share
+  std::shared_ptr<PropagationMemory> memory_;
 };
 
 /// What a scenario searches for.

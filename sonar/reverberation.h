@@ -21,6 +21,7 @@ struct ReverberationContext {
   double time = 0.0;                     ///< of the ping, since the start of the scenario [s]
   std::uint32_t ping = 1;                ///< counted from 1: the key of weights that last one ping
   double latest = 0.0;                   ///< end of the record, since the ping [s]
+  Reuse* reuse = nullptr;                ///< is told whether anything had to be traced
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
 };
 

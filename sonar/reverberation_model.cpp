@@ -126,9 +126,15 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
     return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
                                                          : paths_.bottom_depth(place);
   };
-  return {.sheet = ScatteringSheet(fans_.around(ends.source.position, part.level, fan),
-                                   fans_.around(ends.receiver.position, part.level, fan),
-                                   std::move(part.law), here, context.pattern),
+  const auto fan_around = [&](const Vec3& place) {
+    bool known = false;
+    auto paths_to_level = fans_.around(place, part.level, fan, &known);
+    if (context.reuse != nullptr && !known) context.reuse->reverberation = false;
+    return paths_to_level;
+  };
+  auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
+  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), here,
+                                   context.pattern),
           .grid = {.anchor = anchor.place,
                    .identity = anchor.identity,
                    .spacing = spacing_,

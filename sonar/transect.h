@@ -11,6 +11,8 @@ struct Transect {
 
   /// Range of a place on the map [m].
   [[nodiscard]] double range_of(double east, double north) const noexcept;
+
+  [[nodiscard]] bool operator==(const Transect&) const = default;
 };
 
 }  // namespace asdic

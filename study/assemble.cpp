@@ -68,6 +68,7 @@ bool assemble(const std::filesystem::path& output, const Imprint& imprint, Index
   };
   for (const Journal* journal : journals)
     for (const Session& session : journal->sessions()) results.sessions.push_back(session);
+  results.reuse = take_reuse(results.table);
   results.summary = summarise(results.table);
   write_study_file(output, results, series);
   return results.complete();

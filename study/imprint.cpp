@@ -3,23 +3,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "study/design.h"
+
 namespace asdic::study {
 
 using Json = nlohmann::json;
-
-std::string_view name(Design design) noexcept {
-  switch (design) {
-    case Design::latin_hypercube:
-      return "latin_hypercube";
-    case Design::sobol:
-      return "sobol";
-    case Design::grid:
-      return "grid";
-    case Design::random:
-      break;
-  }
-  return "random";
-}
 
 namespace {
 
@@ -97,6 +85,7 @@ std::string to_json(const Session& session) {
               {"cpu", made.cpu},
               {"library_versions", made.library_versions},
               {"threads", made.threads},
+              {"study_path", session.study_path},
               {"rows", session.rows},
               {"seconds", session.seconds}}
       .dump();
@@ -111,8 +100,25 @@ Session session_from_json(const std::string& text) {
                    .cpu = json.at("cpu"),
                    .library_versions = json.at("library_versions"),
                    .threads = json.at("threads")},
+          .study_path = json.at("study_path"),
           .rows = json.at("rows"),
           .seconds = json.at("seconds")};
+}
+
+Table take_reuse(Table& table) {
+  Table reuse{.columns = {}, .index = {}, .valid = {}, .values = {}};
+  for (std::size_t i = 0; i < table.columns.size();) {
+    if (table.columns[i].role != Column::Role::reuse) {
+      ++i;
+      continue;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    reuse.columns.push_back(std::move(table.columns[i]));
+    reuse.values.push_back(std::move(table.values[i]));
+    table.columns.erase(table.columns.begin() + at);
+    table.values.erase(table.values.begin() + at);
+  }
+  return reuse;
 }
 
 std::string mixed_builds(const std::vector<Session>& sessions) {

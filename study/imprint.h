@@ -5,6 +5,7 @@
 
 #include "io/ping_file.h"
 #include "study/realisation.h"
+#include "study/summary.h"
 
 namespace asdic::study {
 
@@ -22,12 +23,11 @@ struct Imprint {
 
 [[nodiscard]] Imprint imprint_of(const Study& study);
 
-[[nodiscard]] std::string_view name(Design design) noexcept;
-
 /// One run of a command that made rows: they may depend on its build and its kind of processor;
 /// on nothing else of it.
 struct Session {
   Provenance made{};
+  std::string study_path{};  ///< of the study file, absolute
   std::uint64_t rows = 0;
   double seconds = 0.0;  ///< wall time
 
@@ -43,6 +43,9 @@ struct Session {
 [[nodiscard]] std::string to_json(const Session& session);
 [[nodiscard]] std::vector<Column> columns_from_json(const std::string& text);
 [[nodiscard]] Session session_from_json(const std::string& text);
+
+/// Takes the columns that tell how a row was made, not what came out, out of a table.
+[[nodiscard]] Table take_reuse(Table& table);
 
 /// What is wrong with mixing rows of these: "" where nothing is, else a sentence that names builds
 /// and processors.

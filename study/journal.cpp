@@ -120,6 +120,10 @@ struct Journal::Impl {
   [[nodiscard]] Row row_at(const sqlite::Statement& get) const;
   [[nodiscard]] bool add_series(Row& row) const;
   void drop(std::uint64_t index) const;
+  [[nodiscard]] std::int64_t next_session() const {
+    sqlite::Statement next(database, "SELECT COALESCE(MAX(id),0)+1 FROM session");
+    return next.step() ? next.integer(0) : 1;
+  }
 
   sqlite::Database database;
   std::string identity;
@@ -306,8 +310,16 @@ void Journal::begin(const Session& session) {
   impl_->session = session;
   impl_->session->rows = 0;
   impl_->began = std::chrono::steady_clock::now();
-  sqlite::Statement next(impl_->database, "SELECT COALESCE(MAX(id),0)+1 FROM session");
-  impl_->session_id = next.step() ? next.integer(0) : 1;
+  impl_->session_id = impl_->next_session();
+}
+
+void Journal::add(const Session& session) {
+  const std::lock_guard lock(impl_->mutex);
+  const std::string text = to_json(session);
+  sqlite::Statement(impl_->database, "INSERT INTO session VALUES(?,?)")
+      .bind(0, impl_->next_session())
+      .bind(1, text)
+      .run();
 }
 
 void Journal::append(const Row& row) {

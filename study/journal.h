@@ -30,6 +30,8 @@ class Journal {
   /// From now on rows are this one's. Written again when the journal closes, with its rows and
   /// seconds.
   void begin(const Session& session);
+  /// Notes a run that made rows which come from a file.
+  void add(const Session& session);
   /// A row of an index that is there already replaces it.
   void append(const Row& row);
   void commit();

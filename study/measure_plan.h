@@ -1,14 +1,60 @@
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sonar/processing/ping_processor.h"
+
 namespace asdic::study {
+
+/// A matched filter where and when the target's echo is known to come: its answer there, and where
+/// there is no echo. docs/theory/studies.md
+struct MatchedFilterPlan {
+  /// What the answer is compared with.
+  enum class Background {
+    around,  ///< the mean of free cells before and after it (cell averaging)
+    noise    ///< the ambient noise as the scenario gives it: white and independent, nothing else
+  };
+  Background background = Background::around;
+  std::optional<int> phone;  ///< of the array alone, from 0; none: a beam to where the echo is from
+  double guard_cells = 2.0, reference_cells = 12.0;  ///< on either side, of 1/noise bandwidth
+};
+
+/// Detection of each target.
+struct DetectionPlan {
+  enum class By {
+    matched_filter,  ///< its answer at the echo's time over a threshold
+    receiver         ///< a detection of the whole receiver that is the target's (asdic process)
+  };
+  By by = By::matched_filter;
+  double false_alarm_probability = 1e-4;  ///< of a cell
+};
 
 /// What is measured in every realisation.
 struct MeasurePlan {
-  int ping = 1;   ///< of the scenario, counted from 1
-  int array = 0;  ///< an index
-  bool echo_level = false;
+  int ping = 1;                      ///< of the scenario, counted from 1
+  int array = 0;                     ///< an index
+  std::vector<std::size_t> levels;   ///< which of level_measures()
+  bool strongest_path = false;       ///< its delay, level, Doppler factor, angles
+  bool series_level = false;         ///< rms and peak of what the phones record
+  bool matched = false;              ///< the matched filter's answers are columns
+  MatchedFilterPlan matched_filter;  ///< and how they are had
+  std::optional<DetectionPlan> detection;
+  bool localisation = false;       ///< how far off the receiver's place is
+  ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
+  std::uint64_t series_every = 0;  ///< the time series of every k-th index; 0: none
+
+  /// Whether there is anything that needs samples, and not levels alone.
+  [[nodiscard]] bool needs_samples() const noexcept {
+    return series_level || matched || detection || localisation || series_every > 0;
+  }
+  [[nodiscard]] bool uses_receiver() const noexcept {
+    return localisation || (detection && detection->by == DetectionPlan::By::receiver);
+  }
+  [[nodiscard]] bool uses_matched_filter() const noexcept {
+    return matched || (detection && detection->by == DetectionPlan::By::matched_filter);
+  }
 };
 
 }  // namespace asdic::study

@@ -222,6 +222,7 @@ MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
     sort_faults(results.faults);
   }
   series.pressure = [&](std::size_t k) { return parts.at(kept[k].part).series(kept[k].row); };
+  results.reuse = take_reuse(results.table);
   results.summary = summarise(results.imprint, results.table);
   if (options.copy) catalogue.clear();
   write_study_file(output, results, series, catalogue);

@@ -18,6 +18,24 @@ std::uint64_t seed_of(const Study& study, std::uint64_t index) {
   return (static_cast<std::uint64_t>(words[0]) << 32) | words[1];
 }
 
+bool keeps_series(const MeasurePlan& plan, std::uint64_t index) {
+  return plan.series_every > 0 && index % plan.series_every == 0;
+}
+
+/// The channels of the measured array.
+void keep_series(const PingRecord& record, const Study& study, const Scenario& scenario, Row& row) {
+  const Recording& r = record.recording;
+  const std::size_t channels =
+      scenario.arrays[static_cast<std::size_t>(study.measure.array)].phones.size();
+  const std::size_t of_channel = r.samples * r.components();
+  const auto begin =
+      record.pressure.begin() +
+      static_cast<std::ptrdiff_t>(first_channel(scenario, study.measure.array) * of_channel);
+  row.pressure.assign(begin, begin + static_cast<std::ptrdiff_t>(channels * of_channel));
+  row.pressure_shape = {channels, r.samples};
+  if (r.is_complex()) row.pressure_shape.push_back(2);
+}
+
 }  // namespace
 
 std::vector<Column> columns(const Study& study) {
@@ -50,8 +68,11 @@ Row Realiser::realise(std::uint64_t index) const {
     impl_->sampler.apply(draw, tree);
     Scenario scenario = scenario_of(tree, study.scenario_path);
     scenario.seed = seed_of(study, index);
-    const std::vector<double> measured = measure(study, std::move(scenario));
-    row.values.insert(row.values.end(), measured.begin(), measured.end());
+    const PingSimulator simulator(std::move(scenario));
+    Measured measured = measure(study, simulator);
+    row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
+    if (keeps_series(study.measure, index))
+      keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const InputError& error) {
     const InputError fault = told(error, index, impl_->sampler.describe(draw));
     if (study.on_error == OnError::stop) throw InputError(fault);

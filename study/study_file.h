@@ -19,7 +19,8 @@ struct StudyResults {
   Imprint imprint{};
   IndexRange range{};        ///< that the file was to hold
   std::string stopped_by{};  ///< "--until 0.02": why it holds fewer than the study asks for
-  Table table{};             ///< sorted by index
+  Table table{};             ///< sorted by index; inputs and measures
+  Table reuse{};             ///< columns that tell how rows were made, for /run
   std::vector<std::string> faults{};  ///< "17: why it was skipped", the first of them
   std::vector<SummaryTable> summary{};
   std::vector<Session> sessions{};

@@ -149,7 +149,6 @@ void Writer::write_table() {
   file_.make_group("table");
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& c = table.columns[i];
-    if (c.role == Column::Role::reuse) continue;  // write_run
     const std::string path = "table/" + c.name;
     column<double>(path, table.values[i], std::numeric_limits<double>::quiet_NaN());
     describe_column(path, c);
@@ -194,9 +193,10 @@ void Writer::write_pressure(const SeriesSource& series, const Shape& row) {
   const std::size_t inner =
       product({row.begin() + static_cast<std::ptrdiff_t>(axis) + 1, row.end()});
   const std::size_t lines = product(row) / std::max<std::size_t>(row[axis] * inner, 1);
-  Shape all = row, chunk = row;
-  all.insert(all.begin(), series.index.size());
-  chunk.insert(chunk.begin(), 1);
+  Shape all(row.size() + 1, 1);  // first of one, then of all
+  std::copy(row.begin(), row.end(), all.begin() + 1);
+  const Shape chunk = all;
+  all[0] = series.index.size();
   if (catalogue_.empty()) {
     file_.create_growing<float>(path, row, chunk);
   } else {
@@ -249,7 +249,7 @@ void Writer::write_manifest() {
                          {"end", results_.range.end},
                          {"rows", results_.table.index.size()},
                          {"complete", results_.complete()},
-                         {"columns", Json::parse(to_json(results_.table.columns))},
+                         {"columns", Json::parse(to_json(results_.imprint.columns))},
                          {"datasets", manifest_}};
   file_.write_text("manifest", manifest.dump());
   describe(file_, "manifest", "JSON: what the file is to hold, with SHA-256 of each dataset");
@@ -276,9 +276,8 @@ void Writer::write_run() {
   set("started", [](const Session& s) { return s.made.started; });
   set("threads", [](const Session& s) { return std::to_string(s.made.threads); });
   set("library_versions", [](const Session& s) { return s.made.library_versions; });
-  const Table& table = results_.table;
+  const Table& table = results_.reuse;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (table.columns[i].role != Column::Role::reuse) continue;
     const std::string path = "run/reuse/" + table.columns[i].name;
     file_.write<double>(path, table.values[i], {table.values[i].size()});
     describe_column(path, table.columns[i]);

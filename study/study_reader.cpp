@@ -5,9 +5,10 @@
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
-#include "study/realisation.h"
+#include "study/measure_reader.h"
 #include "study/sampler.h"
 #include "study/study.h"
+#include "study/summary_reader.h"
 #include "study/target_keys.h"
 #include "study/vary_reader.h"
 
@@ -27,8 +28,8 @@ bool is_of_study(const std::string& assignment) {
 
 /// Keeps the study's own tables, or all but them.
 TomlValue keep(TomlValue document, bool own) {
-  std::erase_if(*document.table(),
-                [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
+  if (TomlValue::Table* table = document.table())
+    std::erase_if(*table, [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
   return document;
 }
 
@@ -59,7 +60,7 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
     if (!std::filesystem::exists(study.scenario_path))
       throw head.fault("scenario", "a scenario file",
                        "no such file \"" + study.scenario_path.string() + '"');
-    for (const TomlEntry& entry : *document.table())
+    for (const TomlEntry& entry : std::get<TomlValue::Table>(document.data))
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
@@ -71,17 +72,6 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
   }
   study.scenario =
       keep(scenario::read_document(study.scenario_text, study.scenario_path, overrides), false);
-}
-
-void read_measures(TomlTable table, Study& study) {
-  study.measure.echo_level = table.flag("echo_level", false);
-  table.finish();
-}
-
-void read_summary(TomlTable table, Study& study) {
-  study.summary.confidence =
-      table.number("confidence", {.noun = "probability", .low = 0.5, .high = 0.999999}, 0.95);
-  table.finish();
 }
 
 }  // namespace
@@ -103,10 +93,10 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   TomlTable own(study.document);
   study.variables = read_vary(study.document, study);
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
-  read_measures(own.table("measure"), study);
-  read_summary(own.table("summary"), study);
   make_room(study.variables, study.scenario_path, study.scenario);
-  static_cast<void>(example_of(study));
+  study.measure = read_measure(own.table("measure"), example_of(study));
+  study.summary =
+      read_summary(own.table("summary"), study.document.find("summary"), columns(study));
   return study;
 }
 

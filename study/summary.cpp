@@ -1,85 +1,100 @@
 #include "study/summary.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "study/law.h"
+#include "study/intervals.h"
+#include "study/summary_parts.h"
 
 namespace asdic::study {
-namespace {
 
-/// z of a two-sided interval of a normal.
-double two_sided(double confidence) { return normal_upper_quantile(0.5 * (1.0 - confidence)); }
+bool is_proportion(const Column& column) noexcept {
+  const auto is = [&](std::string_view name) {
+    return column.name == name || column.name.starts_with(std::string(name) + '_');
+  };
+  return column.role == Column::Role::measure && (is("detected") || is("false_alarm"));
+}
 
-SummaryTable statistics(const Study& study, const Table& table) {
-  SummaryTable made{.name = "statistics", .title = "Every column over all valid realisations"};
-  Column quantity{.name = "quantity", .unit = "1", .meaning = "column"};
-  std::vector<double> which, count, mean, deviation, low, high;
-  const double z = two_sided(study.summary.confidence);
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    double n = 0.0, m = 0.0, squares = 0.0;  // Welford
-    for (std::size_t row = 0; row < table.index.size(); ++row) {
-      const double x = table.values[c][row];
-      if (table.valid[row] == 0 || !std::isfinite(x)) continue;
-      n += 1.0;
-      const double step = x - m;
-      m += step / n;
-      squares += step * (x - m);
-    }
-    const double none = std::nan("");
-    const double s = n > 1.0 ? std::sqrt(squares / (n - 1.0)) : none;
-    which.push_back(static_cast<double>(c));
-    quantity.labels.push_back(table.columns[c].name);
-    count.push_back(n);
-    mean.push_back(n > 0.0 ? m : none);
-    deviation.push_back(s);
-    low.push_back(m - z * s / std::sqrt(n));
-    high.push_back(m + z * s / std::sqrt(n));
+std::string proportion_name(const Column& column) {
+  const std::string_view word = column.name.starts_with("detected") ? "detected" : "false_alarm";
+  return (word == "detected" ? "pd" : "pfa") + column.name.substr(word.size());
+}
+
+std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept {
+  std::optional<std::size_t> first;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (is_proportion(columns[c])) return c;
+    if (columns[c].role == Column::Role::measure && !first) first = c;
   }
-  made.columns = {quantity,
-                  {.name = "count", .unit = "1", .meaning = "finite values"},
-                  {.name = "mean", .unit = "of the quantity", .meaning = "mean"},
-                  {.name = "deviation", .unit = "of the quantity", .meaning = "standard deviation"},
-                  {.name = "low", .unit = "of the quantity", .meaning = "of the mean's interval"},
-                  {.name = "high", .unit = "of the quantity", .meaning = "of the mean's interval"}};
-  made.values = {which, count, mean, deviation, low, high};
+  return first;
+}
+
+bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
+  return table.valid[row] != 0 && std::isfinite(table.values[column][row]);
+}
+
+SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
+  SummaryTable made{.name = "statistics", .title = "Every column over all valid realisations"};
+  const auto column = [&](const std::string& name, const std::string& unit,
+                          const std::string& meaning) {
+    made.columns.push_back({.name = name, .unit = unit, .meaning = meaning});
+    made.values.emplace_back();
+  };
+  const std::string of = "of the quantity";
+  column("quantity", "1", "column of the rows");
+  column("count", "1", "finite values");
+  column("mean", of, "mean");
+  column("deviation", of, "standard deviation");
+  column("mean_low", of, "confidence interval of the mean");
+  column("mean_high", of, "confidence interval of the mean");
+  column("least", of, "least value");
+  column("greatest", of, "greatest value");
+  for (const double p : plan.quantiles) {
+    std::string digits = std::to_string(std::lround(p * 1000.0));
+    column("q" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits, of,
+           "quantile, in thousandths");
+  }
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    Moments moments;
+    std::vector<double> sorted;
+    for (std::size_t row = 0; row < table.index.size(); ++row)
+      if (counts(table, row, c)) {
+        moments.add(table.values[c][row]);
+        sorted.push_back(table.values[c][row]);
+      }
+    std::sort(sorted.begin(), sorted.end());
+    const double none = std::nan("");
+    Interval interval = moments.mean_interval(plan.confidence);
+    if (is_proportion(table.columns[c]))
+      interval = proportion_interval(plan.interval, std::round(moments.mean() * moments.count()),
+                                     moments.count(), plan.confidence);
+    made.columns[0].labels.push_back(table.columns[c].name);
+    std::vector<double> row{static_cast<double>(c),
+                            moments.count(),
+                            moments.mean(),
+                            moments.deviation(),
+                            interval.low,
+                            interval.high,
+                            sorted.empty() ? none : sorted.front(),
+                            sorted.empty() ? none : sorted.back()};
+    for (const double p : plan.quantiles)
+      row.push_back(sorted.empty() ? none : sample_quantile(sorted, p));
+    for (std::size_t i = 0; i < row.size(); ++i) made.values[i].push_back(row[i]);
+  }
   return made;
 }
 
-}  // namespace
-
 std::vector<SummaryTable> summarise(const Study& study, const Table& table) {
-  return {statistics(study, table)};
-}
-
-RunningEstimate::RunningEstimate(const Study& study) {
-  const std::vector<Column> all = columns(study);
-  while (column_ < all.size() && all[column_].role != Column::Role::measure) ++column_;
-  if (column_ < all.size()) {
-    name_ = all[column_].name;
-    unit_ = all[column_].unit;
-  }
-  level_ = study.summary.confidence;
-}
-
-void RunningEstimate::add(const Row& row) {
-  if (!row.valid || column_ >= row.values.size() || !std::isfinite(row.values[column_])) return;
-  ++count_;
-  const double x = row.values[column_], step = x - mean_;
-  mean_ += step / static_cast<double>(count_);
-  squares_ += step * (x - mean_);
-}
-
-std::optional<Estimate> RunningEstimate::estimate() const {
-  if (count_ < 2) return std::nullopt;
-  const auto n = static_cast<double>(count_);
-  const double half = two_sided(level_) * std::sqrt(squares_ / (n - 1.0) / n);
-  return Estimate{.name = name_,
-                  .unit = unit_,
-                  .value = mean_,
-                  .low = mean_ - half,
-                  .high = mean_ + half,
-                  .level = level_,
-                  .count = count_};
+  const SummaryPlan& plan = study.summary;
+  std::vector<SummaryTable> all{statistics_table(plan, table)};
+  const auto add = [&](std::vector<SummaryTable> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+  };
+  for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(plan, axes, table));
+  if (plan.roc) add(roc_tables(plan, table));
+  if (plan.convergence) add(convergence_table(plan, table));
+  if (plan.sensitivity) add(sensitivity_table(plan, table));
+  return all;
 }
 
 }  // namespace asdic::study

@@ -43,6 +43,7 @@ class RunningEstimate {
   std::string name_, unit_;
   std::size_t column_ = 0;
   bool proportion_ = false;
+  ProportionInterval interval_ = ProportionInterval::wilson;
   double level_ = 0.95;
   std::uint64_t count_ = 0;
   double mean_ = 0.0, squares_ = 0.0;  // Welford

@@ -44,7 +44,7 @@ void to_polar(TomlValue& table, const Vec3& from, const Vec3& place) {
   for (const auto& [key, value] : {std::pair<const char*, double>{"range", apart.range},
                                    {"bearing_deg", compass_degrees(apart.bearing)},
                                    {"depth", place.z()}})
-    table.table()->push_back({key, {.data = value, .origin = origin}});
+    value_at(table, key, origin) = {.data = value, .origin = origin};
 }
 
 }  // namespace

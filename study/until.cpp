@@ -1,7 +1,7 @@
 #include "study/until.h"
 
 #include "core/error.h"
-#include "study/imprint.h"
+#include "study/design.h"
 
 namespace asdic::study {
 

@@ -7,6 +7,7 @@
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/quote.h"
+#include "study/vary_profiles.h"
 
 namespace asdic::study {
 namespace {
@@ -210,9 +211,15 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
                 const Study& study) {
   const std::string name =
       table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull",
-                           "categorical", "list", "grid", "track"});
+                           "categorical", "list", "grid", "track", "profile_eof", "profile_casts"});
   if (name == "categorical" || name == "list" || name == "grid")
     return read_choice(name, table, value, variable);
+  if (name == "profile_eof") return read_modes(table, study);
+  if (name == "profile_casts") {
+    ChoiceLaw casts = read_casts(table, value, variable, study);
+    casts.cumulative = read_weights(table, casts.values.size());
+    return casts;
+  }
   if (name == "track") return read_track(table, variable, study);
   return read_number_law(name, table);
 }

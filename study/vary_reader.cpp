@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "study/vary_laws.h"
+#include "study/vary_profiles.h"
 
 namespace asdic::study {
 namespace {
@@ -63,8 +64,17 @@ std::string unit_of(std::string_view key) {
   return "1";
 }
 
+/// These laws know the key that they write: profile = { law = "profile_eof", … }
+bool is_profile_law(const TomlValue& entry) {
+  const TomlValue* law = entry.find("law");
+  const auto* name = law == nullptr ? nullptr : std::get_if<std::string>(&law->data);
+  return name != nullptr && (*name == "profile_eof" || *name == "profile_casts");
+}
+
 std::vector<std::string> read_keys(const TomlEntry& entry, TomlTable& table) {
   const TomlValue* keys = table.has("keys") ? entry.value.find("keys") : nullptr;
+  if (keys == nullptr && entry.key.find('.') == std::string::npos && is_profile_law(entry.value))
+    return {profile_key};
   if (keys == nullptr) return {entry.key};
   std::vector<std::string> result;
   if (const auto* array = std::get_if<TomlValue::Array>(&keys->data))
@@ -82,7 +92,7 @@ Variable read_variable(const TomlEntry& entry, const Study& study) {
   const bool quoted = entry.key.find('.') != std::string::npos;
   TomlTable table(entry.value, "vary." + (quoted ? '"' + entry.key + '"' : entry.key));
   Variable variable{.keys = read_keys(entry, table), .origin = entry.value.origin};
-  const bool group = table.has("keys");
+  const bool group = variable.keys.front() != entry.key;
   variable.name = column_name(table.text("name", group ? entry.key : short_name(entry.key)));
   if (variable.name.empty()) throw table.fault("name", "a name with letters or digits");
   variable.unit = table.text("unit", unit_of(variable.keys.front()));
@@ -125,7 +135,7 @@ std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
   if (vary == nullptr) return {};
   static_cast<void>(TomlTable(*vary, "vary"));  // must be a table
   std::vector<const TomlEntry*> entries;
-  for (const TomlEntry& entry : *vary->table()) entries.push_back(&entry);
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(vary->data)) entries.push_back(&entry);
   std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry* a, const TomlEntry* b) {
     return line_of(a->value.origin) < line_of(b->value.origin);
   });

@@ -1,20 +1,8 @@
 #pragma once
-#include <experimental/simd>
-
 #include "raytrace/layered/column.h"
+#include "raytrace/layered/lane_math.h"
 
 namespace asdic {
-
-/// As many double-precision numbers as the machine adds at once: one for each of several rays.
-using Rays = std::experimental::native_simd<double>;
-inline constexpr std::size_t rays_at_once = Rays::size();
-
-inline Rays load(const double* from) noexcept {
-  return Rays(from, std::experimental::element_aligned);
-}
-inline void store(const Rays& value, double* to) noexcept {
-  value.copy_to(to, std::experimental::element_aligned);
-}
 
 /// RayParameter of several rays of one interval of the fan, which turn in the same layers.
 struct RayLanes {

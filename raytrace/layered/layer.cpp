@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/layered/gauss_legendre.h"
+
 namespace asdic {
 namespace {
 
@@ -35,6 +37,27 @@ std::vector<double> inner_cuts(const Layer& layer) {
   return found;
 }
 
+template <std::size_t n>
+void set_node_speeds(Layer& layer) {
+  double* speed = layer.node_speed.data() + Layer::first_node<n>;
+  gauss_legendre<n>(layer.top, layer.bottom,
+                    [&](double depth, double) { *speed++ = layer.at(depth).c; });
+}
+
+/// What quadratures of a smooth law want to know of a layer.
+void prepare_quadrature(Layer& layer) {
+  if (layer.closed_form()) return;
+  set_node_speeds<4>(layer);
+  set_node_speeds<6>(layer);
+  set_node_speeds<8>(layer);
+  // A monotone cubic is nowhere three times steeper than its secant; Munk's law is steepest at an
+  // end.
+  const double secant = std::abs(layer.c_bottom - layer.c_top) / layer.thickness();
+  layer.gentle = layer.law == Layer::Law::cubic ||
+                 std::max(std::abs(layer.at(layer.top).dc_dz),
+                          std::abs(layer.at(layer.bottom).dc_dz)) <= 3.0 * secant;
+}
+
 /// The part of a layer between two depths inside it. The speeds at kept ends stay the same to the
 /// last bit.
 Layer slice(const Layer& layer, double top, double bottom) {
@@ -43,6 +66,7 @@ Layer slice(const Layer& layer, double top, double bottom) {
   if (bottom != layer.bottom) part.c_bottom = layer.at(bottom).c;
   part.top = top;
   part.bottom = bottom;
+  prepare_quadrature(part);
   return part;
 }
 

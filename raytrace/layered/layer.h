@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "raytrace/ocean/sound_speed.h"
@@ -18,6 +19,13 @@ struct Layer {
   std::array<double, 4> coefficient{};  ///< cubic: c = Σ aᵢ(z − origin)ⁱ; Munk: c₁, z₁, B, ε
 
   bool evenly_bent = false;  ///< dc/dz varies by less than a factor of two
+  bool gentle = true;        ///< dc/dz is nowhere three times that of the whole layer
+  /// Smooth laws: c at the Gauss–Legendre nodes in depth of 4, 6 and 8 points, one after the other.
+  std::array<double, 18> node_speed{};
+  template <std::size_t n>
+  static constexpr std::size_t first_node = n == 4   ? 0
+                                            : n == 6 ? 4
+                                                     : 10;
 
   [[nodiscard]] SoundSpeed at(double depth) const noexcept;
   [[nodiscard]] double thickness() const noexcept { return bottom - top; }

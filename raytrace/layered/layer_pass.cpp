@@ -6,6 +6,7 @@
 
 #include "raytrace/layered/arc_series.h"
 #include "raytrace/layered/smooth_quadrature.h"
+#include "raytrace/layered/turned_arc.h"
 
 namespace asdic {
 namespace {
@@ -18,11 +19,17 @@ double asin_over(double x) {
   return std::abs(x) > short_series ? std::asin(std::clamp(x, -1.0, 1.0)) / x : asin_series(x);
 }
 
-/// A turning piece so thin that its law is a straight line to rounding; nodes in it could not be
-/// told apart.
+/// Whether a turning piece is to be a TurnedArc.
 bool is_straight(const Layer& layer, double turn, double edge) {
   const SoundSpeed there = layer.at(edge);
-  return std::abs(turn - edge) * std::abs(there.d2c_dz2) < 1e-7 * std::abs(there.dc_dz);
+  return std::abs(turn - edge) * std::abs(there.d2c_dz2) <
+         TurnedArc<double>::straightest * std::abs(there.dc_dz);
+}
+
+TurnedArc<double> turned_arc(const Layer& layer, const RayParameter& ray, double edge,
+                             double sine) {
+  const SoundSpeed there = layer.at(edge);
+  return {sine, ray.slowness, std::abs(there.dc_dz), there.d2c_dz2};
 }
 
 /// At few nodes where the ray is steep enough all through the layer; \return whether it was.
@@ -58,24 +65,16 @@ PassDetail arc(double c_a, double c_b, double s_a, double s_b, double h, double 
           .length = y_length * asin_over(slowness * gradient * y_length)};
 }
 
-/// 1/c² linear: time = ∫w dz + ξΔr, length = (1/b)[Δ(nw) + ξ²Δln(n + w)], n = 1/c, w = s/c.
-PassDetail parabola(double c_a, double c_b, double w_a, double w_b, double h, double gradient,
+/// 1/c² linear, gradient g: time = ∫w dz + ξΔr; length = ∫ n/w dz = [Δ(nw) + ξ²Δln(n + w)]/g, n =
+/// 1/c, w = s/c, in which Δn = gh/Σn, Δw = gh/Σw and Δln(n + w) = 2·atanh(x), x = Δ(n + w)/Σ(n +
+/// w), so that g cancels.
+PassDetail parabola(double n_a, double n_b, double w_a, double w_b, double h, double gradient,
                     double slowness) {
-  const double range = 2.0 * slowness * h / (w_a + w_b);
-  const double time =
-      2.0 / 3.0 * h * (w_a * w_a + w_a * w_b + w_b * w_b) / (w_a + w_b) + slowness * range;
-  const double n_a = 1.0 / c_a, n_b = 1.0 / c_b;
-  double length = 0.0;
-  if (std::abs(gradient * h) > 1e-3 * n_a * n_a) {
-    length = ((n_b * w_b - n_a * w_a) + slowness * slowness * std::log((n_b + w_b) / (n_a + w_a))) /
-             gradient;
-  } else {  // nearly uniform: ∫ n/w dz with dz = 2w dw/b, so length = ∫ 2n dw·(h/(w_b − w_a)/(w_a +
-            // w_b)) = 2h/(w_a + w_b)·⟨n⟩ over w
-    gauss_legendre(0.0, 1.0, [&](double x, double weight) {
-      const double w = w_a + x * (w_b - w_a);
-      length += weight * 2.0 * h / (w_a + w_b) * std::sqrt(w * w + slowness * slowness);
-    });
-  }
+  const double sum_w = w_a + w_b, sum_n = n_a + n_b, xi2 = slowness * slowness;
+  const double time = 2.0 * h / sum_w * ((w_a * w_a + w_a * w_b + w_b * w_b) / 3.0 + xi2);
+  const double x_over_g = h * (1.0 / sum_n + 1.0 / sum_w) / (sum_n + sum_w);
+  const double length =
+      h * (n_b / sum_w + w_a / sum_n) + 2.0 * xi2 * x_over_g * atanh_over(gradient * x_over_g);
   return {.time = time, .length = length};
 }
 
@@ -147,7 +146,7 @@ PassDetail cross_detail(const Layer& layer, const RayParameter& ray, double sine
   if (layer.law == Layer::Law::c_linear)
     return arc(layer.c_top, layer.c_bottom, sine_top, sine_bottom, h, layer.gradient, ray.slowness);
   if (layer.law == Layer::Law::n2_linear)
-    return parabola(layer.c_top, layer.c_bottom, sine_top / layer.c_top,
+    return parabola(1.0 / layer.c_top, 1.0 / layer.c_bottom, sine_top / layer.c_top,
                     sine_bottom / layer.c_bottom, h, layer.gradient, ray.slowness);
   PassDetail detail;
   const auto add = [&](double c, double per_s, double dz) {
@@ -170,17 +169,19 @@ Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
   const bool downward = layer.c_bottom > layer.c_top;
   const double edge = downward ? layer.top : layer.bottom,
                c_edge = downward ? layer.c_top : layer.c_bottom;
-  const auto circle = [&](double gradient) {  // r = s/(ξ|g|), dr/dξ = −1/(ξ²|g|s)
-    const double range = sine / (xi * std::abs(gradient));
-    return Pass{.range = range, .d_range = -range / (xi * sine * sine)};
-  };
-  if (layer.law == Layer::Law::c_linear) return circle(layer.gradient);
+  if (layer.law == Layer::Law::c_linear) {  // r = s/(ξ|g|), dr/dξ = −1/(ξ²|g|s)
+    const double range = sine / (xi * std::abs(layer.gradient));
+    return {.range = range, .d_range = -range / (xi * sine * sine)};
+  }
   if (layer.law == Layer::Law::n2_linear) {  // r = 2ξw/|b|, dr/dξ = (2/|b|)(w − ξ²/w)
     const double w = sine / c_edge, two_over_b = 2.0 / std::abs(layer.gradient);
     return {.range = xi * two_over_b * w, .d_range = two_over_b * (w - xi * xi / w)};
   }
   const double turn_z = turning_depth(layer, ray);
-  if (is_straight(layer, turn_z, edge)) return circle(layer.at(edge).dc_dz);
+  if (is_straight(layer, turn_z, edge)) {
+    const auto arc = turned_arc(layer, ray, edge, sine);
+    return {.range = xi * arc.per_slowness, .d_range = arc.d_range};
+  }
 
   // Near the turning point dr/dξ = (1/ξ²){[1/(s c')] + ∫ c″/(s c'²) dz} (by parts, the end at s = 0
   // dropped); ∫ c/s³ dz beyond.
@@ -209,20 +210,20 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
   const bool downward = layer.c_bottom > layer.c_top;
   const double edge = downward ? layer.top : layer.bottom,
                c_edge = downward ? layer.c_top : layer.c_bottom;
-  const double turn_z = turning_depth(layer, ray);
-  const double c_turn = ray.turning_speed();
-  const auto circle = [&](double gradient) {
-    return arc(c_edge, c_turn, sine, 0.0, std::abs(turn_z - edge), std::abs(gradient),
-               ray.slowness);
-  };
   if (layer.law == Layer::Law::c_linear) {  // τ = atanh(s)/|g|, ℓ = asin(s)/(ξ|g|)
     const double per_g = sine / std::abs(layer.gradient);
     return {.time = per_g * atanh_over(sine), .length = per_g * asin_over(sine) / ray.slowness};
   }
-  if (layer.law == Layer::Law::n2_linear)
-    return parabola(c_edge, c_turn, sine / c_edge, 0.0, std::abs(turn_z - edge),
-                    -std::abs(layer.gradient), ray.slowness);
-  if (is_straight(layer, turn_z, edge)) return circle(layer.at(edge).dc_dz);
+  if (layer.law == Layer::Law::n2_linear) {
+    const double w = sine / c_edge, b = std::abs(layer.gradient);
+    return parabola(1.0 / c_edge, ray.slowness, w, 0.0, w * w / b, -b, ray.slowness);
+  }
+  const double turn_z = turning_depth(layer, ray);
+  if (is_straight(layer, turn_z, edge)) {
+    const auto arc = turned_arc(layer, ray, edge, sine);
+    return {.time = arc.intercept + ray.slowness * ray.slowness * arc.per_slowness,
+            .length = arc.length};
+  }
   PassDetail detail;
   const auto add = [&](double c, double per_s, double dz) {
     detail.time += dz * per_s / c;

@@ -15,26 +15,6 @@ std::complex<double> integer_power(std::complex<double> base, int exponent) {
   return product;
 }
 
-/// atan2(sine, cosine) of angles from 0 to π/2: the smaller over the larger, t ≤ 1, is brought
-/// below tan π/8 by atan t = π/4 + atan((t − 1)/(t + 1)), where 22 terms of the series leave 3e-19.
-Rays angle_of(const Rays& sine, const Rays& cosine) noexcept {
-  static constexpr double tan_eighth = 0.41421356237309503;
-  const auto steep = sine > cosine;
-  Rays t = min(sine, cosine) / max(sine, cosine);
-  const auto large = t > tan_eighth;
-  where(large, t) = (t - 1.0) / (t + 1.0);
-  const Rays y = t * t, y2 = y * y;
-  Rays even = 1.0 / 41, odd = -1.0 / 43;  // Σ (−y)^n/(2n + 1), even and odd n apart
-  for (int n = 18; n >= 0; n -= 2) {
-    even = even * y2 + 1.0 / (2 * n + 1);
-    odd = odd * y2 - 1.0 / (2 * n + 3);
-  }
-  Rays angle = t * (even + y * odd);
-  where(large, angle) += 0.25 * pi;
-  where(steep, angle) = 0.5 * pi - angle;
-  return angle;
-}
-
 double grazing_at(const RayParameter& ray, double speed) {
   return std::atan2(std::sqrt(std::max(0.0, ray.sine2(speed))), ray.slowness * speed);
 }

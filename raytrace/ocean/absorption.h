@@ -6,12 +6,16 @@ namespace asdic {
 
 struct NoAbsorption {
   static constexpr std::string_view name = "none";
+
+  [[nodiscard]] bool operator==(const NoAbsorption&) const = default;
 };
 
 /// Thorp's formula as in Jensen et al. (2011), eq. (1.47): 3.3e-3 + 0.11F/(1+F) + 44F/(4100+F) +
 /// 3e-4F dB/km, F = f²/kHz².
 struct Thorp {
   static constexpr std::string_view name = "thorp";
+
+  [[nodiscard]] bool operator==(const Thorp&) const = default;
 };
 
 /// Francois & Garrison, JASA 72, 896 and 1879 (1982): boric acid, magnesium sulphate and pure
@@ -22,6 +26,8 @@ struct FrancoisGarrison {
   double salinity = 35.0;     ///< [psu]
   double ph = 8.0;
   double depth = 0.0;  ///< the one depth at which the law is evaluated [m]
+
+  [[nodiscard]] bool operator==(const FrancoisGarrison&) const = default;
 };
 
 /// Fish with swim bladders: between two depths they take a₀ / ((1 − f₀²/f²)² + 1/Q²) dB/km out of
@@ -32,6 +38,8 @@ struct BiologicalLayer {
   double resonance = 1000.0;       ///< f₀ [Hz]
   double quality = 5.0;            ///< Q
   double strength = 0.0;           ///< a₀ [dB/km]
+
+  [[nodiscard]] bool operator==(const BiologicalLayer&) const = default;
 };
 
 using Absorption = std::variant<NoAbsorption, Thorp, FrancoisGarrison>;

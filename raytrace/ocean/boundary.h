@@ -9,11 +9,15 @@ namespace asdic {
 /// Pressure release: R = −1. The sea surface, seen from below.
 struct Vacuum {
   static constexpr std::string_view name = "vacuum";
+
+  [[nodiscard]] bool operator==(const Vacuum&) const = default;
 };
 
 /// Nothing moves: R = +1.
 struct Rigid {
   static constexpr std::string_view name = "rigid";
+
+  [[nodiscard]] bool operator==(const Rigid&) const = default;
 };
 
 /// A homogeneous fluid below (or above) the water. Defaults: sand.
@@ -22,6 +26,8 @@ struct FluidHalfSpace {
   double speed = 1650.0;                       ///< [m/s]
   double density = 1900.0;                     ///< [kg/m³]
   double attenuation_db_per_wavelength = 0.8;  ///< [dB/λ]
+
+  [[nodiscard]] bool operator==(const FluidHalfSpace&) const = default;
 };
 
 /// An elastic solid: compressional and shear waves. Defaults: chalk.
@@ -32,6 +38,8 @@ struct ElasticHalfSpace {
   double density = 2200.0;                           ///< [kg/m³]
   double attenuation_db_per_wavelength = 0.2;        ///< compressional [dB/λ]
   double shear_attenuation_db_per_wavelength = 0.5;  ///< [dB/λ]
+
+  [[nodiscard]] bool operator==(const ElasticHalfSpace&) const = default;
 };
 
 /// A measured or computed reflection coefficient over grazing angle: magnitude and phase linear
@@ -41,6 +49,8 @@ struct ReflectionTable {
   std::vector<double> grazing;    ///< [n] increasing, 0..π/2 [rad]
   std::vector<double> magnitude;  ///< [n] |R|
   std::vector<double> phase;      ///< [n] [rad]
+
+  [[nodiscard]] bool operator==(const ReflectionTable&) const = default;
 };
 
 using BoundaryMaterial =

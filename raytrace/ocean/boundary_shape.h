@@ -72,6 +72,8 @@ class BoundaryShape {
   [[nodiscard]] double shallowest() const noexcept { return shallowest_; }
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
+  [[nodiscard]] bool operator==(const BoundaryShape&) const = default;
+
  private:
   void bend_facets();  // tangent_, out of the nodes
   void find_extremes();

@@ -26,6 +26,8 @@ class DepthFunction {
   [[nodiscard]] std::span<const double> depths() const noexcept { return depth_; }
   [[nodiscard]] std::span<const double> values() const noexcept { return value_; }
 
+  [[nodiscard]] bool operator==(const DepthFunction&) const = default;
+
  private:
   std::vector<double> depth_;  // [n], empty for a constant
   std::vector<double> value_;  // [n]

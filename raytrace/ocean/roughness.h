@@ -12,6 +12,8 @@ struct Roughness {
   double floor_db = -20.0;  ///< the least that a bounce leaves, 20 lg [dB], ≤ 0; −∞: no floor
 
   [[nodiscard]] bool smooth() const noexcept { return !(rms_height > 0.0); }
+
+  [[nodiscard]] bool operator==(const Roughness&) const = default;
 };
 
 /// The factor on the reflection coefficient, 0 … 1. \param sine  of the grazing angle

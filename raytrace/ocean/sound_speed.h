@@ -34,6 +34,8 @@ struct MunkParameters {
   double axis_depth = 1300.0;     ///< z₁ [m]
   double scale_depth = 1300.0;    ///< B [m]
   double perturbation = 0.00737;  ///< ε
+
+  [[nodiscard]] bool operator==(const MunkParameters&) const = default;
 };
 
 /// The exact law of one interval of a table, a polynomial in t = depth − z0:
@@ -45,6 +47,8 @@ struct MunkParameters {
 struct IntervalLaw {
   double z0 = 0.0;  ///< depth of the interval's upper sample [m]
   std::array<double, 4> a{};
+
+  [[nodiscard]] bool operator==(const IntervalLaw&) const = default;
 };
 
 /// Sound speed along one water column: an analytic law, or samples and a rule between them.
@@ -90,6 +94,8 @@ class SoundSpeedProfile {
   /// Speed and derivatives at a depth [m] by the law of interval i, whether the depth lies inside
   /// or not: so the gradient on either side of a sample can be had. Never clamped. A table only.
   [[nodiscard]] SoundSpeed at(double depth, std::size_t i) const noexcept;
+
+  [[nodiscard]] bool operator==(const SoundSpeedProfile&) const = default;
 
  private:
   SoundSpeedProfile() = default;

@@ -46,6 +46,8 @@ class SoundSpeedSection {
   /// [m × n], as given.
   [[nodiscard]] std::span<const double> speeds() const noexcept { return speed_; }
 
+  [[nodiscard]] bool operator==(const SoundSpeedSection&) const = default;
+
  private:
   std::vector<double> range_, depth_, speed_;
 };

@@ -8,6 +8,7 @@
 #include "raytrace/ray_path.h"
 #include "raytrace/runs/arrivals_run.h"
 #include "raytrace/tracing/marching_eigenrays.h"
+#include "support/deep_ocean.h"
 #include "support/oceans.h"
 
 // Eigenrays, many receivers, and the surface patches of a whole ping, in the deep ocean of the
@@ -15,33 +16,17 @@
 namespace asdic {
 namespace {
 
-/// A Munk profile in 31 samples, as a measured one would be, under each rule; or Munk's law itself.
-Environment deep_ocean(int kind) {
-  const SoundSpeedProfile munk = SoundSpeedProfile::munk();
-  Environment ocean{.water = munk};
-  ocean.bottom = {.depth = 5395.0, .material = FluidHalfSpace{}};
-  ocean.absorption = Thorp{};
-  if (kind < 4) {
-    const std::vector<double> depth = {
-        0,   10,  20,   30,   50,   75,   100,  125,  150,  200,  250,  300,  400,  500,  600, 700,
-        800, 900, 1000, 1100, 1200, 1300, 1500, 2000, 2500, 3000, 3500, 4000, 4500, 5000, 5500};
-    std::vector<double> speed;
-    for (const double z : depth) speed.push_back(munk.at(z).c);
-    ocean.water = SoundSpeedProfile::table(depth, speed, static_cast<Interpolation>(kind));
-  }
-  return ocean;
-}
+constexpr const char* laws[] = {"c-linear", "n2-linear", "spline", "pchip", "munk"};
 
-void name_profile(benchmark::State& state) {
-  const auto kind = static_cast<int>(state.range(0));
-  state.SetLabel(kind < 4 ? std::string(name(static_cast<Interpolation>(kind))) : "munk");
-}
+Environment deep_ocean(std::int64_t kind) { return support::deep_ocean(laws[kind]); }
+
+void name_profile(benchmark::State& state) { state.SetLabel(laws[state.range(0)]); }
 
 constexpr PathLimits limits{
     .max_surface_bounces = 3, .max_bottom_bounces = 3, .max_launch_angle = 1.4};
 
 void BM_EigenraysToOneReceiver(benchmark::State& state) {
-  const EigenraySolver solver(deep_ocean(static_cast<int>(state.range(0))));
+  const EigenraySolver solver(deep_ocean(state.range(0)));
   std::size_t found = 0;
   double range = 30e3;
   for (auto _ : state) found += solver.find(4500.0, 125.0, range += 1e-3, 4000.0, limits).size();
@@ -52,7 +37,7 @@ void BM_EigenraysToOneReceiver(benchmark::State& state) {
 BENCHMARK(BM_EigenraysToOneReceiver)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
 void BM_EigenraysToManyReceivers(benchmark::State& state) {
-  const EigenraySolver solver(deep_ocean(static_cast<int>(state.range(0))));
+  const EigenraySolver solver(deep_ocean(state.range(0)));
   std::vector<double> ranges;
   for (int i = 0; i < 1000; ++i) ranges.push_back(1000.0 + 50.0 * i);
   for (auto _ : state) benchmark::DoNotOptimize(solver.find(4500.0, 125.0, ranges, 4000.0, limits));
@@ -64,7 +49,7 @@ BENCHMARK(BM_EigenraysToManyReceivers)->DenseRange(0, 4)->Unit(benchmark::kMilli
 
 /// Ground cells of 70 m: the pulse of the thesis, 1 s of Hann-windowed tone.
 void BM_SurfacePathsOfAPing(benchmark::State& state) {
-  const EigenraySolver solver(deep_ocean(static_cast<int>(state.range(0))));
+  const EigenraySolver solver(deep_ocean(state.range(0)));
   std::size_t paths = 0;
   for (auto _ : state)
     paths += ground_paths(solver, 4500.0, BoundaryKind::surface, 70.0, 46e3, 4000.0,
@@ -80,7 +65,7 @@ BENCHMARK(BM_SurfacePathsOfAPing)->DenseRange(0, 4)->Unit(benchmark::kMillisecon
 /// bottom, no limit of bounces but what reflections leave.
 void BM_ArrivalsOfARun(benchmark::State& state) {
   PropagationCase run_case;
-  run_case.environment = deep_ocean(static_cast<int>(state.range(0)));
+  run_case.environment = deep_ocean(state.range(0));
   run_case.frequency = 4000.0;
   run_case.source_depths = {4500.0};
   run_case.receivers.depths = {5.0};
@@ -119,7 +104,7 @@ void BM_MarchingEigenrays(benchmark::State& state) {
 BENCHMARK(BM_MarchingEigenrays)->DenseRange(0, 9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void BM_TraceRay(benchmark::State& state) {
-  const Environment ocean = deep_ocean(static_cast<int>(state.range(0)));
+  const Environment ocean = deep_ocean(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(trace_ray(ocean, 4500.0, 0.1, 100e3));
   state.counters["rays/s"] = benchmark::Counter(1.0, benchmark::Counter::kIsIterationInvariantRate);
   name_profile(state);

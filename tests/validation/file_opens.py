@@ -71,6 +71,7 @@ TABLES = {
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
 SUMMARY = "present paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
+REUSE = "reuse_ocean legs_searched legs_reused reuse_reverberation"
 INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning",
             "surface_bounces",
             "bottom_bounces", "upper_turns",
@@ -113,6 +114,7 @@ def layout_of(f):
     for table, columns in TABLES.items():
         wanted.update({f"{table}/{c}": (ROWS[table], None) for c in columns.split()})
     wanted.update({f"run/time_{t}": ("ping", None) for t in TIMINGS.split()})
+    wanted.update({f"run/{name}": ("ping", None) for name in REUSE.split()})
     if "target_index" in f:
         wanted.update({f"summary/{c}": ("ping target", None) for c in SUMMARY.split()})
     else:

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <signal.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/provenance.h"
+#include "core/error.h"
+#include "io/text/csv_table.h"
+#include "serve/server.h"
+#include "serve/token.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  ScenarioChoice scenario;
+  std::string socket, data_dir, output_dir, token_file, pace = "fast";
+  std::optional<std::uint16_t> port;
+  std::optional<int> threads;
+  std::vector<std::string> limits;
+};
+
+/// The log: a line each on standard error.
+void report(const std::string& text) {
+  std::fputs(("asdic serve: " + text + '\n').c_str(), stderr);
+}
+
+/// Out of a file, of the environment, or a new one, which is told.
+std::string token_for(const Options& options) {
+  if (!options.token_file.empty()) return serve::read_token(options.token_file);
+  if (const char* given = std::getenv("ASDIC_TOKEN")) {
+    serve::check_token(given, "ASDIC_TOKEN");
+    return given;
+  }
+  const std::string token = serve::new_token();
+  report("token " + token);
+  return token;
+}
+
+serve::SessionSettings settings_of(const Options& options, int threads) {
+  serve::SessionSettings settings;
+  settings.scenario = {.text = read_text_file(options.scenario.path, "a scenario file"),
+                       .path = options.scenario.path,
+                       .overrides = options.scenario.overrides};
+  if (!options.data_dir.empty()) settings.data = serve::DataFolder(options.data_dir);
+  if (!options.output_dir.empty()) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(options.output_dir, error))
+      throw InputError({.where = "--output-dir",
+                        .got = '"' + options.output_dir + '"',
+                        .expected = "a directory that exists"});
+    settings.output = std::filesystem::absolute(options.output_dir);
+  }
+  for (const std::string& one : options.limits) serve::set_limit(settings.limits, one);
+  settings.pace = serve::parse_pace(options.pace);
+  settings.provenance = provenance(threads);
+  settings.report = report;
+  return settings;
+}
+
+int serve_scenario(const Options& options) {
+  signal(SIGPIPE, SIG_IGN);  // a client that has gone is a failed write
+  const int threads = options.threads.value_or(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  serve::SessionSettings settings = settings_of(options, threads);
+  const Interrupt interrupt;
+  serve::Server server(std::move(settings),
+                       {.socket = options.socket,
+                        .port = options.port,
+                        .token = options.port ? token_for(options) : std::string()});
+  server.run(interrupt.token());
+  return 0;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "serve", "Ping on command: a line of JSON each, by standard input, a Unix socket or TCP.");
+  add_scenario_options(*command, options->scenario);
+  command->add_option("--socket", options->socket, "Unix socket to listen on, for this user alone")
+      ->type_name("PATH");
+  command
+      ->add_option("--tcp", options->port,
+                   "port of 127.0.0.1 to listen on, 0 for a free one; clients need a token, which "
+                   "is in --token-file, in the variable ASDIC_TOKEN, or made and printed")
+      ->type_name("PORT");
+  command->add_option("--token-file", options->token_file, "file whose first line is the token")
+      ->type_name("FILE");
+  command
+      ->add_option("--pace", options->pace,
+                   "real: pings by the clock; a number: so many times as fast; fast: at once")
+      ->type_name("real|fast|FACTOR")
+      ->capture_default_str();
+  command->add_option("--output-dir", options->output_dir, "folder for the files of pings")
+      ->type_name("DIR");
+  command
+      ->add_option("--data-dir", options->data_dir,
+                   "folder of files that commands may name; without it they may name none")
+      ->type_name("DIR");
+  command
+      ->add_option("--limit", options->limits,
+                   "what a client may ask for, e.g. samples=100000; may be repeated "
+                   "(docs/formats/serve.md)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  add_threads_option(*command, options->threads);
+  command->footer(
+      "Ctrl-C finishes the ping in hand; a second one ends at once.\n"
+      "Example:  asdic serve scenarios/deep_ocean.toml --socket sonar.sock --output-dir pings");
+  command->callback(
+      [options, &action] { action = [options] { return serve_scenario(*options); }; });
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,166 @@
+"""A client of `asdic serve` (docs/formats/serve.md): standard library and numpy.
+
+    from asdic_client import Client
+
+    with Client.start("scenarios/deep_ocean.toml") as sonar:       # a server of one's own
+        sonar.update(platform={"position": [0, 0, 300], "heading_deg": 90, "speed": 2})
+        ping = sonar.ping(elevation_deg=5, deliver="samples")
+        print(ping.answer["latency"], ping.samples.shape)
+
+    Client.unix("sonar.sock")                                      # or one that is running
+    Client.tcp(4711, token=open("token").read().strip())
+"""
+import json
+import socket
+import subprocess
+
+import numpy as np
+
+
+class Refused(Exception):
+    """The server did not carry a command out. `code` is for programs: value, limit, busy, …"""
+
+    def __init__(self, error):
+        super().__init__(f"{error.get('code')}: {error.get('message')}")
+        self.code = error.get("code")
+
+
+class Ping:
+    """A ping's answer, and its samples if they came with it.
+
+    answer   dict as docs/formats/serve.md has it
+    samples  [channels × samples] pressure [Pa]: float32, or complex64 baseband; None without them
+    """
+
+    def __init__(self, answer, samples):
+        self.answer, self.samples = answer, samples
+
+
+class Client:
+    """One connection. Commands are answered in order; a client of several threads needs a lock."""
+
+    def __init__(self, reader, writer, token=None, when_full="busy", close=()):
+        self._reader, self._writer, self._close = reader, writer, close
+        self._id = 0
+        hello = {"asdic": 1, "when_full": when_full}
+        if token is not None:
+            hello["token"] = token
+        self._write(hello)
+        self.greeting, _ = self.receive()
+        if not self.greeting["ok"]:
+            self.close()
+            raise Refused(self.greeting["error"])
+
+    @classmethod
+    def unix(cls, path, **options):
+        """To a server's --socket."""
+        end = socket.socket(socket.AF_UNIX)
+        end.connect(str(path))
+        return cls._of_socket(end, options)
+
+    @classmethod
+    def tcp(cls, port, token, host="127.0.0.1", **options):
+        """To a server's --tcp."""
+        end = socket.create_connection((host, port))
+        end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return cls._of_socket(end, {"token": token, **options})
+
+    @classmethod
+    def start(cls, scenario, *arguments, program="asdic", **options):
+        """Runs `asdic serve SCENARIO ARGUMENTS`, and is its only client."""
+        process = subprocess.Popen([program, "serve", str(scenario), *arguments],
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+        class End:
+            @staticmethod
+            def close():
+                process.stdin.close()
+                process.wait()
+                process.stdout.close()
+
+        try:
+            client = cls(process.stdout, process.stdin, close=(End,), **options)
+        except (ConnectionError, BrokenPipeError):
+            process.wait()
+            raise
+        client.process = process
+        return client
+
+    @classmethod
+    def _of_socket(cls, end, options):
+        return cls(end.makefile("rb"), end.makefile("wb"), close=(end,), **options)
+
+    # Commands: each returns when it is answered -------------------------------------------------
+
+    def ping(self, **fields):
+        """→ Ping. Keys: time, transmitter, waveform, elevation_deg, beamwidth_deg,
+        source_level_db, deliver ("file", "samples", "none")
+        """
+        return Ping(*self.command("ping", **fields))
+
+    def update(self, **fields):
+        """Keys: time, platform, array, targets, wind_speed, sound_speed, noise, seed, recording."""
+        return self.command("update", **fields)[0]
+
+    def state(self):
+        return self.command("state")[0]
+
+    def limits(self):
+        return self.command("limits")[0]["limits"]
+
+    def quit(self):
+        answer, _ = self.command("quit")
+        self.close()
+        return answer
+
+    def command(self, command, **fields):
+        """→ answer, samples. \\throws Refused"""
+        sent = self.send(command, **fields)
+        answer, samples = self.receive()
+        if not answer["ok"]:
+            raise Refused(answer["error"])
+        assert answer["id"] == sent
+        return answer, samples
+
+    # A line at a time, for those who keep several commands under way ------------------------------
+
+    def send(self, command, **fields):
+        """→ the command's id, which its answer has"""
+        self._id += 1
+        self._write({"id": self._id, "command": command, **fields})
+        return self._id
+
+    def receive(self):
+        """The next answer. → dict, array or None"""
+        line = self._reader.readline()
+        if not line.endswith(b"\n"):
+            raise ConnectionError("the server has closed the connection")
+        answer = json.loads(line)
+        what = answer.get("samples", {})
+        if "bytes" not in what:
+            return answer, None
+        data = self._reader.read(what["bytes"])
+        if len(data) != what["bytes"]:
+            raise ConnectionError("the server has closed the connection within samples")
+        samples = np.frombuffer(data, "<f4").reshape(what["shape"])
+        if samples.ndim == 3:  # real and imaginary part
+            samples = samples.view("<c8")[..., 0]
+        return answer, samples
+
+    def _write(self, message):
+        self._writer.write(json.dumps(message, allow_nan=False).encode() + b"\n")
+        self._writer.flush()
+
+    def close(self):
+        for end in (self._writer, self._reader, *self._close):
+            try:
+                end.close()
+            except OSError:
+                pass  # it was closed from the other side
+        self._close = ()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

@@ -1,0 +1,228 @@
+#include "raytrace/layered/smooth_lanes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/layered/layer_pass.h"
+#include "raytrace/layered/smooth_quadrature.h"
+#include "raytrace/layered/turned_arc.h"
+
+namespace asdic {
+namespace {
+
+/// Ray by ray, for what lanes do not know: `pass_of(RayParameter, lane)` and `detail_of(the same)`.
+template <bool detailed, class PassOf, class DetailOf>
+void one_by_one(const RayLanes& rays, LegLanes& leg, const PassOf& pass_of,
+                const DetailOf& detail_of) noexcept {
+  Pass pass;
+  PassDetail detail;
+  for (std::size_t i = 0; i < rays_at_once; ++i) {
+    const RayParameter ray(rays.reference_speed, rays.sigma[i]);
+    if (i == 0 || rays.sigma[i] != rays.sigma[i - 1]) {  // lanes left over repeat the last one
+      pass = pass_of(ray, i);
+      if constexpr (detailed) detail = detail_of(ray, i);
+    }
+    leg.per_slowness[i] += pass.range / ray.slowness;
+    leg.d_range[i] += pass.d_range;
+    if constexpr (detailed) {
+      leg.intercept[i] += detail.time - ray.slowness * pass.range;
+      leg.length[i] += detail.length;
+    }
+  }
+}
+
+/// Layer::at for lanes of depths.
+struct WaterLanes {
+  Rays c, dc_dz, d2c_dz2;
+
+  WaterLanes(const Layer& layer, const Rays& depth) noexcept {
+    const auto& a = layer.coefficient;
+    if (layer.law == Layer::Law::cubic) {
+      const Rays t = depth - layer.origin;
+      c = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
+      dc_dz = a[1] + t * (2.0 * a[2] + t * (3.0 * a[3]));
+      d2c_dz2 = 2.0 * a[2] + t * (6.0 * a[3]);
+    } else {  // c = c₁[1 + ε(η − 1 + e^−η)], η = 2(z − z₁)/B
+      const double k = 2.0 / a[2], slope = a[0] * a[3] * k;
+      const Rays eta = k * (depth - a[1]), decay = exponential(-eta);
+      c = a[0] * (1.0 + a[3] * (eta - 1.0 + decay));
+      dc_dz = slope * (1.0 - decay);
+      d2c_dz2 = slope * k * decay;
+    }
+  }
+};
+
+/// Gauss–Legendre nodes in depth, shared by all rays.
+template <std::size_t n, bool detailed>
+void cross_at_shared_nodes(const Layer& layer, const RayLanes& rays, LegLanes& leg) noexcept {
+  using Rule = GaussLegendre<n>;
+  const double half = 0.5 * layer.thickness();
+  const double* const speed = layer.node_speed.data() + Layer::first_node<n>;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double weight = half * Rule::weight[i], c = speed[i];
+    const Rays s = sqrt(rays.sine2(c)), per_s = 1.0 / s;
+    const Rays part = (weight * c) * per_s;
+    leg.per_slowness += part;
+    leg.d_range += part * (per_s * per_s);
+    if constexpr (detailed) {
+      leg.intercept += (weight / c) * s;
+      leg.length += weight * per_s;
+    }
+  }
+}
+
+/// What eight nodes in u = √|z − vertex| add: at_nodes_in_root, for several rays. `by_parts` gets
+/// ∫ c″/(s c′²) dz. \param vertex  of each ray \param from, to  distances from it
+template <bool detailed>
+void add_in_root(const Layer& layer, const RayLanes& rays, const Rays& vertex, double sign,
+                 const Rays& from, const Rays& to, LegLanes& sum, Rays& by_parts) noexcept {
+  using Rule = GaussLegendre<8>;
+  const Rays u_from = sqrt(from), u_to = sqrt(to);
+  const Rays centre = 0.5 * (u_from + u_to), half = 0.5 * (u_to - u_from);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Rays u = centre + half * Rule::node[i];
+    const WaterLanes water(layer, vertex + sign * (u * u));
+    const Rays& c = water.c;
+    const Rays s2 = max((rays.reference_speed - c) * (rays.reference_speed + c) * rays.per_c2 +
+                            rays.sigma * rays.sigma * (c * c * rays.per_c2),
+                        Rays(1e-300));
+    const Rays per_s = 1.0 / sqrt(s2), dz = (2.0 * Rule::weight[i]) * u * half;
+    const Rays way = dz * per_s;
+    sum.per_slowness += way * c;
+    sum.d_range += way * c * (per_s * per_s);
+    by_parts += way * water.d2c_dz2 / (water.dc_dz * water.dc_dz);
+    if constexpr (detailed) {
+      sum.intercept += way * s2 / c;
+      sum.length += way;
+    }
+  }
+}
+
+template <bool detailed>
+void add(const LegLanes& part, LegLanes& leg) noexcept {
+  leg.per_slowness += part.per_slowness;
+  leg.d_range += part.d_range;
+  if constexpr (detailed) {
+    leg.intercept += part.intercept;
+    leg.length += part.length;
+  }
+}
+
+/// As integrate_evenly_bent; where the ray is nearly flat, ∂r/∂ξ by parts.
+template <bool detailed>
+void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sine_top,
+                       const Rays& sine_bottom, LegLanes& leg) noexcept {
+  const bool flat_at_top = layer.c_top > layer.c_bottom;
+  const double edge = flat_at_top ? layer.top : layer.bottom, sign = flat_at_top ? 1.0 : -1.0;
+  const Rays s2 = flat_at_top ? sine_top * sine_top : sine_bottom * sine_bottom;
+  const Rays far2 = flat_at_top ? sine_bottom * sine_bottom : sine_top * sine_top;
+  const SoundSpeed top = layer.at(layer.top), bottom = layer.at(layer.bottom);
+  const SoundSpeed& flat = flat_at_top ? top : bottom;
+  const Rays xi2 = rays.slowness * rays.slowness;
+  const Rays before = s2 / (2.0 * flat.c * std::abs(flat.dc_dz) * xi2);
+  LegLanes sum;
+  Rays by_parts = 1.0 / (sine_bottom * bottom.dc_dz) - 1.0 / (sine_top * top.dc_dz);
+  add_in_root<detailed>(layer, rays, edge - sign * before, sign, before, before + layer.thickness(),
+                        sum, by_parts);
+  where(s2 < 0.2 * far2, sum.d_range) = by_parts / xi2;
+  add<detailed>(sum, leg);
+}
+
+/// Where c(z) = 1/ξ: Newton's method inside a shrinking bracket, for the law is monotone in the
+/// layer.
+Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
+  const Rays target = 1.0 / rays.slowness;
+  const bool rises = layer.c_bottom > layer.c_top;
+  Rays low = layer.top, high = layer.bottom;
+  const Rays share = (target - layer.c_top) / (layer.c_bottom - layer.c_top);
+  Rays z = low + (high - low) * min(max(share, Rays(0.0)), Rays(1.0));
+  Rays::mask_type done(false);
+  for (int i = 0; i < 60; ++i) {
+    const WaterLanes here(layer, z);
+    const auto slower = (here.c < target) == Rays::mask_type(rises);
+    where(slower, low) = z;
+    where(!slower, high) = z;
+    Rays next = z + (target - here.c) / here.dc_dz;
+    where(!(next > low && next < high), next) = 0.5 * (low + high);
+    const Rays step = abs(next - z);
+    where(!done, z) = next;
+    done = done || step <= 1e-15 * (abs(z) + 1.0);
+    if (all_of(done)) break;
+  }
+  return z;
+}
+
+}  // namespace
+
+template <bool detailed>
+void cross_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine_top,
+                  const Rays& sine_bottom, LegLanes& leg) noexcept {
+  if (layer.gentle) {
+    // As few_nodes_suffice (layer_pass.cpp), for the flattest of the rays: on (0, 1) n nodes leave
+    // ρ^(−2n) of a singularity at −x, ρ = v + √(v² − 1), v = 1 + 2x, x ≥ flat/(3·|rise|).
+    const double steepest_rise =
+        3.0 * std::abs(layer.c_top - layer.c_bottom) * (layer.c_top + layer.c_bottom) * rays.per_c2;
+    const double flat = hmin(min(sine_top, sine_bottom));
+    const double x = flat * flat / steepest_rise;
+    if (x > 16.0)  // ρ ≥ 30: 30⁻⁸ = 2e-12
+      return cross_at_shared_nodes<4, detailed>(layer, rays, leg);
+    if (x > 4.0)  // ρ ≥ 9.9: 9.9⁻¹² = 1e-12
+      return cross_at_shared_nodes<6, detailed>(layer, rays, leg);
+    if (x > 0.7)  // ρ ≥ 4.6: 4.6⁻¹⁶ = 2e-11
+      return cross_at_shared_nodes<8, detailed>(layer, rays, leg);
+  }
+  if (layer.evenly_bent)
+    return cross_evenly_bent<detailed>(layer, rays, sine_top, sine_bottom, leg);
+  one_by_one<detailed>(
+      rays, leg,
+      [&](const RayParameter& ray, std::size_t i) {
+        return cross(layer, ray, sine_top[i], sine_bottom[i]);
+      },
+      [&](const RayParameter& ray, std::size_t i) {
+        return cross_detail(layer, ray, sine_top[i], sine_bottom[i]);
+      });
+}
+
+template <bool detailed>
+void turn_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine,
+                 LegLanes& leg) noexcept {
+  const bool downward = layer.c_bottom > layer.c_top;
+  const double edge = downward ? layer.top : layer.bottom;
+  const double sign = downward ? -1.0 : 1.0;  // from the turning depth towards the edge
+  const SoundSpeed at_edge = layer.at(edge);
+  const Rays turn_z = turning_depths(layer, rays), total = abs(turn_z - edge);
+  const WaterLanes there(layer, turn_z);
+  using Arc = TurnedArc<Rays>;
+  const double gradient = std::abs(at_edge.dc_dz);
+  const auto straight = total * std::abs(at_edge.d2c_dz2) < Arc::straightest * gradient;
+  const Rays half_slope = 0.5 * abs(there.dc_dz);
+  const auto one_piece = abs(there.d2c_dz2) * total <= half_slope && half_slope <= gradient;
+  if (!all_of(straight || one_piece))
+    return one_by_one<detailed>(
+        rays, leg,
+        [&](const RayParameter& ray, std::size_t i) { return turn(layer, ray, sine[i]); },
+        [&](const RayParameter& ray, std::size_t i) { return turn_detail(layer, ray, sine[i]); });
+  LegLanes sum;
+  Rays by_parts = sign / (sine * at_edge.dc_dz);
+  add_in_root<detailed>(layer, rays, turn_z, sign, Rays(0.0), total, sum, by_parts);
+  sum.d_range = by_parts / (rays.slowness * rays.slowness);
+  if (any_of(straight)) {
+    const Arc arc(sine, rays.slowness, gradient, at_edge.d2c_dz2);
+    where(straight, sum.per_slowness) = arc.per_slowness;
+    where(straight, sum.d_range) = arc.d_range;
+    if constexpr (detailed) {
+      where(straight, sum.intercept) = arc.intercept;
+      where(straight, sum.length) = arc.length;
+    }
+  }
+  add<detailed>(sum, leg);
+}
+
+template void cross_smooth<true>(const Layer&, const RayLanes&, const Rays&, const Rays&,
+                                 LegLanes&) noexcept;
+template void cross_smooth<false>(const Layer&, const RayLanes&, const Rays&, const Rays&,
+                                  LegLanes&) noexcept;
+template void turn_smooth<true>(const Layer&, const RayLanes&, const Rays&, LegLanes&) noexcept;
+template void turn_smooth<false>(const Layer&, const RayLanes&, const Rays&, LegLanes&) noexcept;
+
+}  // namespace asdic

@@ -1,0 +1,35 @@
+#pragma once
+#include "raytrace/layered/arc_series.h"
+
+namespace asdic {
+
+/// A piece that turns so little beyond the edge of its layer that its law is almost a straight
+/// line: nodes in it could not be told apart, for c is known to rounding only.
+///
+/// With c = c_e(1 + …) + g·t + ½c″t² at the distance t from the edge, s² is (2g/c)(T − t)(1 + κ(T +
+/// t)/2), T = s_e²/(2ξg), κ = c″/g. An arc of a circle, corrected to the first order in κT:
+///
+///   r = s/(ξg)·(1 − ⅔κT),  ∂r/∂ξ = −(1 − 2κT)/(ξ²gs),  τ − ξr = (atanh s − s)/g·(1 − ⅖κT),
+///   ℓ = asin s/(ξg)·(1 − ⅔κT)
+///
+/// For a ray (double) or lanes of them.
+template <class T>
+struct TurnedArc {
+  T per_slowness, d_range, intercept, length;  ///< as in LegLanes
+
+  /// The largest κT: the next order, 0.8(κT)², leaves 2e-11.
+  static constexpr double straightest = 5e-6;
+
+  /// \param sine  at the edge, some 1e-3 at most \param gradient  |dc/dz| there \param bend d²c/dz²
+  TurnedArc(const T& sine, const T& slowness, double gradient, double bend) noexcept {
+    const T s2 = sine * sine;
+    const T kt = bend / (2.0 * gradient * gradient) * s2 / slowness;
+    const T straight = sine / (slowness * gradient), share = 1.0 - 2.0 / 3.0 * kt;
+    per_slowness = straight / slowness * share;
+    d_range = (2.0 * kt - 1.0) * straight / (slowness * s2);
+    intercept = sine * s2 / gradient * (1.0 / 3.0 + s2 / 5.0) * (1.0 - 0.4 * kt);
+    length = straight * asin_series(sine) * share;
+  }
+};
+
+}  // namespace asdic

@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+
+#include "serve/latency.h"
+#include "serve/pace.h"
+#include "serve/session_limits.h"
+#include "sonar/ping_record.h"
+#include "sonar/scenario.h"
+
+namespace asdic::serve {
+
+/// How a ping was served, beside its record.
+struct ServedPing {
+  std::string id = "null";    ///< JSON
+  std::string file;           ///< that it was written to; empty: none
+  bool with_samples = false;  ///< follow the line
+  double prepare = 0.0;       ///< scenario read, simulator built [s]
+  double latency = 0.0;       ///< from when it was to be sent to when its data were complete [s]
+  double behind = 0.0;        ///< it was sent so long after its time [s]
+};
+
+// One line of JSON each, without its end.
+[[nodiscard]] std::string greeting_line(const Scenario& scenario, const Pace& pace,
+                                        const std::string& version);
+[[nodiscard]] std::string ping_line(const ServedPing& served, const PingRecord& record,
+                                    const Scenario& scenario);
+[[nodiscard]] std::string update_line(const std::string& id, double now, double seconds);
+/// \param now  time of the scenario [s]   \param next  number of the next ping
+[[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
+                                     int next, const LatencyLog& latency);
+[[nodiscard]] std::string limits_line(const std::string& id, const SessionLimits& limits);
+[[nodiscard]] std::string quit_line(const std::string& id, int pings, const LatencyLog& latency);
+[[nodiscard]] std::string refusal_line(const std::string& id, const std::string& code,
+                                       const std::string& message);
+
+}  // namespace asdic::serve

@@ -1,0 +1,178 @@
+#include "serve/command.h"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "io/text/quote.h"
+#include "serve/refusal.h"
+
+namespace asdic::serve {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 5> kinds{"ping", "update", "state", "limits", "quit"};
+constexpr std::size_t longest_id = 128;  // bytes of JSON
+constexpr std::size_t longest_name = 64;
+
+/// Watches a text while it is parsed: so nothing deep is ever built.
+class Watch {
+ public:
+  explicit Watch(std::size_t nesting) : nesting_(nesting) {}
+
+  bool operator()(int, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) {
+      if (open_.size() == nesting_)
+        throw Refusal("limit", refusal_text("", "deeper nesting",
+                                            "at most " + std::to_string(nesting_) + " levels"));
+      open_.emplace_back();
+    } else if (event == Event::object_end || event == Event::array_end) {
+      open_.pop_back();
+    } else if (event == Event::key) {
+      const auto& name = parsed.get_ref<const std::string&>();
+      if (name.size() > longest_name) throw Refusal("json", "expected keys of at most 64 bytes");
+      if (!open_.back().insert(name).second)
+        throw Refusal("json", refusal_text(name, "the key twice", "every key once"));
+    }
+    return true;
+  }
+
+ private:
+  std::size_t nesting_;
+  std::vector<std::set<std::string>> open_;  // the keys of each level that is open
+};
+
+Json parse(std::string_view line, const SessionLimits& limits) {
+  if (line.size() > limits.line_bytes)
+    throw Refusal("limit",
+                  refusal_text("", "a longer line",
+                               "at most " + std::to_string(limits.line_bytes) + " bytes a line"));
+  try {
+    Json all = Json::parse(line, Watch(limits.nesting));
+    if (!all.is_object()) throw Refusal("json", "expected one JSON object a line");
+    return all;
+  } catch (const Json::out_of_range&) {  // 1e999
+    throw Refusal("json", refusal_text("", "a number that is not finite", "finite numbers"));
+  } catch (const Json::exception&) {
+    throw Refusal("json",
+                  refusal_text("", "text that is no JSON in UTF-8", "one JSON object a line"));
+  }
+}
+
+TomlValue to_toml(const Json& json) {
+  TomlValue value;
+  switch (json.type()) {
+    case Json::value_t::boolean:
+      value.data = json.get<bool>();
+      break;
+    case Json::value_t::number_integer:
+      value.data = json.get<std::int64_t>();
+      break;
+    case Json::value_t::number_unsigned:
+      if (json.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+        value.data = json.get<std::int64_t>();
+      else
+        value.data = json.get<double>();
+      break;
+    case Json::value_t::number_float:
+      value.data = json.get<double>();
+      break;
+    case Json::value_t::string:
+      value.data = json.get<std::string>();
+      break;
+    case Json::value_t::array: {
+      TomlValue::Array items;
+      for (const Json& item : json) items.push_back(to_toml(item));
+      value.data = std::move(items);
+      break;
+    }
+    case Json::value_t::object: {
+      TomlValue::Table entries;
+      for (const auto& [key, item] : json.items())
+        if (!item.is_null()) entries.push_back({key, to_toml(item)});
+      value.data = std::move(entries);
+      break;
+    }
+    default:  // null: like a key that is not there
+      break;
+  }
+  return value;
+}
+
+std::string checked_id(const Json& all) {
+  const auto found = all.find("id");
+  if (found == all.end()) return "null";
+  if (!(found->is_number() || found->is_string() || found->is_null()))
+    throw Refusal("command", "id: expected a number or a string");
+  std::string id = found->dump();
+  if (id.size() > longest_id) throw Refusal("command", "id: expected at most 128 bytes");
+  return id;
+}
+
+CommandKind checked_kind(const Json& all) {
+  const std::string expected = "\"ping\", \"update\", \"state\", \"limits\" or \"quit\"";
+  const auto found = all.find("command");
+  if (found == all.end() || !found->is_string())
+    throw Refusal("command", refusal_text("command", "", expected));
+  const auto& name = found->get_ref<const std::string&>();
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    if (kinds[i] == name) return static_cast<CommandKind>(i);
+  throw Refusal("command", refusal_text("command", "an unknown one", expected));
+}
+
+}  // namespace
+
+std::string_view name_of(CommandKind kind) { return kinds[static_cast<std::size_t>(kind)]; }
+
+Command read_command(std::string_view line, const SessionLimits& limits) {
+  const Json all = parse(line, limits);
+  Command command;
+  command.id = checked_id(all);
+  command.kind = checked_kind(all);
+  TomlValue::Table fields;
+  for (const auto& [key, value] : all.items())
+    if (key != "id" && key != "command" && !value.is_null())
+      fields.push_back({key, to_toml(value)});
+  command.fields = {.data = std::move(fields), .origin = std::string(name_of(command.kind))};
+  return command;
+}
+
+std::string id_of(std::string_view line, const SessionLimits& limits) {
+  try {
+    return checked_id(parse(line, limits));
+  } catch (const Refusal&) {
+    return "null";
+  }
+}
+
+Handshake read_handshake(std::string_view line) {
+  const Refusal wrong("handshake", R"(expected a first line {"asdic": 1})");
+  SessionLimits strict;
+  strict.line_bytes = 4096;
+  strict.nesting = 2;
+  Handshake shake;
+  try {
+    const Json all = parse(line, strict);
+    bool ours = false;
+    for (const auto& [key, value] : all.items()) {
+      if (key == "asdic")
+        ours = value.is_number_integer() && value == 1;
+      else if (key == "token" && value.is_string())
+        shake.token = value.get<std::string>();
+      else if (key == "when_full" && (value == "wait" || value == "busy"))
+        shake.waits = value == "wait";
+      else
+        throw wrong;
+    }
+    if (!ours) throw wrong;
+  } catch (const Refusal&) {
+    throw wrong;
+  }
+  return shake;
+}
+
+}  // namespace asdic::serve

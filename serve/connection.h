@@ -1,0 +1,51 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "serve/session.h"
+
+namespace asio {
+class io_context;
+}
+
+namespace asdic::serve {
+
+/// What the connections of a server share.
+struct Engine {
+  const SessionSettings& settings;
+  std::function<double()> clock;  ///< [s], never goes back
+  std::mutex busy;                ///< one command at a time computes and writes files
+};
+
+/// One client: bytes in, bytes out, and a thread that carries out its commands one after the other.
+///
+/// All but that thread runs in the io_context's. Nothing grows: lines, waiting commands and
+/// answers that a slow reader has not taken are bounded; past the last no more is read from it.
+class Connection {
+ public:
+  struct Ends {
+    int in = -1, out = -1;  ///< file descriptors, closed by the connection
+    bool socket = true;     ///< with the times of a socket: for its handshake, and idle
+    std::string token;      ///< that the client must know; empty: none
+  };
+
+  /// \param closed  called when all is over, in the io_context's thread
+  Connection(asio::io_context& io, Engine& engine, const Ends& ends, std::function<void()> closed);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void start();
+  /// Says why not, and closes.
+  void turn_away(const std::string& code, const std::string& message);
+  /// The ping in hand is finished and answered, commands that wait are refused, then it closes.
+  void stop();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace asdic::serve

@@ -1,0 +1,123 @@
+#include "serve/live_scenario.h"
+
+#include <algorithm>
+
+#include "io/scenario/document.h"
+#include "io/scenario_reader.h"
+#include "io/text/toml_writer.h"
+#include "serve/caps.h"
+#include "serve/inline_toml.h"
+#include "serve/update.h"
+
+namespace asdic::serve {
+
+LiveScenario::LiveScenario(ScenarioSource source, DataFolder data, const SessionLimits& limits)
+    : source_(std::move(source)),
+      data_(std::move(data)),
+      limits_(limits),
+      document_(scenario::read_document(source_.text, source_.path, source_.overrides)),
+      pings_(parse_scenario(source_.text, source_.path, source_.overrides).pings.count) {
+  try {
+    state_ = read({});
+  } catch (const Refusal& refusal) {  // of a limit: here it is the user's
+    throw InputError({.where = source_.path.string(),
+                      .got = "a scenario past a limit",
+                      .expected = std::string(refusal.what()) + " (--limit NAME=VALUE)"});
+  }
+  if (state_.scenario.pings.continuous)
+    throw InputError({.where = source_.path.string() + ": pings.continuous",
+                      .got = "true",
+                      .expected = "false: served pings are records of their own"});
+}
+
+LiveScenario::State LiveScenario::read(const Changes& changes) const {
+  std::vector<std::string> overrides = source_.overrides;
+  State state;
+  for (const auto& [section, value] : changes) {
+    overrides.push_back(section + "=" + value);
+    state.key += overrides.back() + '\n';
+  }
+  // What is checked over the file's schedule is so over one ping: served ones go on for ever, and
+  // places are looked at when each is sent (serve/places.h).
+  overrides.emplace_back("pings.count=1");
+  state.scenario = parse_scenario(source_.text, source_.path, overrides);
+  state.scenario.overrides.pop_back();
+  state.scenario.pings.count = pings_;
+  check_caps(state.scenario, limits_);
+  return state;
+}
+
+LiveScenario::State LiveScenario::read_for_client(const Changes& changes) const {
+  try {
+    return read(changes);
+  } catch (const InputError& error) {
+    throw refusal_of(error);
+  }
+}
+
+namespace {
+
+void set_change(std::vector<std::pair<std::string, std::string>>& changes,
+                const std::string& section, const std::string& value) {
+  const auto found = std::find_if(changes.begin(), changes.end(),
+                                  [&](const auto& change) { return change.first == section; });
+  if (found != changes.end())
+    found->second = value;
+  else
+    changes.emplace_back(section, value);
+}
+
+}  // namespace
+
+void LiveScenario::update(const TomlValue& fields, double now) {
+  TomlValue document = document_;
+  Changes changes = changes_;
+  const auto changed = apply_update(
+      fields, {.scenario = state_.scenario, .data = data_, .limits = limits_, .now = now},
+      document);
+  for (const std::string& section : changed)
+    set_change(changes, section, inline_toml(*find_section(document, section)));
+  state_ = read_for_client(changes);
+  document_ = std::move(document);
+  changes_ = std::move(changes);
+}
+
+std::string LiveScenario::elevation_override(int transmitter, double elevation) const {
+  const TomlValue& all = *document_.find("transmitter");
+  const auto* several = std::get_if<TomlValue::Array>(&all.data);
+  const std::string path =
+      several == nullptr ? "transmitter" : "transmitter." + std::to_string(transmitter);
+  const TomlValue& table =
+      several == nullptr ? all : (*several)[static_cast<std::size_t>(transmitter)];
+  const std::string angle = toml_number(degrees(elevation));
+  if (table.find("elevations_deg") != nullptr) return path + ".elevations_deg=[" + angle + "]";
+  const TomlValue* pings = document_.find("pings");
+  if (pings != nullptr && pings->find("elevations_deg") != nullptr)
+    return "pings.elevations_deg=[" + angle + "]";
+  return path + ".elevation_deg=" + angle;
+}
+
+LiveScenario::State LiveScenario::with(const PingChanges& wanted) const {
+  if (!wanted.any()) return state_;
+  TomlValue document = document_;
+  Changes changes = changes_;
+  for (const std::string& section : apply_ping_changes(wanted, state_.scenario, document))
+    set_change(changes, section, inline_toml(*find_section(document, section)));
+  return read_for_client(changes);
+}
+
+Refusal refusal_of(const InputError& error) {
+  const InputFault& fault = error.fault();
+  // "deep.toml:12: target.0.position", "--set platform: platform.velocity", "pings.sample_rate":
+  // the key is what comes last; a place in a file stays with us.
+  const auto colon = fault.where.rfind(": ");
+  std::string key = colon == std::string::npos ? fault.where : fault.where.substr(colon + 2);
+  if (key.starts_with("--set ")) key = key.substr(6);
+  const bool is_key = std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '[' || c == ']';
+  });
+  const bool is_file = colon == std::string::npos && key.find_first_of("/:") != std::string::npos;
+  return {"scenario", refusal_text(is_key && !is_file ? key : "a file", "", fault.expected)};
+}
+
+}  // namespace asdic::serve

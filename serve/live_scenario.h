@@ -1,0 +1,83 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "io/text/toml_value.h"
+#include "serve/data_folder.h"
+#include "serve/refusal.h"
+#include "serve/session_limits.h"
+#include "sonar/scenario.h"
+
+namespace asdic::serve {
+
+/// A scenario file as it was when the server started.
+struct ScenarioSource {
+  std::string text;
+  std::filesystem::path path;
+  std::vector<std::string> overrides;  ///< "key.path=value"
+};
+
+/// What a ping may have of its own, for itself alone.
+struct PingChanges {
+  int transmitter = 0;  ///< index
+  std::optional<TomlValue> waveform;
+  std::optional<double> source_level_db, beamwidth_deg;
+
+  [[nodiscard]] bool any() const { return waveform || source_level_db || beamwidth_deg; }
+};
+
+/// A scenario that a client changes while it goes on.
+///
+/// A change replaces a whole section of the file ("platform", "target", "environment.sound_speed",
+/// …) by an override "section=TOML", and all is read and checked again as `asdic ping --set` would:
+/// so the overrides that a file of pings holds say what it was made of. There are never more
+/// overrides than sections.
+class LiveScenario {
+ public:
+  /// \throws InputError as read_scenario(), or where the scenario exceeds the limits
+  LiveScenario(ScenarioSource source, DataFolder data, const SessionLimits& limits);
+
+  /// A scenario, and a text that is the same for the same one.
+  struct State {
+    Scenario scenario;
+    std::string key;
+  };
+
+  [[nodiscard]] const State& state() const noexcept { return state_; }
+  [[nodiscard]] const DataFolder& data() const noexcept { return data_; }
+
+  /// The command `update`: all of it, or nothing. \param fields  of the command
+  /// \param now  at which the positions are meant where it does not say [s] \throws Refusal
+  void update(const TomlValue& fields, double now);
+
+  /// The override that says a beam's elevation, where the scenario says it. \param elevation [rad]
+  [[nodiscard]] std::string elevation_override(int transmitter, double elevation) const;
+
+  /// The scenario with what one ping has of its own. \throws Refusal
+  [[nodiscard]] State with(const PingChanges& changes) const;
+
+ private:
+  /// Sections in the order in which they were first changed.
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+
+  [[nodiscard]] State read(const Changes& changes) const;  // \throws InputError, Refusal
+  [[nodiscard]] State read_for_client(const Changes& changes) const;
+
+  ScenarioSource source_;
+  DataFolder data_;
+  SessionLimits limits_;
+  TomlValue document_;
+  Changes changes_;
+  int pings_ = 1;  // of the file's schedule
+  State state_;
+};
+
+/// A fault of a scenario in words for a client: its key and what is expected there, not what was
+/// found, which may be a line of a file.
+[[nodiscard]] Refusal refusal_of(const InputError& error);
+
+}  // namespace asdic::serve

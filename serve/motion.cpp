@@ -1,0 +1,95 @@
+#include "serve/motion.h"
+
+#include <cmath>
+
+#include "io/scenario/sections.h"
+#include "serve/inline_toml.h"
+
+namespace asdic::serve {
+namespace {
+
+using scenario::coordinate;
+using scenario::velocity_component;
+
+constexpr double horizon = 86400.0;  // a straight line goes on for a day [s]
+constexpr Quantity moment{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
+
+TomlValue waypoint(double time, const Vec3& position) {
+  TomlValue point{.data = TomlValue::Table{}, .origin = ""};
+  set_key(point, "time", {.data = time, .origin = ""});
+  set_key(point, "position", toml_vector(position));
+  return point;
+}
+
+void forget_motion(TomlValue& table) {
+  for (const char* key : {"position", "velocity", "waypoints", "range", "bearing_deg", "depth"})
+    erase_key(table, key);
+}
+
+/// The horizontal velocity of a course and a speed; the vertical one stays.
+Vec3 on_course(TomlTable& wanted, const Vec3& velocity) {
+  constexpr Quantity heading{.noun = "heading", .unit = "degrees", .low = -360.0, .high = 360.0};
+  constexpr Quantity speed{.noun = "speed", .unit = "m/s", .low = 0.0, .high = 100.0};
+  const double knots = velocity.head<2>().norm();  // so far [m/s]
+  const double course = wanted.has("heading_deg") ? radians(wanted.number("heading_deg", heading))
+                                                  : std::atan2(velocity.x(), velocity.y());
+  const double v = wanted.number("speed", speed, knots);
+  return {v * std::sin(course), v * std::cos(course), velocity.z()};
+}
+
+}  // namespace
+
+TomlValue toml_vector(const Vec3& v) {
+  TomlValue::Array items;
+  for (const double x : v) items.push_back({.data = x, .origin = ""});
+  return {.data = std::move(items), .origin = ""};
+}
+
+bool has_motion(TomlTable& wanted) {
+  bool any = false;
+  for (const char* key : {"position", "velocity", "heading_deg", "speed", "waypoints"})
+    any = wanted.has(key) || any;  // each is asked for: then it is a known key
+  return any;
+}
+
+void set_kinematics(const Kinematics& state, double time, TomlValue& table) {
+  forget_motion(table);
+  if (state.velocity.isZero(0.0)) {
+    set_key(table, "position", toml_vector(state.position));
+    return;
+  }
+  // A velocity from the scenario's start would lead back to places that were never passed.
+  set_key(table, "waypoints",
+          {.data = TomlValue::Array{waypoint(time, state.position),
+                                    waypoint(time + horizon,
+                                             state.position + horizon * state.velocity)},
+           .origin = ""});
+}
+
+void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& table) {
+  if (wanted.has("waypoints")) {
+    for (const char* key : {"position", "velocity", "speed"})
+      if (wanted.has(key)) throw wanted.fault(key, "none of it beside waypoints");
+    TomlValue::Array points;
+    for (TomlTable& point : wanted.tables("waypoints")) {
+      points.push_back(
+          waypoint(point.number("time", moment), point.vector("position", coordinate)));
+      point.finish();
+    }
+    forget_motion(table);
+    set_key(table, "waypoints", {.data = std::move(points), .origin = ""});
+    return;
+  }
+  Kinematics state = now.at(time);
+  state.position = wanted.vector("position", coordinate, state.position);
+  if (wanted.has("velocity")) {
+    for (const char* key : {"heading_deg", "speed"})
+      if (wanted.has(key)) throw wanted.fault(key, "none of it beside velocity");
+    state.velocity = wanted.vector("velocity", velocity_component);
+  } else if (wanted.has("heading_deg") || wanted.has("speed")) {
+    state.velocity = on_course(wanted, state.velocity);
+  }
+  set_kinematics(state, time, table);
+}
+
+}  // namespace asdic::serve

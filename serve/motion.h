@@ -1,0 +1,20 @@
+#pragma once
+#include "io/text/toml_table.h"
+#include "sonar/track.h"
+
+namespace asdic::serve {
+
+/// Whether a command says how something moves: position, velocity, heading_deg, speed, waypoints.
+[[nodiscard]] bool has_motion(TomlTable& wanted);
+
+/// Writes it into the scenario's table of that thing, in place of what stands there. What is not
+/// said goes on as it was. \param now  its track so far   \param time  of position and velocity [s]
+/// \throws InputError naming the command's key
+void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& table);
+
+/// A place and a velocity as the file has them: in a place, or from there on in a straight line.
+void set_kinematics(const Kinematics& state, double time, TomlValue& table);
+
+[[nodiscard]] TomlValue toml_vector(const Vec3& v);
+
+}  // namespace asdic::serve

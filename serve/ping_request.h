@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+
+#include "serve/live_scenario.h"
+
+namespace asdic::serve {
+
+/// Where a ping's samples go.
+enum class Delivery { file, samples, none };
+
+/// The command `ping`.
+struct PingRequest {
+  std::optional<int> transmitter;   ///< an index; none: whose turn it is
+  std::optional<double> time;       ///< [s]; none: by the session's clock or schedule
+  std::optional<double> elevation;  ///< of the beam, positive up [rad]
+  PingChanges changes;              ///< its transmitter is set when that is known
+  Delivery deliver = Delivery::none;
+};
+
+/// \param usual  delivery where the command does not say \throws Refusal ("value", "file")
+[[nodiscard]] PingRequest read_ping(const TomlValue& fields, const LiveScenario& live,
+                                    const SessionLimits& limits, Delivery usual);
+
+}  // namespace asdic::serve

@@ -1,0 +1,77 @@
+#include "serve/places.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "io/text/toml_value.h"
+#include "serve/refusal.h"
+
+namespace asdic::serve {
+namespace {
+
+/// When a track is looked at: its waypoints and, over a sea floor or a surface with a shape, places
+/// in between.
+std::vector<double> moments(const Scenario& scenario, const Track& track, double from, double to) {
+  std::vector<double> times{from, to};
+  for (const Waypoint& point : track.waypoints)
+    if (point.time > from && point.time < to) times.push_back(point.time);
+  const bool shaped = scenario.environment.surface.shape || scenario.environment.bottom.shape;
+  constexpr int parts = 32;
+  if (shaped && track.course_at(from))
+    for (int i = 1; i < parts; ++i) times.push_back(std::lerp(from, to, double(i) / parts));
+  return times;
+}
+
+void check_depth(const Scenario& scenario, const Vec3& place, double time,
+                 const std::string& what) {
+  const double x = scenario.transect.range_of(place.x(), place.y());
+  const double top = scenario.environment.surface.depth_at(x),
+               bottom = scenario.environment.bottom.depth_at(x);
+  if (place.z() > top && place.z() < bottom) return;
+  throw Refusal("scenario",
+                refusal_text(what, "depth " + to_text(place.z()) + " m at " + to_text(time) + " s",
+                             "a depth between the surface (" + to_text(std::round(top)) +
+                                 " m) and the bottom (" + to_text(std::round(bottom)) + " m)"));
+}
+
+std::string numbered(const std::string& kind, std::size_t index, std::size_t of) {
+  return of == 1 ? kind : kind + "[" + std::to_string(index) + "]";
+}
+
+}  // namespace
+
+void check_places(const Scenario& scenario, int ping, int transmitter, double time) {
+  const double end = time + scenario.pings.recording_start + scenario.pings.recording_duration;
+  const auto check = [&](const Track& track, const Vec3& offset, const std::string& what) {
+    for (const double t : moments(scenario, track, time, end))
+      check_depth(scenario, track.at(t).position + offset, t, what);
+  };
+  for (const Transmitter& one : scenario.transmitters) {
+    const auto platform = static_cast<std::size_t>(one.platform);
+    check(scenario.platforms[platform].track, one.offset,
+          numbered("platform", platform, scenario.platforms.size()));
+  }
+  for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
+    const ReceiverArray& array = scenario.arrays[a];
+    for (const Vec3& phone : phones_at(scenario, static_cast<int>(a), ping, time))
+      check(scenario.platforms[static_cast<std::size_t>(array.platform)].track,
+            array.offset + phone, numbered("array", a, scenario.arrays.size()));
+  }
+  const Vec3 source = transmitter_at(scenario, transmitter, time).position;
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    if (ping < target.first_ping || ping > target.last_ping) continue;
+    const std::string what = numbered("target", i, scenario.targets.size());
+    check(target.track, Vec3::Zero(), what);
+    const double distance = (target.track.at(time).position - source).norm();
+    if (distance < 1.0)  // levels refer to 1 m
+      throw Refusal("scenario",
+                    refusal_text(what, to_text(distance) + " m", "at least 1 m from the platform"));
+  }
+  for (std::size_t i = 0; i < scenario.interferers.size(); ++i)
+    check(scenario.interferers[i].track, Vec3::Zero(),
+          numbered("interferer", i, scenario.interferers.size()));
+}
+
+}  // namespace asdic::serve

@@ -1,0 +1,31 @@
+#pragma once
+#include <vector>
+
+#include "sonar/scenario.h"
+#include "sonar/transmission.h"
+
+namespace asdic::serve {
+
+/// The schedule of a scenario, going on for ever: whose turn it is, and when. A ping that is sent
+/// at another time moves those of its transmitter after it.
+class Turns {
+ public:
+  explicit Turns(const Scenario& scenario);
+
+  /// The next ping of the schedule. The first ones are those of transmissions().
+  [[nodiscard]] Transmission next(const Scenario& scenario) const;
+  /// The next ping of one transmitter.
+  [[nodiscard]] Transmission next(const Scenario& scenario, int transmitter) const;
+  /// \param moved  its time is not the schedule's
+  void sent(const Transmission& one, bool moved);
+
+ private:
+  struct Anchor {
+    int turn = 1;       // that is sent …
+    double time = 0.0;  // … then; later ones follow at the interval
+    int next = 1;       // turn
+  };
+  std::vector<Anchor> anchors_;  // [transmitters]
+};
+
+}  // namespace asdic::serve

@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "io/text/toml_value.h"
+#include "serve/data_folder.h"
+#include "serve/live_scenario.h"
+#include "serve/session_limits.h"
+#include "sonar/scenario.h"
+
+namespace asdic::serve {
+
+/// What an update is applied to.
+struct UpdateContext {
+  const Scenario& scenario;
+  const DataFolder& data;
+  const SessionLimits& limits;
+  double now = 0.0;  ///< of positions, where the command says no time [s]
+};
+
+/// Writes what a client wants into the tree of a scenario's file. What may change is what is named
+/// here, and nothing else.
+/// \return the sections that changed: "platform", "environment.wind_speed"
+/// \throws Refusal ("value", "file") naming the command's key
+std::vector<std::string> apply_update(const TomlValue& fields, const UpdateContext& context,
+                                      TomlValue& document);
+
+/// The same of what a ping has of its own.
+std::vector<std::string> apply_ping_changes(const PingChanges& wanted, const Scenario& scenario,
+                                            TomlValue& document);
+
+/// A value of the tree by its path of names; it is there.
+[[nodiscard]] const TomlValue* find_section(const TomlValue& document, const std::string& path);
+
+/// A fault of a command's own value: key, found, expected.
+[[nodiscard]] Refusal refusal_of_value(const InputError& error);
+
+}  // namespace asdic::serve

@@ -1,0 +1,83 @@
+#pragma once
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace asdic {
+
+/// What is kept: the first word of its keys. One kind, one type.
+enum class Kept : std::uint64_t { slice, legs, followed_legs, boundary_fan };
+
+/// All the numbers that decide a result, bit for bit.
+class ExactKey {
+ public:
+  explicit ExactKey(Kept kind, std::uint64_t ocean) : words_{static_cast<std::uint64_t>(kind)} {
+    words_.push_back(ocean);
+  }
+
+  template <std::integral T>
+  ExactKey& add(T value) {
+    words_.push_back(static_cast<std::uint64_t>(value));
+    return *this;
+  }
+  ExactKey& add(double value) { return add(std::bit_cast<std::uint64_t>(value)); }
+
+  [[nodiscard]] bool operator==(const ExactKey&) const = default;
+  [[nodiscard]] std::size_t hash() const noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept { return words_.capacity() * 8; }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/// What propagation has found, by exact key, within a bound on bytes: what was used longest ago is
+/// forgotten first. Shared by threads.
+class PropagationMemory {
+ public:
+  explicit PropagationMemory(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  /// Null if it is not there, or no more. \param key  whose kind says the type
+  template <class T>
+  [[nodiscard]] std::shared_ptr<T> find(const ExactKey& key) {
+    return std::static_pointer_cast<T>(recall(key));
+  }
+  /// \param bytes  that the value takes   \return what is kept: of two that were brought at once
+  /// the first
+  template <class T>
+  std::shared_ptr<T> keep(const ExactKey& key, std::shared_ptr<T> value, std::size_t bytes) {
+    return std::static_pointer_cast<T>(store(key, std::move(value), bytes));
+  }
+  /// Corrects what a value takes, where that was not known when it was kept.
+  void charge(const ExactKey& key, std::size_t bytes);
+
+  [[nodiscard]] std::size_t bytes() const;  ///< of all that is kept
+
+ private:
+  using Value = std::shared_ptr<void>;
+  struct Entry {
+    ExactKey key;
+    Value value;
+    std::size_t bytes;
+  };
+  struct Hash {
+    std::size_t operator()(const ExactKey& key) const noexcept { return key.hash(); }
+  };
+  [[nodiscard]] Value recall(const ExactKey& key);
+  Value store(const ExactKey& key, Value value, std::size_t bytes);
+  void forget();
+
+  const std::size_t most_bytes_;
+  mutable std::mutex lock_;
+  std::list<Entry> used_;  // the latest first
+  std::unordered_map<ExactKey, std::list<Entry>::iterator, Hash> places_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace asdic

@@ -1,0 +1,220 @@
+#include "study/echo_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "core/error.h"
+#include "sonar/fft.h"
+#include "sonar/geometry.h"
+#include "sonar/noise_spectrum.h"
+#include "sonar/processing/normaliser.h"
+#include "sonar/scenario.h"
+
+namespace asdic::study {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// When, how fast and from where one phone hears the echo.
+struct Heard {
+  std::size_t channel = 0;  // of the record
+  double delay = 0.0;       // [s]
+};
+
+/// What is listened for: the strongest path of a target.
+struct Listened {
+  double delay = 0.0, doppler = 1.0;
+  std::vector<Heard> phones;
+};
+
+const EchoPath* strongest(const PingRecord& record, int array, int target, int channel) {
+  const EchoPath* best = nullptr;
+  for (const EchoPath& echo : record.echoes)
+    if (echo.array == array && echo.target == target &&
+        (channel == Return::all_channels || echo.heard.channel == channel) &&
+        (best == nullptr || echo.level_db > best->level_db))
+      best = &echo;
+  return best;
+}
+
+Listened listened(const PingSimulator& simulator, const PingRecord& record,
+                  const MatchedFilterPlan& plan, int array, int target) {
+  const Scenario& scenario = simulator.scenario();
+  const Vec3 reference = array_at(scenario, array, record.start_time).position;
+  const std::size_t first = first_channel(scenario, array);
+  const std::size_t phones = scenario.arrays[static_cast<std::size_t>(array)].phones.size();
+  Listened all;
+  Vec3 slowness = Vec3::Zero();
+  const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
+  if (loudest != nullptr) {
+    all.delay = loudest->heard.delay;
+    all.doppler = loudest->heard.doppler;
+    slowness = loudest->heard.slowness;
+  } else {
+    const Vec3 place = record.targets[static_cast<std::size_t>(target)].position;
+    const double c = simulator.paths().speed_at(reference);
+    all.delay = ((place - record.platform.position).norm() + (place - reference).norm()) / c;
+    slowness = (reference - place).normalized() / c;
+  }
+  for (std::size_t n = 0; n < phones; ++n) {
+    if (plan.phone && static_cast<std::size_t>(*plan.phone) != n) continue;
+    double delay = all.delay + slowness.dot(record.phones[first + n] - reference);
+    if (loudest != nullptr && loudest->heard.channel != Return::all_channels)
+      if (const EchoPath* own = strongest(record, array, target, static_cast<int>(n)))
+        delay = own->heard.delay;  // a path of each phone's own
+    all.phones.push_back({first + n, delay});
+  }
+  return all;
+}
+
+/// The stretched pulse as each phone would record it, conjugate: what samples are multiplied with.
+class Template {
+ public:
+  Template(const PingRecord& record, const Pulse& pulse, const Listened& echo)
+      : record_(record), echo_(echo) {
+    const Recording& r = record.recording;
+    length_ =
+        static_cast<std::ptrdiff_t>(std::ceil(pulse.duration() / echo.doppler * r.sample_rate)) + 1;
+    weights_.resize(echo.phones.size() * static_cast<std::size_t>(length_));
+    for (std::size_t n = 0; n < echo.phones.size(); ++n) {
+      // The first sample at or after this phone's leading edge.
+      const double edge = (echo.phones[n].delay - r.start) * r.sample_rate;
+      first_.push_back(static_cast<std::ptrdiff_t>(std::ceil(edge)));
+      for (std::ptrdiff_t k = 0; k < length_; ++k) {
+        const double t = r.start + static_cast<double>(first_[n] + k) / r.sample_rate;
+        std::complex<double> w =
+            std::conj(pulse.analytic(echo.doppler * (t - echo.phones[n].delay)));
+        if (r.is_complex()) w *= std::polar(1.0, 2.0 * pi * r.carrier * (t + r.epoch));
+        weights_[n * static_cast<std::size_t>(length_) + static_cast<std::size_t>(k)] = w;
+        energy_ += std::norm(w);
+      }
+    }
+  }
+
+  /// |y|² so many samples after the echo; none outside the record.
+  [[nodiscard]] std::optional<double> answer(std::ptrdiff_t shift) const {
+    const Recording& r = record_.recording;
+    const auto samples = static_cast<std::ptrdiff_t>(r.samples);
+    std::complex<double> sum = 0.0;
+    for (std::size_t n = 0; n < first_.size(); ++n) {
+      const std::ptrdiff_t begin = first_[n] + shift;
+      if (begin < 0 || begin + length_ > samples) return std::nullopt;
+      const std::complex<double>* w = weights_.data() + n * static_cast<std::size_t>(length_);
+      const float* p =
+          record_.pressure.data() +
+          (echo_.phones[n].channel * r.samples + static_cast<std::size_t>(begin)) * r.components();
+      for (std::ptrdiff_t k = 0; k < length_; ++k)
+        sum += r.is_complex()
+                   ? w[k] * std::complex<double>(static_cast<double>(p[2 * k]),
+                                                 static_cast<double>(p[2 * k + 1]))
+                   : 2.0 * w[k] * static_cast<double>(p[k]);  // p₊ = 2p, its negative half aside
+    }
+    return std::norm(sum) / (energy_ * energy_);
+  }
+
+  /// E|y|² of white noise that is independent from phone to phone. \param density [Pa²/Hz]
+  [[nodiscard]] double noise(double density) const {
+    return 2.0 * density * record_.recording.sample_rate / energy_;
+  }
+
+ private:
+  const PingRecord& record_;
+  const Listened& echo_;
+  std::ptrdiff_t length_ = 0;
+  std::vector<std::ptrdiff_t> first_;          // [phones]
+  std::vector<std::complex<double>> weights_;  // [phones × length]
+  double energy_ = 0.0;                        // Σ|w|²
+};
+
+/// Times at which echoes of any target are heard, in samples after the one listened for.
+class EchoTimes {
+ public:
+  EchoTimes(const PingRecord& record, int array, double delay, double duration)
+      : rate_(record.recording.sample_rate), duration_(duration) {
+    for (const EchoPath& echo : record.echoes)
+      if (echo.array == array) delays_.push_back(echo.heard.delay - delay);
+  }
+  /// The filter hears nothing of them when it listens so much later.
+  [[nodiscard]] bool free(std::ptrdiff_t shift) const {
+    const double t = static_cast<double>(shift) / rate_;
+    return std::none_of(delays_.begin(), delays_.end(),
+                        [&](double d) { return std::abs(t - d) < 1.1 * duration_; });
+  }
+
+ private:
+  double rate_, duration_;
+  std::vector<double> delays_;
+};
+
+/// (∫|S|²df)²/∫|S|⁴df [Hz]: answers that far apart in 1/B are independent in white noise.
+double noise_bandwidth(const Pulse& pulse) {
+  const double rate = 2.0 * pulse.bandwidth_40db();
+  const auto samples =
+      static_cast<std::size_t>(std::clamp(pulse.duration() * rate, 64.0, 1048576.0));
+  const ComplexFft<double> transform(fast_fft_length(2 * samples));
+  FftBuffer<std::complex<double>> x(transform.length());
+  const double step = pulse.duration() / static_cast<double>(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double t = (static_cast<double>(k) + 0.5) * step;
+    x[k] = pulse.analytic(t) * std::polar(1.0, -2.0 * pi * pulse.centre_frequency() * t);
+  }
+  transform.forward(x.data());
+  double second = 0.0, fourth = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double power = std::norm(x[k]);
+    second += power;
+    fourth += power * power;
+  }
+  return second * second / fourth / (step * static_cast<double>(transform.length()));
+}
+
+}  // namespace
+
+FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
+                           const MatchedFilterPlan& plan, int array, int target,
+                           double false_alarm_probability) {
+  const Pulse& pulse = simulator.pulse(record.transmitter);
+  const Scenario& scenario = simulator.scenario();
+  const Listened echo = listened(simulator, record, plan, array, target);
+  const Template filter(record, pulse, echo);
+  const double duration = pulse.duration() / echo.doppler;
+  const EchoTimes echoes(record, array, echo.delay, duration);
+  const double rate = record.recording.sample_rate;
+  const auto cell = static_cast<std::ptrdiff_t>(std::ceil(rate / noise_bandwidth(pulse)));
+
+  const auto compare = [&](std::ptrdiff_t at, double& statistic, double& threshold) {
+    statistic = threshold = none;
+    const std::optional<double> power = filter.answer(at);
+    if (!power) return false;
+    if (plan.background == MatchedFilterPlan::Background::noise) {
+      statistic = *power / filter.noise(noise_density(scenario.noise, pulse.centre_frequency()));
+      threshold = -std::log(false_alarm_probability);
+      return true;
+    }
+    double sum = 0.0, cells = 0.0;
+    const auto guard = static_cast<std::ptrdiff_t>(plan.guard_cells),
+               reference = static_cast<std::ptrdiff_t>(plan.reference_cells);
+    for (std::ptrdiff_t k = guard + 1; k <= guard + reference; ++k)
+      for (const std::ptrdiff_t shift : {at - k * cell, at + k * cell})
+        if (echoes.free(shift))
+          if (const std::optional<double> p = filter.answer(shift)) sum += *p, cells += 1.0;
+    if (cells < 1.0 || !(sum > 0.0)) return false;
+    statistic = *power * cells / sum;
+    threshold = cfar_multiplier(false_alarm_probability, cells);
+    return true;
+  };
+
+  FilterAnswer answer;
+  compare(0, answer.present, answer.threshold);
+  answer.absent = answer.absent_threshold = none;
+  const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration * rate));
+  const auto most = static_cast<std::ptrdiff_t>(record.recording.samples) / step + 1;
+  for (std::ptrdiff_t k = 2; k <= most; ++k)  // the nearest free time, earlier ones first
+    for (const std::ptrdiff_t shift : {-k * step, k * step})
+      if (echoes.free(shift) && compare(shift, answer.absent, answer.absent_threshold))
+        return answer;
+  return answer;
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,241 @@
+#include "study/run_study.h"
+
+#include <chrono>
+
+#include "core/error.h"
+
+namespace asdic::study {
+
+Work work_of(const Study& study, const Realise& realise) {
+  return {.imprint = imprint_of(study),
+          .realise = realise,
+          .summarise = [&study](const Table& table) { return summarise(study, table); },
+          .estimate = [&study] { return RunningEstimate(study); }};
+}
+
+Journals::Journals(const std::filesystem::path& output, const Imprint& imprint,
+                   const std::filesystem::path& own) {
+  if (!own.empty()) {
+    journals_.push_back(std::make_unique<Journal>(own, imprint));
+    own_ = journals_.front().get();
+  }
+  for (const std::filesystem::path& path : journals_of(output))
+    if (path != own) journals_.push_back(std::make_unique<Journal>(path, imprint));
+}
+
+IndexSet Journals::done() const {
+  IndexSet all;
+  for (const auto& journal : journals_)
+    for (const IndexRange& range : journal->done().ranges()) all.add(range);
+  return all;
+}
+
+std::uint64_t Journals::damaged() const noexcept {
+  std::uint64_t total = 0;
+  for (const auto& journal : journals_) total += journal->damaged();
+  return total;
+}
+
+std::vector<const Journal*> Journals::all() const {
+  std::vector<const Journal*> result;
+  for (const auto& journal : journals_) result.push_back(journal.get());
+  return result;
+}
+
+void Journals::rows(IndexRange range, const std::function<void(Row&&)>& take) const {
+  for (const Stretch& stretch : stretches(all(), range))
+    journals_[stretch.journal]->rows(stretch.range, false, take);
+}
+
+void Journals::close() {
+  for (const auto& journal : journals_) journal->close();
+}
+
+void Journals::remove() {
+  close();
+  for (const auto& journal : journals_) remove_journal(journal->path());
+}
+
+Existing look_at(const std::filesystem::path& output, const Work& work, IndexRange range,
+                 bool until) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error)) return Existing::none;
+  const auto refuse = [&](const std::string& got) {
+    return InputError({.where = output.string(),
+                       .got = got,
+                       .expected = "no such file, or results of this study (identity " +
+                                   work.imprint.identity +
+                                   "); another output, or --fresh to write over it"});
+  };
+  try {
+    const StudyFile file(output);
+    if (file.imprint().identity != work.imprint.identity)
+      throw refuse("results of another study (identity " + file.imprint().identity + ")");
+    const bool same = file.complete() && file.range() == range && !until &&
+                      file.stopped_by().empty() && file.imprint().text == work.imprint.text &&
+                      file.imprint().overrides == work.imprint.overrides;
+    return same ? Existing::complete : Existing::partial;
+  } catch (const InputError& fault) {
+    if (fault.fault().expected.starts_with("no such file")) throw;
+    throw refuse(fault.fault().got);
+  }
+}
+
+void import_rows(const std::filesystem::path& path, IndexRange range, Journal& journal) {
+  const StudyFile file(path);
+  file.verify();
+  const Table table = file.table();
+  const std::vector<std::uint64_t> kept = file.series_index();
+  const Shape shape = file.series_shape();
+  std::vector<std::int32_t> samples;
+  if (!kept.empty()) samples = file.series_samples();
+  const std::vector<std::string> faults = file.faults();
+  std::size_t series = 0, fault = 0;
+  for (std::size_t i = 0; i < table.index.size(); ++i) {
+    Row row{.index = table.index[i], .valid = table.valid[i] != 0};
+    for (const std::vector<double>& column : table.values) row.values.push_back(column[i]);
+    if (!row.valid && fault < faults.size()) {
+      const std::string& line = faults[fault++];
+      row.fault = line.substr(std::min(line.size(), line.find(": ") + 2));
+    }
+    if (series < kept.size() && kept[series] == row.index) {
+      row.pressure = file.series(series);
+      row.pressure_shape.assign(shape.begin() + 1, shape.end());
+      row.pressure_shape[sample_axis(row.pressure_shape)] =
+          static_cast<std::size_t>(samples[series]);
+      ++series;
+    }
+    if (row.index >= range.first && row.index < range.end && !journal.done().contains(row.index))
+      journal.append(row);
+  }
+  journal.commit();
+  for (const Session& session : file.sessions()) journal.add(session);
+}
+
+namespace {
+
+/// Indices that are missing, one after the other.
+class Todo {
+ public:
+  explicit Todo(IndexSet missing) : missing_(std::move(missing)) {}
+
+  std::optional<std::uint64_t> next() {
+    if (at_ >= missing_.ranges().size()) return {};
+    const IndexRange& range = missing_.ranges()[at_];
+    const std::uint64_t index = range.first + offset_++;
+    if (offset_ == range.size()) {
+      offset_ = 0;
+      ++at_;
+    }
+    return index;
+  }
+
+ private:
+  IndexSet missing_;
+  std::size_t at_ = 0;
+  std::uint64_t offset_ = 0;
+};
+
+/// Tells of progress, but not for every row.
+class Teller {
+ public:
+  Teller(const StudyRun& run, std::uint64_t before, std::uint64_t total)
+      : run_(run), progress_{.done = before, .before = before, .total = total, .estimate = {}} {}
+
+  void row(const OrderedEstimate& estimate) {
+    ++progress_.done;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(200)) return;
+    last_ = now;
+    tell(estimate);
+  }
+  void tell(const OrderedEstimate& estimate) {
+    if (!run_.progress) return;
+    progress_.estimate = estimate.estimate();
+    run_.progress(progress_);
+  }
+
+ private:
+  const StudyRun& run_;
+  Progress progress_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::string until_text(double half_width) {
+  std::string text = std::to_string(half_width);
+  while (text.ends_with('0')) text.pop_back();
+  return "--until " + text;
+}
+
+/// The file of what the journals hold. The journals go once it is complete.
+void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
+                  Journals& journals, StudyOutcome& outcome) {
+  Imprint imprint = work.imprint;
+  std::string stopped_by;
+  if (run.until && estimate.enough() && *estimate.enough() < run.range.size()) {
+    outcome.range.end = run.range.first + *estimate.enough();
+    imprint.realisations = outcome.range.end;
+    stopped_by = until_text(*run.until);
+    outcome.stopped_early = true;
+  }
+  outcome.complete =
+      assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
+  outcome.written = true;
+  std::vector<Session> sessions;
+  for (const Journal* journal : journals.all())
+    for (const Session& session : journal->sessions()) sessions.push_back(session);
+  outcome.warning = mixed_builds(sessions);
+  if (outcome.complete)
+    journals.remove();
+  else
+    journals.close();
+}
+
+}  // namespace
+
+StudyOutcome run_study(const Work& work, const StudyRun& run) {
+  StudyOutcome outcome{.total = run.range.size(), .range = run.range};
+  if (run.fresh)
+    for (const auto& path : journals_of(run.output)) remove_journal(path);
+  const Existing existing =
+      run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
+  const bool no_journals = journals_of(run.output).empty();
+  if (existing == Existing::complete && no_journals) {
+    outcome.was_complete = outcome.written = outcome.complete = true;
+    outcome.before = outcome.total;
+    return outcome;
+  }
+  Journals journals(run.output, work.imprint, journal_of(run.output));
+  if (existing == Existing::partial && no_journals)
+    import_rows(run.output, run.range, journals.own());
+  journals.own().begin(run.session);
+  const IndexSet done = journals.done().within(run.range);
+  outcome.damaged = journals.damaged();
+  outcome.before = done.size();
+  OrderedEstimate estimate(work.estimate(), run.range.first, run.until);
+  journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
+
+  if (!run.assemble_only && !estimate.enough()) {
+    Todo todo(done.missing(run.range));
+    Teller teller(run, outcome.before, outcome.total);
+    teller.tell(estimate);
+    outcome.made = study::run(
+        work.realise, [&] { return todo.next(); },
+        [&](Row&& row) {
+          journals.own().append(row);
+          estimate.add(std::move(row));
+          teller.row(estimate);
+          return !estimate.enough();
+        },
+        {.stop = run.stop});
+  }
+  outcome.estimate = estimate.estimate();
+  const bool all = outcome.before + outcome.made == outcome.total || estimate.enough();
+  if (all || run.assemble_only)
+    write_output(work, run, estimate, journals, outcome);
+  else
+    journals.close();
+  return outcome;
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,96 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "study/assemble.h"
+#include "study/run.h"
+#include "study/until.h"
+
+namespace asdic::study {
+
+/// A study as the machinery sees it: what it is, how a row is made, what is made of rows.
+struct Work {
+  Imprint imprint{};
+  Realise realise{};
+  Summarise summarise{};
+  std::function<RunningEstimate()> estimate{};  ///< without a row
+};
+
+/// \param realiser  outlives the work
+[[nodiscard]] Work work_of(const Study& study, const Realise& realise);
+
+/// How far a run is.
+struct Progress {
+  std::uint64_t done = 0;    ///< rows of the range that are there
+  std::uint64_t before = 0;  ///< of them, those that were there at the start
+  std::uint64_t total = 0;
+  std::optional<Estimate> estimate{};
+};
+
+struct StudyRun {
+  std::filesystem::path output{};
+  IndexRange range{};
+  std::optional<double> until{};  ///< half-width of the confidence interval to stop at
+  bool fresh = false;             ///< begins anew, whatever is there
+  bool assemble_only = false;     ///< makes no rows: a file of those that are there
+  Session session{};
+  std::stop_token stop{};
+  std::function<void(const Progress&)> progress{};  ///< a few times a second
+};
+
+struct StudyOutcome {
+  std::uint64_t made = 0, before = 0, total = 0;
+  std::uint64_t damaged = 0;   ///< rows of journals that had to be made again
+  bool written = false;        ///< the output is there
+  bool complete = false;       ///< and holds all of its range
+  bool was_complete = false;   ///< already: nothing was done
+  IndexRange range{};          ///< of the output; shorter than asked for after --until
+  bool stopped_early = false;  ///< by --until
+  std::optional<Estimate> estimate{};
+  std::string warning{};  ///< mixed builds
+};
+
+/// Makes the rows of a range that are not in the output's journals yet, and the file of them.
+/// Interrupted, it leaves the journal; the same call continues.
+/// \throws InputError for an output or a journal of another study; whatever a realisation throws;
+/// RunError
+StudyOutcome run_study(const Work& work, const StudyRun& run);
+
+/// The journals beside an output: of earlier runs, of whatever number of processes.
+class Journals {
+ public:
+  /// \param own  that this process writes to; made if it is not there. "": none
+  Journals(const std::filesystem::path& output, const Imprint& imprint,
+           const std::filesystem::path& own);
+
+  [[nodiscard]] Journal& own() noexcept { return *own_; }
+  [[nodiscard]] IndexSet done() const;
+  [[nodiscard]] std::uint64_t damaged() const noexcept;
+  [[nodiscard]] std::vector<const Journal*> all() const;
+  /// Rows of a range in order, without their time series.
+  void rows(IndexRange range, const std::function<void(Row&&)>& take) const;
+  /// Closes them and takes them away.
+  void remove();
+  void close();
+
+ private:
+  std::vector<std::unique_ptr<Journal>> journals_;
+  Journal* own_ = nullptr;
+};
+
+/// What an output that is there already means for a run.
+enum class Existing {
+  none,      ///< nothing there
+  complete,  ///< it is what the run would make
+  partial    ///< rows of this study, from which the run can go on
+};
+/// \throws InputError if it is not this study's, so that nobody's results are written over
+[[nodiscard]] Existing look_at(const std::filesystem::path& output, const Work& work,
+                               IndexRange range, bool until);
+/// Puts the rows of a file into a journal, as if they had just been made.
+void import_rows(const std::filesystem::path& file, IndexRange range, Journal& journal);
+
+}  // namespace asdic::study

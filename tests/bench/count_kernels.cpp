@@ -1,0 +1,139 @@
+#include <oneapi/tbb/global_control.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/units.h"
+#include "raytrace/beams/field_run.h"
+#include "raytrace/eigenrays.h"
+#include "sonar/array.h"
+#include "sonar/block_noise.h"
+#include "sonar/noise_spectrum.h"
+#include "sonar/synthesis.h"
+#include "support/deep_ocean.h"
+#include "support/random_returns.h"
+
+// One kernel, run once to warm up and then so often as told inside a function that callgrind can
+// count the instructions of (tests/bench/check_counts.py): one thread, fixed input.
+//   count_kernels                 names, one a line
+//   count_kernels NAME [TIMES]
+extern "C" [[gnu::noinline]] void asdic_counted(const std::function<void()>& kernel, int times) {
+  for (int i = 0; i < times; ++i) kernel();
+  asm volatile("" ::: "memory");
+}
+
+namespace asdic {
+namespace {
+
+/// Keeps the compiler from leaving out what nobody reads.
+template <class T>
+void keep(const T& value) {
+  asm volatile("" : : "g"(&value) : "memory");
+}
+
+using Kernel = std::function<void()>;
+
+/// Munk's law in 31 samples under a rule of interpolation, or itself; a source at 4500 m.
+EigenraySolver deep_ocean(const char* law) {
+  return EigenraySolver(support::deep_ocean(law));
+}
+
+constexpr PathLimits limits{
+    .max_surface_bounces = 3, .max_bottom_bounces = 3, .max_launch_angle = 1.4};
+
+Kernel one_receiver(const char* law) {
+  return [solver = deep_ocean(law)] { keep(solver.find(4500.0, 125.0, 30e3, 4000.0, limits)); };
+}
+
+Kernel many_receivers(const char* law) {
+  std::vector<double> ranges;
+  for (int i = 0; i < 1000; ++i) ranges.push_back(1000.0 + 50.0 * i);
+  return [solver = deep_ocean(law), ranges] {
+    keep(solver.find(4500.0, 125.0, ranges, 4000.0, limits));
+  };
+}
+
+/// The coherent field of 1001 beams on 501 × 201 receivers to 100 km.
+Kernel field(BeamKind kind) {
+  PropagationCase sea;
+  sea.environment = support::deep_ocean("c-linear");
+  sea.frequency = 50.0;
+  sea.source_depths = {1000.0};
+  sea.beams.kind = kind;
+  for (int i = 0; i < 201; ++i) sea.receivers.depths.push_back(25.0 * i);
+  for (int i = 1; i <= 501; ++i) sea.receivers.ranges.push_back(200.0 * i);
+  return [sea, tracer = std::make_shared<const RayTracer>(sea.environment, sea.frequency)] {
+    keep(field_of_fan(sea, *tracer, 1000.0, even_fan(-radians(20.0), radians(20.0), 1001)));
+  };
+}
+
+/// 10 000 scatterers at 4 phones in 10 s of baseband. \param spread  of Doppler factors
+Kernel scatterers(double spread) {
+  constexpr double rate = 16000.0, seconds = 10.0;
+  const Recording recording{
+      .sample_rate = rate, .start = 0.0, .samples = static_cast<std::size_t>(rate * seconds)};
+  const Returns returns =
+      support::RandomReturns{.count = 10'000, .last = seconds, .spread = spread}.make();
+  const auto synthesizer = std::make_shared<const Synthesizer>(
+      Pulse({.kind = PulseKind::cw, .duration = 1.0}), recording, spread);
+  return [returns, synthesizer, array = line_array(4, 0.1875, 0.0, 0.0)] {
+    keep(synthesizer->baseband(returns, array.phones));
+  };
+}
+
+/// 10 s of Wenz's noise, 4 phones at 16 kHz.
+Kernel noise(NoiseCoherence coherence) {
+  const NoiseSettings wenz{.spectral_level_db = {}, .law = WenzNoise{}, .thermal = true};
+  const auto block = std::make_shared<const BlockNoise>(
+      [wenz](double f) { return noise_density(wenz, f); }, 16000.0, 0.0,
+      line_array(4, 0.1875, 0.0, 0.3).phones, coherence, NoiseDirections{}, 1500.0, NoiseKey{});
+  return [block, rows = std::vector<float>(4 * 10 * 16000)]() mutable {
+    block->add(rows, 0, 1);
+    keep(rows);
+  };
+}
+
+struct Named {
+  const char* name;
+  std::function<Kernel()> make;
+};
+
+const std::vector<Named> kernels = {
+    {"one-receiver-c-linear", [] { return one_receiver("c-linear"); }},
+    {"one-receiver-n2-linear", [] { return one_receiver("n2-linear"); }},
+    {"one-receiver-pchip", [] { return one_receiver("pchip"); }},
+    {"one-receiver-munk", [] { return one_receiver("munk"); }},
+    {"1000-receivers-c-linear", [] { return many_receivers("c-linear"); }},
+    {"1000-receivers-pchip", [] { return many_receivers("pchip"); }},
+    {"field-hat", [] { return field(BeamKind::hat); }},
+    {"field-gaussian", [] { return field(BeamKind::gaussian); }},
+    {"scatterers-at-rest", [] { return scatterers(0.0); }},
+    {"scatterers-doppler", [] { return scatterers(5e-4); }},
+    {"noise-independent", [] { return noise(NoiseCoherence::independent); }},
+    {"noise-isotropic", [] { return noise(NoiseCoherence::isotropic); }},
+};
+
+}  // namespace
+}  // namespace asdic
+
+int main(int count, char** argument) {
+  if (count < 2) {
+    for (const auto& kernel : asdic::kernels) std::puts(kernel.name);
+    return 0;
+  }
+  for (const auto& kernel : asdic::kernels) {
+    if (std::strcmp(kernel.name, argument[1]) != 0) continue;
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    const asdic::Kernel run = kernel.make();
+    run();
+    asdic_counted(run, count > 2 ? std::atoi(argument[2]) : 1);
+    return 0;
+  }
+  std::fprintf(stderr, "count_kernels: no kernel %s\n", argument[1]);
+  return 2;
+}

@@ -1,0 +1,28 @@
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "raytrace/environment.h"
+
+namespace asdic::support {
+
+/// The deep ocean of the thesis, 5395 m over a fluid bottom: Munk's law, or its 31 samples, as a
+/// measured profile would be, under a rule of interpolation. \param law  "munk" or a rule's name
+inline Environment deep_ocean(std::string_view law) {
+  const SoundSpeedProfile munk = SoundSpeedProfile::munk();
+  Environment ocean{.water = munk};
+  ocean.bottom = {.depth = 5395.0, .material = FluidHalfSpace{}};
+  ocean.absorption = Thorp{};
+  const std::vector<double> depth = {
+      0,   10,  20,   30,   50,   75,   100,  125,  150,  200,  250,  300,  400,  500,  600, 700,
+      800, 900, 1000, 1100, 1200, 1300, 1500, 2000, 2500, 3000, 3500, 4000, 4500, 5000, 5500};
+  std::vector<double> speed;
+  for (const double z : depth) speed.push_back(munk.at(z).c);
+  for (const Interpolation rule :
+       {Interpolation::c_linear, Interpolation::n2_linear, Interpolation::spline,
+        Interpolation::pchip, Interpolation::pchip_spline_slopes})
+    if (name(rule) == law) ocean.water = SoundSpeedProfile::table(depth, speed, rule);
+  return ocean;
+}
+
+}  // namespace asdic::support

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "core/units.h"
+#include "study/summary.h"
+
+namespace asdic::study {
+namespace {
+
+Table rows_of(const Study& study) {
+  const Realiser realiser(study);
+  std::vector<Row> rows(study.realisations);
+  tbb::parallel_for(std::size_t{0}, rows.size(),
+                    [&](std::size_t i) { rows[i] = realiser.realise(i); });
+  Table table{.columns = columns(study)};
+  table.values.resize(table.columns.size());
+  for (const Row& row : rows) {
+    table.index.push_back(row.index);
+    table.valid.push_back(row.valid);
+    for (std::size_t c = 0; c < row.values.size(); ++c) table.values[c].push_back(row.values[c]);
+  }
+  return table;
+}
+
+const SummaryTable& named(const std::vector<SummaryTable>& tables, const std::string& name) {
+  for (const SummaryTable& table : tables)
+    if (table.name == name) return table;
+  throw std::runtime_error("no table " + name);
+}
+
+double value(const SummaryTable& table, const std::string& column, std::size_t row) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].name == column) return table.values[c].at(row);
+  throw std::runtime_error("no column " + column);
+}
+
+/// Pd = Pfa^(1/(1 + SNR)), SNR = RL + 10 lg E − NL with E = 3/8·0.25 s of the Hann window.
+/// docs/theory/studies.md, eq. (4)
+double closed_form(double range) {
+  const double level = 200.0 - 40.0 * std::log10(range) + 30.0;
+  const double snr = power_from_db(level - 32.0) * 0.375 * 0.25;
+  return std::pow(1e-4, 1.0 / (1.0 + snr));
+}
+
+/// Mean over ranges even between two.
+double closed_form(double low, double high) {
+  double sum = 0.0;
+  for (int i = 0; i < 2000; ++i) sum += closed_form(low + (high - low) * (i + 0.5) / 2000.0);
+  return sum / 2000.0;
+}
+
+const std::filesystem::path file =
+    std::filesystem::path(ASDIC_SCENARIOS) / "studies/known_answer.toml";
+
+TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
+  const Study study = read_study(file);
+  const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
+  // Over all ranges, within the study's own 99 % interval.
+  const SummaryTable& all = named(summary, "convergence");
+  const std::size_t last = all.values[0].size() - 1;
+  const double truth = closed_form(20e3, 40e3);
+  EXPECT_LT(value(all, "pd_low", last), truth);
+  EXPECT_GT(value(all, "pd_high", last), truth);
+  // And in every bin of range.
+  const SummaryTable& by_range = named(summary, "pd_by_range");
+  ASSERT_EQ(by_range.values[0].size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double pd =
+        closed_form(value(by_range, "range_low", i), value(by_range, "range_high", i));
+    EXPECT_LT(value(by_range, "pd_low", i), pd) << i;
+    EXPECT_GT(value(by_range, "pd_high", i), pd) << i;
+  }
+  // False alarms: 4000 chances of 1e-4; more than 6 have a probability below 1e-6.
+  const SummaryTable& statistics = named(summary, "statistics");
+  for (std::size_t i = 0; i < statistics.values[0].size(); ++i)
+    if (statistics.columns[0].labels[i] == "false_alarm")
+      EXPECT_LE(value(statistics, "mean", i) * 4000.0, 6.0);
+}
+
+TEST(KnownAnswer, ATargetThatDoesNotFluctuateIsAnother) {
+  // The wrong model must fail: four degrees of freedom instead of two.
+  const Study study = read_study(file, std::vector<std::string>{"target.0.fluctuation=swerling-3"});
+  const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
+  const SummaryTable& by_range = named(summary, "pd_by_range");
+  int outside = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double pd =
+        closed_form(value(by_range, "range_low", i), value(by_range, "range_high", i));
+    outside += !(value(by_range, "pd_low", i) < pd && pd < value(by_range, "pd_high", i));
+  }
+  EXPECT_GE(outside, 2);
+}
+
+}  // namespace
+}  // namespace asdic::study
