@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -16,6 +17,7 @@
 #include "sonar/levels.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 #include "sonar/sparse_sound.h"
 #include "sonar/stream.h"
@@ -134,6 +136,15 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
   const Synthesizer synthesizer(sent_pulse, record.recording, max_doppler_);
+  const double record_end = record.recording.start + static_cast<double>(record.recording.samples) /
+                                                         record.recording.sample_rate;
+  std::optional<ReverberationBand> band;
+  std::optional<Synthesizer> coloured;
+  if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
+    band.emplace(scenario_, *paths_, reverberation_->laws(), projector, record.platform, heading,
+                 frequency, synthesizer.half_band(), record_end);
+    coloured.emplace(band->synthesizer(sent_pulse, record.recording, max_doppler_));
+  }
   record.timings.synthesis = watch.lap();
 
   LevelMeter levels(record.recording);
@@ -160,20 +171,21 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
             : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
     // Reverberation: source → scatterer → array.
-    reverberation.push_back(reverberation_->ping(
-        {.pattern = pattern,
-         .pulse = sent_pulse,
-         .transmitter = sent.transmitter,
-         .array = static_cast<int>(a),
-         .time = sent.time,
-         .ping = static_cast<std::uint32_t>(ping),
-         .latest = record.recording.start +
-                   static_cast<double>(record.recording.samples) / record.recording.sample_rate,
-         .reuse = &record.reuse}));
+    reverberation.push_back(
+        reverberation_->ping({.pattern = pattern,
+                              .pulse = sent_pulse,
+                              .transmitter = sent.transmitter,
+                              .array = static_cast<int>(a),
+                              .time = sent.time,
+                              .ping = static_cast<std::uint32_t>(ping),
+                              .latest = record_end,
+                              .reuse = &record.reuse,
+                              .band = band ? band->points() : std::span<const BandPoint>()}));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
-    append_channels(reverberated, synthesizer.baseband(reverberation.back(), phones));
+    append_channels(reverberated,
+                    (coloured ? *coloured : synthesizer).baseband(reverberation.back(), phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);
