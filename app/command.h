@@ -25,6 +25,8 @@ void add_ocean_command(CLI::App& program, Action& action);
 void add_bellhop_command(CLI::App& program, Action& action);
 void add_convert_command(CLI::App& program, Action& action);
 void add_process_command(CLI::App& program, Action& action);
+void add_study_command(CLI::App& program, Action& action);
+void add_merge_command(CLI::App& program, Action& action);
 void add_serve_command(CLI::App& program, Action& action);
 
 /// A scenario as the command line names it.

@@ -5,6 +5,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/ping_report.h"
+#include "app/study_info.h"
 #include "core/error.h"
 #include "io/ping_file.h"
 
@@ -38,6 +39,7 @@ std::string summary(const PingFile& file) {
 }
 
 int info(const std::string& path) {
+  if (is_study_file(path)) return study_info(path);
   const PingFile file(path);
   const auto root = [&](const std::string& key) { return attribute(file, "", key); };
   const std::string title = root("title");
@@ -70,8 +72,10 @@ int info(const std::string& path) {
 
 void add_info_command(CLI::App& program, Action& action) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand("info", "Say what a ping file holds.");
-  command->add_option("FILE", *path, "ping file (HDF5), written by asdic ping; NAME.part too")
+  CLI::App* command =
+      program.add_subcommand("info", "Say what a ping file or a study's file holds.");
+  command
+      ->add_option("FILE", *path, "HDF5 file of asdic ping (NAME.part too), asdic study or merge")
       ->required();
   command->footer("Example:  asdic info deep_ocean.h5");
   command->callback([path, &action] { action = [path] { return info(*path); }; });

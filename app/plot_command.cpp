@@ -5,9 +5,11 @@
 #include "app/command.h"
 #include "app/picture_source.h"
 #include "app/pictures.h"
+#include "app/study_info.h"
 #include "core/error.h"
 #include "io/ping_file.h"
 #include "io/result_file.h"
+#include "study/study_file.h"
 
 namespace asdic::app {
 namespace {
@@ -38,7 +40,9 @@ int plot(const Options& options) {
   std::filesystem::path file = options.file;
   std::string pictures = options.folder;
   std::vector<std::string> words;
-  if (is_ping_file(options.file)) {
+  if (is_study_file(options.file)) {
+    static_cast<void>(study::StudyFile(options.file));
+  } else if (is_ping_file(options.file)) {
     static_cast<void>(PingFile(options.file));
   } else {
     file = picture_source(options.file, folder, "result");
@@ -57,10 +61,10 @@ int plot(const Options& options) {
 void add_plot_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "plot", "Draw the pictures of a ping file, a field, arrivals or rays (PNG).");
+      "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).");
   command
       ->add_option("FILE", options->file,
-                   "HDF5 file of asdic ping, field, arrivals or rays; .shd, .arr or .ray")
+                   "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
       ->required();
   command
       ->add_option("-o,--output", options->folder,

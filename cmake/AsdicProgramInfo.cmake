@@ -4,7 +4,10 @@ get_target_property(build_options asdic_build_options INTERFACE_COMPILE_OPTIONS)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" flags)
 set(build "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}, ")
 string(APPEND build "$<IF:$<BOOL:${ASDIC_NATIVE}>,native,portable>, $<JOIN:${build_options}, > ${flags}")
-foreach(program asdic_app asdic_full)
+foreach(program asdic_app asdic_full asdic_mpi)
+  if(NOT TARGET ${program})
+    continue()
+  endif()
   target_compile_definitions(${program} PRIVATE
     ASDIC_VERSION="${PROJECT_VERSION}" ASDIC_BUILD="${build}" ASDIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
   ASDIC_LIBRARIES="HDF5 ${hdf5_hdf5_VERSION}, FFTW ${fftw3_fftw3_fftw3_VERSION}, netCDF ${netcdf_netcdf_VERSION}")

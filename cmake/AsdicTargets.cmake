@@ -22,10 +22,11 @@ if(ASDIC_COVERAGE)
   target_link_options(asdic_build_options INTERFACE --coverage)
 endif()
 
-# asdic_library(<folder> PUBLIC ... PRIVATE ...): every .cpp below <folder> makes asdic::<folder>.
+# asdic_library(<folder> PUBLIC ... PRIVATE ...): every .cpp below <folder> makes asdic::<folder>, but for those in a folder mpi.
 function(asdic_library folder)
   cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+  list(FILTER sources EXCLUDE REGEX "/mpi/[^/]*$")  # AsdicMpi.cmake
   if(NOT sources)  # a folder of headers only
     file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/${folder}_empty.cpp" CONTENT "")
     set(sources "${PROJECT_BINARY_DIR}/${folder}_empty.cpp")

@@ -41,6 +41,7 @@ std::vector<GrowingTable::Column> echo_columns() {
 
 std::vector<GrowingTable::Column> patch_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
+          {"boundary", "0 surface, 1 bottom, 2 volume", "", Type::int8},
           {"bearing_deg", "of the sector, clockwise from north; NaN: the whole ring", "degree"},
           {"range", "of the cell's centre from the source", "m"},
           {"area", "of the ring, or of this sector and its mirror image", "m2"},
@@ -280,9 +281,10 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   every = std::max(every, step);
   for (std::size_t i = 0; i < record.patches.size(); i += std::max<std::size_t>(1, step)) {
     const PatchRow& p = record.patches[i];
-    patches.row({double(record.ping), compass_degrees(p.bearing), p.range, p.area, p.delay,
-                 degrees(p.grazing_in), degrees(p.grazing_out), degrees(p.launch_elevation),
-                 degrees(p.arrival_elevation), p.scattering_strength_db, p.level_db});
+    patches.row({double(record.ping), static_cast<double>(p.ground), compass_degrees(p.bearing),
+                 p.range, p.area, p.delay, degrees(p.grazing_in), degrees(p.grazing_out),
+                 degrees(p.launch_elevation), degrees(p.arrival_elevation),
+                 p.scattering_strength_db, p.level_db});
   }
   for (const HeardPath& p : record.interference)
     interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
@@ -111,6 +112,16 @@ FanLimits fan_of(const PathLimits& limits) {
 
 }  // namespace
 
+/// The layers of a layered ocean, and its fan where it is worth keeping.
+struct EigenraySolver::LayeredOcean {
+  std::vector<Layer> layers;
+  std::optional<OceanFan> fan;
+
+  explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
+    if (layers.size() <= OceanFan::most_layers) fan.emplace(layers);
+  }
+};
+
 /// The tracers of an environment by frequency: a sonar works at a few.
 struct EigenraySolver::Tracers {
   std::mutex mutex;
@@ -137,7 +148,8 @@ EigenraySolver::EigenraySolver(const Environment& environment)
            .expected = "a depth below the surface at " + std::to_string(top) + " m"});
   }
   if (layered_)
-    layers_ = make_layers(environment.water, environment.surface.depth, environment.bottom.depth);
+    water_ = std::make_shared<const LayeredOcean>(
+        make_layers(environment.water, environment.surface.depth, environment.bottom.depth));
 }
 
 std::shared_ptr<const RayTracer> EigenraySolver::tracer(double frequency) const {
@@ -177,7 +189,8 @@ BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return {Column(layers_, source_depth, receiver_depth), limits, &environment_};
+  return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
+          water_->fan ? &*water_->fan : nullptr, water_->layers};
 }
 
 std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
@@ -189,7 +202,7 @@ std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double sourc
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return followed_branch(environment_, layers_,
+  return followed_branch(environment_, water_->layers,
                          {.source_depth = source_depth,
                           .receiver_depth = receiver_depth,
                           .range = range,

@@ -66,8 +66,9 @@ class EigenraySolver {
 
   Environment environment_;
   bool layered_;
-  std::vector<Layer> layers_;         // of a layered ocean
-  std::shared_ptr<Tracers> tracers_;  // shared by copies
+  struct LayeredOcean;
+  std::shared_ptr<const LayeredOcean> water_;  // shared by copies, as is what follows
+  std::shared_ptr<Tracers> tracers_;
 };
 
 }  // namespace asdic

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -13,6 +14,7 @@
 #include "sonar/levels.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 #include "sonar/sparse_sound.h"
 #include "sonar/transmitter.h"
@@ -38,6 +40,10 @@ std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
                                                  SharedPropagation* shared, bool& known) {
   if (shared != nullptr) return shared->paths(scenario.environment, scenario.transect, &known);
   return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect);
+}
+
+double end_of(const Recording& recording) {
+  return recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
 }
 
 }  // namespace
@@ -151,17 +157,17 @@ EchoContext PingSimulator::echo_context(const Emission& emission, int array,
 
 /// Reverberation: source → scatterer → array.
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
-                                               PingRecord& record) const {
-  const Recording& recording = record.recording;
-  return reverberation_->ping(
-      {.pattern = emission.pattern,
-       .pulse = emission.pulse,
-       .transmitter = emission.sent.transmitter,
-       .array = array,
-       .time = emission.sent.time,
-       .ping = static_cast<std::uint32_t>(record.ping),
-       .latest = recording.start + static_cast<double>(recording.samples) / recording.sample_rate,
-       .reuse = &record.reuse});
+                                               PingRecord& record,
+                                               std::span<const BandPoint> band) const {
+  return reverberation_->ping({.pattern = emission.pattern,
+                               .pulse = emission.pulse,
+                               .transmitter = emission.sent.transmitter,
+                               .array = array,
+                               .time = emission.sent.time,
+                               .ping = static_cast<std::uint32_t>(record.ping),
+                               .latest = end_of(record.recording),
+                               .reuse = &record.reuse,
+                               .band = band});
 }
 
 PingRecord PingSimulator::levels(int ping) const {
@@ -174,7 +180,8 @@ PingRecord PingSimulator::levels(int ping) const {
   std::map<int, PingReverberation> heard;  // by array, where an echo is strongest
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
     auto at = heard.find(array);
-    if (at == heard.end()) at = heard.emplace(array, reverberation(emission, array, record)).first;
+    if (at == heard.end())
+      at = heard.emplace(array, reverberation(emission, array, record, {})).first;
     return at->second.expected_db(time);
   });
   record.timings.rays = watch.lap();
@@ -191,6 +198,15 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                                amplitude_from_db(emission.projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
   const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_);
+  std::optional<ReverberationBand> band;
+  std::optional<Synthesizer> coloured;
+  if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
+    band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
+                 platform_heading(scenario_, emission.projector.platform, sent.time),
+                 emission.pulse.centre_frequency(), synthesizer.half_band(),
+                 end_of(record.recording));
+    coloured.emplace(band->synthesizer(emission.pulse, record.recording, max_doppler_));
+  }
   record.timings.synthesis = watch.lap();
 
   LevelMeter levels(record.recording);
@@ -207,12 +223,14 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                             : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();
-    scattered.push_back(reverberation(emission, static_cast<int>(a), record));
+    scattered.push_back(reverberation(emission, static_cast<int>(a), record,
+                                      band ? band->points() : std::span<const BandPoint>()));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled)
-      append_channels(reverberated, synthesizer.baseband(scattered.back(), phones));
+      append_channels(reverberated,
+                      (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);

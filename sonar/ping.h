@@ -73,7 +73,8 @@ class PingSimulator {
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
   [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
-                                                PingRecord& record) const;
+                                                PingRecord& record,
+                                                std::span<const BandPoint> band) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;

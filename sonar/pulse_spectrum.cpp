@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/units.h"
 #include "sonar/fft.h"
@@ -29,7 +30,9 @@ double PulseSpectrum::frequency(std::size_t k) const noexcept {
   return bin_width * static_cast<double>(2 * i <= n ? i : i - n);
 }
 
-PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
+namespace {
+
+PulseSpectrum analysed(const Pulse& pulse, double centre) {
   const double duration = pulse.duration();
   const std::size_t intervals = analysis_intervals(pulse.settings());
   const double step = duration / static_cast<double>(intervals);
@@ -54,6 +57,33 @@ PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
   if (intervals % 2 == 1)
     for (std::size_t k = 0; k < length; ++k)
       spectrum.bins[k] *= std::polar(1.0, 2.0 * pi * spectrum.frequency(k) * 0.5 * step);
+  return spectrum;
+}
+
+/// The numbers that the spectrum of a pulse without samples of its own depends on.
+auto numbers_of(const PulseSettings& s) {
+  return std::make_tuple(s.kind, s.frequency, s.start_frequency, s.end_frequency, s.duration,
+                         s.window, s.tukey_fraction);
+}
+
+}  // namespace
+
+/// It takes a millisecond, as long as all else of a cheap ping, and studies ask for the same one
+/// again and again: each thread keeps the last, found by the very numbers that it depends on.
+PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
+  constexpr std::size_t most_kept = std::size_t{1} << 17;
+  if (pulse.settings().kind == PulseKind::file) return analysed(pulse, centre);
+  struct Kept {
+    decltype(numbers_of(PulseSettings{})) numbers;
+    double centre = 0.0;
+    PulseSpectrum spectrum;
+  };
+  thread_local Kept kept;
+  const auto numbers = numbers_of(pulse.settings());
+  if (!kept.spectrum.bins.empty() && kept.numbers == numbers && kept.centre == centre)
+    return kept.spectrum;
+  PulseSpectrum spectrum = analysed(pulse, centre);
+  if (spectrum.bins.size() <= most_kept) kept = {numbers, centre, spectrum};
   return spectrum;
 }
 

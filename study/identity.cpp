@@ -25,7 +25,7 @@ void write(const TomlValue& value, const std::string& key, const std::filesystem
   } else if (const auto* real = std::get_if<double>(&value.data)) {
     text += toml_number(*real);
   } else if (const auto* name = std::get_if<std::string>(&value.data);
-             name != nullptr && (key == "file" || key == "files") &&
+             name != nullptr && (key == "file" || key == "casts") &&
              std::filesystem::is_regular_file(folder / *name)) {
     text += "file " + sha256(read_text_file(folder / *name));
   } else {

@@ -30,6 +30,7 @@ class IndexSet {
   [[nodiscard]] bool contains(std::uint64_t index) const noexcept;
   [[nodiscard]] std::uint64_t size() const noexcept;
   [[nodiscard]] bool empty() const noexcept { return ranges_.empty(); }
+  bool operator==(const IndexSet&) const = default;
   /// Sorted, apart from one another.
   [[nodiscard]] const std::vector<IndexRange>& ranges() const noexcept { return ranges_; }
 

@@ -52,7 +52,8 @@ Interval wilson(double successes, double count, double confidence) noexcept {
   const double z = two_sided(confidence), p = successes / count, share = z * z / count;
   const double centre = (p + 0.5 * share) / (1.0 + share);
   const double half = z * std::sqrt(p * (1.0 - p) / count + 0.25 * share / count) / (1.0 + share);
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  return {successes > 0.0 ? std::max(0.0, centre - half) : 0.0,
+          successes < count ? std::min(1.0, centre + half) : 1.0};
 }
 
 Interval clopper_pearson(double successes, double count, double confidence) {

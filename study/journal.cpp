@@ -341,6 +341,7 @@ std::uint64_t Journal::damaged() const noexcept { return impl_->damaged; }
 
 std::vector<Session> Journal::sessions() const {
   const std::lock_guard lock(impl_->mutex);
+  impl_->commit();  // with what this one has made so far
   std::vector<Session> all;
   sqlite::Statement get(impl_->database, "SELECT text FROM session ORDER BY id");
   while (get.step()) all.push_back(session_from_json(get.text(0)));

@@ -142,6 +142,14 @@ void receiver(const MeasurePlan& plan, const ReceiverAnswer& answer, Collector& 
   }
 }
 
+/// The ping with its samples, or without where nothing needs them.
+template <class Simulator>
+PingRecord heard(const Simulator& simulator, const MeasurePlan& plan) {
+  if constexpr (requires { simulator.levels(1); })
+    if (!plan.needs_samples()) return simulator.levels(plan.ping);
+  return simulator.simulate(plan.ping);
+}
+
 /// One pass over the measures. \param simulator, record  null where columns alone are wanted
 void walk(const MeasurePlan& plan, const Scenario& scenario, const PingSimulator* simulator,
           const PingRecord* record, Collector& to) {
@@ -178,7 +186,7 @@ std::vector<Column> measure_columns(const Study& study, const Scenario& scenario
 }
 
 Measured measure(const Study& study, const PingSimulator& simulator) {
-  Measured made{.record = simulator.simulate(study.measure.ping)};
+  Measured made{.record = heard(simulator, study.measure)};
   Collector collector{.values = &made.values};
   walk(study.measure, simulator.scenario(), &simulator, &made.record, collector);
   return made;

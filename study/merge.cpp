@@ -209,6 +209,7 @@ MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
   if (!options.allow_gaps) check_gaps(missing, range.size());
 
   StudyResults results{.imprint = all.imprint, .range = range, .sessions = all.sessions};
+  if (options.text) results.imprint.text = *options.text;
   results.table.columns = all.imprint.columns;
   results.table.values.resize(all.imprint.columns.size());
   SeriesSource series;

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ namespace asdic::study {
 struct MergeOptions {
   bool copy = false;        ///< all data in one file; else a catalogue that refers to the parts
   bool allow_gaps = false;  ///< indices may be missing; the file then says that it is not complete
+  std::optional<std::string> text{};  ///< of the study, in place of the parts'
 };
 
 struct MergeReport {

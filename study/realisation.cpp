@@ -1,5 +1,6 @@
 #include "study/realisation.h"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -52,12 +53,32 @@ struct Realiser::Impl {
   Study study;
   Sampler sampler;
   std::size_t measures;
+  /// Bounded, so that memory stays flat: a target that moves never finds its paths again.
+  std::shared_ptr<SharedPropagation> shared =
+      std::make_shared<SharedPropagation>(std::size_t{64} << 20);
+
+  void count(const Reuse& reuse) noexcept {
+    ++pings;
+    oceans += reuse.ocean ? 1 : 0;
+    searched += static_cast<std::uint64_t>(reuse.legs_searched);
+    reused += static_cast<std::uint64_t>(reuse.legs_reused);
+    boundaries += reuse.reverberation ? 1 : 0;
+  }
+  std::atomic<std::uint64_t> pings = 0, oceans = 0, searched = 0, reused = 0, boundaries = 0;
 };
 
 Realiser::Realiser(Study study) : impl_(std::make_unique<Impl>(std::move(study))) {}
 Realiser::~Realiser() = default;
 
 const Study& Realiser::study() const noexcept { return impl_->study; }
+
+ReuseCounts Realiser::reuse() const noexcept {
+  return {.pings = impl_->pings,
+          .oceans_known = impl_->oceans,
+          .legs_searched = impl_->searched,
+          .legs_reused = impl_->reused,
+          .boundaries_known = impl_->boundaries};
+}
 
 Row Realiser::realise(std::uint64_t index) const {
   const Study& study = impl_->study;
@@ -68,13 +89,14 @@ Row Realiser::realise(std::uint64_t index) const {
     impl_->sampler.apply(draw, tree);
     Scenario scenario = scenario_of(tree, study.scenario_path);
     scenario.seed = seed_of(study, index);
-    const PingSimulator simulator(std::move(scenario));
+    const PingSimulator simulator(std::move(scenario), impl_->shared);
     Measured measured = measure(study, simulator);
+    impl_->count(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
     if (keeps_series(study.measure, index))
       keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const InputError& error) {
-    const InputError fault = told(error, index, impl_->sampler.describe(draw));
+    const InputError fault = told(error, study.scenario_path, index, impl_->sampler.describe(draw));
     if (study.on_error == OnError::stop) throw InputError(fault);
     row.valid = false;
     row.fault = fault.what();

@@ -31,6 +31,16 @@ struct Row {
 /// The columns of a study's rows: inputs first, in the order of [vary], then measures.
 [[nodiscard]] std::vector<Column> columns(const Study& study);
 
+/// What realisations so far found known (sonar/reuse.h). It tells of the run: counts depend on
+/// which realisation came first, rows never do.
+struct ReuseCounts {
+  std::uint64_t pings = 0;             ///< simulated
+  std::uint64_t oceans_known = 0;      ///< of them in an ocean that another had used
+  std::uint64_t legs_searched = 0;     ///< sets of eigenrays
+  std::uint64_t legs_reused = 0;       ///< the same, out of what was kept
+  std::uint64_t boundaries_known = 0;  ///< pings whose paths to scatterers were all known
+};
+
 /// Makes rows. Built once; shared by threads. It keeps what realisations have in common (the ocean,
 /// its paths) for as long as they have it, which never changes a bit of a row.
 class Realiser {
@@ -42,6 +52,7 @@ class Realiser {
   [[nodiscard]] Row realise(std::uint64_t index) const;
 
   [[nodiscard]] const Study& study() const noexcept;
+  [[nodiscard]] ReuseCounts reuse() const noexcept;
 
  private:
   struct Impl;

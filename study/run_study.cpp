@@ -167,7 +167,8 @@ std::string until_text(double half_width) {
   return "--until " + text;
 }
 
-/// The file of what the journals hold. The journals go once it is complete.
+}  // namespace
+
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
                   Journals& journals, StudyOutcome& outcome) {
   Imprint imprint = work.imprint;
@@ -190,8 +191,6 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   else
     journals.close();
 }
-
-}  // namespace
 
 StudyOutcome run_study(const Work& work, const StudyRun& run) {
   StudyOutcome outcome{.total = run.range.size(), .range = run.range};

@@ -90,6 +90,9 @@ enum class Existing {
 /// \throws InputError if it is not this study's, so that nobody's results are written over
 [[nodiscard]] Existing look_at(const std::filesystem::path& output, const Work& work,
                                IndexRange range, bool until);
+/// Makes the file of what the journals hold, and takes them away once it is complete.
+void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
+                  Journals& journals, StudyOutcome& outcome);
 /// Puts the rows of a file into a journal, as if they had just been made.
 void import_rows(const std::filesystem::path& file, IndexRange range, Journal& journal);
 

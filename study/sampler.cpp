@@ -86,8 +86,12 @@ std::string Sampler::describe(const Drawn& drawn) const {
   return text;
 }
 
-InputError told(const InputError& error, std::uint64_t index, const std::string& drawn) {
+InputError told(const InputError& error, const std::filesystem::path& file, std::uint64_t index,
+                const std::string& drawn) {
   InputFault fault = error.fault();
+  // Faults of a simulator (a rate too slow for a drawn frequency) name no file.
+  if (fault.where.find(':') == std::string::npos && !fault.where.starts_with("--set"))
+    fault.where = file.string() + ": " + fault.where;
   fault.got += " (realisation " + std::to_string(index) + (drawn.empty() ? "" : ": ") + drawn + ")";
   return InputError(fault);
 }
@@ -104,7 +108,7 @@ Scenario example_of(const Study& study) {
       sampler.apply(drawn, tree);
       return scenario_of(tree, study.scenario_path);
     } catch (const InputError& error) {
-      if (!first) first = told(error, index, sampler.describe(drawn));
+      if (!first) first = told(error, study.scenario_path, index, sampler.describe(drawn));
     }
   }
   throw InputError(*first);

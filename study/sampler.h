@@ -49,8 +49,9 @@ class Sampler {
 /// the first hundred makes a scenario
 [[nodiscard]] Scenario example_of(const Study& study);
 
-/// A fault of a realisation's scenario, with what was drawn.
-[[nodiscard]] InputError told(const InputError& error, std::uint64_t index,
-                              const std::string& drawn);
+/// A fault of a realisation's scenario, with what was drawn. \param file  of the scenario, for
+/// faults that name none
+[[nodiscard]] InputError told(const InputError& error, const std::filesystem::path& file,
+                              std::uint64_t index, const std::string& drawn);
 
 }  // namespace asdic::study

@@ -29,7 +29,7 @@ struct Study {
   SummaryPlan summary;              ///< [summary]
 
   TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
-  TomlValue document;  ///< [study], [vary], [measure], [summary], with the overrides in them
+  TomlValue document;  ///< [study], [set], [vary], [measure], [summary], with their overrides
 
   std::string scenario_text;            ///< of the scenario, verbatim
   std::filesystem::path scenario_path;  ///< where it was read; files it names are relative to it

@@ -15,7 +15,8 @@
 namespace asdic::study {
 namespace {
 
-constexpr std::array<std::string_view, 4> study_tables{"study", "vary", "measure", "summary"};
+constexpr std::array<std::string_view, 5> study_tables{"study", "set", "vary", "measure",
+                                                       "summary"};
 
 bool is_study_table(std::string_view key) {
   return std::find(study_tables.begin(), study_tables.end(), key) != study_tables.end();
@@ -49,12 +50,24 @@ void read_head(TomlTable table, Study& study) {
   table.finish();
 }
 
+/// [set]: keys of the scenario, by their paths, that the study changes for good.
+void apply_set(const TomlValue& document, TomlValue& scenario) {
+  const TomlValue* set = document.find("set");
+  if (set == nullptr) return;
+  static_cast<void>(TomlTable(*set, "set"));  // must be a table
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(set->data))
+    value_at(scenario, entry.key, entry.value.origin) = entry.value;
+}
+
 /// The tree that the variables edit: of the file that [study] names, or of what the study file
 /// holds beside its own tables.
 void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study) {
-  std::vector<std::string> overrides;
-  for (const std::string& assignment : study.overrides)
-    if (!is_of_study(assignment)) overrides.push_back(assignment);
+  std::vector<std::string> overrides, includes;  // which file to include comes first
+  for (const std::string& assignment : study.overrides) {
+    if (is_of_study(assignment)) continue;
+    overrides.push_back(assignment);
+    if (assignment.starts_with("include=")) includes.push_back(assignment);
+  }
   if (head.has("scenario")) {
     study.scenario_path = study.path.parent_path() / head.text("scenario");
     if (!std::filesystem::exists(study.scenario_path))
@@ -64,14 +77,16 @@ void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study)
       if (!is_study_table(entry.key))
         throw InputError({.where = entry.value.origin + ": " + entry.key,
                           .got = "a key of the scenario beside study.scenario",
-                          .expected = "[study], [vary], [measure] and [summary] alone"});
+                          .expected = "[study], [set], [vary], [measure] and [summary] alone"});
     study.scenario_text = read_text_file(study.scenario_path);
   } else {
     study.scenario_path = study.path;
     study.scenario_text = study.text;
   }
   study.scenario =
-      keep(scenario::read_document(study.scenario_text, study.scenario_path, overrides), false);
+      keep(scenario::read_document(study.scenario_text, study.scenario_path, includes), false);
+  apply_set(document, study.scenario);
+  for (const std::string& assignment : overrides) apply_override(study.scenario, assignment);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ def arguments(argv):
     parser = argparse.ArgumentParser(prog="asdic plot",
                                      description="Draws the pictures of a file of asdic's.")
     parser.add_argument("file", metavar="FILE.h5",
-                        help="written by `asdic ping`, `field`, `arrivals` or `rays`")
+                        help="written by `asdic ping`, `field`, `arrivals`, `rays` or `study`")
     parser.add_argument("-o", "--output", metavar="DIR",
                         help="folder for the pictures (default: FILE without .h5); with --against "
                              "the picture")
@@ -90,6 +90,19 @@ def draw_result(options) -> None:
         say(f"{path}: {module.TITLE}")
 
 
+def draw_study(options) -> None:
+    """Every picture that the summary and the table of a study can feed."""
+    from . import study_data, study_pictures, style
+
+    study = study_data.read(options.file)
+    folder = Path(options.output) if options.output else default_folder(options.file)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, figure in study_pictures.draw(study):
+        path = folder / f"{name}.png"
+        style.write(figure, path)
+        say(f"{path}: {figure._suptitle.get_text()}")
+
+
 def draw_comparison(options) -> None:
     from . import comparison, results, style
 
@@ -111,6 +124,9 @@ def run(argv=None) -> int:
     options = arguments(argv)
     if options.against:
         draw_comparison(options)
+        return 0
+    if filetype(options.file) == "asdic study":
+        draw_study(options)
         return 0
     if filetype(options.file) in KINDS:
         draw_result(options)

@@ -29,7 +29,7 @@ TABLES = {
         "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg"),
     "patches": ("patch",
-        "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
+        "ping boundary range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
         "arrival_elevation_deg scattering_strength_db level_db"),
 }
 

@@ -211,6 +211,20 @@ TEST_F(Drawn, RangeVariesOfATargetPlacedByItsPosition) {
   EXPECT_NEAR(row.values[2], 2.0 * 2000.0 / 1500.0, 1e-9);
 }
 
+TEST_F(Drawn, TheStudySetsKeysOfItsScenarioForGood) {
+  const std::string tables =
+      "[study]\nrealisations = 4\n[set]\n\"target.0.position\" = [2000, 0, 100]\n[measure]\n"
+      "strongest_path = true\n";
+  EXPECT_NEAR(Realiser(read(tables)).realise(0).values[0], 2.0 * 2000.0 / 1500.0, 1e-9);
+  const std::string path = (folder_.path() / "study.toml").string();
+  const std::vector<std::string> overrides{"target.0.position=[1000, 0, 100]"};
+  EXPECT_NEAR(Realiser(read_study(path, overrides)).realise(0).values[0], 2.0 * 1000.0 / 1500.0,
+              1e-9);
+  EXPECT_THROW(
+      static_cast<void>(read("[study]\nrealisations = 4\n[set]\n\"target.3.name\" = \"x\"\n")),
+      InputError);
+}
+
 TEST_F(Drawn, GridWalksThroughAllCombinationsTheLastFastest) {
   const Study study = read(
       "[study]\ndesign = \"grid\"\n[vary]\n"

@@ -65,7 +65,7 @@ TABLES = {
         "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg",
     "patches":
-        "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
+        "ping boundary range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
         "arrival_elevation_deg scattering_strength_db level_db",
 }
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}

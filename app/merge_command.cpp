@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/text_output.h"
+#include "core/error.h"
+#include "study/merge.h"
+#include "study/study.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> parts;
+  std::string output, study;
+  study::MergeOptions merge;
+  bool quiet = false;
+};
+
+/// The study file that the parts were made of: the one that is named, or the one that they name,
+/// which must not have changed.
+std::filesystem::path find_study(const Options& options, const study::StudyFile& part) {
+  if (!options.study.empty()) return options.study;
+  const std::filesystem::path name = [&] {
+    const auto sessions = part.sessions();
+    return std::filesystem::path(sessions.empty() ? "" : sessions.front().study_path);
+  }();
+  std::error_code error;
+  const std::filesystem::path beside = part.path().parent_path() / name.filename();
+  for (const std::filesystem::path& path : {name, beside, name.filename()})
+    if (!path.empty() && std::filesystem::is_regular_file(path, error)) return path;
+  throw InputError({.where = part.path().string(),
+                    .got = "parts of " + name.string() + ", which is not there",
+                    .expected = "the study file, for its [summary]; --study says where it is"});
+}
+
+/// Reads it as the parts did.
+study::Study study_of(const Options& options) {
+  const study::StudyFile part(options.parts.front());
+  const std::filesystem::path path = find_study(options, part);
+  study::Study study = study::read_study(path, part.imprint().overrides);
+  if (study::identity(study) != part.imprint().identity)
+    throw InputError({.where = path.string(),
+                      .got = "another study (identity " + study::identity(study) + ")",
+                      .expected = "that of " + part.path().string() + " (identity " +
+                                  part.imprint().identity + "); --study names another file"});
+  if (options.study.empty() && study.text != part.imprint().text)
+    throw InputError({.where = path.string(),
+                      .got = "a file that has changed since the parts were made, if only in what "
+                             "is made of the rows",
+                      .expected = "as it was; --study " + path.string() + " takes it as it is"});
+  return study;
+}
+
+int merge(const Options& options) {
+  const study::Study study = study_of(options);
+  std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
+  for (const auto& part : parts) check_output(options.output, part);
+  study::MergeOptions how = options.merge;
+  if (!options.study.empty()) how.text = study.text;
+  const study::MergeReport report = study::merge(
+      parts, options.output,
+      [&](const study::Imprint&, const study::Table& table) {
+        return study::summarise(study, table);
+      },
+      how);
+  for (const std::string& warning : report.warnings) print("warning: " + warning + '\n');
+  if (options.quiet) return 0;
+  print(fmt::format("{}: {} of {}", options.output, count_of(report.rows, "realisation"),
+                    count_of(parts.size(), "part")));
+  if (!report.missing.empty())
+    print(fmt::format(", not complete: without {}", study::to_text(report.missing)));
+  print(options.merge.copy ? "\n" : "; the rows stay in the parts: keep them together\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "merge", "Put the parts of a study together: a catalogue of them, or one file.");
+  command->add_option("PARTS", options->parts, "files of asdic study --realisations or --shard")
+      ->required();
+  command->add_option("-o,--output", options->output, "file to write")
+      ->type_name("FILE.h5")
+      ->required();
+  command->add_flag("--copy", options->merge.copy,
+                    "copy the rows: one file that needs no parts any more");
+  command->add_flag("--allow-gaps", options->merge.allow_gaps,
+                    "parts may be missing; the file says so");
+  command
+      ->add_option("--study", options->study,
+                   "study file; default: where it was when the parts were made")
+      ->type_name("STUDY.toml");
+  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command->footer("Example:  asdic merge part_*.h5 -o study.h5");
+  command->callback([options, &action] { action = [options] { return merge(*options); }; });
+}
+
+}  // namespace asdic::app

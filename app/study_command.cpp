@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <memory>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/study_options.h"
+#include "app/study_progress.h"
+
+namespace asdic::app {
+namespace {
+
+int study_run(const StudyOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  StudyOrder order = order_of(options);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(order.threads));
+  const Interrupt interrupt;
+  order.run.stop = interrupt.token();
+  const study::Realiser realiser(order.study);
+  const study::Work work = study::work_of(
+      order.study, [&realiser](std::uint64_t index) { return realiser.realise(index); });
+  study::StudyOutcome outcome;
+  {
+    StudyProgress progress(!options.quiet);
+    order.run.progress = [&](const study::Progress& p) { progress.update(p); };
+    outcome = study::run_study(work, order.run);
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  return report(order, outcome, options.quiet, wall.count());
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* command = program.add_subcommand(
+      "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.");
+  add_study_options(*command, *options);
+  CLI::Option* range =
+      command
+          ->add_option("--realisations", options->range,
+                       "only these indices, FIRST up to but not including END; asdic merge puts "
+                       "parts together")
+          ->type_name("FIRST:END");
+  command
+      ->add_option("--shard", options->shard,
+                   "only the I-th of N parts, counted from 1; slurm: the part of this task of a "
+                   "Slurm job array")
+      ->type_name("I/N|slurm")
+      ->excludes(range);
+  command->add_flag("--assemble", options->assemble,
+                    "make no realisations: write a file of those that are there");
+  command->footer(
+      "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it was.\n"
+      "Example:  asdic study scenarios/studies/detection.toml -o detection.h5");
+  command->callback([options, &action] { action = [options] { return study_run(*options); }; });
+}
+
+}  // namespace asdic::app

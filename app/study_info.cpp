@@ -1,0 +1,99 @@
+#include "app/study_info.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/console.h"
+#include "io/result_file.h"
+#include "study/study_file.h"
+
+namespace asdic::app {
+namespace {
+
+/// "12.3", "1.23e-05"
+std::string short_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
+
+/// A line per column: what lies between which values.
+std::string columns_of(const study::Table& table) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Table text({{.name = "column", .left = true},
+              {.name = "unit", .left = true},
+              {.name = "from"},
+              {.name = "mean"},
+              {.name = "to"},
+              {.name = "missing"},
+              {.name = "meaning", .left = true}});
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    double low = infinity, high = -infinity, sum = 0.0;
+    std::size_t count = 0;
+    for (const double value : table.values[c]) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+      sum += value;
+      ++count;
+    }
+    const study::Column& column = table.columns[c];
+    text.row({column.name, column.unit, short_number(low),
+              short_number(count > 0 ? sum / static_cast<double>(count) : none), short_number(high),
+              std::to_string(table.values[c].size() - count), column.meaning});
+  }
+  return text.text();
+}
+
+std::string origin_of(const study::StudyFile& file) {
+  const auto run = [&](const std::string& key) {
+    return file.file().has_attribute("run", key) ? file.file().attribute_text("run", key)
+                                                 : std::string("unknown");
+  };
+  const std::size_t runs = file.sessions().size();
+  std::string text = fmt::format("made         {} on {}, {}, {} threads, in {}\n", run("started"),
+                                 run("host"), run("cpu"), run("threads"), count_of(runs, "run"));
+  return text + fmt::format("by           asdic {}, {}\n",
+                            file.file().attribute_text("", "program_version"),
+                            file.file().attribute_text("", "build"));
+}
+
+}  // namespace
+
+bool is_study_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || !is_hdf5(path)) return false;
+  const Hdf5File file = Hdf5File::open(path);
+  return file.has_attribute("", "filetype") && file.attribute_text("", "filetype") == "asdic study";
+}
+
+int study_info(const std::string& path) {
+  const study::StudyFile file(path);
+  const study::Imprint& imprint = file.imprint();
+  const study::Table table = file.table();
+  const auto valid =
+      static_cast<std::size_t>(std::count(table.valid.begin(), table.valid.end(), 1));
+  print(emphasised(imprint.title.empty() ? path : imprint.title) + '\n');
+  print(fmt::format("file         {}, {}, {}\n", path,
+                    byte_count(static_cast<double>(std::filesystem::file_size(path))),
+                    file.complete() ? "complete" : "not complete"));
+  print(fmt::format("holds        {}, {} of {}", count_of(table.index.size(), "realisation"),
+                    study::to_text(file.range()), imprint.realisations));
+  if (valid < table.index.size()) print(fmt::format("; {} skipped", table.index.size() - valid));
+  if (const auto kept = file.series_index(); !kept.empty())
+    print(fmt::format("; {} time series", kept.size()));
+  print(file.stopped_by().empty() ? "\n" : "; stopped by " + file.stopped_by() + "\n");
+  print(origin_of(file));
+  print(fmt::format("study        identity {}, design {}, seed {}\n", imprint.identity,
+                    imprint.design, imprint.seed));
+  if (!imprint.overrides.empty())
+    print(fmt::format("changed by   {}\n", file.file().attribute_text("", "overrides")));
+  print(columns_of(table));
+  file.verify();  // last: it reads everything; what differs is an error
+  print("data         as the manifest says (SHA-256 of every dataset)\n");
+  return 0;
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,125 @@
+#include "app/study_options.h"
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+#include <cstdlib>
+
+#include "app/console.h"
+#include "app/provenance.h"
+#include "app/study_progress.h"
+#include "app/text_output.h"
+#include "core/error.h"
+#include "study/shard.h"
+
+namespace asdic::app {
+namespace {
+
+std::optional<std::string> environment(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
+  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+}
+
+study::IndexRange range_of(const StudyOptions& options, std::uint64_t count) {
+  if (!options.range.empty()) return study::parse_range(options.range, count);
+  if (!options.shard.empty()) return study::parse_shard(options.shard, count, environment);
+  return {0, count};
+}
+
+/// STUDY.h5, and for a part STUDY_FIRST-END.h5, in this folder.
+std::filesystem::path default_output(const std::string& study, study::IndexRange range,
+                                     std::uint64_t count) {
+  const std::string stem = std::filesystem::path(study).stem().string();
+  if (range == study::IndexRange{0, count}) return stem + ".h5";
+  return fmt::format("{}_{}-{}.h5", stem, range.first, range.end);
+}
+
+void check_until(const StudyOptions& options, const StudyOrder& order) {
+  if (!options.until) return;
+  study::check_until(order.study);
+  if (order.run.range != study::IndexRange{0, order.study.realisations})
+    throw InputError({.where = "--until",
+                      .got = "a part of the study (" + study::to_text(order.run.range) + ")",
+                      .expected = "the whole of it: a part cannot know when all have enough"});
+}
+
+}  // namespace
+
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("STUDY", options.path, "study file (TOML)")->required();
+  command
+      .add_option("-o,--output", options.output,
+                  "file to write; default: the study's name with .h5, in this folder")
+      ->type_name("FILE.h5");
+  command
+      .add_option("--set", options.overrides,
+                  "override a key of the study or its scenario: study.realisations=1000")
+      ->type_name("KEY.PATH=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--until", options.until,
+                  "stop once the confidence interval of the running estimate is at most twice this "
+                  "wide; looked at after 100, 200, ... 1000, 2000, ... realisations")
+      ->type_name("HALF_WIDTH")
+      ->check(above_zero());
+  command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
+  add_threads_option(command, options.threads);
+  command.add_flag("-q,--quiet", options.quiet, "print nothing unless something is wrong");
+}
+
+StudyOrder order_of(const StudyOptions& options) {
+  StudyOrder order{.study = study::read_study(options.path, options.overrides)};
+  order.threads = options.threads.value_or(tbb::info::default_concurrency());
+  const std::uint64_t count = order.study.realisations;
+  order.run.range = range_of(options, count);
+  order.run.output = options.output.empty() ? default_output(options.path, order.run.range, count)
+                                            : std::filesystem::path(options.output);
+  check_output(order.run.output, options.path);
+  check_until(options, order);
+  order.run.until = options.until;
+  order.run.fresh = options.fresh;
+  order.run.assemble_only = options.assemble;
+  order.run.session.made = provenance(order.threads);
+  order.run.session.study_path = std::filesystem::absolute(options.path).string();
+  return order;
+}
+
+int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet,
+           double seconds) {
+  const std::string file = order.run.output.string();
+  const std::uint64_t there = outcome.before + outcome.made;
+  if (outcome.damaged > 0)
+    print(fmt::format("{} in the journal did not match their checksum and were made again\n",
+                      count_of(outcome.damaged, "realisation")));
+  if (!outcome.warning.empty()) print("warning: " + outcome.warning + '\n');
+  if (!outcome.written)
+    throw RunError(fmt::format(
+        "interrupted after {} of {}; {}.journal holds them, and the same command goes on", there,
+        count_of(outcome.total, "realisation"), file));
+  if (quiet) return 0;
+  if (outcome.was_complete) {
+    print(fmt::format("{}: complete already, nothing to do; --fresh begins anew\n", file));
+    return 0;
+  }
+  if (outcome.before > 0)
+    print(fmt::format("{} were there already\n", count_of(outcome.before, "realisation")));
+  print(fmt::format("{} in {}", count_of(outcome.made, "realisation"), duration(seconds)));
+  if (outcome.made > 0)
+    print(fmt::format(": {:.3g}/s on {}", static_cast<double>(outcome.made) / seconds,
+                      count_of(static_cast<std::size_t>(order.threads), "thread")));
+  print("\n");
+  if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
+  if (outcome.stopped_early)
+    print(fmt::format("enough after {}\n", count_of(outcome.range.size(), "realisation")));
+  else if (order.run.until)
+    print("not as narrow as --until asks for\n");
+  print(fmt::format("{}: {}{}\n", file,
+                    byte_count(static_cast<double>(std::filesystem::file_size(file))),
+                    outcome.complete ? ""
+                                     : fmt::format(", not complete: {} of {}", there,
+                                                   count_of(outcome.total, "realisation"))));
+  return 0;
+}
+
+}  // namespace asdic::app

@@ -1,0 +1,39 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "study/run_study.h"
+#include "study/study.h"
+
+// What `asdic study` and `asdic-mpi study` have in common.
+namespace asdic::app {
+
+struct StudyOptions {
+  std::string path, output, range, shard;
+  std::vector<std::string> overrides;
+  std::optional<int> threads;
+  std::optional<double> until;
+  bool fresh = false, assemble = false, quiet = false;
+};
+
+/// STUDY, -o, --set, --until, --fresh, --threads, --quiet.
+void add_study_options(CLI::App& command, StudyOptions& options);
+
+/// What is to be done: the study, and the run that the options describe, but for its stop token and
+/// its progress.
+struct StudyOrder {
+  study::Study study;
+  study::StudyRun run;
+  int threads = 1;
+};
+
+/// \throws InputError for a study or options that are wrong
+[[nodiscard]] StudyOrder order_of(const StudyOptions& options);
+
+/// Says what came of it. \return the exit status \throws RunError if it was interrupted
+int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet, double seconds);
+
+}  // namespace asdic::app

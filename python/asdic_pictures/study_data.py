@@ -1,0 +1,97 @@
+"""Reads a file of a study (docs/formats/study-results.md). Whatever is wrong with it becomes an
+InputError.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import h5py
+import numpy as np
+
+from .data import InputError
+
+KIND = "asdic study"
+
+
+@dataclass
+class Column:
+    """A column of the table or of a summary."""
+
+    name: str
+    unit: str
+    meaning: str
+    values: np.ndarray
+    role: str = ""
+    labels: list = field(default_factory=list)
+
+    def label(self) -> str:
+        """For an axis: "range / m"."""
+        words = self.name.replace("_", " ")
+        return f"{words} / {self.unit}" if self.unit and self.unit != "1" else words
+
+
+@dataclass
+class SummaryTable:
+    name: str
+    title: str
+    columns: list
+
+    def __contains__(self, name) -> bool:
+        return any(c.name == name for c in self.columns)
+
+    def __getitem__(self, name) -> Column:
+        return next(c for c in self.columns if c.name == name)
+
+
+@dataclass
+class Study:
+    path: str
+    title: str
+    realisations: int
+    complete: bool
+    columns: list          # of the table: inputs and measures, valid rows alone
+    summary: list          # of SummaryTable
+
+    def heading(self) -> str:
+        some = "" if self.complete else " (not complete)"
+        return f"{self.title or self.path} · {self.realisations} realisations{some}"
+
+    def tables(self, test) -> list:
+        return [t for t in self.summary if test(t)]
+
+
+def _text(value) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def _column(name, dataset, rows=slice(None)) -> Column:
+    attributes = dataset.attrs
+    labels = [_text(label) for label in np.ravel(attributes.get("labels", []))]
+    return Column(name, _text(attributes.get("units", "")), _text(attributes.get("long_name", name)),
+                  np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels)
+
+
+def _summary(name, group) -> SummaryTable:
+    order = [_text(n) for n in np.ravel(group.attrs.get("columns", sorted(group)))]
+    return SummaryTable(name, _text(group.attrs.get("title", name)),
+                        [_column(n, group[n]) for n in order])
+
+
+def read(path: str) -> Study:
+    """\\throws InputError"""
+    try:
+        with h5py.File(path, "r") as f:
+            version = _text(f.attrs.get("version", "none"))
+            if version.split(".")[0] != "1":
+                raise InputError(path, f"version {version} of the format", "version 1")
+            valid = np.asarray(f["valid"][()]) != 0
+            if np.any(np.asarray(f["index"][()]) < 0):
+                raise InputError(path, "rows of a part that is not there",
+                                 "all parts where the catalogue knows them")
+            columns = [_column(n, d, valid) for n, d in f["table"].items()]
+            summary = [_summary(n, g) for n, g in f["summary"].items()]
+            return Study(path, _text(f.attrs.get("title", "")), int(valid.size),
+                         bool(f.attrs.get("complete", 1)), columns, summary)
+    except (KeyError, OSError, ValueError) as error:
+        raise InputError(path, f"what cannot be read ({error})",
+                         "a whole file of `asdic study` or `asdic merge`") from error

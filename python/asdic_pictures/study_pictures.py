@@ -1,0 +1,193 @@
+"""Pictures of a study: each `draw_…(study)` gives figures by the name of their file, none where the
+study holds nothing of the kind.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from . import style
+from .study_data import Study, SummaryTable
+
+MOST_PANELS = 12
+
+
+def panels(study: Study, what: str, count: int, height: float = 2.6):
+    """A grid of axes for `count` small pictures. → figure, axes [count]"""
+    columns = min(3, count)
+    rows = -(-count // columns)
+    fig, axes = style.figure(what, max(4.2, 0.9 + height * rows), nrows=rows, ncols=columns,
+                             squeeze=False)
+    flat = axes.ravel()
+    for unused in flat[count:]:
+        unused.set_visible(False)
+    style.subtitle(flat[0], study.heading())
+    return fig, flat[:count]
+
+
+def banded(table: SummaryTable) -> list:
+    """Names of the columns that have an interval beside them, but for those of an axis's bins."""
+    names = [c.name for c in table.columns]
+    first = names.index("count") + 1 if "count" in names else 0
+    return [n for n in names[first:] if f"{n}_low" in table and f"{n}_high" in table]
+
+
+def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | None = None) -> None:
+    """An estimate with its interval: a line and a band, or, of categories, dots and bars."""
+    at, value = table[x], table[y]
+    low, high = table[f"{y}_low"].values, table[f"{y}_high"].values
+    if at.labels:
+        place = np.arange(at.values.size)
+        axes.errorbar(place, value.values, [value.values - low, high - value.values], fmt="o",
+                      color=colour, capsize=3, label=label)
+        names = [at.labels[int(k)] if 0 <= k < len(at.labels) else f"{k:g}" for k in at.values]
+        axes.set_xticks(place, [style.shorten(n, 18) for n in names])
+    else:
+        axes.fill_between(at.values, low, high, color=colour, alpha=0.2, lw=0)
+        axes.plot(at.values, value.values, "-o", ms=3.5, color=colour, label=label)
+    axes.set_xlabel(at.label())
+    axes.grid(True)
+
+
+def axes_of(table: SummaryTable) -> list:
+    """The columns that a table is laid out along: those before `count` that are no bin's edges."""
+    names = [c.name for c in table.columns]
+    before = names[: names.index("count")] if "count" in names else []
+    return [n for n in before if not n.endswith(("_low", "_high")) or n.rsplit("_", 1)[0] not in before]
+
+
+def draw_by(study: Study) -> dict:
+    """Probabilities and means along one input."""
+    figures = {}
+    for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 1):
+        names = banded(table)[:MOST_PANELS]
+        if not names:
+            continue
+        fig, axes = panels(study, table.title, len(names), 3.0)
+        for k, (name, a) in enumerate(zip(names, axes)):
+            band(a, table, axes_of(table)[0], name, style.colour(k + 1))
+            a.set_ylabel(table[name].label())
+            if table[name].values.size and not table.name.startswith("means"):
+                a.set_ylim(-0.02, 1.02)
+        figures[table.name] = fig
+    return figures
+
+
+def draw_map(study: Study) -> dict:
+    """Probabilities over two inputs, as a map."""
+    figures = {}
+    for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 2):
+        names = banded(table)[:MOST_PANELS]
+        x, y = (table[n] for n in axes_of(table))
+        across, down = np.unique(x.values), np.unique(y.values)
+        if not names or across.size * down.size != x.values.size:
+            continue
+        fig, axes = panels(study, table.title, len(names), 3.4)
+        for name, a in zip(names, axes):
+            value = table[name].values.reshape(across.size, down.size)
+            image = a.pcolormesh(across, down, value.T, cmap=style.MAP, shading="nearest")
+            a.set_xlabel(x.label())
+            a.set_ylabel(y.label())
+            fig.colorbar(image, ax=a, label=table[name].label())
+        figures[table.name] = fig
+    return figures
+
+
+def draw_roc(study: Study) -> dict:
+    tables = study.tables(lambda t: t.name.startswith("roc") and "pfa" in t and "pd" in t)
+    if not tables:
+        return {}
+    fig, axes = style.figure("Receiver operating characteristic")
+    least = 1.0
+    for k, table in enumerate(tables):
+        pfa, pd = table["pfa"].values, table["pd"].values
+        seen = pfa > 0
+        least = min(least, pfa[seen].min(initial=1.0))
+        name = table.name[4:].replace("_", " ") or None
+        axes.fill_between(pfa[seen], table["pd_low"].values[seen], table["pd_high"].values[seen],
+                          color=style.colour(k), alpha=0.2, lw=0)
+        axes.plot(pfa[seen], pd[seen], color=style.colour(k), label=name)
+    chance = np.geomspace(max(least, 1e-9), 1.0, 50)
+    axes.plot(chance, chance, color=style.GREY, lw=0.8, ls="--")
+    axes.set_xscale("log")
+    axes.set_xlim(chance[0], 1.0)
+    axes.set_ylim(0.0, 1.02)
+    axes.set_xlabel("probability of false alarm")
+    axes.set_ylabel("probability of detection")
+    axes.grid(True)
+    style.subtitle(axes, study.heading())
+    if len(tables) > 1:
+        axes.legend(loc="lower right")
+    return {"roc": fig}
+
+
+def draw_histograms(study: Study) -> dict:
+    columns = [c for c in study.columns if np.isfinite(c.values).any()]
+    columns = sorted(columns, key=lambda c: c.role != "measure")[:MOST_PANELS]
+    if not columns:
+        return {}
+    fig, axes = panels(study, "What was drawn (grey) and what came out", len(columns))
+    for column, a in zip(columns, axes):
+        values = column.values[np.isfinite(column.values)]
+        colour = style.BLUE if column.role == "measure" else style.GREY
+        if column.labels:
+            count = np.bincount(values.astype(int), minlength=len(column.labels))
+            a.bar(np.arange(count.size), count, color=colour)
+            names = [style.shorten(n, 14) for n in column.labels]
+            a.set_xticks(np.arange(len(names)), names, rotation=20 if len(names) > 3 else 0)
+        else:
+            a.hist(values, bins=min(60, max(8, int(np.sqrt(values.size)))), color=colour)
+        a.set_xlabel(column.label())
+        a.set_ylabel("realisations")
+    return {"histograms": fig}
+
+
+def draw_sensitivity(study: Study) -> dict:
+    tables = study.tables(lambda t: t.name == "sensitivity" and "first_order" in t)
+    if not tables:
+        return {}
+    table = tables[0]
+    measures, inputs = table["measure"], table["input"]
+    if not measures.labels or not inputs.labels:
+        return {}
+    fig, axes = style.figure("Which input matters", 1.8 + 0.45 * len(measures.labels), ncols=2)
+    for a, name, title, low in ((axes[0], "first_order", "share of the variance", 0.0),
+                                (axes[1], "rank_correlation", "rank correlation", -1.0)):
+        grid = np.full((len(measures.labels), len(inputs.labels)), np.nan)
+        grid[measures.values.astype(int), inputs.values.astype(int)] = table[name].values
+        image = a.imshow(grid, cmap="RdBu_r" if low < 0 else style.MAP, vmin=low, vmax=1.0,
+                         aspect="auto")
+        for (row, column), value in np.ndenumerate(grid):
+            if np.isfinite(value):
+                a.text(column, row, f"{value:.2f}".replace("-", "−"), ha="center", va="center",
+                       fontsize=8, path_effects=style.OVER_MAP)
+        a.set_xticks(np.arange(len(inputs.labels)), [n.replace("_", " ") for n in inputs.labels],
+                     rotation=25, ha="right")
+        a.set_yticks(np.arange(len(measures.labels)), [n.replace("_", " ") for n in measures.labels])
+        fig.colorbar(image, ax=a, label=title)
+    style.subtitle(axes[0], study.heading())
+    return {"sensitivity": fig}
+
+
+def draw_convergence(study: Study) -> dict:
+    tables = study.tables(lambda t: t.name == "convergence" and banded(t))
+    if not tables:
+        return {}
+    table = tables[0]
+    name = banded(table)[0]
+    fig, axes = style.figure("How the estimate settles")
+    band(axes, table, "count", name, style.BLUE)
+    axes.axhline(table[name].values[-1], color=style.GREY, lw=0.8, ls="--")
+    axes.set_xscale("log")
+    axes.set_xlabel("realisations")
+    axes.set_ylabel(table[name].label())
+    style.subtitle(axes, study.heading())
+    return {"convergence": fig}
+
+
+ALL = (draw_by, draw_map, draw_roc, draw_histograms, draw_sensitivity, draw_convergence)
+
+
+def draw(study: Study):
+    """→ (name, figure) of every picture, one at a time"""
+    for one in ALL:
+        yield from one(study).items()

@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""A study is the same file by 1 thread, 2 or 7, in 3 parts, by mpirun, interrupted, and killed again
+and again; what a kill leaves is never a file that is not whole, and nothing completed is lost.
+
+    ASDIC=build/ci/bin/asdic study_runs.py [KILLS]        kills of each kind, 3 by default
+"""
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+from same_study import differences  # noqa: E402
+
+ASDIC = Path(os.environ["ASDIC"]).resolve()
+ASDIC_MPI = ASDIC.with_name("asdic-mpi")
+KILLS = int(sys.argv[1]) if len(sys.argv) > 1 else 3
+COUNT = 240
+
+STUDY = """
+[study]
+title = "to be interrupted"
+realisations = %d
+seed = 7
+[vary]
+"target.0.range" = { law = "uniform", low = 20e3, high = 40e3 }
+[measure]
+echo_level = true
+[environment.sound_speed]
+kind = "isovelocity"
+speed = 1500.0
+[environment.bottom]
+depth = 5400.0
+kind = "rigid"
+[platform]
+position = [0.0, 0.0, 4500.0]
+[transmitter]
+source_level_db = 200.0
+taper = "omnidirectional"
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.1
+[array]
+kind = "horizontal"
+phones = 1
+spacing = 1.0
+[[target]]
+position = [30e3, 0.0, 4500.0]
+strength_db = 30.0
+[noise]
+spectral_level_db = 32.0
+[reverberation]
+enabled = false
+[propagation]
+max_surface_bounces = 0
+max_bottom_bounces = 0
+[pings]
+samples = "baseband"
+recording_start = 20.0
+recording_duration = 40.0
+""" % COUNT
+
+
+def check(good, what):
+    if not good:
+        sys.exit(f"FAILED: {what}")
+
+
+def command(*words, program=ASDIC):
+    return [str(program), *map(str, words)]
+
+
+def run(*words, status=0):
+    done = subprocess.run(command(*words), capture_output=True, text=True)
+    check(done.returncode == status, f"{words}: status {done.returncode}: {done.stderr}")
+    return done
+
+
+def same(path, how):
+    different = differences("whole.h5", path)
+    check(not different, f"{how}: {different} differ")
+    check(not list(Path(".").glob(f"{path}*journal*")), f"{how}: a journal was left")
+    print(f"{how}: the same bits")
+
+
+def rows_in(pattern):
+    """Rows of the journals, as SQLite sees them."""
+    total = 0
+    for path in Path(".").glob(pattern):
+        with sqlite3.connect(path) as journal:
+            total += journal.execute("SELECT COUNT(*) FROM row").fetchone()[0]
+        journal.close()
+    return total
+
+
+def wait_for_journal(pattern, run):
+    """Until something has been committed."""
+    for _ in range(2000):
+        if any(p.stat().st_size > 20000 for p in Path(".").glob(pattern + "-wal")):
+            return
+        if run.poll() is not None:
+            return
+        time.sleep(0.01)
+    sys.exit("FAILED: no journal after 20 s")
+
+
+def start(*words):
+    """Not in the way of a shell's job control: it hears of SIGINT."""
+    return subprocess.Popen(command(*words), stderr=subprocess.PIPE, text=True,
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+
+
+def threads_and_parts():
+    run("study", "study.toml", "-o", "whole.h5", "-q", "--threads", 1)
+    for threads in (2, 7):
+        run("study", "study.toml", "-o", "t.h5", "-q", "--threads", threads)
+        same("t.h5", f"{threads} threads")
+        Path("t.h5").unlink()
+    for part in (1, 2, 3):
+        run("study", "study.toml", "-o", f"part{part}.h5", "-q", "--shard", f"{part}/3")
+    parts = ["part2.h5", "part3.h5", "part1.h5"]
+    run("merge", *parts, "-o", "merged.h5")
+    same("merged.h5", "3 parts, a catalogue")
+    run("merge", *parts, "-o", "copied.h5", "--copy")
+    same("copied.h5", "3 parts, copied")
+    said = run("merge", *parts[:2], "-o", "no.h5", status=2).stderr
+    check("found no part with 80 of 240 realisations: 0:80" in said, f"a gap: {said}")
+
+
+def interrupted():
+    run_ = start("study", "study.toml", "-o", "i.h5", "--threads", 2)
+    wait_for_journal("i.h5.journal", run_)
+    run_.send_signal(signal.SIGINT)
+    said = run_.communicate()[1]
+    check(run_.returncode == 1, f"SIGINT: status {run_.returncode}: {said}")
+    check("i.h5.journal holds them, and the same command goes on" in said, f"SIGINT: said {said}")
+    check(not Path("i.h5").exists(), "SIGINT: a file under the final name")
+    run("study", "study.toml", "-o", "i.h5", "--assemble", "-q")
+    check("not complete" in run("info", "i.h5").stdout, "a file of what is there: info")
+    run("study", "study.toml", "-o", "i.h5", "-q")
+    same("i.h5", "interrupted and continued")
+
+
+def killed():
+    """Rows that were committed a second before a kill are there after it."""
+    kept = 0
+    for k in range(KILLS):
+        run_ = start("study", "study.toml", "-o", "k.h5", "--threads", 1 + k % 3, "-q")
+        wait_for_journal("k.h5.journal", run_)
+        time.sleep(random.uniform(0.0, 4.0 / KILLS))
+        run_.kill()
+        run_.communicate()
+        if Path("k.h5").exists():  # it had been done
+            break
+        now = rows_in("k.h5.journal")
+        check(now >= kept, f"kill {k}: {kept} rows had been there, now {now}")
+        kept = now
+    run("study", "study.toml", "-o", "k.h5", "-q")
+    same("k.h5", f"killed {KILLS} times, {kept} rows kept")
+
+
+def by_mpi():
+    if not ASDIC_MPI.exists():
+        print("no asdic-mpi: left out")
+        return
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    def mpirun(ranks):
+        words = ["mpirun", "--oversubscribe", "-n", str(ranks),
+                 *command("study", "study.toml", "-o", "m.h5", "-q", program=ASDIC_MPI)]
+        return subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                env=environment)
+    for ranks in (2, 4):
+        job = mpirun(ranks)
+        said = job.communicate()
+        check(job.returncode == 0, f"mpirun -n {ranks}: {said}")
+        same("m.h5", f"mpirun -n {ranks}")
+        Path("m.h5").unlink()
+    job = mpirun(3)
+    wait_for_journal("m.h5.rank1.journal", job)
+    ranks = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True).stdout.split()
+    check(len(ranks) == 3, f"ranks of mpirun: {ranks}")
+    os.kill(int(ranks[-1]), signal.SIGKILL)
+    said = job.communicate()
+    check(job.returncode != 0, "a dead rank: status 0")
+    check("exited on signal 9" in said[1] + said[0], f"a dead rank: said {said}")
+    check(not Path("m.h5").exists(), "a dead rank: a file under the final name")
+    kept = rows_in("m.h5.rank*.journal")
+    check(kept > 0, "a dead rank: nothing was kept")
+    job = mpirun(2)
+    check(job.wait() == 0, f"after a dead rank: {job.communicate()}")
+    same("m.h5", f"mpirun -n 3, a rank killed, {kept} rows kept, then -n 2")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        Path("study.toml").write_text(STUDY)
+        threads_and_parts()
+        interrupted()
+        killed()
+        by_mpi()
+        os.chdir("/")
