@@ -164,6 +164,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
                   scale, {targets});
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
+  growing<std::int32_t>("summary/array",
+                        "number of the array that hears the strongest pair, -1: none", "", scale,
+                        {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
   growing<double>("summary/echo_time", "delay of the strongest pair", "s", scale, {targets});
   growing<double>("summary/echo_level_db", "of the strongest pair, re 1 uPa", "dB", scale,
@@ -299,12 +302,13 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
 void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   if (scenario.targets.empty()) return;
   std::vector<std::int8_t> present;
-  std::vector<std::int32_t> paths;
+  std::vector<std::int32_t> array, paths;
   std::vector<double> time, level, reverberation, noise, peak, excess;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const TargetSummary row = i < record.summary.size() ? record.summary[i] : TargetSummary{};
     const bool heard = row.present && row.paths > 0;
     present.push_back(row.present ? 1 : 0);
+    array.push_back(heard ? row.array : -1);
     paths.push_back(row.paths);
     time.push_back(heard ? row.echo_time : missing);
     level.push_back(heard ? row.echo_level_db : missing);
@@ -314,6 +318,7 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
     excess.push_back(heard ? row.signal_excess_db : missing);
   }
   file.append<std::int8_t>("summary/present", present);
+  file.append<std::int32_t>("summary/array", array);
   file.append<std::int32_t>("summary/paths", paths);
   file.append<double>("summary/echo_time", time);
   file.append<double>("summary/echo_level_db", level);

@@ -80,9 +80,10 @@ struct HeardPath {
 struct TargetSummary {
   std::string name;
   bool present = false;
-  int paths = 0;                  ///< path pairs
-  double echo_time = 0.0;         ///< of the strongest pair [s]
-  double echo_level_db = 0.0;     ///< of the strongest pair [dB re 1 µPa]
+  int array = 0;               ///< that hears the strongest pair: all that follows is heard there
+  int paths = 0;               ///< path pairs
+  double echo_time = 0.0;      ///< of the strongest pair [s]
+  double echo_level_db = 0.0;  ///< of the strongest pair [dB re 1 µPa]
   double reverberation_db = 0.0;  ///< expected level at that time [dB re 1 µPa]
   double noise_db = 0.0;          ///< in the pulse's band [dB re 1 µPa]
   double echo_peak_db = 0.0;  ///< all paths together, as they add at the array's reference point:
