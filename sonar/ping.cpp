@@ -141,7 +141,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   std::optional<ReverberationBand> band;
   std::optional<Synthesizer> coloured;
   if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
-    band.emplace(scenario_, paths_, reverberation_->laws(), projector, record.platform, heading,
+    band.emplace(scenario_, *paths_, reverberation_->laws(), projector, record.platform, heading,
                  frequency, synthesizer.half_band(), record_end);
     coloured.emplace(band->synthesizer(sent_pulse, record.recording, max_doppler_));
   }

@@ -45,7 +45,7 @@ double amplitude(const std::vector<float>& pressure, double rate, double frequen
 
 TEST(InterferenceInAFile, StandsThereAndIsHeard) {
   const Scenario s = approached();
-  const TemporaryDirectory folder;
+  const support::TemporaryDirectory folder;
   {
     PingFileWriter writer(folder / "p.h5", s, {.program_version = "0.1"});
     writer.append(PingSimulator(s).simulate(1));
