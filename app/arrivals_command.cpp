@@ -28,6 +28,16 @@ struct Options {
   std::string output;
 };
 
+/// Where the transmitter of a ping is when it sends.
+Vec3 source_of(const PingSimulator& simulator, int ping) {
+  if (ping > simulator.pings())
+    throw InputError({.where = "--ping",
+                      .got = std::to_string(ping),
+                      .expected = fmt::format("a ping from 1 to {}", simulator.pings())});
+  const Transmission& sent = simulator.transmission(ping);
+  return transmitter_at(simulator.scenario(), sent.transmitter, sent.time).position;
+}
+
 /// From the platform's depth (or another) to any depth and range.
 Leg to_receiver(const PingSimulator& simulator, const Options& options) {
   if (!options.receiver_depth || !options.range)
@@ -35,8 +45,7 @@ Leg to_receiver(const PingSimulator& simulator, const Options& options) {
                       .got = "nothing",
                       .expected = "a length: --receiver-depth and --range go together"});
   const Scenario& scenario = simulator.scenario();
-  const Vec3 platform =
-      scenario.platforms[0].track.at((options.ping - 1) * scenario.pings.interval).position;
+  const Vec3 platform = source_of(simulator, options.ping);
   const PropagationPaths& paths = simulator.paths();
   const double bearing = options.bearing   ? radians(*options.bearing)
                          : paths.layered() ? 0.0
@@ -70,17 +79,21 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
     throw InputError({.where = "--target",
                       .got = std::to_string(*options.target),
                       .expected = fmt::format("a target from 0 to {}", n - 1)});
-  const double time = (options.ping - 1) * scenario.pings.interval;
+  const double c = simulator.paths().speed_at(source_of(simulator, options.ping));
+  const Transmission& sent = simulator.transmission(options.ping);
   const Transmitter transmitter = simulator.transmitter(options.ping);
-  const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
-  const double c = simulator.paths().speed_at(scenario.platforms[0].track.at(time).position);
+  const double frequency =
+      options.frequency.value_or(simulator.pulse(sent.transmitter).centre_frequency());
   const BeamPattern pattern(transmitter, c / frequency, c,
-                            platform_heading(scenario, transmitter.platform, time));
+                            platform_heading(scenario, transmitter.platform, sent.time));
   const EchoContext context{.paths = simulator.paths(),
                             .scenario = scenario,
                             .pattern = pattern,
                             .frequency = frequency,
-                            .ping_time = time};
+                            .ping_time = sent.time,
+                            .transmitter = sent.transmitter,
+                            .ping = options.ping,
+                            .turn = sent.turn};
   const auto wanted = [&](Leg::Kind kind) {
     const std::string name = kind == Leg::Kind::source_to_target ? "target" : "array";
     return options.legs.empty() ||
@@ -125,6 +138,7 @@ int arrivals(const Options& options) {
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
   const bool free = options.receiver_depth || options.range;
+  const Vec3 source = source_of(simulator, options.ping);
   ArrivalsResult result{
       .origin = origin_of(scenario),
       .ping = options.ping,
@@ -132,9 +146,7 @@ int arrivals(const Options& options) {
       .to_receiver = free,
       .receiver_depth = options.receiver_depth.value_or(0.0),
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
-  const double time = (options.ping - 1) * scenario.pings.interval;
-  result.source_depth =
-      options.source_depth.value_or(scenario.platforms[0].track.at(time).position.z());
+  result.source_depth = options.source_depth.value_or(source.z());
   for (const Target& target : scenario.targets) result.targets.push_back(target.name);
   if (!options.output.empty()) {
     check_output(options.output, options.scenario.path);

@@ -53,8 +53,7 @@ RayPaths::Line line(const Boundary& boundary, double extent) {
 }
 
 /// Towards the first target that is there; else along the transect.
-double bearing_of_fan(const Scenario& scenario) {
-  const Vec3 source = scenario.platforms[0].track.at(0.0).position;
+double bearing_of_fan(const Scenario& scenario, const Vec3& source) {
   for (const Target& target : scenario.targets)
     if (target.first_ping <= 1 && target.last_ping >= 1)
       return separation(source, target.track.at(0.0).position).bearing;
@@ -66,13 +65,14 @@ double bearing_of_fan(const Scenario& scenario) {
 RayPaths drawn_rays(const PingSimulator& simulator) {
   const Scenario& scenario = simulator.scenario();
   const PropagationPaths& paths = simulator.paths();
-  const Vec3 source = scenario.platforms[0].track.at(0.0).position;
+  const Transmission& sent = simulator.transmission(1);  // whose fan is drawn
+  const Vec3 source = transmitter_at(scenario, sent.transmitter, sent.time).position;
   const PropagationSettings& limits = scenario.propagation;
   const int bounces = limits.max_surface_bounces + limits.max_bottom_bounces;
   const double one_way = 0.5 * (scenario.pings.recording_start + scenario.pings.recording_duration);
   const double c = paths.speed_at(source);
   const std::vector<double> elevations = fan(simulator.transmitter(1));
-  const double bearing = bearing_of_fan(scenario);
+  const double bearing = bearing_of_fan(scenario, source);
   const auto along_fan = paths.solver(paths.plane(source, bearing));
   const Environment& ocean = along_fan->environment();
 

@@ -4,6 +4,11 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <experimental/simd>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 
 namespace asdic {
 namespace {
@@ -12,8 +17,60 @@ constexpr std::size_t lanes = 16;         // Philox blocks side by side
 constexpr std::size_t batch = 4 * lanes;  // normals they give
 using Words = std::array<std::uint32_t, lanes>;
 
-/// Philox4x32-10 of the counters (first…first + lanes, c1, c2, c3): Salmon et al., SC'11, written
-/// over lanes so that it vectorises. Tested against Random123.
+namespace stdx = std::experimental;
+using Floats = stdx::native_simd<float>;
+using Ints = stdx::rebind_simd_t<std::int32_t, Floats>;
+
+constexpr std::uint32_t multiplier_0 = 0xD2511F53U, multiplier_1 = 0xCD9E8D57U;
+constexpr std::uint32_t key_step_0 = 0x9E3779B9U, key_step_1 = 0xBB67AE85U;  // golden ratio, √3 − 1
+constexpr int rounds = 10;
+
+#if defined(__AVX2__)
+
+/// Philox4x32-10 of the counters (first…first + lanes, c1, c2, c3): Salmon et al., SC'11. Tested
+/// against Random123.
+///
+/// A word lies in the lower half of 64 bits: multiplication looks at no more, so what is left in
+/// the upper half is never cleared, and no word is moved before the end.
+inline void philox(std::uint32_t first, std::array<std::uint32_t, 3> rest,
+                   std::array<std::uint32_t, 2> key, std::array<Words, 4>& x) noexcept {
+  const auto all = [](std::uint32_t word) { return _mm256_set1_epi64x(std::int64_t{word}); };
+  const __m256i m0 = all(multiplier_0), m1 = all(multiplier_1);
+  constexpr std::size_t side_by_side = 2;  // vectors of four blocks: what the registers hold
+  for (std::size_t at = 0; at < lanes; at += 4 * side_by_side) {
+    __m256i c[4][side_by_side];
+    for (std::size_t v = 0; v < side_by_side; ++v) {
+      const auto block = static_cast<std::uint32_t>(first + at + 4 * v);
+      // A counter wraps at 2³², as it does there.
+      c[0][v] = _mm256_set_epi64x(std::int64_t{block + 3U}, std::int64_t{block + 2U},
+                                  std::int64_t{block + 1U}, std::int64_t{block});
+      for (std::size_t word = 1; word < 4; ++word) c[word][v] = all(rest[word - 1]);
+    }
+    std::array<std::uint32_t, 2> k = key;
+    for (int round = 0; round < rounds; ++round) {
+      const __m256i k0 = all(k[0]), k1 = all(k[1]);
+      for (std::size_t v = 0; v < side_by_side; ++v) {
+        const __m256i p0 = _mm256_mul_epu32(m0, c[0][v]), p1 = _mm256_mul_epu32(m1, c[2][v]);
+        c[0][v] = _mm256_xor_si256(_mm256_xor_si256(_mm256_srli_epi64(p1, 32), c[1][v]), k0);
+        c[1][v] = p1;
+        c[2][v] = _mm256_xor_si256(_mm256_xor_si256(_mm256_srli_epi64(p0, 32), c[3][v]), k1);
+        c[3][v] = p0;
+      }
+      k[0] += key_step_0;
+      k[1] += key_step_1;
+    }
+    for (std::size_t word = 0; word < 4; ++word) {  // the lower halves of eight blocks, in order
+      const __m256i mixed = _mm256_castps_si256(_mm256_shuffle_ps(
+          _mm256_castsi256_ps(c[word][0]), _mm256_castsi256_ps(c[word][1]), 0x88));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(x[word].data() + at),
+                          _mm256_permute4x64_epi64(mixed, 0xD8));
+    }
+  }
+}
+
+#else
+
+/// The same, written over lanes so that it vectorises.
 inline void philox(std::uint32_t first, std::array<std::uint32_t, 3> rest,
                    std::array<std::uint32_t, 2> key, std::array<Words, 4>& x) noexcept {
   for (std::uint32_t i = 0; i < lanes; ++i) {
@@ -22,69 +79,71 @@ inline void philox(std::uint32_t first, std::array<std::uint32_t, 3> rest,
     x[2][i] = rest[1];
     x[3][i] = rest[2];
   }
-  for (int round = 0; round < 10; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < lanes; ++i) {
-      const std::uint64_t p0 = std::uint64_t{0xD2511F53U} * x[0][i];
-      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57U} * x[2][i];
+      const std::uint64_t p0 = std::uint64_t{multiplier_0} * x[0][i];
+      const std::uint64_t p1 = std::uint64_t{multiplier_1} * x[2][i];
       const std::uint32_t x1 = x[1][i], x3 = x[3][i];
       x[0][i] = static_cast<std::uint32_t>(p1 >> 32) ^ x1 ^ key[0];
       x[1][i] = static_cast<std::uint32_t>(p1);
       x[2][i] = static_cast<std::uint32_t>(p0 >> 32) ^ x3 ^ key[1];
       x[3][i] = static_cast<std::uint32_t>(p0);
     }
-    key[0] += 0x9E3779B9U;  // the golden ratio and √3 − 1
-    key[1] += 0xBB67AE85U;
+    key[0] += key_step_0;
+    key[1] += key_step_1;
   }
 }
 
-/// √(−2 ln u), u in [2⁻³³, 1]: no branch, no library call, so that a loop of it vectorises.
-inline float rayleigh_radius(float u) noexcept {
-  // u = m·2^e, m in [√½, √2); ln m = 2 artanh f, f = (m − 1)/(m + 1), |f| ≤ 0.172.
-  constexpr std::uint32_t root_half = 0x3F3504F3U;
-  const std::uint32_t bits = std::bit_cast<std::uint32_t>(u) - root_half;
-  const auto e = static_cast<float>(static_cast<std::int32_t>(bits) >> 23);
-  const float m = std::bit_cast<float>((bits & 0x007FFFFFU) + root_half);
-  const float f = (m - 1.0F) / (m + 1.0F);
-  const float g = f * f;
-  const float log_m = 2.0F * f * (1.0F + g * (1.0F / 3 + g * (1.0F / 5 + g * (1.0F / 7 + g / 9))));
-  const float x = -2.0F * (log_m + 0.69314718F * e);
-  // x·x^{−½}, the reciprocal root from its logarithm's bits and three steps of Newton's method.
-  float y = std::bit_cast<float>(0x5F3759DFU - (std::bit_cast<std::uint32_t>(x) >> 1));
-  for (int step = 0; step < 3; ++step) y *= 1.5F - 0.5F * x * y * y;
-  return x * y;
+#endif
+
+/// √(−2 ln u), u in [2⁻³³, 1].
+inline Floats rayleigh_radius(Floats u) noexcept {
+  // u = (1 + t)·2^e, 1 + t in [√½, √2); ln(1 + t) = t + t²·P(t), to 2e-8.
+  const Ints root_half = 0x3F3504F3;
+  const Ints bits = std::bit_cast<Ints>(u) - root_half;
+  const Floats e = stdx::static_simd_cast<Floats>(bits >> 23);
+  const Floats t = std::bit_cast<Floats>((bits & 0x007FFFFF) + root_half) - 1.0F;
+  const Floats p =
+      -0.499999971F +
+      t * (0.333336706F +
+           t * (-0.250011477F +
+                t * (0.199720497F +
+                     t * (-0.165884885F +
+                          t * (0.148347868F + t * (-0.141596470F + t * 0.0878726549F))))));
+  const Floats minus_log = -(t + t * t * p + 0.69314718F * e);
+  return stdx::sqrt(stdx::max(2.0F * minus_log, Floats(0.0F)));
 }
 
 /// 64 normals out of the 16 blocks from `first`: words 0 and 2 give radii, 1 and 3 angles.
 inline void normals(std::uint32_t first, std::array<std::uint32_t, 3> rest,
                     std::array<std::uint32_t, 2> key, float* __restrict out) noexcept {
+  static_assert(lanes % Floats::size() == 0);
   std::array<Words, 4> x;
   philox(first, rest, key, x);
+  const auto load = [](const std::uint32_t* from) {
+    return Ints([from](auto i) { return static_cast<std::int32_t>(from[i]); });
+  };
   for (std::size_t half = 0; half < 2; ++half) {
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < lanes; i += Floats::size()) {
       // By way of signed conversions, which are one instruction: (word + ½)/2³² in (0, 1) …
-      const float uniform =
-          static_cast<float>(static_cast<std::int32_t>(x[2 * half][i] >> 1)) * 0x1p-31F + 0x1p-33F;
+      const Ints top = (load(&x[2 * half][i]) >> 1) & 0x7FFFFFFF;
+      const Floats uniform = stdx::static_simd_cast<Floats>(top) * 0x1p-31F + 0x1p-33F;
       // … and an angle of −½ … ½ turns; h is half of it in radians.
-      const float h = static_cast<float>(static_cast<std::int32_t>(x[2 * half + 1][i])) *
-                      (0x1p-32F * 3.14159265F);
-      const float y = h * h;
-      // Taylor series of sin h and cos h, below 1e-7 for |h| ≤ π/2.
-      const float s =
+      const Floats h =
+          stdx::static_simd_cast<Floats>(load(&x[2 * half + 1][i])) * (0x1p-32F * 3.14159265F);
+      const Floats y = h * h;
+      // sin h and cos h for |h| ≤ π/2 by polynomials through Chebyshev nodes, to 7e-9 and 5e-8.
+      const Floats s =
           h *
-          (1.0F +
-           y * (-1.66666667e-1F +
-                y * (8.33333333e-3F +
-                     y * (-1.98412698e-4F +
-                          y * (2.75573192e-6F + y * (-2.50521084e-8F + y * 1.60590438e-10F))))));
-      const float c =
-          1.0F + y * (-0.5F + y * (4.16666667e-2F +
-                                   y * (-1.38888889e-3F +
-                                        y * (2.48015873e-5F +
-                                             y * (-2.75573192e-7F +
-                                                  y * (2.08767570e-9F + y * -1.14707456e-11F))))));
-      const float radius = rayleigh_radius(uniform);
-      out[2 * half * lanes + i] = radius * (c * c - s * s);       // cos of the angle
-      out[(2 * half + 1) * lanes + i] = radius * (2.0F * s * c);  // sin
+          (0.999999996F +
+           y * (-0.166666579F + y * (0.00833305017F + y * (-1.98090174e-4F + y * 2.60510764e-6F))));
+      const Floats c =
+          0.999999953F +
+          y * (-0.499999048F + y * (0.0416635732F + y * (-0.00138536295F + y * 2.31524167e-5F)));
+      const Floats radius = rayleigh_radius(uniform), twice = s + s;
+      // cos of the angle, 1 − 2 sin²h, and sin of it
+      (radius - radius * (twice * s)).copy_to(out + 2 * half * lanes + i, stdx::element_aligned);
+      (radius * (twice * c)).copy_to(out + (2 * half + 1) * lanes + i, stdx::element_aligned);
     }
   }
 }

@@ -41,6 +41,7 @@ std::vector<GrowingTable::Column> echo_columns() {
 
 std::vector<GrowingTable::Column> patch_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
+          {"boundary", "0 surface, 1 bottom, 2 volume", "", Type::int8},
           {"bearing_deg", "of the sector, clockwise from north; NaN: the whole ring", "degree"},
           {"range", "of the cell's centre from the source", "m"},
           {"area", "of the ring, or of this sector and its mirror image", "m2"},
@@ -163,6 +164,9 @@ void PingFileWriter::Impl::create_ping_datasets() {
                   scale, {targets});
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
+  growing<std::int32_t>("summary/array",
+                        "number of the array that hears the strongest pair, -1: none", "", scale,
+                        {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
   growing<double>("summary/echo_time", "delay of the strongest pair", "s", scale, {targets});
   growing<double>("summary/echo_level_db", "of the strongest pair, re 1 uPa", "dB", scale,
@@ -277,9 +281,10 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   every = std::max(every, step);
   for (std::size_t i = 0; i < record.patches.size(); i += std::max<std::size_t>(1, step)) {
     const PatchRow& p = record.patches[i];
-    patches.row({double(record.ping), compass_degrees(p.bearing), p.range, p.area, p.delay,
-                 degrees(p.grazing_in), degrees(p.grazing_out), degrees(p.launch_elevation),
-                 degrees(p.arrival_elevation), p.scattering_strength_db, p.level_db});
+    patches.row({double(record.ping), static_cast<double>(p.ground), compass_degrees(p.bearing),
+                 p.range, p.area, p.delay, degrees(p.grazing_in), degrees(p.grazing_out),
+                 degrees(p.launch_elevation), degrees(p.arrival_elevation),
+                 p.scattering_strength_db, p.level_db});
   }
   for (const HeardPath& p : record.interference)
     interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,
@@ -297,12 +302,13 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
 void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   if (scenario.targets.empty()) return;
   std::vector<std::int8_t> present;
-  std::vector<std::int32_t> paths;
+  std::vector<std::int32_t> array, paths;
   std::vector<double> time, level, reverberation, noise, peak, excess;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const TargetSummary row = i < record.summary.size() ? record.summary[i] : TargetSummary{};
     const bool heard = row.present && row.paths > 0;
     present.push_back(row.present ? 1 : 0);
+    array.push_back(heard ? row.array : -1);
     paths.push_back(row.paths);
     time.push_back(heard ? row.echo_time : missing);
     level.push_back(heard ? row.echo_level_db : missing);
@@ -312,6 +318,7 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
     excess.push_back(heard ? row.signal_excess_db : missing);
   }
   file.append<std::int8_t>("summary/present", present);
+  file.append<std::int32_t>("summary/array", array);
   file.append<std::int32_t>("summary/paths", paths);
   file.append<double>("summary/echo_time", time);
   file.append<double>("summary/echo_level_db", level);

@@ -68,11 +68,14 @@ std::vector<TargetSummary> PingFile::summary(std::size_t ping) const {
              level = column("echo_level_db"), reverberation = column("reverberation_db"),
              noise = column("noise_db"), peak = column("echo_peak_db"),
              excess = column("signal_excess_db");
+  // Files of before have no such column: the first array's, in most of them the only one.
+  const auto array = file_.has("summary/array") ? column("array") : std::vector<double>(n, 0.0);
   std::vector<std::string> names = file_.attribute_texts("target_index", "names");
   names.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     rows.push_back({.name = names[i],
                     .present = present[i] != 0.0,
+                    .array = static_cast<int>(array[i]),
                     .paths = static_cast<int>(paths[i]),
                     .echo_time = time[i],
                     .echo_level_db = level[i],

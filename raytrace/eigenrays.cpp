@@ -5,11 +5,13 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/layered/followed_branch.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
 #include "raytrace/tracing/marching_eigenrays.h"
@@ -110,6 +112,16 @@ FanLimits fan_of(const PathLimits& limits) {
 
 }  // namespace
 
+/// The layers of a layered ocean, and its fan where it is worth keeping.
+struct EigenraySolver::LayeredOcean {
+  std::vector<Layer> layers;
+  std::optional<OceanFan> fan;
+
+  explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
+    if (layers.size() <= OceanFan::most_layers) fan.emplace(layers);
+  }
+};
+
 /// The tracers of an environment by frequency: a sonar works at a few.
 struct EigenraySolver::Tracers {
   std::mutex mutex;
@@ -136,7 +148,8 @@ EigenraySolver::EigenraySolver(const Environment& environment)
            .expected = "a depth below the surface at " + std::to_string(top) + " m"});
   }
   if (layered_)
-    layers_ = make_layers(environment.water, environment.surface.depth, environment.bottom.depth);
+    water_ = std::make_shared<const LayeredOcean>(
+        make_layers(environment.water, environment.surface.depth, environment.bottom.depth));
 }
 
 std::shared_ptr<const RayTracer> EigenraySolver::tracer(double frequency) const {
@@ -176,7 +189,25 @@ BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return {Column(layers_, source_depth, receiver_depth), limits, &environment_};
+  return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
+          water_->fan ? &*water_->fan : nullptr, water_->layers};
+}
+
+std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
+                                              double receiver_depth, double range, double frequency,
+                                              const PathLimits& limits) const {
+  const bool horizontal = known.launch_elevation == 0.0;  // a ray that stays at its depth
+  if (!layered_ || horizontal || !(range >= least_range)) return std::nullopt;
+  if (source_depth == receiver_depth) {  // as in table()
+    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
+    receiver_depth += room_below ? depth_offset : -depth_offset;
+  }
+  return followed_branch(environment_, water_->layers,
+                         {.source_depth = source_depth,
+                          .receiver_depth = receiver_depth,
+                          .range = range,
+                          .frequency = frequency},
+                         known, limits);
 }
 
 Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,

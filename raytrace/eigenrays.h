@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,13 @@ class EigenraySolver {
                                            std::span<const ReceiverPoint> receivers,
                                            double frequency, const PathLimits& limits = {}) const;
 
+  /// A path of a layered ocean after its ends have moved by metres, from what it was: microseconds
+  /// where a search takes a fan. Null where a search might find something else (raytrace/layered/
+  /// followed_branch.h): then it has to be searched for. \param known  what find() gave
+  [[nodiscard]] std::optional<Arrival> follow(const Arrival& known, double source_depth,
+                                              double receiver_depth, double range, double frequency,
+                                              const PathLimits& limits = {}) const;
+
   /// The marching tracer of this ocean at a frequency [Hz], made when first asked for.
   [[nodiscard]] std::shared_ptr<const RayTracer> tracer(double frequency) const;
 
@@ -58,8 +66,9 @@ class EigenraySolver {
 
   Environment environment_;
   bool layered_;
-  std::vector<Layer> layers_;         // of a layered ocean
-  std::shared_ptr<Tracers> tracers_;  // shared by copies
+  struct LayeredOcean;
+  std::shared_ptr<const LayeredOcean> water_;  // shared by copies, as is what follows
+  std::shared_ptr<Tracers> tracers_;
 };
 
 }  // namespace asdic

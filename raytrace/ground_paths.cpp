@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
@@ -127,8 +126,11 @@ class BranchFollower {
         theta = std::clamp(theta - (range.value(theta) - r) / slope, lo, hi);
       }
       const double share = (r - near.range.value) / (far.range.value - near.range.value);
-      out_.push_back({cell, path(theta, r, delay.value(theta), range.slope(theta),
-                                 near.length + share * (far.length - near.length))});
+      // by the mean speed: L/τ is linear where L is not
+      const double tau = delay.value(theta);
+      const double mean_speed =
+          std::lerp(near.length / near.delay.value, far.length / far.delay.value, share);
+      out_.push_back({cell, path(theta, r, tau, range.slope(theta), tau * mean_speed)});
     }
   }
 
@@ -152,7 +154,8 @@ class BranchFollower {
         .grazing = std::atan2(builder_.sine_at_receiver(r), r.slowness * column.receiver_speed()),
         .horizontal_slowness = r.slowness,
         .slowness_slope = std::copysign(1.0 / per_slowness, slope / slowness_per_angle(r)),
-        .downward = branch.arrives_upward() ? -1.0 : 1.0};
+        .downward = branch.arrives_upward() ? -1.0 : 1.0,
+        .length = length};
   }
 
   const BranchTable& fan_;
@@ -186,18 +189,14 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
 std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
                                 const GroundLevel& level, double spacing, double max_range,
                                 double frequency, const PathLimits& limits) {
-  if (!level.boundary)
-    throw InputError({.where = "level",
-                      .got = "a depth of an ocean that varies with range",
-                      .expected = "a layered ocean (speed a function of depth, flat boundaries)"});
   const FanLimits fan{.lowest = -limits.max_launch_angle,
                       .highest = limits.max_launch_angle,
                       .max_surface_bounces = limits.max_surface_bounces,
                       .max_bottom_bounces = limits.max_bottom_bounces,
                       .faintest = limits.faintest};
   std::vector<CellPath> found;
-  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, *level.boundary,
-                                          spacing, max_range, frequency, fan))
+  for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, level, spacing,
+                                          max_range, frequency, fan))
     found.push_back({hit.cell,
                      {.delay = hit.delay,
                       .amplitude = hit.amplitude,
@@ -205,7 +204,8 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                       .grazing = hit.grazing,
                       .horizontal_slowness = hit.slowness,
                       .slowness_slope = 0.0,
-                      .downward = *level.boundary == BoundaryKind::surface ? -1.0 : 1.0}});
+                      .downward = hit.down,
+                      .length = hit.length}});
   return found;
 }
 

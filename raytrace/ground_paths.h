@@ -29,6 +29,7 @@ struct GroundPath {
   double horizontal_slowness = 0.0;  ///< dτ/dr along the boundary; over flat ground ξ [s/m]
   double slowness_slope = 0.0;  ///< d²τ/dr² [s/m²], held near caustics; 0 where it is not known
   double downward = 0.0;        ///< +1 where the path goes down at its end, −1 up
+  double length = 0.0;          ///< of the path [m]
 };
 
 /// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
@@ -62,10 +63,9 @@ class GroundPaths {
 /// and delay are right to a hundredth of the spacing; the amplitude follows from dr/dξ there. Near
 /// a caustic |dr/dξ| is held at the value where two coalescing rays have their greatest (Airy)
 /// amplitude, for the integral of intensity² over range diverges in ray theory. Over slopes, swell
-/// and fronts the fan is marched and `grazing` is the angle to the local tangent. \param level  a
-/// depth in the water only in a layered ocean   \param spacing of the grid [m]   \param max_range
-/// [m]   \param frequency  [Hz]
-/// \throws InputError ("level") for a depth in the water of an ocean that is not layered
+/// and fronts the fan is marched and `grazing` is the angle to the local tangent. A depth in
+/// the water lies where the water reaches so deep. \param spacing of the grid [m]   \param
+/// max_range [m]   \param frequency  [Hz]
 [[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                                        const GroundLevel& level, double spacing, double max_range,
                                        double frequency, const PathLimits& limits);

@@ -32,6 +32,13 @@ if [ "${1:-}" != --no-asan ]; then
   fi
 fi
 
+# Instructions of the kernels, on the portable build: what noise cannot disturb.
+if said=$(scripts/bench.sh --check 2>&1); then
+  verdict kernels good "$(grep -c ' %' <<<"$said") kernels within their counts"
+else
+  verdict kernels FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 if [ -z "${ASDIC:-}" ]; then
   cmake --preset ci >/dev/null && cmake --build --preset ci --target asdic_app >/dev/null
   ASDIC=$root/build/ci/bin/asdic
@@ -97,6 +104,14 @@ if [ -x build/ci/tests/property_study ]; then
   else
     verdict study-soak FAILED "$(grep kB <<<"$said" | head -n 1)"
   fi
+fi
+
+# 10 000 served updates and pings: none lost, no more memory after them.
+cd "$root"
+if said=$(/usr/bin/python3 tests/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then
+  verdict serve good "$(head -n 1 <<<"$said")"
+else
+  verdict serve FAILED "$(tail -n 1 <<<"$said")"
 fi
 
 [ "$failures" = 0 ] && echo "deep check: all good" || { echo "deep check: $failures failed"; exit 1; }

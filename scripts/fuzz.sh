@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 runs=${1:-1000000}
 shift || true
 targets=("$@")
-[ "${#targets[@]}" -gt 0 ] || targets=(env bty ssp brc sbp shd arr ray toml)
+[ "${#targets[@]}" -gt 0 ] || targets=(env bty ssp brc sbp shd arr ray toml serve)
 cmake --preset fuzz -DASDIC_BENCHMARKS=OFF >/dev/null
 cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" >/dev/null
 mkdir -p build/fuzz/found

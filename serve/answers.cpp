@@ -102,6 +102,10 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   double first = infinity;
   for (const EchoPath& echo : record.echoes) first = std::min(first, echo.heard.delay);
   line["first_echo"] = first;  // null where there is none
+  line["reused"] = {{"ocean", record.reuse.ocean},
+                    {"legs", record.reuse.legs_reused},
+                    {"legs_searched", record.reuse.legs_searched},
+                    {"reverberation", record.reuse.reverberation}};
   line["timings"] = timings(record.timings, served.prepare);
   line["latency"] = served.latency;
   line["behind"] = served.behind;

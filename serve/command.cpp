@@ -1,5 +1,6 @@
 #include "serve/command.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,10 @@ constexpr std::array<std::string_view, 5> kinds{"ping", "update", "state", "limi
 constexpr std::size_t longest_id = 128;  // bytes of JSON
 constexpr std::size_t longest_name = 64;
 
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
 /// Watches a text while it is parsed: so nothing deep is ever built.
 class Watch {
  public:
@@ -34,7 +39,9 @@ class Watch {
       open_.pop_back();
     } else if (event == Event::key) {
       const auto& name = parsed.get_ref<const std::string&>();
-      if (name.size() > longest_name) throw Refusal("json", "expected keys of at most 64 bytes");
+      if (name.empty() || name.size() > longest_name ||
+          !std::all_of(name.begin(), name.end(), plain))
+        throw Refusal("json", "expected keys of 1 to 64 letters, digits and \"_\"");
       if (!open_.back().insert(name).second)
         throw Refusal("json", refusal_text(name, "the key twice", "every key once"));
     }

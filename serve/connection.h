@@ -1,10 +1,9 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
-#include "serve/session.h"
+#include "serve/session_worker.h"
 
 namespace asio {
 class io_context;
@@ -12,14 +11,7 @@ class io_context;
 
 namespace asdic::serve {
 
-/// What the connections of a server share.
-struct Engine {
-  const SessionSettings& settings;
-  std::function<double()> clock;  ///< [s], never goes back
-  std::mutex busy;                ///< one command at a time computes and writes files
-};
-
-/// One client: bytes in, bytes out, and a thread that carries out its commands one after the other.
+/// One client: bytes in, bytes out, and a session with a thread of its own.
 ///
 /// All but that thread runs in the io_context's. Nothing grows: lines, waiting commands and
 /// answers that a slow reader has not taken are bounded; past the last no more is read from it.

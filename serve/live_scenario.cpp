@@ -10,6 +10,11 @@
 #include "serve/update.h"
 
 namespace asdic::serve {
+namespace {
+
+constexpr const char* what_files_hold = "a file that holds what docs/formats/scenario.md says";
+
+}  // namespace
 
 LiveScenario::LiveScenario(ScenarioSource source, DataFolder data, const SessionLimits& limits)
     : source_(std::move(source)),
@@ -51,8 +56,17 @@ LiveScenario::State LiveScenario::read_for_client(const Changes& changes) const 
   try {
     return read(changes);
   } catch (const InputError& error) {
-    throw refusal_of(error);
+    throw refusal(error, changes);
   }
+}
+
+Refusal LiveScenario::refusal(const InputError& error, const Changes& changes) const {
+  for (const auto& [section, value] : changes) {  // "--set SECTION: SECTION.key"
+    const bool here = error.fault().where.starts_with("--set " + section);
+    if (here && value.find("\"file\" = ") != std::string::npos)
+      return {"scenario", refusal_text(section, "", what_files_hold)};
+  }
+  return refusal_of(error, source_.path.string());
 }
 
 namespace {
@@ -106,18 +120,21 @@ LiveScenario::State LiveScenario::with(const PingChanges& wanted) const {
   return read_for_client(changes);
 }
 
-Refusal refusal_of(const InputError& error) {
+Refusal refusal_of(const InputError& error, const std::string& scenario) {
   const InputFault& fault = error.fault();
-  // "deep.toml:12: target.0.position", "--set platform: platform.velocity", "pings.sample_rate":
-  // the key is what comes last; a place in a file stays with us.
+  // "deep.toml:12: target.0.position", "--set platform: platform.velocity", "pings.sample_rate",
+  // "cast.csv:3: speed", "cast.csv": the key is what comes last.
   const auto colon = fault.where.rfind(": ");
   std::string key = colon == std::string::npos ? fault.where : fault.where.substr(colon + 2);
-  if (key.starts_with("--set ")) key = key.substr(6);
-  const bool is_key = std::all_of(key.begin(), key.end(), [](unsigned char c) {
+  const bool by_client = fault.where.starts_with("--set ");
+  if (by_client && colon == std::string::npos) key = key.substr(6);
+  const bool is_key = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '[' || c == ']';
   });
-  const bool is_file = colon == std::string::npos && key.find_first_of("/:") != std::string::npos;
-  return {"scenario", refusal_text(is_key && !is_file ? key : "a file", "", fault.expected)};
+  const bool ours = by_client || fault.where.starts_with(scenario + ":") ||
+                    (colon == std::string::npos && is_key && !fault.where.ends_with(".csv"));
+  if (!ours) return {"scenario", refusal_text("a file", "", what_files_hold)};
+  return {"scenario", refusal_text(is_key ? key : "the scenario", "", fault.expected)};
 }
 
 }  // namespace asdic::serve

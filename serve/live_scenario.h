@@ -54,6 +54,9 @@ class LiveScenario {
   /// \param now  at which the positions are meant where it does not say [s] \throws Refusal
   void update(const TomlValue& fields, double now);
 
+  /// What a client is told of a fault that comes to light when the scenario is used.
+  [[nodiscard]] Refusal refusal(const InputError& error) const { return refusal(error, changes_); }
+
   /// The override that says a beam's elevation, where the scenario says it. \param elevation [rad]
   [[nodiscard]] std::string elevation_override(int transmitter, double elevation) const;
 
@@ -66,6 +69,8 @@ class LiveScenario {
 
   [[nodiscard]] State read(const Changes& changes) const;  // \throws InputError, Refusal
   [[nodiscard]] State read_for_client(const Changes& changes) const;
+  /// What a client is told of a fault, with these changes.
+  [[nodiscard]] Refusal refusal(const InputError& error, const Changes& changes) const;
 
   ScenarioSource source_;
   DataFolder data_;
@@ -77,7 +82,9 @@ class LiveScenario {
 };
 
 /// A fault of a scenario in words for a client: its key and what is expected there, not what was
-/// found, which may be a line of a file.
-[[nodiscard]] Refusal refusal_of(const InputError& error);
+/// found, which may be a line of a file. Of a fault in a file not even what is expected, which may
+/// name its other values.
+/// \param scenario  path of the scenario's own file
+[[nodiscard]] Refusal refusal_of(const InputError& error, const std::string& scenario);
 
 }  // namespace asdic::serve

@@ -10,12 +10,19 @@ class Refusal : public std::runtime_error {
  public:
   /// \param code  for programs: handshake, token, json, command, value, limit, file, scenario,
   /// busy, closing, idle, run
-  Refusal(std::string code, const std::string& message)
-      : std::runtime_error(message), code_(std::move(code)) {}
+  /// Control characters of a client's own words are not passed on.
+  Refusal(std::string code, std::string message)
+      : std::runtime_error(printable(std::move(message))), code_(std::move(code)) {}
 
   [[nodiscard]] const std::string& code() const noexcept { return code_; }
 
  private:
+  static std::string printable(std::string text) {
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text;
+  }
+
   std::string code_;
 };
 

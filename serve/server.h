@@ -18,7 +18,7 @@ struct Address {
   std::string token;                  ///< that TCP's clients must know
 };
 
-/// Serves sessions to clients (docs/formats/serve.md).
+/// Serves sessions to clients (docs/formats/serve.md). The program ignores SIGPIPE.
 class Server {
  public:
   /// Opens the sockets; settings.report is told where it listens.

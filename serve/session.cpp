@@ -32,7 +32,8 @@ Session::Session(const SessionSettings& settings, std::function<double()> clock)
       clock_(std::move(clock)),
       start_(clock_()),
       live_(settings.scenario, settings.data, settings.limits),
-      turns_(live_.state().scenario) {}
+      turns_(live_.state().scenario),
+      propagation_(std::make_shared<SharedPropagation>(settings.limits.kept_bytes)) {}
 
 Answer Session::greeting() const {
   return {.line = greeting_line(live_.state().scenario, settings_.pace,
@@ -57,7 +58,7 @@ Answer Session::execute(const Command& command) {
   } catch (const Refusal& refusal) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const InputError& error) {  // out of building a simulator
-    const Refusal refusal = refusal_of(error);
+    const Refusal refusal = live_.refusal(error);
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const std::bad_alloc&) {
     return refusal_answer(command.id, "run", "not enough memory for this ping");
@@ -128,7 +129,7 @@ const PingSimulator& Session::simulator_of(LiveScenario::State state) {
   if (found != simulators_.end()) {
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
-    auto made = std::make_unique<PingSimulator>(std::move(state.scenario));
+    auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_);
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }

@@ -17,6 +17,7 @@
 #include "serve/session_limits.h"
 #include "serve/turns.h"
 #include "sonar/ping.h"
+#include "sonar/shared_propagation.h"
 
 namespace asdic::serve {
 
@@ -80,9 +81,10 @@ class Session {
   double start_;
   LiveScenario live_;
   Turns turns_;
-  int pings_ = 0;                    // done
-  std::list<Simulator> simulators_;  // the latest used first
-  std::filesystem::path folder_;     // of this session's files
+  int pings_ = 0;                                   // done
+  std::shared_ptr<SharedPropagation> propagation_;  // what was traced
+  std::list<Simulator> simulators_;                 // the latest used first
+  std::filesystem::path folder_;                    // of this session's files
   LatencyLog latency_;
 };
 

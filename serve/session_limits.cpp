@@ -19,6 +19,7 @@ std::span<const LimitName> limit_names() {
       LimitName{"patches", &L::patches},
       LimitName{"memory_bytes", &L::memory_bytes},
       LimitName{"file_bytes", &L::file_bytes},
+      LimitName{"kept_bytes", &L::kept_bytes},
       LimitName{"queued_pings", &L::queued_pings},
       LimitName{"connections", &L::connections},
       LimitName{"answer_bytes", &L::answer_bytes},

@@ -15,6 +15,7 @@ struct SessionLimits {
   std::size_t patches = 4'000'000;        ///< returns of the reverberation in one ping
   std::size_t memory_bytes = 1ULL << 32;  ///< that a ping may need
   std::size_t file_bytes = 16 << 20;      ///< of a file that a command names
+  std::size_t kept_bytes = 32 << 20;      ///< of sound paths that a session keeps for later pings
   std::size_t queued_pings = 8;           ///< commands that wait; further ones are answered "busy"
   std::size_t connections = 8;            ///< at a time
   std::size_t answer_bytes = 256U << 20;  ///< that wait for a slow reader

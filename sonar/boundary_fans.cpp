@@ -103,9 +103,10 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
     const Environment& ocean = solver->environment();
     fan.planes[i].paths = ground(*solver);
     fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
-    fan.planes[i].tilt =
-        tilts(level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
-              plane.cos_beta, *fan.planes[i].paths);
+    if (level.boundary)
+      fan.planes[i].tilt =
+          tilts(*level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
+                plane.cos_beta, *fan.planes[i].paths);
   });
   return fan;
 }

@@ -1,5 +1,6 @@
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -8,45 +9,222 @@
 #include "sonar/synthesis_plan.h"
 
 namespace asdic {
-/// p₊(t)·e^{−i2πf_c t} = A·c(u)·e^{i2π(f·u − f_c·t)}, u = u(t') − T/2 from the pulse's middle.
-void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
-                             Baseband& baseband) const {
-  const Plan& plan = plan_.front();
-  assert(baseband.channels == phones.size() && baseband.samples == plan.length);
-  const BandLimitedPulse& pulse = plan.pulses.front();
-  const auto period = static_cast<std::ptrdiff_t>(plan.length);
-  const double start = plan.recording.start;
-  const double record_end =
-      start + static_cast<double>(plan.recording.samples) / plan.recording.sample_rate;
-  const double longest = pulse.half_duration() / (1.0 - plan.max_doppler);
-  oneapi::tbb::parallel_for(std::size_t{0}, phones.size(), [&](std::size_t channel) {
-    std::complex<float>* row = baseband.values.data() + channel * plan.length;
-    for (const CurvedReturn& r : returns) {
-      if (r.straight.channel != Return::all_channels &&
-          r.straight.channel != static_cast<int>(channel))
-        continue;
-      const bool own = r.straight.channel != Return::all_channels;
-      const Vec3 x = own ? Vec3(Vec3::Zero()) : phones[channel];
-      const double ringing =
-          (pulse.half_duration() - 0.5 * plan.pulse_duration) / (1.0 - plan.max_doppler);
-      const auto& pieces = r.curve.pieces();
-      const double from = r.curve.first_heard() + pieces.front().first_slowness.dot(x) - ringing;
-      const double to = r.curve.last_heard() + pieces.back().last_slowness.dot(x) + ringing;
-      const double middle = 0.5 * (from + to);  // beyond these nothing reaches the record
-      if (middle < start - longest || middle > record_end + longest) continue;
-      const auto last = static_cast<std::ptrdiff_t>(std::floor((to - start) * plan.rate));
-      for (auto i = static_cast<std::ptrdiff_t>(std::ceil((from - start) * plan.rate)); i <= last;
-           ++i) {
-        const double t = start + static_cast<double>(i) / plan.rate;
-        const double u = r.curve.sent_at(t, x) - 0.5 * plan.pulse_duration;
-        const double cycles = pulse.centre_frequency() * u - plan.carrier * t;
-        const std::complex<double> value =
-            r.straight.amplitude * pulse.at(u) *
-            std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
-        row[(i % period + period) % period] += std::complex<float>(value);
+namespace {
+
+constexpr double left_out = 3e-5;                        // of an echo, −90 dB
+constexpr std::size_t most_kept = std::size_t{8} << 20;  // bytes of waveforms at one time
+
+std::complex<float> turned(double cycles) {
+  const auto turn = static_cast<float>(2.0 * pi * (cycles - std::nearbyint(cycles)));
+  return {std::cos(turn), std::sin(turn)};
+}
+
+/// A curved return on the baseband's grid: samples begin … end.
+struct GridSpan {
+  std::ptrdiff_t begin = 0, end = 0;
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
+};
+
+/// A return as it is heard at a few lags about the array's reference point,
+/// g(t − λ_k), g(τ) = A·c(u(τ))·e^{i2π(f·u(τ) − f_c·τ)}: between Chebyshev points λ_k of the
+/// phones' lags the band-limited g is a polynomial.
+struct Waveforms {
+  GridSpan span;
+  double lowest = 0.0, highest = 0.0;       // lags [s]
+  std::vector<double> lags, barycentric;    // [nodes] λ_k and their weights
+  std::vector<std::complex<float>> values;  // [nodes × samples]
+};
+
+}  // namespace
+
+/// p₊(t)·e^{−i2πf_c t} at one phone = A·c(u)·e^{i2π(f·u − f_c·t)}, u = u(t') − T/2 from the pulse's
+/// middle.
+class CurvedSynthesis {
+ public:
+  CurvedSynthesis(const Synthesizer::Plan& plan, std::span<const Vec3> phones, Baseband& baseband)
+      : plan_(plan),
+        pulse_(plan.pulses.front()),
+        phones_(phones),
+        baseband_(baseband),
+        start_(plan.recording.start),
+        half_band_(static_cast<double>(plan.highest_bin) * plan.recording.sample_rate /
+                   static_cast<double>(plan.passband_length)) {}
+
+  void add(std::span<const CurvedReturn> returns) {
+    for (std::size_t begin = 0, end = 0; begin < returns.size(); begin = end) {
+      std::vector<Waveforms> shared;
+      for (std::size_t bytes = 0; end < returns.size() && (end == begin || bytes < most_kept);
+           ++end) {
+        shared.push_back(for_array(returns[end]));
+        bytes += shared.back().lags.size() * shared.back().span.size() * sizeof(float) * 2;
+      }
+      const auto batch = returns.subspan(begin, end - begin);
+      oneapi::tbb::parallel_for(std::size_t{0}, batch.size(),
+                                [&](std::size_t i) { evaluate(batch[i], shared[i]); });
+      oneapi::tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+          const int own = batch[i].straight.channel;
+          if (own != Return::all_channels && own != static_cast<int>(channel)) continue;
+          if (shared[i].lags.empty())
+            add_alone(batch[i], channel, own != Return::all_channels);
+          else
+            add_shared(batch[i], shared[i], channel);
+        }
+      });
+    }
+  }
+
+ private:
+  [[nodiscard]] double time(std::ptrdiff_t i) const {
+    return start_ + static_cast<double>(i) / plan_.rate;
+  }
+  [[nodiscard]] std::size_t place(std::ptrdiff_t i) const {
+    const auto period = static_cast<std::ptrdiff_t>(plan_.length);
+    return static_cast<std::size_t>((i % period + period) % period);
+  }
+
+  /// Where a return is heard with lags between two; empty if nothing of it reaches the record.
+  [[nodiscard]] GridSpan span(const CurvedReturn& r, double lowest, double highest) const {
+    const double longest = pulse_.half_duration() / (1.0 - plan_.max_doppler);
+    const double ringing =
+        (pulse_.half_duration() - 0.5 * plan_.pulse_duration) / (1.0 - plan_.max_doppler);
+    const double from = r.curve.first_heard() + lowest - ringing,
+                 to = r.curve.last_heard() + highest + ringing, middle = 0.5 * (from + to);
+    const double record_end =
+        start_ + static_cast<double>(plan_.recording.samples) / plan_.recording.sample_rate;
+    if (middle < start_ - longest || middle > record_end + longest) return {};
+    return {.begin = static_cast<std::ptrdiff_t>(std::ceil((from - start_) * plan_.rate)),
+            .end = static_cast<std::ptrdiff_t>(std::floor((to - start_) * plan_.rate)) + 1};
+  }
+
+  /// Lags and nodes that serve all phones; none where phone by phone is no dearer.
+  [[nodiscard]] Waveforms for_array(const CurvedReturn& r) const {
+    Waveforms w;
+    if (r.straight.channel != Return::all_channels) return w;
+    const auto& pieces = r.curve.pieces();
+    const Vec3 middle = 0.5 * (pieces.front().first_slowness + pieces.back().last_slowness);
+    w.lowest = infinity;
+    w.highest = -infinity;
+    double turned_by = 0.0;  // a lag is this far from that by the middle slowness, at most [s]
+    for (const Vec3& x : phones_) {
+      w.lowest = std::min(w.lowest, middle.dot(x));
+      w.highest = std::max(w.highest, middle.dot(x));
+      for (const DelayCurve::Piece& piece : pieces)
+        for (const Vec3& s : {piece.first_slowness, piece.last_slowness})
+          turned_by = std::max(turned_by, std::abs((s - middle).dot(x)));
+    }
+    // That is neglected in g, whose phase turns by 2π·half_band a second, not in e^{−i2πf_c λ}.
+    if (!(2.0 * pi * half_band_ * turned_by < left_out)) return w;
+    // e^{izx} through N Chebyshev points errs by about 4(z/2)^N/N! (doppler_expansion.h).
+    const double z = pi * half_band_ * (w.highest - w.lowest);
+    std::size_t nodes = 1;
+    for (double error = 2.0 * z; error > left_out; error *= 0.5 * z / static_cast<double>(nodes))
+      if (2 * ++nodes > phones_.size()) return w;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const double theta = pi * (static_cast<double>(k) + 0.5) / static_cast<double>(nodes);
+      w.lags.push_back(0.5 * (w.lowest + w.highest) -
+                       0.5 * (w.highest - w.lowest) * std::cos(theta));
+      w.barycentric.push_back(k % 2 == 0 ? std::sin(theta) : -std::sin(theta));
+    }
+    w.span = span(r, w.lowest - turned_by, w.highest + turned_by);
+    return w;
+  }
+
+  void evaluate(const CurvedReturn& r, Waveforms& w) const {
+    w.values.resize(w.lags.size() * w.span.size());
+    std::complex<float>* out = w.values.data();
+    for (const double lag : w.lags)
+      for (std::ptrdiff_t i = w.span.begin; i < w.span.end; ++i) {
+        const double t = time(i) - lag;
+        const double u = r.curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
+        *out++ = std::complex<float>(r.straight.amplitude * pulse_.at(u)) *
+                 turned(pulse_.centre_frequency() * u - plan_.carrier * t);
+      }
+  }
+
+  /// ℓ_k(λ): Lagrange's polynomials in barycentric form.
+  [[nodiscard]] static std::vector<float> weights(const Waveforms& w, double lag) {
+    std::vector<float> weight(w.lags.size(), 0.0F);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < w.lags.size(); ++k) {
+      const double distance = lag - w.lags[k];
+      if (std::abs(distance) < 1e-15 || w.lags.size() == 1) {  // on the node
+        std::fill(weight.begin(), weight.end(), 0.0F);
+        weight[k] = 1.0F;
+        return weight;
+      }
+      sum += w.barycentric[k] / distance;
+    }
+    for (std::size_t k = 0; k < w.lags.size(); ++k)
+      weight[k] = static_cast<float>(w.barycentric[k] / ((lag - w.lags[k]) * sum));
+    return weight;
+  }
+
+  /// g(t − λ)·e^{−i2πf_c λ(t)}, λ(t) straight in every stretch of the curve.
+  void add_shared(const CurvedReturn& r, const Waveforms& w, std::size_t channel) {
+    const Vec3& x = phones_[channel];
+    const auto& pieces = r.curve.pieces();
+    const std::vector<float> weight =
+        weights(w, 0.5 * (pieces.front().first_slowness + pieces.back().last_slowness).dot(x));
+    std::complex<float>* row = baseband_.values.data() + channel * plan_.length;
+    std::size_t at = place(w.span.begin);
+    std::ptrdiff_t i = w.span.begin;
+    for (std::size_t p = 0; p < pieces.size() && i < w.span.end; ++p) {
+      const DelayCurve::Piece& piece = pieces[p];
+      const double first_lag = piece.first_slowness.dot(x), last_lag = piece.last_slowness.dot(x);
+      const auto end =
+          p + 1 == pieces.size()
+              ? w.span.end
+              : std::min(w.span.end, static_cast<std::ptrdiff_t>(std::floor(
+                                         (piece.heard.back() + last_lag - start_) * plan_.rate)) +
+                                         1);
+      const double slope =
+          (last_lag - first_lag) / (piece.heard.back() - piece.heard.front());  // dλ/dt
+      const double cycles = plan_.carrier * (first_lag + slope * (time(i) - piece.heard.front()));
+      std::complex<double> turn = std::polar(1.0, -2.0 * pi * (cycles - std::nearbyint(cycles)));
+      const std::complex<double> step =
+          std::polar(1.0, -2.0 * pi * plan_.carrier * slope / plan_.rate);
+      for (; i < end; ++i) {
+        std::complex<float> sum = 0.0F;
+        const std::complex<float>* value = w.values.data() + (i - w.span.begin);
+        for (const float k : weight) {
+          sum += k * *value;
+          value += w.span.size();
+        }
+        row[at] += sum * std::complex<float>(turn);
+        turn *= step;
+        if (++at == plan_.length) at = 0;
       }
     }
-  });
+  }
+
+  void add_alone(const CurvedReturn& r, std::size_t channel, bool own) {
+    const Vec3 x = own ? Vec3(Vec3::Zero()) : phones_[channel];
+    const auto& pieces = r.curve.pieces();
+    const GridSpan heard =
+        span(r, pieces.front().first_slowness.dot(x), pieces.back().last_slowness.dot(x));
+    std::complex<float>* row = baseband_.values.data() + channel * plan_.length;
+    std::size_t at = place(heard.begin);
+    for (std::ptrdiff_t i = heard.begin; i < heard.end; ++i) {
+      const double t = time(i);
+      const double u = r.curve.sent_at(t, x) - 0.5 * plan_.pulse_duration;
+      row[at] += std::complex<float>(r.straight.amplitude * pulse_.at(u)) *
+                 turned(pulse_.centre_frequency() * u - plan_.carrier * t);
+      if (++at == plan_.length) at = 0;
+    }
+  }
+
+  const Synthesizer::Plan& plan_;
+  const BandLimitedPulse& pulse_;
+  std::span<const Vec3> phones_;
+  Baseband& baseband_;
+  double start_, half_band_;
+};
+
+void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
+                             Baseband& baseband) const {
+  assert(baseband.channels == phones.size() && baseband.samples == plan_.front().length);
+  CurvedSynthesis(plan_.front(), phones, baseband).add(returns);
 }
 
 }  // namespace asdic

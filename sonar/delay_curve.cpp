@@ -39,6 +39,16 @@ std::optional<double> sent_at_turn(const MovingPath& path, const PulseMoment& fi
 
 }  // namespace
 
+DelayCurve::DelayCurve(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  for (const Piece& piece : pieces_) {
+    std::array<double, points> d = piece.sent;
+    for (std::size_t order = 1; order < points; ++order)
+      for (std::size_t k = points - 1; k >= order; --k)
+        d[k] = (d[k] - d[k - 1]) / (piece.heard[k] - piece.heard[k - order]);
+    differences_.push_back({d[1], d[2], d[3]});
+  }
+}
+
 double DelayCurve::sent_at(double heard, const Vec3& phone) const noexcept {
   const auto piece = std::find_if(pieces_.begin(), std::prev(pieces_.end()), [&](const Piece& p) {
     return heard - p.last_slowness.dot(phone) <= p.heard.back();
@@ -49,14 +59,10 @@ double DelayCurve::sent_at(double heard, const Vec3& phone) const noexcept {
   const double lag = piece->first_slowness.dot(phone) +
                      share * (piece->last_slowness - piece->first_slowness).dot(phone);
   const double t = heard - lag;
-  double sum = 0.0;  // Lagrange's polynomial, from the first node on to keep the digits
-  for (std::size_t k = 1; k < points; ++k) {
-    double basis = 1.0;
-    for (std::size_t j = 0; j < points; ++j)
-      if (j != k) basis *= (t - piece->heard[j]) / (piece->heard[k] - piece->heard[j]);
-    sum += basis * (piece->sent[k] - piece->sent[0]);
-  }
-  return piece->sent[0] + sum;
+  // u = u₀ + (t − t₀)·(d₁ + (t − t₁)·(d₂ + (t − t₂)·d₃))
+  const auto& d = differences_[static_cast<std::size_t>(piece - pieces_.begin())];
+  const auto& at = piece->heard;
+  return piece->sent[0] + (t - at[0]) * (d[0] + (t - at[1]) * (d[1] + (t - at[2]) * d[2]));
 }
 
 double curvature_phase(double frequency, double duration, double speed, double length,

@@ -31,7 +31,7 @@ class DelayCurve {
     std::array<double, 4> heard, sent;
     Vec3 first_slowness = Vec3::Zero(), last_slowness = Vec3::Zero();
   };
-  explicit DelayCurve(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {}
+  explicit DelayCurve(std::vector<Piece> pieces);
 
   /// u(t − s(t)·x): when was sent what a phone hears. Before the first and after the last stretch
   /// these go on. \param heard  t, since the leading edge left [s]   \param phone  x, from the
@@ -43,6 +43,8 @@ class DelayCurve {
 
  private:
   std::vector<Piece> pieces_;
+  /// Newton's divided differences of u over `heard`, from the second on: [pieces]
+  std::vector<std::array<double, 3>> differences_;
 };
 
 /// A return whose delay is a curve: a phone at x hears Re{amplitude · s₊(u(t − s(t)·x))}.

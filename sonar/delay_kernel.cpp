@@ -48,6 +48,11 @@ DelayKernel::DelayKernel() {
   }
 }
 
+const DelayKernel& DelayKernel::shared() {
+  static const DelayKernel kernel;
+  return kernel;
+}
+
 double DelayKernel::spectrum(double frequency) const noexcept {
   const double a = pi * taps * frequency;
   const double root = std::sqrt(beta * beta - a * a);  // real inside the band

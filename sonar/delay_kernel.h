@@ -22,6 +22,8 @@ class DelayKernel {
   using Lanes = Eigen::Array<float, 2 * taps, 1>;
 
   DelayKernel();
+  /// One is as good as another.
+  [[nodiscard]] static const DelayKernel& shared();
 
   /// \param fraction  of the impulse's place after the sample below it, in [0, 1)
   [[nodiscard]] Lanes weights(float fraction) const noexcept {

@@ -62,7 +62,8 @@ struct Interference::Stretch {
 Interference::Interference(const Scenario& scenario, const PropagationPaths& paths)
     : scenario_(scenario),
       paths_(paths),
-      frequency_(Pulse(pulse_of(scenario, 0)).centre_frequency()),
+      frequency_(scenario.interferers.empty() ? 0.0
+                                              : Pulse(pulse_of(scenario, 0)).centre_frequency()),
       rate_(recorded_rate(scenario)),
       carrier_(recorded_carrier(scenario)),
       // Twice oversampled, for the interpolation: the band is half of the rate.

@@ -1,5 +1,6 @@
 #include "sonar/levels.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -22,23 +23,27 @@ void LevelMeter::add_noise(double variance) {
 }
 
 void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<float>& into) const {
-  std::vector<double> power(into.size(), 0.0);
-  std::vector<std::size_t> count(into.size(), 0);
-  for (std::size_t n = 0; n < heard.channels; ++n) {
-    const auto row = heard.channel(n);
-    for (std::size_t i = 0; i < heard.recorded; ++i) {
-      const auto step = std::min(
-          into.size() - 1,
-          static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
-      power[step] += static_cast<double>(std::norm(row[i]));
-      ++count[step];
+  if (heard.channels == 0) return;
+  const auto step_of = [&](std::size_t i) {
+    return std::min(
+        into.size() - 1,
+        static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
+  };
+  for (std::size_t begin = 0, end = 0; begin < heard.recorded; begin = end) {
+    const std::size_t step = step_of(begin);
+    for (end = begin + 1; end < heard.recorded && step_of(end) == step;) ++end;
+    double power = 0.0;
+    for (std::size_t n = 0; n < heard.channels; ++n) {
+      const auto* parts = reinterpret_cast<const float*>(heard.channel(n).data() + begin);
+      power += static_cast<double>(
+          Eigen::Map<const Eigen::ArrayXf>(parts, static_cast<Eigen::Index>(2 * (end - begin)))
+              .square()
+              .sum());
     }
+    // mean square of a tone is half its envelope's square
+    into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power /
+                                     static_cast<double>(heard.channels * (end - begin)));
   }
-  for (std::size_t step = 0; step < into.size();
-       ++step)  // mean square of a tone is half its envelope's square
-    if (count[step] > 0)
-      into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power[step] /
-                                       static_cast<double>(count[step]));
 }
 
 namespace {
@@ -70,36 +75,40 @@ double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& p
 
 }  // namespace
 
-std::vector<TargetSummary> summarise(const PingRecord& record, const Scenario& scenario,
-                                     const Pulse& pulse,
-                                     const std::function<double(double)>& reverberation_db) {
+std::vector<TargetSummary> summarise(
+    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
+    const std::function<double(int array, double time)>& reverberation_db) {
   std::vector<TargetSummary> summary;
+  const double source_level_db =
+      scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const Target& target = scenario.targets[i];
     TargetSummary row{
         .name = target.name,
         .present = record.ping >= target.first_ping && record.ping <= target.last_ping};
     const EchoPath* strongest = nullptr;
-    std::vector<const EchoPath*> heard;
-    for (const EchoPath& echo : record.echoes) {
-      if (echo.target != static_cast<int>(i)) continue;
-      ++row.paths;
-      if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
-        heard.push_back(&echo);
-      if (strongest == nullptr || echo.level_db > strongest->level_db) strongest = &echo;
-    }
+    for (const EchoPath& echo : record.echoes)
+      if (echo.target == static_cast<int>(i) &&
+          (strongest == nullptr || echo.level_db > strongest->level_db))
+        strongest = &echo;
     row.echo_level_db = row.echo_peak_db = row.signal_excess_db = -infinity;
     row.echo_time = std::nan("");
     row.reverberation_db = -infinity;
     row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
     if (strongest != nullptr) {
+      row.array = strongest->array;
+      std::vector<const EchoPath*> heard;
+      for (const EchoPath& echo : record.echoes) {
+        if (echo.target != static_cast<int>(i) || echo.array != row.array) continue;
+        ++row.paths;
+        if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
+          heard.push_back(&echo);
+      }
       row.echo_time = strongest->heard.delay;
       row.echo_level_db = strongest->level_db;
-      row.reverberation_db = reverberation_db(strongest->heard.delay +
-                                              0.5 * pulse.duration() / strongest->heard.doppler);
-      row.echo_peak_db = peak_of_sum_db(
-          heard, pulse,
-          scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db);
+      row.reverberation_db = reverberation_db(
+          row.array, strongest->heard.delay + 0.5 * pulse.duration() / strongest->heard.doppler);
+      row.echo_peak_db = peak_of_sum_db(heard, pulse, source_level_db);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
     }

@@ -31,10 +31,11 @@ class LevelMeter {
   LevelSeries series_;
 };
 
-/// What a ping's echoes come to, one per target: the strongest path pair against reverberation and
-/// noise at its time. \param reverberation_db  expected level at a time [dB re 1 µPa]
+/// What a ping's echoes come to, one per target: the strongest path pair, at the array that hears
+/// it, against reverberation and noise at its time. \param reverberation_db  expected level at an
+/// array at a time [dB re 1 µPa]
 [[nodiscard]] std::vector<TargetSummary> summarise(
     const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
-    const std::function<double(double)>& reverberation_db);
+    const std::function<double(int array, double time)>& reverberation_db);
 
 }  // namespace asdic

@@ -1,13 +1,11 @@
 #include "sonar/ping.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -16,9 +14,9 @@
 #include "sonar/levels.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 #include "sonar/sparse_sound.h"
-#include "sonar/stream.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
@@ -42,6 +40,10 @@ std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
                                                  SharedPropagation* shared, bool& known) {
   if (shared != nullptr) return shared->paths(scenario.environment, scenario.transect, &known);
   return std::make_shared<const PropagationPaths>(scenario.environment, scenario.transect);
+}
+
+double end_of(const Recording& recording) {
+  return recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
 }
 
 }  // namespace
@@ -89,8 +91,6 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
   }
   record.recording = recording_of(scenario_);
   if (schedule.continuous) record.recording.epoch = sent.time;
-  record.pressure.assign(
-      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
   return record;
 }
 
@@ -121,64 +121,121 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return heard;
 }
 
-PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
-  Stopwatch watch;
-  const Transmitter projector = projector_of(scenario_, sent);
+/// What a ping is for all who hear it.
+struct PingSimulator::Emission {
+  const Transmission& sent;
+  Transmitter projector;
+  const Pulse& pulse;
+  BeamPattern pattern;
+};
+
+PingSimulator::Emission PingSimulator::emit(const Transmission& sent) const {
+  Transmitter projector = projector_of(scenario_, sent);
   const Pulse& sent_pulse = pulse(sent.transmitter);
   const double frequency = sent_pulse.centre_frequency();
-  PingRecord record = blank_record(ping, sent);
-
-  const double local_speed = paths_->speed_at(record.platform.position);
+  const double local_speed =
+      paths_->speed_at(transmitter_at(scenario_, sent.transmitter, sent.time).position);
   const double heading = platform_heading(scenario_, projector.platform, sent.time);
-  const BeamPattern pattern(projector, local_speed / frequency, local_speed, heading);
-  const double peak_pressure = std::numbers::sqrt2 * amplitude_from_db(projector.source_level_db) *
+  BeamPattern pattern(projector, local_speed / frequency, local_speed, heading);
+  return {sent, std::move(projector), sent_pulse, std::move(pattern)};
+}
+
+EchoContext PingSimulator::echo_context(const Emission& emission, int array,
+                                        PingRecord& record) const {
+  return {.paths = *paths_,
+          .scenario = scenario_,
+          .pattern = emission.pattern,
+          .frequency = emission.pulse.centre_frequency(),
+          .ping_time = emission.sent.time,
+          .transmitter = emission.sent.transmitter,
+          .array = array,
+          .ping = record.ping,
+          .turn = emission.sent.turn,
+          .pulse = &emission.pulse,
+          .reuse = &record.reuse};
+}
+
+/// Reverberation: source → scatterer → array.
+PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
+                                               PingRecord& record,
+                                               std::span<const BandPoint> band) const {
+  return reverberation_->ping({.pattern = emission.pattern,
+                               .pulse = emission.pulse,
+                               .transmitter = emission.sent.transmitter,
+                               .array = array,
+                               .time = emission.sent.time,
+                               .ping = static_cast<std::uint32_t>(record.ping),
+                               .latest = end_of(record.recording),
+                               .reuse = &record.reuse,
+                               .band = band});
+}
+
+PingRecord PingSimulator::levels(int ping) const {
+  Stopwatch watch;
+  const Emission emission = emit(transmission(ping));
+  PingRecord record = blank_record(ping, emission.sent);
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
+    sparse_returns(echo_context(emission, static_cast<int>(a), record), record);
+  record.timings.eigenrays = watch.lap();
+  std::map<int, PingReverberation> heard;  // by array, where an echo is strongest
+  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
+    auto at = heard.find(array);
+    if (at == heard.end())
+      at = heard.emplace(array, reverberation(emission, array, record, {})).first;
+    return at->second.expected_db(time);
+  });
+  record.timings.rays = watch.lap();
+  return record;
+}
+
+PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
+  Stopwatch watch;
+  const Emission emission = emit(sent);
+  PingRecord record = blank_record(ping, sent);
+  record.pressure.assign(
+      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
+  const double peak_pressure = std::numbers::sqrt2 *
+                               amplitude_from_db(emission.projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
-  const Synthesizer synthesizer(sent_pulse, record.recording, max_doppler_);
+  const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_);
+  std::optional<ReverberationBand> band;
+  std::optional<Synthesizer> coloured;
+  if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
+    band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
+                 platform_heading(scenario_, emission.projector.platform, sent.time),
+                 emission.pulse.centre_frequency(), synthesizer.half_band(),
+                 end_of(record.recording));
+    coloured.emplace(band->synthesizer(emission.pulse, record.recording, max_doppler_));
+  }
   record.timings.synthesis = watch.lap();
 
   LevelMeter levels(record.recording);
-  Baseband heard, reverberated;                  // of all channels
-  std::vector<PingReverberation> reverberation;  // [arrays]
+  Baseband heard, reverberated;              // of all channels
+  std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const std::vector<Vec3> phones = phones_at(scenario_, static_cast<int>(a), ping, sent.time);
-    const EchoContext context{.paths = *paths_,
-                              .scenario = scenario_,
-                              .pattern = pattern,
-                              .frequency = frequency,
-                              .ping_time = sent.time,
-                              .transmitter = sent.transmitter,
-                              .array = static_cast<int>(a),
-                              .ping = ping,
-                              .turn = sent.turn,
-                              .pulse = &sent_pulse,
-                              .reuse = &record.reuse};
+    const EchoContext context = echo_context(emission, static_cast<int>(a), record);
     const std::vector<EchoPath> sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
-    Baseband of_array =
-        scenario_.propagation.wide_band
-            ? wide_band_sound(context, projector, sparse, phones, record.recording, max_doppler_)
-            : narrow_band_sound(synthesizer, sparse, phones);
+    Baseband of_array = scenario_.propagation.wide_band
+                            ? wide_band_sound(context, emission.projector, sparse, phones,
+                                              record.recording, max_doppler_)
+                            : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
-    // Reverberation: source → scatterer → array.
-    reverberation.push_back(reverberation_->ping(
-        {.pattern = pattern,
-         .pulse = sent_pulse,
-         .transmitter = sent.transmitter,
-         .array = static_cast<int>(a),
-         .time = sent.time,
-         .ping = static_cast<std::uint32_t>(ping),
-         .latest = record.recording.start +
-                   static_cast<double>(record.recording.samples) / record.recording.sample_rate,
-         .reuse = &record.reuse}));
+    record.timings.synthesis += watch.lap();
+    scattered.push_back(reverberation(emission, static_cast<int>(a), record,
+                                      band ? band->points() : std::span<const BandPoint>()));
     record.timings.rays += watch.lap();
-    if (a == 0) record.patches = reverberation.back().rows(most_patch_rows).rows;
+    if (a == 0) record.patches = scattered.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
-    append_channels(reverberated, synthesizer.baseband(reverberation.back(), phones));
+    if (scenario_.reverberation.enabled)
+      append_channels(reverberated,
+                      (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones));
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
-  std::transform(heard.values.begin(), heard.values.end(), reverberated.values.begin(),
+  std::transform(reverberated.values.begin(), reverberated.values.end(), heard.values.begin(),
                  heard.values.begin(), std::plus<>{});
   receivers_.respond(heard);
   synthesizer.add_samples(heard, peak_pressure, record.pressure);
@@ -186,8 +243,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
 
   levels.add_noise(noise_.recorded_power());
   record.levels = levels.series();
-  record.summary = summarise(record, scenario_, sent_pulse,
-                             [&](double t) { return reverberation.front().expected_db(t); });
+  record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
+    return scattered[static_cast<std::size_t>(array)].expected_db(time);
+  });
   record.timings.noise = watch.lap();
   return record;
 }
@@ -237,45 +295,6 @@ PingRecord PingSimulator::simulate(int ping, const Transmission& sent) const {
   PingRecord record = sound(ping, sent);
   complete(record);
   return record;
-}
-
-int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
-              const PingOptions& options) {
-  const int count = simulator.pings();
-  const bool continuous = simulator.scenario().pings.continuous;
-  Stream stream(simulator.scenario());
-  ReceiverElectronics::Carried carried;
-  int next = 1, done = 0;
-  // Two pings in flight a thread keep the writer fed; more would only cost memory.
-  const auto in_flight =
-      static_cast<std::size_t>(std::max(2, tbb::this_task_arena::max_concurrency()));
-  tbb::parallel_pipeline(
-      in_flight,
-      tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
-                                  [&](tbb::flow_control& flow) {
-                                    if (next > count || options.stop.stop_requested()) {
-                                      flow.stop();
-                                      return 0;
-                                    }
-                                    return next++;
-                                  }) &
-          tbb::make_filter<int, std::shared_ptr<PingRecord>>(
-              tbb::filter_mode::parallel,
-              [&](int ping) {
-                return std::make_shared<PingRecord>(continuous ? simulator.sound(ping)
-                                                               : simulator.simulate(ping));
-              }) &
-          tbb::make_filter<std::shared_ptr<PingRecord>, void>(
-              tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
-                if (continuous) {
-                  stream.take(*record);
-                  simulator.complete(*record, &carried);
-                }
-                sink(std::move(*record));
-                ++done;
-                if (options.progress) options.progress(done);
-              }));
-  return done;
 }
 
 }  // namespace asdic

@@ -42,6 +42,11 @@ class PingSimulator {
   /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
   void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
 
+  /// What a study asks of a ping when it asks for no samples: legs, echoes and the summary of
+  /// simulate(), bit for bit, and the places of things. Nothing is synthesised and no noise is
+  /// drawn: pressure, level series, patches and interference stay empty.
+  [[nodiscard]] PingRecord levels(int ping) const;
+
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
   [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_->along_transect(); }
@@ -61,8 +66,15 @@ class PingSimulator {
 
  private:
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
-  [[nodiscard]] std::vector<EchoPath> sparse_returns(const EchoContext& context,
-                                                     PingRecord& record) const;
+  /// Echoes and direct blasts, also put into the record with their legs.
+  std::vector<EchoPath> sparse_returns(const EchoContext& context, PingRecord& record) const;
+  struct Emission;
+  [[nodiscard]] Emission emit(const Transmission& sent) const;
+  [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
+                                         PingRecord& record) const;
+  [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
+                                                PingRecord& record,
+                                                std::span<const BandPoint> band) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;

@@ -41,13 +41,15 @@ struct EchoPath {
 /// What scatters back from one ground cell, by one path pair: from the whole ring in a layered
 /// ocean, otherwise from the sector at `bearing` and the one mirrored about the transect.
 struct PatchRow {
-  double bearing = 0.0;           ///< of the sector, clockwise from north [rad]; NaN: whole ring
-  double range = 0.0;             ///< of the cell's centre from the source [m]
-  double area = 0.0;              ///< of the ring, or of the sectors [m²]
-  double delay = 0.0;             ///< two-way [s]
-  double grazing_in = 0.0;        ///< [rad]
-  double grazing_out = 0.0;       ///< [rad]
-  double launch_elevation = 0.0;  ///< of the outgoing path [rad]
+  enum class Ground { surface, bottom, volume };
+  Ground ground = Ground::surface;  ///< what scatters
+  double bearing = 0.0;             ///< of the sector, clockwise from north [rad]; NaN: whole ring
+  double range = 0.0;               ///< of the cell's centre from the source [m]
+  double area = 0.0;                ///< of the ring, or of the sectors [m²]
+  double delay = 0.0;               ///< two-way [s]
+  double grazing_in = 0.0;          ///< [rad]
+  double grazing_out = 0.0;         ///< [rad]
+  double launch_elevation = 0.0;    ///< of the outgoing path [rad]
   double arrival_elevation =
       0.0;  ///< of the returning path at the array, direction of travel [rad]
   double scattering_strength_db = 0.0;  ///< of that pair of angles [dB]
@@ -78,9 +80,10 @@ struct HeardPath {
 struct TargetSummary {
   std::string name;
   bool present = false;
-  int paths = 0;                  ///< path pairs
-  double echo_time = 0.0;         ///< of the strongest pair [s]
-  double echo_level_db = 0.0;     ///< of the strongest pair [dB re 1 µPa]
+  int array = 0;               ///< that hears the strongest pair: all that follows is heard there
+  int paths = 0;               ///< path pairs
+  double echo_time = 0.0;      ///< of the strongest pair [s]
+  double echo_level_db = 0.0;  ///< of the strongest pair [dB re 1 µPa]
   double reverberation_db = 0.0;  ///< expected level at that time [dB re 1 µPa]
   double noise_db = 0.0;          ///< in the pulse's band [dB re 1 µPa]
   double echo_peak_db = 0.0;  ///< all paths together, as they add at the array's reference point:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "raytrace/ocean/slice.h"
@@ -137,24 +138,31 @@ Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequen
 
 Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits, Reuse* reuse) const {
-  if (layered_) return find(from, to, frequency, limits_around(known, limits), reuse);
   ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
-  for (const Arrival& path : known)  // launch angle and history: all that a path is followed by
+  for (const Arrival& path : known)  // angle and history: all that a path is followed by
     key.add(path.launch_elevation)
+        .add(path.horizontal_slowness)
         .add(path.surface_bounces)
         .add(path.bottom_bounces)
         .add(path.upper_turns)
         .add(path.lower_turns)
         .add(path.caustics);
   return recall_or(key, reuse, [&] {
-    const Plane line = plane(from, to);
-    const RayTracer tracer(slice(along_.environment(), line.origin, line.cos_beta), frequency);
+    const double range = separation(from, to).range;
+    std::optional<RayTracer> tracer;
+    if (!layered_) {
+      const Plane line = plane(from, to);
+      tracer.emplace(slice(along_.environment(), line.origin, line.cos_beta), frequency);
+    }
     Arrivals followed;
     for (const Arrival& path : known) {
-      auto same = followed_path(tracer, path, from.z(), to.z(), separation(from, to).range);
-      if (!same) return search(from, to, frequency, limits);
+      auto same = layered_ ? along_.follow(path, from.z(), to.z(), range, frequency, limits)
+                           : followed_path(*tracer, path, from.z(), to.z(), range);
+      if (!same) return search(from, to, frequency, limits_around(known, limits));
       followed.push_back(std::move(*same));
     }
+    std::stable_sort(followed.begin(), followed.end(),
+                     [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
     return followed;
   });
 }

@@ -59,9 +59,9 @@ class PropagationPaths {
   /// All eigenrays from one place to another, sorted by delay. \param reuse  counts what was known
   [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
                               const PathLimits& limits, Reuse* reuse = nullptr) const;
-  /// The same paths after the places have moved by metres: searched anew in a layered ocean, where
-  /// that costs microseconds, otherwise each followed from what it was (and searched anew if one
-  /// cannot be). \param known  paths between two places nearby
+  /// The same paths after the places have moved by metres, each followed from what it was, sorted
+  /// by delay; all of them searched anew, no wider than they ask for, if one cannot be. \param
+  /// known paths between two places nearby
   [[nodiscard]] Arrivals follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                 double frequency, const PathLimits& limits,
                                 Reuse* reuse = nullptr) const;

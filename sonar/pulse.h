@@ -24,6 +24,8 @@ struct PulseSettings {
       {};                    ///< file: real pressure samples, scaled so that the peak envelope is 1
   double sample_rate = 0.0;  ///< file: [Hz]
   std::string file = {};     ///< file: where the samples came from, for the record
+
+  [[nodiscard]] bool operator==(const PulseSettings&) const = default;
 };
 
 /// A transmitted pulse s₊(t), analytic, of unit peak envelope before its window; t = 0 is the

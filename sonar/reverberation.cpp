@@ -69,8 +69,14 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
   blocks_ = by_sectors_ ? sector_blocks() : rings_;
 }
 
+/// Not so where a platform has left the anchor behind: then rings around it are not hers.
+bool PingReverberation::all_round(const ScatteringField& field) const noexcept {
+  const Vec2 source = field.sheet.ends().source.position.head<2>();
+  return field.sheet.all_round() && (source - field.grid.anchor).norm() < 0.5 * field.grid.spacing;
+}
+
 std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
-  if (field.sheet.all_round()) return {0};
+  if (all_round(field)) return {0};
   const auto rings = static_cast<int>(std::max(1U, field.grid.rings));
   const int n = std::min(std::clamp(400'000 / rings, 12, 36), field.grid.azimuths);
   std::vector<int> sectors;
@@ -107,14 +113,13 @@ void PingReverberation::find_limits() {
             field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
             const double share = double(stands_for) / count, area = ring_area(field.grid, ring);
             double loudest = 0.0;
-            for (const PathPair& pair : pairs.found)
-              loudest = std::max(loudest, std::norm(pair.amplitude));
+            for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
             for (const PathPair& pair : pairs.found) {
-              if (std::norm(pair.amplitude) < faintest * loudest) continue;
+              if (pair.power < faintest * loudest) continue;
               out.push_back({{.place = first_place + ring * count + i,
                               .delay = pair.delay,
                               .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
-                             std::norm(pair.amplitude) * area,
+                             pair.power * area,
                              share,
                              double(field.grid.azimuths) * copies_of(field, ring, sectors[i])});
             }
@@ -222,16 +227,22 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
   return met;
 }
 
-Return PingReverberation::heard(const ScatteringField& field, const PathPair& pair, const Met& met,
-                                std::complex<double> weight) const {
-  return {.delay = pair.delay,
-          .amplitude = pair.amplitude * met.strength * weight,
-          .doppler = field.sheet.doppler(pair, met.velocity, met.bragg),
-          .slowness = field.sheet.arriving(pair)};
+void PingReverberation::hear(const ScatteringField& field, const PathPairs& pairs,
+                             const PathPair& pair, const Met& met, std::complex<double> weight,
+                             ReturnBlock& into) const {
+  const std::complex<double> strength = met.strength * weight;
+  into.returns.push_back({.delay = pair.delay,
+                          .amplitude = pair.amplitude * strength,
+                          .doppler = field.sheet.doppler(pair, met.velocity, met.bragg),
+                          .slowness = field.sheet.arriving(pair)});
+  const std::size_t points = context_.band.size();
+  const auto first = static_cast<std::size_t>(&pair - pairs.found.data()) * points;
+  for (std::size_t k = 0; k < points; ++k)
+    into.colours.emplace_back(pairs.colours[first + k] * strength);
 }
 
 void PingReverberation::add_rings(const ScatteringField& field, std::uint32_t begin,
-                                  std::uint32_t end, Returns& returns) const {
+                                  std::uint32_t end, ReturnBlock& into) const {
   const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
                                  context_.time, context_.ping);
   PathPairs pairs;
@@ -241,16 +252,16 @@ void PingReverberation::add_rings(const ScatteringField& field, std::uint32_t be
                          [&](const ScattererKey& /*key*/, std::uint64_t entity, const Met& met) {
                            const std::complex<double> weight = weights(entity);
                            for (const PathPair& pair : pairs.found)
-                             returns.push_back(heard(field, pair, met, weight));
+                             hear(field, pairs, pair, met, weight, into);
                          });
 }
 
 void PingReverberation::make(std::size_t block, ReturnBlock& into) const {
   const Block& b = blocks_[block];
   const ScatteringField& field = fields_[b.field];
-  if (!by_sectors_) return add_rings(field, b.begin, b.end, into.returns);
+  if (!by_sectors_) return add_rings(field, b.begin, b.end, into);
   for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
-    add_sector(field, static_cast<int>(sector), into.returns);
+    add_sector(field, static_cast<int>(sector), into);
 }
 
 std::vector<DopplerSpan> PingReverberation::dopplers() const {
@@ -261,7 +272,7 @@ std::vector<DopplerSpan> PingReverberation::dopplers() const {
 }
 
 Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sectors) const {
-  std::vector<Returns> parts(blocks.size());
+  std::vector<ReturnBlock> parts(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
     const Block& b = blocks[i];
     if (!sectors) return add_rings(fields_[b.field], b.begin, b.end, parts[i]);
@@ -269,7 +280,8 @@ Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sector
       add_sector(fields_[b.field], static_cast<int>(sector), parts[i]);
   });
   Returns all;
-  for (const Returns& part : parts) all.insert(all.end(), part.begin(), part.end());
+  for (const ReturnBlock& part : parts)
+    all.insert(all.end(), part.returns.begin(), part.returns.end());
   return all;
 }
 
@@ -304,18 +316,20 @@ PatchRows PingReverberation::rows(std::size_t most) const {
     const double ring_of = ring_area(grid, ring);
     field.sheet.pairs_at(centre(grid, ring, sector), pairs, &limits_, ring_of);
     for (const PathPair& pair : pairs.found)
-      rows.push_back(
-          {.bearing = field.sheet.all_round() ? std::nan("") : sector_bearing(grid, sector),
-           .range = (ring + 0.5) * grid.spacing,
-           .area = share * ring_of * pair.area,
-           .delay = pair.delay,
-           .grazing_in = pair.grazing_in,
-           .grazing_out = pair.grazing_out,
-           .launch_elevation = pair.out->launch_elevation,
-           .arrival_elevation = -pair.back->launch_elevation,
-           .scattering_strength_db = db_from_power(pair.cross_section),
-           .level_db = source_level +
-                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
+      rows.push_back({.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
+                                : field.boundary == 1 ? PatchRow::Ground::bottom
+                                                      : PatchRow::Ground::surface,
+                      .bearing = all_round(field) ? std::nan("") : sector_bearing(grid, sector),
+                      .range = (ring + 0.5) * grid.spacing,
+                      .area = share * ring_of * pair.area,
+                      .delay = pair.delay,
+                      .grazing_in = pair.grazing_in,
+                      .grazing_out = pair.grazing_out,
+                      .launch_elevation = pair.out->launch_elevation,
+                      .arrival_elevation = -pair.back->launch_elevation,
+                      .scattering_strength_db = db_from_power(pair.cross_section),
+                      .level_db = source_level + db_from_power(std::norm(pair.amplitude) * share *
+                                                               ring_of * pair.area)});
   };
   // Every how many rings: from the number of pairs of one ring in 32.
   std::vector<PatchRow> counted;

@@ -17,11 +17,12 @@ namespace asdic {
 struct ReverberationContext {
   const TransmitPattern& pattern;
   const Pulse& pulse;
-  int transmitter = 0, array = 0;  ///< indices in the scenario
-  double time = 0.0;               ///< of the ping, since the start of the scenario [s]
-  std::uint32_t ping = 1;          ///< counted from 1: the key of weights that last one ping
-  double latest = 0.0;             ///< end of the record, since the ping [s]
-  Reuse* reuse = nullptr;          ///< is told whether anything had to be traced
+  int transmitter = 0, array = 0;        ///< indices in the scenario
+  double time = 0.0;                     ///< of the ping, since the start of the scenario [s]
+  std::uint32_t ping = 1;                ///< counted from 1: the key of weights that last one ping
+  double latest = 0.0;                   ///< end of the record, since the ping [s]
+  Reuse* reuse = nullptr;                ///< is told whether anything had to be traced
+  std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -110,11 +111,12 @@ class PingReverberation final : public ReturnSource {
       if (!pairs.found.empty()) visit(key, entity, met);
     }
   }
-  [[nodiscard]] Return heard(const ScatteringField& field, const PathPair& pair, const Met& met,
-                             std::complex<double> weight) const;
-  void add_sector(const ScatteringField& field, int sector, Returns& returns) const;
+  /// Adds what is heard of a pair, with its colours.
+  void hear(const ScatteringField& field, const PathPairs& pairs, const PathPair& pair,
+            const Met& met, std::complex<double> weight, ReturnBlock& into) const;
+  void add_sector(const ScatteringField& field, int sector, ReturnBlock& into) const;
   void add_rings(const ScatteringField& field, std::uint32_t begin, std::uint32_t end,
-                 Returns& returns) const;
+                 ReturnBlock& into) const;
   /// Rings or sectors begin…end of a field.
   struct Block {
     std::size_t field = 0;
@@ -126,6 +128,7 @@ class PingReverberation final : public ReturnSource {
   /// Half of 1/B, or as much as the limit of returns asks for [s].
   [[nodiscard]] double sector_bin(const ScatteringField& field) const;
   [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
+  [[nodiscard]] bool all_round(const ScatteringField& field) const noexcept;
   [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
 
   const Scenario& scenario_;
@@ -152,6 +155,8 @@ class ReverberationModel {
 
   [[nodiscard]] PingReverberation ping(const ReverberationContext& context) const;
   [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
+  /// Of everything that scatters.
+  [[nodiscard]] std::vector<ScatteringSheet::Law> laws() const;
 
  private:
   /// Of a boundary or a layer: what scatters, and where.

@@ -84,7 +84,8 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
                           .source_speed = 0.0,
                           .receiver_speed = 0.0,
                           .frequency = context.pulse.centre_frequency(),
-                          .latest = context.latest};
+                          .latest = context.latest,
+                          .band = context.band};
 
   // Around the middle of the two platforms.
   const auto middle = [&](double time) -> Vec2 {
@@ -149,6 +150,12 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
           // Who lies this far off an end is nearer to it than half its range only within:
           .divided_below =
               2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm())};
+}
+
+std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
+  std::vector<ScatteringSheet::Law> found;
+  for (const Part& part : parts()) found.push_back(part.law);
+  return found;
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {

@@ -13,18 +13,15 @@ class SampledSignal {
  public:
   SampledSignal() = default;
   /// \param first  time of the first sample [s]   \param rate  [Hz]
-  SampledSignal(std::vector<std::complex<double>> samples, double first, double rate);
+  SampledSignal(const std::vector<std::complex<double>>& samples, double first, double rate);
 
   [[nodiscard]] std::complex<double> at(double t) const noexcept;
 
-  [[nodiscard]] const std::vector<std::complex<double>>& samples() const noexcept {
-    return samples_;
-  }
   [[nodiscard]] double rate() const noexcept { return rate_; }
 
  private:
-  std::vector<std::complex<double>> samples_;
-  double first_ = 0.0, rate_ = 1.0;
+  std::vector<double> real_, imaginary_;  // with as many zeros at either end as the window reaches
+  double first_ = 0.0, rate_ = 1.0, count_ = 0.0;
 };
 
 }  // namespace asdic

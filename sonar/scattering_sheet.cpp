@@ -36,8 +36,26 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       one_place_(out_ == back_ && !receiver_moves_ &&
                  ends.source.position == ends.receiver.position) {
   if (!all_round_pattern_) return;
-  for (const GroundPath& path : out_->planes.front().paths->all())
-    beam_.push_back(pattern_.towards(0.0, path.launch_elevation));
+  const auto ask = [&](const TransmitPattern& at) {
+    for (const GroundPath& path : out_->planes.front().paths->all())
+      beam_.push_back(at.towards(0.0, path.launch_elevation));
+  };
+  ask(pattern_);
+  for (const BandPoint& point : ends_.band) ask(*point.pattern);
+}
+
+/// What is sent along a path out. \param point  0: the centre, then those of the band
+std::complex<double> ScatteringSheet::beam(const Leg& out, std::size_t path,
+                                           std::size_t point) const noexcept {
+  if (all_round_pattern_)
+    return beam_[point * out_->planes.front().paths->size() + out.first + path];
+  const TransmitPattern& pattern = point == 0 ? pattern_ : *ends_.band[point - 1].pattern;
+  return pattern.towards(out.bearing, out.paths[path].launch_elevation);
+}
+
+double ScatteringSheet::cross_section(const ScatterGeometry& geometry,
+                                      double frequency) const noexcept {
+  return std::visit([&](const auto& law) { return law.cross_section(geometry, frequency); }, law_);
 }
 
 bool ScatteringSheet::all_round() const noexcept {
@@ -71,6 +89,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                                double ring, double below) const {
   constexpr double strongest = 2.0;  // [1/sr] no law says more
   pairs.found.clear();
+  pairs.colours.clear();
+  const std::size_t points = ends_.band.size();
   const Leg out = leg(*out_, ends_.source.position.head<2>(), place, !all_round_pattern_);
   if (out.paths.empty()) return;
   const Vec2 receiver = ends_.receiver.position.head<2>();
@@ -94,21 +114,18 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   constexpr double same_turn = 1e-6;  // [rad]
   if (out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
-      pairs.sigma_.size() != out.paths.size() * back.paths.size()) {
+      pairs.sigma_.size() != out.paths.size() * back.paths.size() * (1 + points)) {
     pairs.sheet_ = this;
     pairs.out_ = out.first;
     pairs.back_ = back.first;
     pairs.turn_ = turn;
-    pairs.sigma_.assign(out.paths.size() * back.paths.size(), -1.0);
+    pairs.sigma_.assign(out.paths.size() * back.paths.size() * (1 + points), -1.0);
   }
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
     const GroundPath& a = out.paths[i];
     const PathEnds& a_ends = out.ends[i];
-    const std::complex<double> beam = all_round_pattern_
-                                          ? beam_[out.first + i]
-                                          : pattern_.towards(out.bearing, a.launch_elevation);
-    const std::complex<double> sent = a.amplitude * beam;
-    if (sent == 0.0) continue;
+    const std::complex<double> sent = a.amplitude * beam(out, i, 0);
+    if (sent == 0.0 && points == 0) continue;
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t j = 0; j < back.paths.size(); ++j) {
       const GroundPath& b = back.paths[j];
@@ -127,16 +144,30 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       }
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
-      const double power = std::norm(sent) * std::norm(b.amplitude) * ring;
-      if (limits && power * strongest <= least) continue;
+      const double before = std::norm(sent) * std::norm(b.amplitude);
+      if (limits && points == 0 && before * ring * strongest <= least) continue;
       const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
                                      .grazing_out = grazing_of(b, b_ends, back.tilt),
                                      .azimuth = turn};
-      double& sigma = pairs.sigma_[i * back.paths.size() + j];
-      if (sigma < 0.0)
-        sigma = std::visit(
-            [&](const auto& law) { return law.cross_section(geometry, ends_.frequency); }, law_);
-      if (sigma <= 0.0 || (limits && power * sigma <= least)) continue;
+      double* const sigma = &pairs.sigma_[(i * back.paths.size() + j) * (1 + points)];
+      if (sigma[0] < 0.0) {
+        sigma[0] = cross_section(geometry, ends_.frequency);
+        for (std::size_t k = 0; k < points; ++k)
+          sigma[k + 1] = cross_section(geometry, ends_.band[k].frequency);
+      }
+      double power = before * sigma[0];
+      for (std::size_t k = 0; k < points; ++k) {
+        const BandPoint& point = ends_.band[k];
+        const std::complex<double> there_and_back =
+            a.amplitude * beam(out, i, k + 1) * b.amplitude *
+            (std::sqrt(sigma[k + 1]) * std::exp(-point.more_nepers * (a.length + b.length)));
+        pairs.colours.push_back(there_and_back);
+        power = std::max(power, std::norm(there_and_back));
+      }
+      if (power <= 0.0 || (limits && power * ring <= least)) {
+        pairs.colours.resize(pairs.colours.size() - points);
+        continue;
+      }
       pairs.found.push_back({.out = &a,
                              .back = &b,
                              .out_index = static_cast<std::uint32_t>(i),
@@ -144,8 +175,9 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .out_ends = &a_ends,
                              .back_ends = &b_ends,
                              .delay = delay,
-                             .amplitude = sent * b.amplitude * std::sqrt(sigma),
-                             .cross_section = sigma,
+                             .amplitude = sent * b.amplitude * std::sqrt(sigma[0]),
+                             .power = power,
+                             .cross_section = sigma[0],
                              .grazing_in = geometry.grazing_in,
                              .grazing_out = geometry.grazing_out,
                              .area = out.tilt ? out.tilt->area : 1.0,

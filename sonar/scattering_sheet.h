@@ -18,6 +18,13 @@
 
 namespace asdic {
 
+/// One of the frequencies at which amplitudes are known where one is not enough.
+struct BandPoint {
+  double frequency = 1000.0;                 ///< [Hz]
+  const TransmitPattern* pattern = nullptr;  ///< there
+  double more_nepers = 0.0;                  ///< absorption over that at the centre [Np/m]
+};
+
 /// A way for sound to take from the source to a scatterer and on to the receiver.
 struct PathPair {
   const GroundPath* out = nullptr;
@@ -27,6 +34,7 @@ struct PathPair {
   const PathEnds* back_ends = nullptr;
   double delay = 0.0;                    ///< of the leading edge when it is heard [s]
   std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
+  double power = 0.0;                    ///< |amplitude|², the largest in the band
   double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
   double grazing_in = 0.0, grazing_out = 0.0;  ///< to the boundary itself [rad]
   double area = 1.0;                           ///< of the boundary over its horizontal projection
@@ -41,13 +49,16 @@ class ScatteringSheet;
 /// same cells under the same angles share their cross-sections.
 struct PathPairs {
   std::vector<PathPair> found;
+  std::vector<std::complex<double>>
+      colours;  ///< [found × points of the band] as PathPair::amplitude
 
  private:
   friend class ScatteringSheet;
   const ScatteringSheet* sheet_ = nullptr;
   std::size_t out_ = 0, back_ = 0;  // first paths of the cells whose cross-sections these are
   double turn_ = 0.0;
-  std::vector<double> sigma_;  // [out × back], below 0 where not known yet
+  std::vector<double>
+      sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
 };
 
 /// What is too faint to be heard: in every stretch of delay, the power up to which a pair through a
@@ -68,6 +79,7 @@ struct SheetEnds {
   double source_speed = 1500.0, receiver_speed = 1500.0;  ///< of sound there [m/s]
   double frequency = 1000.0;                              ///< [Hz]
   double latest = infinity;                               ///< end of the record [s]
+  std::span<const BandPoint> band = {};  ///< where one frequency is not enough; outlives the sheet
 };
 
 /// One scattering boundary of one ping: joins the paths out and the paths back at any place.
@@ -116,6 +128,10 @@ class ScatteringSheet {
     double beyond = 0.0;            // of the place past the cell's centre [m]
     std::size_t first = 0;          // of the paths in their table
   };
+  [[nodiscard]] std::complex<double> beam(const Leg& out, std::size_t path,
+                                          std::size_t point) const noexcept;
+  [[nodiscard]] double cross_section(const ScatterGeometry& geometry,
+                                     double frequency) const noexcept;
   [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
                         bool bearing) const noexcept;
 
@@ -124,7 +140,8 @@ class ScatteringSheet {
   SheetEnds ends_;
   const TransmitPattern& pattern_;
   bool all_round_pattern_, receiver_moves_, moving_, one_place_;
-  std::vector<std::complex<double>> beam_;  // of every outgoing path, if the same all round
+  // Of every outgoing path, if the same all round: at the centre, then at each point of the band.
+  std::vector<std::complex<double>> beam_;
 };
 
 }  // namespace asdic

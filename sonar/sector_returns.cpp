@@ -37,7 +37,7 @@ double PingReverberation::sector_bin(const ScatteringField& field) const {
 }
 
 void PingReverberation::add_sector(const ScatteringField& field, int sector,
-                                   Returns& returns) const {
+                                   ReturnBlock& into) const {
   const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
                                  context_.time, context_.ping);
   const double bin = sector_bin(field);
@@ -56,12 +56,12 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
       const int elevation =
           std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
       const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / bin);
-      Bin& into =
+      Bin& full =
           bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
-      into.power += static_cast<float>(power);
+      full.power += static_cast<float>(power);
       const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
-      if (uniform(entity, number) * static_cast<double>(into.power) >= power) continue;
-      into = {.power = into.power,
+      if (uniform(entity, number) * static_cast<double>(full.power) >= power) continue;
+      full = {.power = full.power,
               .chosen = static_cast<float>(power),
               .ring = key.ring,
               .copies = key.copies,
@@ -86,9 +86,9 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
         weights(entity);
     for (const PathPair& pair : pairs.found)
       if (pair.out_index == full.out && pair.back_index == full.back) {
-        returns.push_back(heard(field, pair, met, weight));
+        hear(field, pairs, pair, met, weight, into);
         const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
-        if (other) returns.push_back(heard(field, *other, met, weight));
+        if (other) hear(field, pairs, *other, met, weight, into);
         break;
       }
   }

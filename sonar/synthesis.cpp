@@ -44,52 +44,6 @@ void Synthesizer::add_samples(const Baseband& baseband, double scale,
     add_passband(baseband, scale, samples);
 }
 
-/// b(t) = (1/L) Σ_k X_k e^{i2πk(t − t₀)/P} about the synthesis' carrier; what leaves the new band
-/// is left out, as an anti-alias filter would.
-void Synthesizer::add_complex(const Baseband& baseband, double scale,
-                              std::span<float> samples) const {
-  const Plan& plan = plan_.front();
-  const Recording& recording = plan.recording;
-  const double period = static_cast<double>(plan.passband_length) / recording.sample_rate;
-  const auto new_carrier_bin = static_cast<std::ptrdiff_t>(std::round(recording.carrier * period));
-  const double beside = recording.carrier - static_cast<double>(new_carrier_bin) / period;
-  const double cycles =
-      (plan.carrier - recording.carrier) * recording.start - recording.carrier * recording.epoch;
-  const std::complex<double> turn = std::polar(scale / static_cast<double>(plan.length),
-                                               2.0 * pi * (cycles - std::round(cycles)));
-  const ComplexFft<float> fft(plan.length), fine(plan.passband_length);
-  const auto all = static_cast<std::ptrdiff_t>(plan.passband_length);
-  struct Workspace {
-    FftBuffer<std::complex<float>> baseband, samples;
-  };
-  tbb::enumerable_thread_specific<Workspace> workspaces;
-  tbb::parallel_for(std::size_t{0}, baseband.channels, [&](std::size_t channel) {
-    Workspace& scratch = workspaces.local();
-    scratch.baseband.reserve(plan.length);
-    scratch.samples.reserve(plan.passband_length);
-    std::copy_n(baseband.channel(channel).data(), plan.length, scratch.baseband.data());
-    fft.forward(scratch.baseband.data());
-    std::fill_n(scratch.samples.data(), plan.passband_length, 0.0F);
-    for (std::ptrdiff_t k = -plan.highest_bin; k <= plan.highest_bin; ++k) {
-      const std::ptrdiff_t place = plan.carrier_bin + k - new_carrier_bin;
-      if (2 * std::abs(place) >= all) continue;
-      const auto from =
-          static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(plan.length) : k);
-      scratch.samples[static_cast<std::size_t>(place < 0 ? place + all : place)] =
-          std::complex<float>(turn) * scratch.baseband[from];
-    }
-    fine.inverse(scratch.samples.data());
-    float* out = samples.data() + channel * recording.samples * 2;
-    for (std::size_t i = 0; i < recording.samples; ++i) {
-      const double t = static_cast<double>(i) / recording.sample_rate;
-      const std::complex<float> value =
-          scratch.samples[i] * std::complex<float>(std::polar(1.0, -2.0 * pi * beside * t));
-      out[2 * i] += value.real();
-      out[2 * i + 1] += value.imag();
-    }
-  });
-}
-
 void Synthesizer::add_passband(const Baseband& baseband, double scale,
                                std::span<float> pressure) const {
   const Plan& plan = plan_.front();

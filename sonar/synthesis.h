@@ -75,7 +75,8 @@ class Synthesizer {
   /// these are more, some 64 MB each for impulse responses and for returns, whatever their number.
   [[nodiscard]] Baseband baseband(const ReturnSource& source, std::span<const Vec3> phones) const;
 
-  /// Adds returns whose delays are curves, one by one: cost phones × returns × samples of a pulse.
+  /// Adds returns whose delays are curves, one by one: cost returns × samples of a pulse × the
+  /// fewer of phones and of lags between which a return's waveform is smooth.
   void add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
                   Baseband& baseband) const;
 
@@ -90,8 +91,11 @@ class Synthesizer {
  private:
   void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
   void add_complex(const Baseband& baseband, double scale, std::span<float> samples) const;
+  void add_by_fft(const Baseband& baseband, double scale, std::span<float> samples) const;
+  void add_by_interpolation(const Baseband& baseband, double scale, std::span<float> samples) const;
 
   friend class BlockSynthesis;
+  friend class CurvedSynthesis;
   struct Plan;
   std::vector<Plan> plan_;  // a vector of one keeps FFTW's types out of the header
 };

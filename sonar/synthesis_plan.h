@@ -26,7 +26,7 @@ struct Synthesizer::Plan {
   double pulse_duration;                 ///< T, unstretched [s]
   std::vector<BandLimitedPulse> pulses;  ///< [colours] through a filter each; alike but for that
   DopplerExpansion expansion;
-  DelayKernel kernel;
+  const DelayKernel& kernel = DelayKernel::shared();
 
   std::size_t length = 0;            ///< of the baseband FFT
   std::size_t passband_length = 0;   ///< of the real FFT at the phones' rate

@@ -8,7 +8,9 @@
 namespace asdic::study {
 namespace {
 
-constexpr std::size_t most_values = 20;  // of an axis whose values are bins of their own
+constexpr std::size_t few_values = 20;    // of an axis whose values are bins of their own …
+constexpr std::size_t rows_a_value = 10;  // … or if there are so many rows to each
+constexpr int default_bins = 10;
 
 std::size_t column_of(const Table& table, const std::string& name) {
   const auto it = std::find_if(table.columns.begin(), table.columns.end(),
@@ -30,8 +32,9 @@ struct Axis {
 std::vector<double> edges_of(const SummaryAxis& asked, const std::vector<double>& sorted) {
   if (!asked.edges.empty()) return asked.edges;
   std::vector<double> edges;
-  for (int i = 0; i <= asked.bins; ++i) {
-    const double share = static_cast<double>(i) / asked.bins;
+  const int bins = asked.bins > 0 ? asked.bins : default_bins;
+  for (int i = 0; i <= bins; ++i) {
+    const double share = static_cast<double>(i) / bins;
     edges.push_back(asked.equal_count ? sample_quantile(sorted, share)
                                       : std::lerp(sorted.front(), sorted.back(), share));
   }
@@ -48,8 +51,9 @@ Axis make_axis(const SummaryAxis& asked, const Table& table) {
   std::sort(sorted.begin(), sorted.end());
   std::vector<double> distinct;
   std::unique_copy(sorted.begin(), sorted.end(), std::back_inserter(distinct));
-  axis.by_value = asked.edges.empty() &&
-                  (distinct.size() <= most_values || !table.columns[axis.column].labels.empty());
+  const bool few = distinct.size() <= few_values || distinct.size() * rows_a_value <= sorted.size();
+  const bool bins = !asked.edges.empty() || asked.bins > 0 || asked.equal_count;
+  axis.by_value = !table.columns[axis.column].labels.empty() || (few && !bins);
   axis.edges = axis.by_value ? distinct : edges_of(asked, sorted);
   for (std::size_t row = 0; row < table.index.size(); ++row) {
     int bin = -1;

@@ -7,12 +7,13 @@ namespace asdic::study {
 /// How the interval of a proportion is had.
 enum class ProportionInterval { wilson, clopper_pearson };
 
-/// An input (or measure) along which rows are put together: its values where there are few, else
-/// bins.
+/// An input (or measure) along which rows are put together: its values where there are at most
+/// twenty or ten rows to each, else bins.
 struct SummaryAxis {
   std::string column;
   std::vector<double> edges;  ///< of the bins, increasing; empty: as below
-  int bins = 10;              ///< of equal width from the least to the greatest value …
+  int bins = 0;               ///< of equal width from the least to the greatest value …; 0: by
+                              ///< value where that is possible, else ten
   bool equal_count = false;   ///< … or holding equally many rows
 };
 

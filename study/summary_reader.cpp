@@ -48,7 +48,7 @@ SummaryAxis read_axis(TomlTable table, const TomlValue& value, const std::string
         throw table.fault("edges[" + std::to_string(i) + "]",
                           "an edge above the one before it, " + to_text(axis.edges[i - 1]));
   }
-  axis.bins = static_cast<int>(table.integer("bins", 1, 1000, axis.bins));
+  axis.bins = static_cast<int>(table.integer("bins", 1, 1000, 0));
   axis.equal_count = table.flag("equal_count", false);
   table.finish();
   return axis;

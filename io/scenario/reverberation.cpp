@@ -94,11 +94,12 @@ VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {
   const std::vector<double> depth = table.numbers("depth", depth_quantity);
   if (depth.size() != 2 || depth[1] <= depth[0])
     throw table.fault("depth", "two depths, the deeper one last");
-  if (!is_layered(ocean))
-    throw table.fault("depth", "no layers of the volume where the ocean varies with range");
-  if (depth[0] < ocean.surface.depth || depth[1] > ocean.bottom.depth)
-    throw table.fault("depth", "a layer between the surface (" + to_text(ocean.surface.depth) +
-                                   " m) and the bottom (" + to_text(ocean.bottom.depth) + " m)");
+  const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
+  const double surface =
+      ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
+  if (depth[0] < surface || depth[1] > bottom)
+    throw table.fault("depth", "a layer between the surface (" + to_text(surface) +
+                                   " m) and the bottom (" + to_text(bottom) + " m)");
   layer.top = depth[0];
   layer.bottom = depth[1];
   layer.strength_db = table.number("strength_db", strength);

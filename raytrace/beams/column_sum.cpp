@@ -54,6 +54,26 @@ void ColumnSum::prepare_recurrences(std::size_t n) {
     store(load(&amplitude_[i]) * share_scale * per_sigma, &height_[i]);
     store(exponential(-(u * u) * (step * step)), &ratio_of_ratio_[i]);  // exp(−2aD²)
   }
+  find_even_ways(n);
+}
+
+/// Which crossings add_evenly is for: Way::even, told for all at once.
+void ColumnSum::find_even_ways(std::size_t n) {
+  is_even_.resize(n);
+  const auto spacing = static_cast<float>(setting_.spacing);
+  const float *growth_of = growth_.data(), *q_of = q_.data(), *cosine = cosine_.data(),
+              *least = least_.data();
+  const double *above = above_.data(), *below = below_.data();
+  const std::int32_t *first = first_.data(), *last = last_.data();
+  std::int32_t* is_even = is_even_.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < n; ++i) {
+    const float growth = std::abs(growth_of[i]), q = std::abs(q_of[i]);
+    const auto reach = static_cast<float>(above[i] > below[i] ? above[i] : below[i]);
+    // the least width holds all over the beam, and q has no zero in it
+    const bool constant = (q > growth * reach) & ((q + growth * reach) * spacing < least[i]);
+    is_even[i] = constant & (cosine[i] >= 8.0F * spacing * growth) & (last[i] > first[i]);
+  }
 }
 
 ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
@@ -63,15 +83,20 @@ ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
   if (q == 0.0F) return Way::none;
   if (cosine_[i] < (is_hat ? 2.0F : 8.0F) * spacing * growth) return Way::plain;
   if (last_[i] <= first_[i]) return Way::none;
-  if (is_hat || !setting_.coherent || !(spacing_ > 0.0)) return Way::lanes;
-  const auto reach = static_cast<float>(std::max(above_[i], below_[i]));
-  const bool constant = q > growth * reach && (q + growth * reach) * spacing < least_[i];
-  return constant ? Way::even : Way::lanes;
+  return Way::lanes;
 }
 
 template <bool coherent, bool is_hat>
 void ColumnSum::add_rows(const Crossings& x) {
-  for (std::size_t i = 0; i < x.size(); ++i) add_crossing_rows<coherent, is_hat>(x, i);
+  const bool some_even = coherent && !is_hat && spacing_ > 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (some_even && is_even_[i] != 0) {
+      const std::size_t at = x.column[i] * stride_;
+      add_evenly(i, real_.data() + at, imaginary_.data() + at);
+    } else {
+      add_crossing_rows<coherent, is_hat>(x, i);
+    }
+  }
 }
 
 template <bool coherent, bool is_hat>
@@ -81,7 +106,6 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
   if (how == Way::plain) return add_plainly(x, i);
   float* real = real_.data() + x.column[i] * stride_;
   float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
-  if (how == Way::even) return add_evenly(i, real, imaginary);
   const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
   const float share_scale = spacing / root_of_two_pi;
   const auto row_spacing = static_cast<float>(spacing_);
@@ -169,9 +193,12 @@ void ColumnSum::add_narrow_hats(const Crossings& x) {
       }
       dz += row_spacing;
     }
+    // A hat is zero beyond its rows, and columns are padded: as many rows for all cost less than
+    // branches that nobody can foretell.
+    const bool alike = half_ == Half::both && rows <= static_cast<int>(lanes);
     for (std::size_t l = 0; l < used; ++l) {
       const std::size_t base = x.column[i + l] * stride_ + static_cast<std::size_t>(first_[i + l]);
-      const int count = last_[i + l] - first_[i + l];
+      const int count = alike ? rows : last_[i + l] - first_[i + l];
       for (int m = 0; m < count; ++m) {
         const std::size_t from = static_cast<std::size_t>(m) * lanes + l;
         real_[base + static_cast<std::size_t>(m)] += re[from];
@@ -179,43 +206,6 @@ void ColumnSum::add_narrow_hats(const Crossings& x) {
       }
     }
   }
-}
-
-/// A Gaussian of constant width: over D = lanes·(row spacing) its logarithm changes by −a(2·dz·D +
-/// D²), a = cos²θ/2σ², and that by −2aD²; the phase turns evenly.
-void ColumnSum::add_evenly(std::size_t i, float* real, float* imaginary) const {
-  const auto row_spacing = static_cast<float>(spacing_);
-  const float step = static_cast<float>(lanes) * row_spacing;
-  const float a = sharpness_[i];
-  Lanes dz = offset_[i] + row_spacing * ramp();
-  Lanes bell = height_[i] * exponential(-a * dz * dz);
-  Lanes ratio = exponential(-a * step * (2.0F * dz + step));
-  const float ratio_of_ratio = ratio_of_ratio_[i];
-  Lanes c, s;
-  cos_sin(phase_[i] + wave_number_[i] * dz, c, s);
-  const float turn_c = turn_cosine_[i], turn_s = turn_sine_[i];
-  const float q_slope = q_[i] < 0.0F ? -growth_[i] : growth_[i];
-  Lanes q = std::abs(q_[i]) + q_slope * dz;
-  const float growth = q_slope * step;
-  auto k = static_cast<std::size_t>(first_[i]);
-  const auto last = static_cast<std::size_t>(last_[i]);
-  const auto put = [&](const Lanes& weight) {
-    store(load(real + k) + weight * c, real + k);
-    store(load(imaginary + k) + weight * s, imaginary + k);
-  };
-  for (; k + lanes <= last; k += lanes) {
-    put(bell * sqrt(q));
-    q += growth;
-    bell *= ratio;
-    ratio *= ratio_of_ratio;
-    const Lanes c_next = c * turn_c - s * turn_s;
-    s = s * turn_c + c * turn_s;
-    c = c_next;
-  }
-  if (k == last) return;
-  Lanes weight = bell * sqrt(q);  // not a number where q would be negative: behind the last row
-  where(ramp() >= static_cast<float>(last - k), weight) = 0.0F;
-  put(weight);
 }
 
 void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {

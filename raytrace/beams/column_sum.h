@@ -33,13 +33,13 @@ class ColumnSum {
     none,   ///< reaches no receiver
     plain,  ///< one by one: so steep a ray that its beam widens as fast as it is left
     lanes,  ///< several at a time
-    even,   ///< the same by recurrences: a Gaussian of constant width on evenly spaced receivers
   };
 
   void prepare(const BeamLaunch& launch, const Crossings& crossings);
   void find_rows(const Crossings& crossings);
   void find_rows_of_half(const Crossings& crossings);
   void prepare_recurrences(std::size_t n);
+  void find_even_ways(std::size_t n);
   [[nodiscard]] Way way(std::size_t i) const noexcept;
   template <bool coherent, bool is_hat>
   void add_rows(const Crossings& crossings);
@@ -75,6 +75,7 @@ class ColumnSum {
   std::vector<float> offset_;               // of the first row from the ray [m]
   std::vector<double> above_, below_;       // how far the beam reaches [m]
   std::vector<std::int32_t> first_, last_;  // rows within reach, [first, last)
+  std::vector<std::int32_t> is_even_;       // for add_evenly
 };
 
 }  // namespace asdic

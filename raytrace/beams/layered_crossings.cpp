@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "raytrace/beams/lanes.h"
+#include "raytrace/layered/lane_math.h"
 
 namespace asdic {
 
@@ -85,6 +86,23 @@ std::size_t LayeredCrossings::first_layer(double sine) const noexcept {
   return source_on_node_ && sine < 0.0 ? source_layer_ - 1 : source_layer_;
 }
 
+/// exp(−∫α ds): the last layer's arc is its chord times asin(y)/y.
+void LayeredCrossings::absorb(double xi, std::size_t n, Workspace& work, Crossings& out) const {
+  const double *ranges = ranges_.data(), *r_a = work.r.data(), *z_a = work.z.data(),
+               *g_a = work.g.data(), *depth = out.depth.data();
+  double* length = work.length.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t j = 0; j < n; ++j) {
+    const double d = ranges[j] - r_a[j], dz = depth[j] - z_a[j];
+    const double chord = std::sqrt(d * d + dz * dz), y = 0.5 * chord * xi * g_a[j];
+    length[j] += chord * asin_over_y(y * y);
+  }
+  for (std::size_t j = 0; j < n; j += doubles) {  // beyond n there is room
+    const Rays nepers = min(alpha_ * load(length + j), Rays(700.0));
+    store(load(&out.level[j]) * exponential(-nepers), &out.level[j]);
+  }
+}
+
 bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings& out) const {
   const double cosine = std::cos(launch_elevation), sine = -std::sin(launch_elevation);
   if (!(cosine > 1e-3) || std::abs(sine) < 1e-9) return false;
@@ -117,8 +135,8 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
     for (std::size_t i = 0; i < layers; ++i)
       work.time[i] = layer_time(xi * work.reach[i] / (1.0 - s_at[i] * s_at[i + 1]), gradient_[i]);
 
-  for (auto* array :
-       {&work.r, &work.s, &work.z, &work.cosine, &work.tau, &work.q, &work.p, &work.g})
+  for (auto* array : {&work.r, &work.s, &work.z, &work.cosine, &work.tau, &work.q, &work.p, &work.g,
+                      &work.length})
     array->resize(columns + doubles);
   out.resize(columns + doubles);
   out.source_speed = source_speed_;
@@ -173,13 +191,8 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
         fill(tau, tau_to + j), fill(q, q_to + j), fill(p, p_to + j), fill(g, g_to + j);
         fill(level, level_to + j), fill(phase, phase_to + j), fill(mirror, mirror_to + j);
       }
-      if (alpha_ != 0.0)  // the arc is its chord times asin(y)/y
-        for (std::size_t j = first; j < column; ++j) {
-          const double d = ranges_[j] - r, s_j = s - xi * g * d;
-          const double dz = d * (s + s_j) / (cos_a + std::sqrt(1.0 - s_j * s_j));
-          const double chord = std::sqrt(d * d + dz * dz), y = 0.5 * chord * xi * g;
-          out.level[j] *= std::exp(-alpha_ * (length + chord * asin_over_y(y * y)));
-        }
+      if (alpha_ != 0.0)
+        for (std::size_t j = first; j < column; j += doubles) fill(length, work.length.data() + j);
     }
     if (alpha_ != 0.0) {
       const double dz = depth_[node] - z, chord = std::sqrt(reach * reach + dz * dz);
@@ -222,7 +235,6 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
 
   // All crossings at once.
   const std::size_t n = column;
-  out.resize(n);
   const double *ranges = ranges_.data(), *r_a = work.r.data(), *s_a = work.s.data(),
                *z_a = work.z.data(), *c_a = work.cosine.data(), *t_a = work.tau.data(),
                *q_a = work.q.data(), *p_a = work.p.data(), *g_a = work.g.data();
@@ -250,6 +262,8 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
       const double d = ranges[j] - r_a[j];
       time[j] = t_a[j] + layer_time(xi * d / (1.0 - s_a[j] * sine_out[j]), g_a[j]);
     }
+  if (alpha_ != 0.0) absorb(xi, n, work, out);
+  out.resize(n);
   std::iota(out.column.begin(), out.column.end(), 0U);
   return true;
 }

@@ -33,6 +33,7 @@ class LayeredCrossings {
   struct Workspace {
     std::vector<double> sine, jump, reach, time;        // [nodes] twice, [layers] twice
     std::vector<double> r, s, z, cosine, tau, q, p, g;  // [columns] the layer's begin
+    std::vector<double> length;                         // [columns] of the ray, up to it
   };
 
   /// \return false: this ray (vertical, backwards, level, …) is one for the RayTracer
@@ -40,6 +41,7 @@ class LayeredCrossings {
 
  private:
   LayeredCrossings() = default;
+  void absorb(double xi, std::size_t n, Workspace& work, Crossings& out) const;
   [[nodiscard]] std::size_t first_layer(double sine) const noexcept;
 
   const Environment* environment_ = nullptr;

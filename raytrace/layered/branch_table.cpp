@@ -2,128 +2,133 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
+#include "raytrace/layered/stretch_splitter.h"
 
 namespace asdic {
-namespace {
 
-/// A speed at which the fan is singular; `logarithmic` where it is a smooth maximum of the profile,
-/// near which a ray lingers.
-struct CriticalSpeed {
-  double speed;
-  bool logarithmic;
+/// The pieces of a column as sums of an OceanFan's layers, and of what the two cuts left of theirs.
+class BranchTable::Parts {
+ public:
+  Parts(const Column& column, const OceanFan& fan, std::span<const Layer> uncut)
+      : column_(column), fan_(fan), of_ocean_(column.layers().size(), cut) {
+    std::size_t ocean = 0;
+    for (std::size_t i = 0; i < of_ocean_.size(); ++i) {
+      const Layer& layer = column.layers()[i];
+      if (layer.top == uncut[ocean].top && layer.bottom == uncut[ocean].bottom)
+        of_ocean_[i] = ocean;
+      if (layer.bottom == uncut[ocean].bottom) ++ocean;
+    }
+  }
+
+  [[nodiscard]] const OceanFan::Interval* find(const CriticalSpeed& slow,
+                                               const CriticalSpeed& fast) const {
+    return fan_.find(slow, fast);
+  }
+
+  /// walk_sums, of the nodes from `first` on.
+  [[nodiscard]] ColumnLanes sums(const OceanFan::Interval& interval, const RayLanes& rays,
+                                 std::size_t first) const {
+    ColumnLanes sums;
+    for (std::size_t i = column_.upper(); i < column_.lower(); ++i)
+      add(interval, rays, first, i, sums.middle);
+    for (std::size_t i = column_.upper(); i-- > 0 && !sums.turns_above;)
+      sums.turns_above = add(interval, rays, first, i, sums.up);
+    for (std::size_t i = column_.lower(); i < of_ocean_.size() && !sums.turns_below; ++i)
+      sums.turns_below = add(interval, rays, first, i, sums.down);
+    return sums;
+  }
+
+ private:
+  static constexpr std::size_t cut = static_cast<std::size_t>(-1);
+
+  /// \return whether the rays have turned there, or before
+  bool add(const OceanFan::Interval& interval, const RayLanes& rays, std::size_t first,
+           std::size_t layer, LegLanes& leg) const {
+    const std::size_t ocean = of_ocean_[layer];
+    if (ocean == cut)
+      return all_of(visit_layer(column_.layers()[layer], rays, interval.between, leg).turned);
+    using Reach = OceanFan::Reach;
+    if (interval.reach[ocean] == Reach::none) return true;
+    const std::size_t at = ocean * interval.sigma.size() + first;
+    leg.per_slowness += load(&interval.per_slowness[at]);
+    leg.d_range += load(&interval.d_range[at]);
+    return interval.reach[ocean] == Reach::turned;
+  }
+
+  const Column& column_;
+  const OceanFan& fan_;
+  std::vector<std::size_t> of_ocean_;  // [column's layers] which of the ocean's; or cut
 };
 
-bool is_smooth_extremum(const Layer& layer, double depth) {
-  if (layer.closed_form()) return false;
-  const SoundSpeed here = layer.at(depth);
-  return std::abs(here.dc_dz) < 1e-6 * std::abs(here.d2c_dz2) * layer.thickness();
-}
-
-std::vector<CriticalSpeed> critical_speeds(const Column& column, double slowest, double fastest) {
-  std::vector<CriticalSpeed> critical = {{slowest, false}, {fastest, false}};
-  const auto& layers = column.layers();
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const Layer& layer = layers[i];
-    const bool extremum = is_smooth_extremum(layer, layer.top);
-    // Cuts inside an analytic law are no knots: nothing happens to a ray that turns there.
-    if (i == 0 || extremum || layer.law != Layer::Law::munk)
-      critical.push_back({layer.c_top, extremum});
-    critical.push_back({layer.c_bottom, is_smooth_extremum(layer, layer.bottom)});
-    if (layer.law == Layer::Law::munk && i + 1 < layers.size() && !critical.back().logarithmic)
-      critical.pop_back();
-  }
-  std::erase_if(critical,
-                [&](const CriticalSpeed& c) { return c.speed < slowest || c.speed > fastest; });
-  std::sort(critical.begin(), critical.end(),
-            [](const auto& a, const auto& b) { return a.speed < b.speed; });
-  std::vector<CriticalSpeed> distinct;
-  for (const CriticalSpeed& c : critical) {
-    if (!distinct.empty() && c.speed - distinct.back().speed <= 1e-13 * c.speed)
-      distinct.back().logarithmic |= c.logarithmic;
-    else
-      distinct.push_back(c);
-  }
-  return distinct;
-}
-
-/// Nodes over (0, σ_end): denser towards 0, where r(σ) bends within the distance to the next slower
-/// knot; geometric towards logarithmic ends.
-std::vector<double> node_sigmas(double sigma_end, int count, bool log_begin, bool log_end) {
-  std::vector<double> sigma;
-  const double first = sigma_end / (count * count);
-  sigma.push_back(1e-10 * sigma_end);
-  if (log_begin)
-    for (int m = 14; m >= 1; --m) sigma.push_back(first * std::pow(0.25, m));
-  for (int j = 1; j < count; ++j) sigma.push_back(sigma_end * (j * j) / (double(count) * count));
-  if (log_end)
-    for (int m = 1; m <= 14; ++m)
-      sigma.push_back(sigma_end * (1.0 - 2.0 / count * std::pow(0.25, m)));
-  sigma.push_back(sigma_end * (1.0 - 1e-12));
-  return sigma;
-}
-
-}  // namespace
-
-BranchTable::BranchTable(Column column, const PathLimits& limits, const Environment* boundaries)
+BranchTable::BranchTable(Column column, const PathLimits& limits, const Environment* boundaries,
+                         const OceanFan* fan, std::span<const Layer> uncut)
     : column_(std::move(column)), limits_(limits), boundaries_(boundaries) {
   const double slowest = column_.barrier_speed();
   const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * 3.14159265358979));
   const double fastest = column_.source_speed() / std::max(steepest, 1e-9);
   if (fastest <= slowest) return;
-  const auto critical = critical_speeds(column_, slowest, fastest);
+  std::optional<Parts> parts;
+  if (fan != nullptr) parts.emplace(column_, *fan, uncut);
+  const auto critical = critical_speeds(column_.layers(), slowest, fastest);
   intervals_.reserve(critical.size());
   for (std::size_t i = 0; i + 1 < critical.size(); ++i)
-    add_interval(critical[i].speed, critical[i + 1].speed, critical[i].logarithmic,
-                 critical[i + 1].logarithmic);
+    add_interval(critical[i], critical[i + 1], parts ? &*parts : nullptr);
 }
 
-void BranchTable::add_interval(double c_slow, double c_fast, bool singular_slow,
-                               bool singular_fast) {
-  const double ratio = c_slow / c_fast;
-  const double sigma_end = std::sqrt((1.0 - ratio) * (1.0 + ratio));
-  // One analytic law over the whole depth has few, wide intervals; a table has one from sample to
-  // sample.
-  const bool wide = column_.layers().front().law == Layer::Law::munk;
-  FanInterval interval{.reference_speed = c_slow};
-  const std::vector<double> nodes =
-      node_sigmas(sigma_end, wide ? 16 : 7, singular_slow, singular_fast);
-  for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
-                       &interval.d_up, &interval.d_middle, &interval.d_down})
-    values->reserve(nodes.size());
+void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast,
+                               const Parts* parts) {
+  const OceanFan::Interval* known = parts != nullptr ? parts->find(slow, fast) : nullptr;
+  std::vector<double> own;
+  if (known == nullptr)
+    put_nodes(slow, fast, column_.layers().front().law == Layer::Law::munk, own);
+  const std::span<const double> nodes =
+      known != nullptr ? std::span(known->sigma).first(known->nodes) : own;
+  FanInterval interval{.reference_speed = slow.speed};
+  interval.numbers = std::make_unique<double[]>(7 * nodes.size());
+  double* const numbers = interval.numbers.get();
+  const auto column = [&](std::size_t i) { return numbers + i * nodes.size(); };
+  std::size_t n = 0;
   for (std::size_t begin = 0; begin < nodes.size(); begin += rays_at_once) {
     const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
-    const RayLanes rays(c_slow, sigmas);
-    const auto& [up, middle, down, turns_above, turns_below] = walk_sums(column_, rays);
-    const Rays chain = -rays.sigma * rays.per_c2 / rays.slowness;  // dξ/dσ
-    const Rays cycle = rays.slowness * (up.per_slowness + middle.per_slowness + down.per_slowness);
-    const Rays slope = chain * (up.d_range + middle.d_range + down.d_range);
+    const RayLanes rays(slow.speed, sigmas);
+    const auto& [up, middle, down, turns_above, turns_below] =
+        known != nullptr ? parts->sums(*known, rays, begin) : walk_sums(column_, rays);
     interval.turns_above = turns_above;
     interval.turns_below = turns_below;
+    const Rays xi = rays.slowness;
+    const Rays chain = -rays.sigma * rays.per_c2 / xi;  // dξ/dσ
+    const Rays values[7] = {sigmas,
+                            xi * up.per_slowness,
+                            xi * middle.per_slowness,
+                            xi * down.per_slowness,
+                            chain * up.d_range,
+                            chain * middle.d_range,
+                            chain * down.d_range};
+    const Rays cycle = values[1] + values[2] + values[3], slope = values[4] + values[5] + values[6];
     for (std::size_t i = 0; i < std::min(rays_at_once, nodes.size() - begin); ++i) {
       // Next to a smooth maximum of the profile a ray lingers without end; it is further than any
       // receiver and fainter than anything.
       if (!std::isfinite(cycle[i]) || !std::isfinite(slope[i])) continue;
-      interval.sigma.push_back(sigmas[i]);
-      interval.up.push_back(rays.slowness[i] * up.per_slowness[i]);
-      interval.middle.push_back(rays.slowness[i] * middle.per_slowness[i]);
-      interval.down.push_back(rays.slowness[i] * down.per_slowness[i]);
-      interval.d_up.push_back(chain[i] * up.d_range[i]);
-      interval.d_middle.push_back(chain[i] * middle.d_range[i]);
-      interval.d_down.push_back(chain[i] * down.d_range[i]);
+      for (std::size_t k = 0; k < 7; ++k) column(k)[n] = values[k][i];
+      ++n;
     }
   }
-  if (interval.sigma.size() < 2) return;
+  if (n < 2) return;
+  std::size_t k = 0;
+  for (auto* values : {&interval.sigma, &interval.up, &interval.middle, &interval.down,
+                       &interval.d_up, &interval.d_middle, &interval.d_down})
+    *values = {column(k++), n};
   limit_by_loss(interval);
   intervals_.push_back(std::move(interval));
 }
 
 void BranchTable::limit_by_loss(FanInterval& interval) const {
   const std::size_t n = interval.sigma.size();
-  interval.loudest_vertices.assign(n - 1, limits_.max_vertices);
   if (!(limits_.faintest > 0.0) || boundaries_ == nullptr) return;
   const auto lossless = [](const BoundaryMaterial& material) {
     return std::holds_alternative<Vacuum>(material) || std::holds_alternative<Rigid>(material);
@@ -141,6 +146,7 @@ void BranchTable::limit_by_loss(FanInterval& interval) const {
                     .density = boundaries_->water_density.at(b->depth)}});
   }
   if (met.empty()) return;
+  interval.loudest_vertices.assign(n - 1, limits_.max_vertices);
   const auto per_cycle = [&](double sigma) {  // what a bounce off each leaves
     const RayParameter ray(interval.reference_speed, sigma);
     double product = 1.0;
@@ -167,115 +173,16 @@ void BranchTable::limit_by_loss(FanInterval& interval) const {
 
 BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const Branch& branch,
                                               double sigma) const noexcept {
-  const RayParameter ray(interval.reference_speed, sigma);
-  const ColumnSums sums = column_.sums(ray);
+  // Lanes are as fast for one ray as for many, and know shorter ways through smooth laws.
+  const RayLanes rays(interval.reference_speed, Rays(sigma));
+  const ColumnLanes sums = walk_sums(column_, rays);
   const BranchWeights w = weights(branch, column_.source_is_upper());
-  return {w.of(sums.up.range, sums.middle.range, sums.down.range),
-          w.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) * ray.slowness_per_sigma()};
+  const double xi = rays.slowness[0];
+  return {
+      xi * w.of(sums.up.per_slowness[0], sums.middle.per_slowness[0], sums.down.per_slowness[0]),
+      -sigma * rays.per_c2 / xi *
+          w.of(sums.up.d_range[0], sums.middle.d_range[0], sums.down.d_range[0])};
 }
-
-namespace {
-
-/// Splits the stretch between two nodes wherever the cubic through their ranges and slopes says
-/// that r has an extremum; the extrema themselves are found on the exact r.
-class StretchSplitter {
- public:
-  StretchSplitter(const BranchTable& table, const FanInterval& interval, const Branch& branch,
-                  std::span<const double> ranges,
-                  const std::function<void(const MonotoneStretch&)>& visit)
-      : table_(table), interval_(interval), branch_(branch), ranges_(ranges), visit_(visit) {}
-
-  void split_cell(std::size_t cell, HermiteNode a, HermiteNode b) {
-    cell_ = cell;
-    split(a, b);
-  }
-
- private:
-  void split(HermiteNode a, HermiteNode b, bool caustic_a = false, int depth = 0) {
-    const bool steep = a.x > steep_sigma;
-    const Hermite cubic = steep ? Hermite(in_cosine(a), in_cosine(b)) : Hermite(a, b);
-    const auto turns = cubic.extrema();
-    if (depth < 4 && !turns.empty()) {
-      // A change of sign of the exact slope brackets an extremum; without one the cubic saw a
-      // wiggle: look at its place and decide there.
-      const HermiteNode middle = node(steep ? sine_of_cosine(turns.front()) : turns.front());
-      if ((a.slope > 0.0) != (b.slope > 0.0) || (middle.slope > 0.0) != (a.slope > 0.0)) {
-        const HermiteNode caustic =
-            (middle.slope > 0.0) != (a.slope > 0.0) ? extremum(a, middle) : extremum(middle, b);
-        emit(a, caustic, caustic_a, true);
-        split(caustic, b, true, depth + 1);
-        return;
-      }
-      split(a, middle, caustic_a, depth + 1);
-      split(middle, b, false, depth + 1);
-      return;
-    }
-    emit(a, b, caustic_a, false);
-  }
-
-  HermiteNode node(double sigma) const {
-    const auto [range, slope] = table_.evaluate(interval_, branch_, sigma);
-    return {sigma, range, slope};
-  }
-
-  /// Whether no wanted range lies between r there and the extremum, slope²/(2|r″|) away (held to be
-  /// eight times as far): then it serves as well.
-  bool near_enough(const HermiteNode& here, double curvature) const {
-    if (ranges_.empty()) return false;
-    const double away = 4.0 * here.slope * here.slope / curvature + 1e-3;
-    const auto next = std::lower_bound(ranges_.begin(), ranges_.end(), here.value - away);
-    return next == ranges_.end() || *next > here.value + away;
-  }
-
-  /// With slope zero, and the sign of what follows.
-  static HermiteNode as_extremum(HermiteNode node, bool rises) {
-    node.slope = rises ? -1e-300 : 1e-300;
-    return node;
-  }
-
-  /// The zero of the exact slope between two nodes where it has different signs: secant steps
-  /// inside a shrinking bracket.
-  HermiteNode extremum(HermiteNode a, HermiteNode b) const {
-    const bool rises = a.slope > 0.0;
-    HermiteNode best = std::abs(a.slope) < std::abs(b.slope) ? a : b;
-    for (int i = 0; i < 60; ++i) {
-      // With curvature r″ the range there differs from the extremum by slope²/(2r″).
-      const double curvature = std::abs((b.slope - a.slope) / (b.x - a.x));
-      if (best.slope * best.slope < 2e-6 * curvature || b.x - a.x < 1e-14 * b.x ||
-          (i > 0 && near_enough(best, curvature)))
-        break;
-      double x = a.x - a.slope * (b.x - a.x) / (b.slope - a.slope);
-      if (i % 3 == 2 || !(x > a.x && x < b.x)) x = 0.5 * (a.x + b.x);
-      best = node(x);
-      ((best.slope > 0.0) == rises ? a : b) = best;
-    }
-    return as_extremum(best, rises);
-  }
-
-  void emit(const HermiteNode& a, const HermiteNode& b, bool caustic_a, bool caustic_b) const {
-    if (!(b.x > a.x) || !std::isfinite(a.value) || !std::isfinite(b.value)) return;
-    visit_({.interval = &interval_,
-            .cell = cell_,
-            .branch = branch_,
-            .sigma_begin = a.x,
-            .sigma_end = b.x,
-            .range_begin = a.value,
-            .range_end = b.value,
-            .slope_begin = a.slope,
-            .slope_end = b.slope,
-            .caustic_begin = caustic_a,
-            .caustic_end = caustic_b});
-  }
-
-  const BranchTable& table_;
-  const FanInterval& interval_;
-  Branch branch_;
-  std::size_t cell_ = 0;
-  std::span<const double> ranges_;
-  const std::function<void(const MonotoneStretch&)>& visit_;
-};
-
-}  // namespace
 
 void BranchTable::for_each_stretch(double low, double high,
                                    const std::function<void(const MonotoneStretch&)>& visit) const {
@@ -290,19 +197,22 @@ void BranchTable::for_each_stretch(std::span<const double> ranges,
 void BranchTable::for_each_stretch(double low, double high, std::span<const double> ranges,
                                    const std::function<void(const MonotoneStretch&)>& visit) const {
   const bool upper = column_.source_is_upper();
+  std::vector<int> most;
   for (const FanInterval& interval : intervals_) {
     const std::size_t n = interval.sigma.size();
     // Between two nodes there is nothing to find after so many vertices: too far, or too faint.
-    std::vector<int> most(n - 1);
+    most.resize(n - 1);
     const auto cycle = [&](std::size_t i) {
       return interval.up[i] + interval.middle[i] + interval.down[i];
     };
+    int last = 0;
     for (std::size_t i = 0; i + 1 < n; ++i) {
       const double cycles = high / std::max(std::min(cycle(i), cycle(i + 1)), 1e-9);
-      most[i] = static_cast<int>(std::min<double>(interval.loudest_vertices[i], cycles + 2.0));
+      const int loudest =
+          interval.loudest_vertices.empty() ? limits_.max_vertices : interval.loudest_vertices[i];
+      most[i] = static_cast<int>(std::min<double>(loudest, cycles + 2.0));
+      last = std::max(last, most[i]);
     }
-    int last = 0;
-    for (const int vertices : most) last = std::max(last, vertices);
     for (const bool starts_up : {true, false}) {
       for (int k = 0; k <= last; ++k) {
         const Branch branch{.starts_up = starts_up, .vertices = k};

@@ -1,12 +1,14 @@
 #pragma once
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "raytrace/layered/branch.h"
 #include "raytrace/layered/column.h"
 #include "raytrace/layered/hermite.h"
+#include "raytrace/layered/ocean_fan.h"
 
 namespace asdic {
 
@@ -30,11 +32,13 @@ struct PathLimits {
 struct FanInterval {
   double reference_speed = 0.0;  ///< σ = sin θ where the speed is this [m/s]
   bool turns_above = false, turns_below = false;
-  std::vector<double> sigma;                   ///< [n] increasing nodes
-  std::vector<double> up, middle, down;        ///< [n] ranges of the three pieces [m]
-  std::vector<double> d_up, d_middle, d_down;  ///< [n] their derivatives with respect to σ [m]
+  std::span<const double> sigma;                   ///< [n] increasing nodes
+  std::span<const double> up, middle, down;        ///< [n] ranges of the three pieces [m]
+  std::span<const double> d_up, d_middle, d_down;  ///< [n] their derivatives with respect to σ [m]
   std::vector<int> loudest_vertices;  ///< [n − 1] vertices after which bounces have left less than
-                                      ///< PathLimits::faintest of a ray between two nodes
+                                      ///< PathLimits::faintest of a ray between two nodes; empty
+                                      ///< where none is so faint
+  std::unique_ptr<double[]> numbers;  ///< what the spans show
 };
 
 /// Steep rays have r like k = cos θ = √(1 − σ²), and no cubic in σ follows that to the vertical:
@@ -64,7 +68,9 @@ struct MonotoneStretch {
 class BranchTable {
  public:
   /// \param boundaries  whose losses make paths too faint; needed if limits.faintest > 0
-  BranchTable(Column column, const PathLimits& limits, const Environment* boundaries = nullptr);
+  /// \param fan  of the ocean, if it is kept; of its layers `uncut`
+  BranchTable(Column column, const PathLimits& limits, const Environment* boundaries = nullptr,
+              const OceanFan* fan = nullptr, std::span<const Layer> uncut = {});
 
   [[nodiscard]] const Column& column() const noexcept { return column_; }
   [[nodiscard]] const PathLimits& limits() const noexcept { return limits_; }
@@ -90,7 +96,8 @@ class BranchTable {
  private:
   void for_each_stretch(double low, double high, std::span<const double> ranges,
                         const std::function<void(const MonotoneStretch&)>& visit) const;
-  void add_interval(double c_slow, double c_fast, bool singular_slow, bool singular_fast);
+  class Parts;
+  void add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast, const Parts* parts);
   void limit_by_loss(FanInterval& interval) const;
 
   Column column_;

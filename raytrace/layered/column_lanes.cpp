@@ -155,6 +155,31 @@ ColumnLanes walk(const Column& column, const RayLanes& rays) noexcept {
 
 }  // namespace
 
+LayerVisit visit_layer(const Layer& layer, const RayLanes& rays, double between,
+                       LegLanes& leg) noexcept {
+  const double slower = std::min(layer.c_top, layer.c_bottom),
+               faster = std::max(layer.c_top, layer.c_bottom);
+  using Mask = Rays::mask_type;
+  LayerVisit visit{Mask(faster < between), Mask(slower < between && faster >= between)};
+  if (layer.law == Layer::Law::munk) {
+    visit.crossed = rays.sine2(faster) > 0.0;
+    visit.turned = rays.sine2(slower) > 0.0 && !visit.crossed;
+  }
+  LegLanes part;
+  if (any_of(visit.crossed)) {
+    const RayLanes those = only(rays, visit.crossed);
+    cross_layer<false>(layer, those, those.sine(layer.c_top), those.sine(layer.c_bottom), part);
+    add_to<false>(visit.crossed, part, leg);
+  }
+  if (any_of(visit.turned)) {
+    const RayLanes those = only(rays, visit.turned);
+    part = {};
+    turn_in_layer<false>(layer, those, those.sine(slower), part);
+    add_to<false>(visit.turned, part, leg);
+  }
+  return visit;
+}
+
 ColumnLanes walk_sums(const Column& column, const RayLanes& rays) noexcept {
   return walk<false>(column, rays);
 }

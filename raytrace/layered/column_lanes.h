@@ -40,6 +40,18 @@ struct ColumnLanes {
   bool turns_above = false, turns_below = false;
 };
 
+/// What became of rays that come to a layer through its slower edge; those that do not come are
+/// neither.
+struct LayerVisit {
+  Rays::mask_type crossed, turned;
+};
+
+/// Adds to each ray that comes to a layer what it adds to r/ξ and dr/dξ, one way; zero to others.
+/// \param between  a speed inside the rays' interval of the fan: what they do in a layer is the
+/// same for all, but for those inside an analytic law
+LayerVisit visit_layer(const Layer& layer, const RayLanes& rays, double between,
+                       LegLanes& leg) noexcept;
+
 /// Column::sums for several rays at once: the same sums, to rounding and the quadrature's 1e-10.
 /// Intercepts and lengths are left out.
 [[nodiscard]] ColumnLanes walk_sums(const Column& column, const RayLanes& rays) noexcept;

@@ -18,8 +18,8 @@ std::vector<double> inner_cuts(const Layer& layer) {
   };
   if (layer.law ==
       Layer::Law::munk) {  // the axis, and cuts between which dc/dz ∝ 1 − e^−η at most doubles
-    for (const double eta :
-         {-4.0, -3.4, -2.8, -2.2, -1.6, -1.0, -0.6, -0.35, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.9})
+    for (const double eta : {-4.0, -3.4, -2.8, -2.2, -1.75, -1.35, -1.0, -0.7, -0.5, -0.35, -0.2,
+                             -0.1, 0.0, 0.1, 0.2, 0.4, 0.9})
       keep(layer.coefficient[1] + 0.5 * eta * layer.coefficient[2]);
   }
   if (layer.law ==

@@ -39,6 +39,26 @@ LegSeries::LegSeries(const Column& column, double c_ref, double low, double high
   }
   good_ = holds(per_slowness, 1e-15, range_error * c_ref) && holds(d_range, slope_error, 0.0) &&
           holds(intercept, 1e-15, time_error) && holds(length, 1e-15, range_error);
+  if (good_) to_polynomials();
+}
+
+/// Σ c_k·T_k(x) as Σ a_j·xʲ, with T_{k+1} = 2x·T_k − T_{k−1}.
+void LegSeries::to_polynomials() noexcept {
+  static const auto chebyshev = [] {  // [k][j]
+    std::array<std::array<double, terms>, terms> t{};
+    t[0][0] = t[1][1] = 1.0;
+    for (std::size_t k = 2; k < terms; ++k)
+      for (std::size_t j = 0; j <= k; ++j)
+        t[k][j] = (j > 0 ? 2.0 * t[k - 1][j - 1] : 0.0) - t[k - 2][j];
+    return t;
+  }();
+  for (Series& series : series_) {
+    Series a{};
+    for (std::size_t k = terms; k-- > 0;)  // small terms first
+      for (std::size_t j = k % 2; j <= k; j += 2)
+        for (std::size_t leg = 0; leg < 3; ++leg) a[j][leg] += chebyshev[k][j] * series[k][leg];
+    series = a;
+  }
 }
 
 bool LegSeries::holds(Quantity of, double relative, double absolute) const noexcept {
@@ -50,24 +70,22 @@ bool LegSeries::holds(Quantity of, double relative, double absolute) const noexc
   return true;
 }
 
-/// Clenshaw's recurrence.
-std::array<Rays, 3> LegSeries::value(Quantity of, const RayLanes& rays) const noexcept {
-  const Series& s = series_[of];
-  const Rays x = (rays.sigma - middle_) * per_half_, twice = x + x;
-  std::array<Rays, 3> before = {0.0, 0.0, 0.0},
-                      here = {s[terms - 1][0], s[terms - 1][1], s[terms - 1][2]};
-  for (std::size_t k = terms - 2; k > 0; --k)
-    for (std::size_t leg = 0; leg < 3; ++leg) {
-      const Rays next = twice * here[leg] + (s[k][leg] - before[leg]);
-      before[leg] = here[leg];
-      here[leg] = next;
-    }
-  for (std::size_t leg = 0; leg < 3; ++leg) here[leg] = x * here[leg] + (s[0][leg] - before[leg]);
-  return here;
+/// Horner's rule.
+std::array<std::array<Rays, 3>, 2> LegSeries::values(Quantity first, Quantity second,
+                                                     const RayLanes& rays) const noexcept {
+  const Series *const a = &series_[first], *const b = &series_[second];
+  const Rays x = (rays.sigma - middle_) * per_half_;
+  Rays a0 = (*a)[terms - 1][0], a1 = (*a)[terms - 1][1], a2 = (*a)[terms - 1][2];
+  Rays b0 = (*b)[terms - 1][0], b1 = (*b)[terms - 1][1], b2 = (*b)[terms - 1][2];
+  for (std::size_t j = terms - 1; j-- > 0;) {
+    a0 = a0 * x + (*a)[j][0], a1 = a1 * x + (*a)[j][1], a2 = a2 * x + (*a)[j][2];
+    b0 = b0 * x + (*b)[j][0], b1 = b1 * x + (*b)[j][1], b2 = b2 * x + (*b)[j][2];
+  }
+  return {{{a0, a1, a2}, {b0, b1, b2}}};
 }
 
 ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
-  const auto range = value(per_slowness, rays), slope = value(d_range, rays);
+  const auto [range, slope] = values(per_slowness, d_range, rays);
   const Rays per_sigma = 1.0 / rays.sigma;
   return {.up = {.per_slowness = range[0], .d_range = slope[0] * per_sigma},
           .middle = {.per_slowness = range[1], .d_range = slope[1] * per_sigma},
@@ -78,7 +96,7 @@ ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
 
 ColumnLanes LegSeries::all(const RayLanes& rays) const noexcept {
   ColumnLanes all = sums(rays);
-  const auto times = value(intercept, rays), lengths = value(length, rays);
+  const auto [times, lengths] = values(intercept, length, rays);
   LegLanes* legs[3] = {&all.up, &all.middle, &all.down};
   for (std::size_t leg = 0; leg < 3; ++leg) {
     legs[leg]->intercept = times[leg];
@@ -87,8 +105,9 @@ ColumnLanes LegSeries::all(const RayLanes& rays) const noexcept {
   return all;
 }
 
-IntervalSeries::IntervalSeries(const Column& column, double c_ref, const std::vector<double>& nodes)
+IntervalSeries::IntervalSeries(const Column& column, double c_ref, std::span<const double> nodes)
     : column_(column), c_ref_(c_ref), nodes_(nodes) {
+  if (nodes.empty()) return;
   // Seen from σ, the nearest singularity is where s vanishes at the next slower knot, at ±ia. On a
   // stretch of 1.5 times its distance n terms leave about 4^(−n).
   double slower = 0.0;

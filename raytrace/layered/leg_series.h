@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "raytrace/layered/column_lanes.h"
@@ -9,7 +10,8 @@
 namespace asdic {
 
 /// The legs of an interval of the fan as Chebyshev series in σ, for stretches with many roots: a
-/// few walks through the column serve them all.
+/// few walks through the column serve them all. They are evaluated as polynomials: terms that fall
+/// as 4^(−n), as those of a good series do, make coefficients that do not grow (2^(n − 1) each).
 ///
 /// r/ξ, σ·dr/dξ, τ − ξr (whose error is of second order in that of σ) and the length of the three
 /// pieces are smooth in σ. Whether the series are right to rounding is told by their last terms.
@@ -29,7 +31,11 @@ class LegSeries {
   /// Of up, middle and down.
   using Series = std::array<std::array<double, 3>, terms>;
 
-  [[nodiscard]] std::array<Rays, 3> value(Quantity of, const RayLanes& rays) const noexcept;
+  void to_polynomials() noexcept;
+  /// Of two quantities of three legs each, at once: a quantity by itself would wait for its own
+  /// last product.
+  [[nodiscard]] std::array<std::array<Rays, 3>, 2> values(Quantity first, Quantity second,
+                                                          const RayLanes& rays) const noexcept;
   [[nodiscard]] bool holds(Quantity of, double relative, double absolute) const noexcept;
 
   double middle_, per_half_;
@@ -42,7 +48,7 @@ class LegSeries {
 class IntervalSeries {
  public:
   /// \param nodes  [n] increasing σ of the interval's nodes
-  IntervalSeries(const Column& column, double c_ref, const std::vector<double>& nodes);
+  IntervalSeries(const Column& column, double c_ref, std::span<const double> nodes);
 
   /// One that holds between nodes `cell` and `cell` + 1, or nullptr if none does.
   [[nodiscard]] const LegSeries* at(std::size_t cell);
@@ -61,7 +67,7 @@ class IntervalSeries {
 
   const Column& column_;
   double c_ref_;
-  const std::vector<double>& nodes_;
+  std::span<const double> nodes_;
   std::vector<Piece> pieces_;  ///< in order
 };
 

@@ -128,7 +128,8 @@ RootGroups::RootGroups(const Column& column, const FanInterval& interval,
                        std::span<const RootTask> tasks)
     : column_(column),
       interval_(interval),
-      series_(column, interval.reference_speed, interval.sigma),
+      series_(column, interval.reference_speed,
+              tasks.size() < worth_a_series ? std::span<const double>() : interval.sigma),
       order_(tasks.size()) {
   std::vector<std::size_t> next(interval.sigma.size() + 1, 0);  // place of each cell's first task
   for (const RootTask& task : tasks) ++next[task.cell + 1];
@@ -143,6 +144,7 @@ std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noex
 }
 
 RootGroups::Group RootGroups::next(std::size_t begin) {
+  if (order_.size() < worth_a_series) return {nullptr, order_.size()};
   const std::size_t cell = order_[begin]->cell;
   for (;;) {
     const IntervalSeries::Cells cells = series_.around(cell);

@@ -83,7 +83,7 @@ class RootGroups {
 
   const Column& column_;
   const FanInterval& interval_;
-  IntervalSeries series_;
+  IntervalSeries series_;               ///< of no cells where no series can be worth while
   std::vector<const RootTask*> order_;  ///< by cell
 };
 

@@ -14,30 +14,76 @@ namespace {
 /// Neighbours this close in launch angle are told apart no more [rad].
 constexpr double finest = 1e-12;
 
-BoundaryHit hit_at(const RaySegment& s, const Boundary& boundary) {
-  const double c = s.c_end, tr = c * s.end.xi, tz = c * s.end.zeta;
-  const double angle = std::atan(position_slope(boundary, s.end.range));
+/// A ray's state where it meets a line of slope tan(angle).
+BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angle) {
+  const double tr = c * y.xi, tz = c * y.zeta;
   const double ur = std::cos(angle), uz = std::sin(angle);
   const double across = ur * tz - uz * tr;  // u·n, n = (t_z, −t_r): the beam's normal
   // q·n·dα moves to u·dℓ along the ray: dℓ = ±q dα/(u·n)
-  const double d_along = mirror_sign(s.history) * s.end.q / across;
-  const double slowness = s.end.xi + s.end.zeta * uz / ur;  // ∇τ·u per range
-  const double reflecting = boundary.shape ? std::atan(boundary.shape->at(s.end.range).slope) : 0.0;
+  const double d_along = mirror_sign(s.history) * y.q / across;
   BoundaryHit hit;
-  hit.range = s.end.range;
+  hit.range = y.range;
   hit.d_range = ur * d_along;
-  hit.time = s.end.time;
-  hit.d_time = slowness * hit.d_range;
+  hit.time = y.time;
+  hit.slowness = y.xi + y.zeta * uz / ur;  // ∇τ·u per range
+  hit.d_time = hit.slowness * hit.d_range;
   hit.q_per_d_range = std::abs(across / ur);
-  hit.slowness = slowness;
-  hit.grazing =
-      std::asin(std::min(1.0, std::abs(std::cos(reflecting) * tz - std::sin(reflecting) * tr)));
   hit.speed = c;
-  hit.nepers = s.end.nepers;
+  hit.nepers = y.nepers;
+  hit.length = y.length;
+  hit.down = tz > 0.0 ? 1.0 : -1.0;
   hit.reflection = s.history.reflection;
   const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;
-  hit.caustics = s.history.caustics + (sense * s.end.q < 0.0 ? 1 : 0);
+  hit.caustics = s.history.caustics + (sense * y.q < 0.0 ? 1 : 0);
   return hit;
+}
+
+BoundaryHit hit_at(const RaySegment& s, const Boundary& boundary) {
+  const double c = s.c_end, tr = c * s.end.xi, tz = c * s.end.zeta;
+  BoundaryHit hit = met_at(s.end, s, c, std::atan(position_slope(boundary, s.end.range)));
+  const double reflecting = boundary.shape ? std::atan(boundary.shape->at(s.end.range).slope) : 0.0;
+  hit.grazing =
+      std::asin(std::min(1.0, std::abs(std::cos(reflecting) * tz - std::sin(reflecting) * tr)));
+  return hit;
+}
+
+/// Arc length in (low, high) where f changes its sign, which it does once: bisection and chords.
+template <class F>
+double root_between(double low, double high, F&& f) {
+  double f_low = f(low), f_high = f(high);
+  for (int i = 0; i < 60 && high - low > 1e-9 * (1.0 + high); ++i) {
+    const double chord = high - f_high * (high - low) / (f_high - f_low);
+    const double margin = 0.01 * (high - low);  // now and then from the other side
+    const double s =
+        i % 3 == 2 ? 0.5 * (low + high) : std::clamp(chord, low + margin, high - margin);
+    const double value = f(s);
+    if ((value < 0.0) == (f_low < 0.0))
+      low = s, f_low = value;
+    else
+      high = s, f_high = value;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Where a segment passes a depth: never, once, or twice if it turns beyond it.
+void passes_of(const RaySegment& s, double depth, std::vector<BoundaryHit>& hits) {
+  const double h = s.end.length - s.begin.length;
+  if (h <= 0.0) return;
+  const auto below = [&](double u) { return state_at(s, u).depth - depth; };
+  const auto pass = [&](double low, double high) {
+    const RayState y = state_at(s, root_between(low, high, below));
+    const double c = 1.0 / std::hypot(y.xi, y.zeta);
+    BoundaryHit hit = met_at(y, s, c, 0.0);
+    hit.grazing = std::asin(std::min(1.0, std::abs(c * y.zeta)));
+    hits.push_back(hit);
+  };
+  const bool begins = s.begin.depth >= depth, ends = s.end.depth >= depth;
+  if (begins != ends) return pass(0.0, h);
+  if ((s.begin.zeta < 0.0) == (s.end.zeta < 0.0)) return;
+  const double turn = root_between(0.0, h, [&](double u) { return state_at(s, u).zeta; });
+  if ((below(turn) >= 0.0) == begins) return;
+  pass(0.0, turn);
+  pass(turn, h);
 }
 
 /// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
@@ -57,11 +103,11 @@ class CellSearch {
   using Ray = StrikingRay;
   using Result = CellHit;
 
-  CellSearch(const RayTracer& tracer, double source_depth, BoundaryKind boundary, double spacing,
+  CellSearch(const RayTracer& tracer, double source_depth, const GroundLevel& level, double spacing,
              double max_range, double frequency, const TraceLimits& limits)
       : tracer_(tracer),
         source_depth_(source_depth),
-        boundary_(boundary),
+        level_(level),
         spacing_(spacing),
         max_range_(max_range),
         frequency_(frequency),
@@ -69,7 +115,7 @@ class CellSearch {
 
   void trace(double angle, StrikingRay& out) {
     tracer_.trace(0.0, source_depth_, angle, limits_, trajectory_);
-    digest_hits(trajectory_, tracer_.environment(), boundary_, out);
+    digest_hits(trajectory_, tracer_.environment(), level_, out);
   }
 
   [[nodiscard]] bool holds(const StrikingRay& a, const StrikingRay& m, const StrikingRay& b) const {
@@ -195,6 +241,8 @@ class CellSearch {
     hit.delay = delay;
     hit.grazing = between(ha.grazing, hb.grazing);
     hit.slowness = between(ha.slowness, hb.slowness);
+    hit.length = delay * between(ha.length / ha.time, hb.length / hb.time);  // by the mean speed
+    hit.down = ha.down;
     hit.amplitude = spreading * std::exp(-between(ha.nepers, hb.nepers)) *
                     (ha.reflection + u * (hb.reflection - ha.reflection)) *
                     caustic_phase(like_a ? ha.caustics : hb.caustics);
@@ -203,7 +251,7 @@ class CellSearch {
 
   const RayTracer& tracer_;
   double source_depth_;
-  BoundaryKind boundary_;
+  GroundLevel level_;
   double spacing_, max_range_, frequency_;
   TraceLimits limits_;
   RayTrajectory trajectory_;
@@ -211,7 +259,26 @@ class CellSearch {
 
 }  // namespace
 
-void digest_hits(const RayTrajectory& ray, const Environment& environment, BoundaryKind boundary,
+namespace {
+
+/// The passes of a leg through a depth, each with a history of its own.
+void digest_passes(const RayTrajectory& ray, const LegOfRay& leg, double depth, StrikingRay& out) {
+  const std::size_t before = out.hits.size();
+  for (std::size_t i = leg.first; i < leg.last; ++i) {
+    out.widest = std::max(out.widest, std::abs(ray.segments[i].end.q));
+    passes_of(ray.segments[i], depth, out.hits);
+  }
+  constexpr std::uint64_t golden = 0x9E3779B97F4A7C15ULL;
+  for (std::size_t i = before; i < out.hits.size(); ++i) {
+    BoundaryHit& hit = out.hits[i];
+    hit.history = leg.history + golden * (2 * (i - before) + (hit.down > 0.0 ? 2 : 1));
+    out.widest = std::max(out.widest, std::abs(hit.d_range));
+  }
+}
+
+}  // namespace
+
+void digest_hits(const RayTrajectory& ray, const Environment& environment, const GroundLevel& level,
                  StrikingRay& out) {
   out.angle = ray.launch_elevation;
   out.source_speed = ray.source_speed;
@@ -219,6 +286,11 @@ void digest_hits(const RayTrajectory& ray, const Environment& environment, Bound
   out.widest = 0.0;
   out.hits.clear();
   split_into_legs(ray, environment, out.parts);
+  if (!level.boundary) {
+    for (const LegOfRay& leg : out.parts) digest_passes(ray, leg, level.depth, out);
+    return;
+  }
+  const BoundaryKind boundary = *level.boundary;
   const Boundary& wall =
       boundary == BoundaryKind::surface ? environment.surface : environment.bottom;
   std::size_t bounce = 0;
@@ -235,25 +307,28 @@ void digest_hits(const RayTrajectory& ray, const Environment& environment, Bound
     if (!strikes || ray.bounces[bounce].boundary != boundary) continue;
     BoundaryHit hit = hit_at(s, wall);
     hit.history = history_after(history, wall, boundary, s.end.range);
+    hit.down = boundary == BoundaryKind::surface ? -1.0 : 1.0;
     out.widest = std::max(out.widest, std::abs(hit.d_range));
     out.hits.push_back(hit);
   }
 }
 
 std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
-                                   BoundaryKind boundary, double spacing, double max_range,
+                                   const GroundLevel& level, double spacing, double max_range,
                                    double frequency, const FanLimits& limits) {
-  // As many bounces before the hit as allowed: the hit itself is one more.
+  // As many bounces before the hit as allowed: a hit on a boundary is itself one more.
   TraceLimits trace{.max_range = max_range + spacing,
                     .max_depth = limits.max_depth,
                     .max_surface_bounces = limits.max_surface_bounces,
                     .max_bottom_bounces = limits.max_bottom_bounces,
                     .faintest = limits.faintest};
-  ++(boundary == BoundaryKind::surface ? trace.max_surface_bounces : trace.max_bottom_bounces);
+  if (level.boundary)
+    ++(*level.boundary == BoundaryKind::surface ? trace.max_surface_bounces
+                                                : trace.max_bottom_bounces);
   trace.min_range = -max_range;
   const FanSplitting<CellSearch> fan(limits.lowest, limits.highest);
   return fan.run([&] {
-    return CellSearch(tracer, source_depth, boundary, spacing, max_range, frequency, trace);
+    return CellSearch(tracer, source_depth, level, spacing, max_range, frequency, trace);
   });
 }
 

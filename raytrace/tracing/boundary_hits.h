@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "raytrace/ground_paths.h"
 #include "raytrace/tracing/fan_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
 
-/// Where a ray strikes one boundary: the incident field, and how place and time move when the ray
-/// is launched a little higher.
+/// Where a ray strikes one boundary, or passes a depth of the water: the incident field, and how
+/// place and time move when the ray is launched a little higher.
 struct BoundaryHit {
   std::uint64_t history =
       0;  ///< shared by rays that struck the same boundaries before, and this one
@@ -20,11 +21,13 @@ struct BoundaryHit {
   double grazing = 0.0;                   ///< to the reflecting tangent [rad]
   double speed = 0.0;                     ///< of the water there [m/s]
   double nepers = 0.0;                    ///< absorption so far
+  double length = 0.0;                    ///< of the path so far [m]
+  double down = 0.0;                      ///< +1 where it goes down, −1 up
   std::complex<double> reflection = 1.0;  ///< of the bounces before
   int caustics = 0;
 };
 
-/// The hits of a ray on one boundary.
+/// The hits of a ray on one boundary or level.
 struct StrikingRay {
   double angle = 0.0;         ///< launch elevation [rad]
   double source_speed = 0.0;  ///< [m/s]
@@ -35,22 +38,23 @@ struct StrikingRay {
 };
 
 /// \param out  its memory is reused
-void digest_hits(const RayTrajectory& ray, const Environment& environment, BoundaryKind boundary,
+void digest_hits(const RayTrajectory& ray, const Environment& environment, const GroundLevel& level,
                  StrikingRay& out);
 
-/// One path to the middle of a cell of a boundary, the ring around the source from i·spacing to
+/// One path to the middle of a cell of a level, the ring around the source from i·spacing to
 /// (i + 1)·spacing.
 struct CellHit {
   std::uint32_t cell = 0;
   double launch_elevation = 0.0, delay = 0.0, grazing = 0.0, slowness = 0.0;
+  double length = 0.0, down = 0.0;  // as of a BoundaryHit
   std::complex<double> amplitude = 0.0;
 };
 
 /// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck
-/// the same boundaries; range is right to a hundredth of the spacing. Near a caustic the amplitude
-/// is held as in ground_paths.h. \param spacing, max_range [m]
+/// the same boundaries and passed the level as often; range is right to a hundredth of the spacing.
+/// Near a caustic the amplitude is held as in ground_paths.h. \param spacing, max_range [m]
 [[nodiscard]] std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
-                                                 BoundaryKind boundary, double spacing,
+                                                 const GroundLevel& level, double spacing,
                                                  double max_range, double frequency,
                                                  const FanLimits& limits);
 

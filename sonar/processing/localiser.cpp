@@ -119,7 +119,8 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
       double last_range = 0.0, last_excess = 0.0;
       bool has_last = false;
       for (const DelayTable::Node& node : here.nodes) {
-        const auto leg = out->at(there, separation(from, point(node.range)).range);
+        const Separation way = separation(from, point(node.range));
+        const auto leg = out->at(there, way.range);
         const double excess = leg ? leg->delay + node.delay - query.detection.time : 0.0;
         if (leg && has_last && node.range - last_range < 1.5 * home->step() && last_excess <= 0.0 &&
             excess > 0.0) {
@@ -127,7 +128,7 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
               last_range + (node.range - last_range) * last_excess / (last_excess - excess);
           double score = leg->amplitude * node.amplitude;
           if (query.places.pattern != nullptr)
-            score *= std::abs((*query.places.pattern)(leg->elevation));
+            score *= std::abs(query.places.pattern->towards(way.bearing, leg->elevation));
           if (query.elevation) {
             const double off = (node.elevation - *query.elevation) / query.elevation_sigma;
             score *= std::exp(-0.5 * off * off) + 1e-12;

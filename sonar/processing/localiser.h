@@ -26,7 +26,7 @@ struct LocaliserSettings {
 struct SonarPlaces {
   Kinematics source;                     ///< when the ping starts
   Kinematics array;                      ///< the same of the array's reference point
-  const BeamPattern* pattern = nullptr;  ///< of the transmitter; none: all round
+  const TransmitPattern* pattern = nullptr;  ///< of the transmitter; none: all round
   ArrayShape shape;                      ///< of the array
 };
 

@@ -122,8 +122,9 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   const Transmitter projector =
       ping < sent.size() ? projector_of(scenario_, sent[ping])
                          : scenario_.transmitters[static_cast<std::size_t>(recording.transmitter)];
-  const BeamPattern pattern(
-      projector, paths_.speed_at(done.places.source.position) / pulse.centre_frequency());
+  const double c = paths_.speed_at(done.places.source.position);
+  const BeamPattern pattern(projector, c / pulse.centre_frequency(), c,
+                            platform_heading(scenario_, projector.platform, recording.ping_time));
   SonarPlaces places = done.places;
   places.pattern = &pattern;
   const Localiser& localiser =

@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "raytrace/beams/field_run.h"
 #include "raytrace/eigenrays.h"
+#include "raytrace/ray_fan.h"
 #include "sonar/array.h"
 #include "sonar/block_noise.h"
 #include "sonar/noise_spectrum.h"
@@ -39,9 +40,7 @@ void keep(const T& value) {
 using Kernel = std::function<void()>;
 
 /// Munk's law in 31 samples under a rule of interpolation, or itself; a source at 4500 m.
-EigenraySolver deep_ocean(const char* law) {
-  return EigenraySolver(support::deep_ocean(law));
-}
+EigenraySolver deep_ocean(const char* law) { return EigenraySolver(support::deep_ocean(law)); }
 
 constexpr PathLimits limits{
     .max_surface_bounces = 3, .max_bottom_bounces = 3, .max_launch_angle = 1.4};
@@ -55,6 +54,18 @@ Kernel many_receivers(const char* law) {
   for (int i = 0; i < 1000; ++i) ranges.push_back(1000.0 + 50.0 * i);
   return [solver = deep_ocean(law), ranges] {
     keep(solver.find(4500.0, 125.0, ranges, 4000.0, limits));
+  };
+}
+
+/// A fan of 1000 dynamic rays within ±15° to 100 km through 110 layers.
+Kernel fan() {
+  const auto ocean = std::make_shared<const Environment>(support::munk_in_layers(110));
+  const auto rays = std::make_shared<const RayFan>(*ocean, 1000.0, 1000.0);
+  std::vector<double> elevations;
+  for (int i = 0; i < 1000; ++i) elevations.push_back(radians(-15.0 + 0.03 * (i + 0.5)));
+  return [ocean, rays, elevations, out = std::vector<FanRay>(1000)]() mutable {
+    rays->trace(elevations, 100e3, out);
+    keep(out);
   };
 }
 
@@ -104,6 +115,7 @@ struct Named {
 };
 
 const std::vector<Named> kernels = {
+    {"fan", fan},
     {"one-receiver-c-linear", [] { return one_receiver("c-linear"); }},
     {"one-receiver-n2-linear", [] { return one_receiver("n2-linear"); }},
     {"one-receiver-pchip", [] { return one_receiver("pchip"); }},

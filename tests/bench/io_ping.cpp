@@ -1,7 +1,9 @@
 #include <benchmark/benchmark.h>
+#include <oneapi/tbb/global_control.h>
 #include <sys/resource.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "io/ping_file.h"
@@ -46,6 +48,56 @@ void BM_PingOverASeamount(benchmark::State& state) {
   ping(state, ASDIC_SCENARIOS "/seamount_ping.toml");
 }
 BENCHMARK(BM_PingOverASeamount)->UseRealTime()->Unit(benchmark::kMillisecond)->Iterations(1);
+
+/// The deep ocean's ping as a vehicle's processor wants it: complex samples at 400 Hz about 4 kHz.
+Scenario in_baseband(bool reverberation) {
+  Scenario s = read_scenario(ASDIC_SCENARIOS "/deep_ocean.toml");
+  s.pings.samples = Samples::baseband;
+  s.pings.carrier = 4000.0;
+  s.pings.baseband_rate = 400.0;
+  s.reverberation.enabled = reverberation;
+  return s;
+}
+
+void set_rate(benchmark::State& state) {
+  state.counters["pings/s"] =
+      benchmark::Counter(1.0, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// One core. A ping of a study: a simulator of its own, the propagation known, a new seed.
+void cached_ping(benchmark::State& state, bool reverberation) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Scenario scenario = in_baseband(reverberation);
+  const auto shared = std::make_shared<SharedPropagation>();
+  for (auto _ : state) {
+    ++scenario.seed;
+    benchmark::DoNotOptimize(PingSimulator(scenario, shared).simulate(1));
+  }
+  set_rate(state);
+}
+BENCHMARK_CAPTURE(cached_ping, noise_and_echoes, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(cached_ping, with_reverberation, true)->Unit(benchmark::kMillisecond);
+
+/// One core, nothing known.
+void new_ping(benchmark::State& state, bool reverberation) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Scenario scenario = in_baseband(reverberation);
+  for (auto _ : state) benchmark::DoNotOptimize(PingSimulator(scenario).simulate(1));
+  set_rate(state);
+}
+BENCHMARK_CAPTURE(new_ping, noise_and_echoes, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(new_ping, with_reverberation, true)->Unit(benchmark::kMillisecond);
+
+/// Levels alone, as a study of detection asks for. Argument: whether propagation is known.
+void levels_of_ping(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Scenario scenario = in_baseband(true);
+  const auto shared = std::make_shared<SharedPropagation>();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(PingSimulator(scenario, state.range(0) ? shared : nullptr).levels(1));
+  set_rate(state);
+}
+BENCHMARK(levels_of_ping)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace asdic

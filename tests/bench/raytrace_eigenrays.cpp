@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "raytrace/eigenrays.h"
 #include "raytrace/ground_paths.h"
+#include "raytrace/ray_fan.h"
 #include "raytrace/ray_path.h"
 #include "raytrace/runs/arrivals_run.h"
 #include "raytrace/tracing/marching_eigenrays.h"
@@ -103,6 +104,20 @@ void BM_MarchingEigenrays(benchmark::State& state) {
 }
 BENCHMARK(BM_MarchingEigenrays)->DenseRange(0, 9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// To one receiver, at the far end and half way down.
+void BM_MarchingEigenraysToOne(benchmark::State& state) {
+  const support::CurvedOcean ocean =
+      support::curved_oceans()[static_cast<std::size_t>(state.range(0))];
+  const RayTracer tracer(ocean.environment, 500.0);
+  const ReceiverPoint receiver{ocean.range, 200.0};
+  for (auto _ : state)
+    benchmark::DoNotOptimize(marching_eigenrays(
+        tracer, 0.0, ocean.source_depth, std::span(&receiver, 1),
+        {.lowest = -1.2, .highest = 1.2, .max_surface_bounces = 6, .max_bottom_bounces = 6}));
+  state.SetLabel(ocean.name);
+}
+BENCHMARK(BM_MarchingEigenraysToOne)->DenseRange(0, 9)->Unit(benchmark::kMillisecond);
+
 void BM_TraceRay(benchmark::State& state) {
   const Environment ocean = deep_ocean(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(trace_ray(ocean, 4500.0, 0.1, 100e3));
@@ -110,6 +125,40 @@ void BM_TraceRay(benchmark::State& state) {
   name_profile(state);
 }
 BENCHMARK(BM_TraceRay)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+/// Dynamic rays within ±15° to 100 km through 110 layers, without their paths.
+void BM_Fan(benchmark::State& state) {
+  const Environment ocean = support::munk_in_layers(110);
+  const RayFan fan(ocean, 1000.0, 1000.0);
+  std::vector<double> elevations;
+  for (int i = 0; i < 5000; ++i) elevations.push_back(radians(-15.0 + 0.006 * (i + 0.5)));
+  std::vector<FanRay> rays(elevations.size());
+  for (auto _ : state) {
+    fan.trace(elevations, 100e3, rays);
+    benchmark::DoNotOptimize(rays.data());
+  }
+  state.counters["rays/s"] = benchmark::Counter(static_cast<double>(rays.size()),
+                                                benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_Fan)->Unit(benchmark::kMillisecond);
+
+/// The first search between two depths of an ocean just built, and one between other depths of it.
+void BM_EigenraysOfANewOcean(benchmark::State& state) {
+  const Environment ocean = deep_ocean(state.range(0));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(EigenraySolver(ocean).find(4500.0, 125.0, 30e3, 4000.0, limits));
+  name_profile(state);
+}
+BENCHMARK(BM_EigenraysOfANewOcean)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+void BM_EigenraysToANewDepth(benchmark::State& state) {
+  const EigenraySolver solver(deep_ocean(state.range(0)));
+  double depth = 125.0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(solver.find(4500.0, depth += 1e-3, 30e3, 4000.0, limits));
+  name_profile(state);
+}
+BENCHMARK(BM_EigenraysToANewDepth)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace asdic

@@ -149,5 +149,64 @@ TEST(PingLaws, DelaysOfMovingTargetsAreThoseOfAFixedPoint) {
   EXPECT_GE(compared, 18);
 }
 
+/// Two arrays on two platforms, and a waypoint that the pulse meets.
+Scenario two_arrays() {
+  Scenario s = busy();
+  s.platforms.push_back({.name = "buoy", .track = {}});
+  s.platforms[1].track.start.position = {1500.0, -400.0, 80.0};
+  s.arrays.push_back(line_array(2, 0.1875, 0.0, 0.0));
+  s.arrays[1].platform = 1;
+  s.pings.count = 2;
+  return s;
+}
+
+// A study that asks for levels gets those of the whole ping, without its samples. Equal to the last
+// bit, since the summary is made of the same paths and expectations.
+TEST(PingLaws, LevelsAreThoseOfTheWholePing) {
+  for (const Scenario& scenario : {busy(), two_arrays()}) {
+    const PingSimulator simulator(scenario);
+    for (const int ping : {1, 2}) {
+      const PingRecord whole = simulator.simulate(ping), levels = simulator.levels(ping);
+      EXPECT_TRUE(levels.pressure.empty());
+      EXPECT_EQ(levels.start_time, whole.start_time);
+      EXPECT_EQ(levels.phones.size(), whole.phones.size());
+      ASSERT_EQ(levels.legs.size(), whole.legs.size());
+      ASSERT_EQ(levels.echoes.size(), whole.echoes.size());
+      for (std::size_t i = 0; i < whole.echoes.size(); ++i) {
+        EXPECT_EQ(levels.echoes[i].heard.delay, whole.echoes[i].heard.delay);
+        EXPECT_EQ(levels.echoes[i].heard.amplitude, whole.echoes[i].heard.amplitude);
+      }
+      ASSERT_EQ(levels.summary.size(), 1U);
+      const TargetSummary &a = levels.summary[0], &b = whole.summary[0];
+      if (scenario.arrays.size() == 1) {  // the buoy is in the shadow of what the vehicle lights up
+        EXPECT_TRUE(std::isfinite(b.reverberation_db));
+      }
+      EXPECT_EQ(a.array, b.array);
+      EXPECT_EQ(a.paths, b.paths);
+      EXPECT_EQ(a.echo_time, b.echo_time);
+      EXPECT_EQ(a.echo_level_db, b.echo_level_db);
+      EXPECT_EQ(a.echo_peak_db, b.echo_peak_db);
+      EXPECT_EQ(a.reverberation_db, b.reverberation_db);
+      EXPECT_EQ(a.noise_db, b.noise_db);
+      EXPECT_EQ(a.signal_excess_db, b.signal_excess_db);
+    }
+  }
+}
+
+// The summary tells of the array that hears the loudest pair: what it says there is what it says in
+// a scenario with that array alone, wherever in the list it stands.
+TEST(PingLaws, SummaryIsThatOfTheArrayThatHearsTheTargetBest) {
+  Scenario s = two_arrays();
+  s.platforms[1].track.start.position = {2800.0, 700.0, 80.0};  // beside the target
+  const TargetSummary both = PingSimulator(s).levels(1).summary[0];
+  EXPECT_EQ(both.array, 1);
+  s.arrays.erase(s.arrays.begin());
+  const TargetSummary alone = PingSimulator(s).levels(1).summary[0];
+  EXPECT_EQ(alone.array, 0);
+  EXPECT_EQ(both.paths, alone.paths);
+  EXPECT_EQ(both.echo_peak_db, alone.echo_peak_db);
+  EXPECT_EQ(both.reverberation_db, alone.reverberation_db);
+}
+
 }  // namespace
 }  // namespace asdic

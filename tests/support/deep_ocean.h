@@ -25,4 +25,17 @@ inline Environment deep_ocean(std::string_view law) {
   return ocean;
 }
 
+/// Munk's profile in so many layers of one gradient each, 5000 m deep.
+inline Environment munk_in_layers(int layers) {
+  const SoundSpeedProfile munk = SoundSpeedProfile::munk();
+  std::vector<double> depth, speed;
+  for (int i = 0; i <= layers; ++i) {
+    depth.push_back(5000.0 * i / layers);
+    speed.push_back(munk.at(depth.back()).c);
+  }
+  Environment ocean{.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear)};
+  ocean.bottom = {.depth = 5000.0, .material = FluidHalfSpace{}};
+  return ocean;
+}
+
 }  // namespace asdic::support

@@ -29,7 +29,7 @@ TABLES = {
         "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg"),
     "patches": ("patch",
-        "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
+        "ping boundary range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
         "arrival_elevation_deg scattering_strength_db level_db"),
 }
 
@@ -165,6 +165,8 @@ def write_levels_and_rays(f, s, result):
                                     ("echo_level_db", float)]):
             put(summary, name, rows[:, :, k], name.replace("_", " "), unit_of(name),
                 (f["ping"], f["target_index"]), kind)
+        put(summary, "array", np.zeros(rows.shape[:2]), "array that hears it best", None,
+            (f["ping"], f["target_index"]), np.int32)
         for name, value in (("reverberation_db", 60.0), ("noise_db", 50.0),
                             ("echo_peak_db", 91.0), ("signal_excess_db", 10.0)):
             put(summary, name, np.full(rows.shape[:2], value), name.replace("_", " "), "dB",

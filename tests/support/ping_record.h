@@ -78,7 +78,9 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
   echo.heard.doppler = 1.001;
   echo.heard.slowness = Vec3(-std::cos(radians(5.0)), 0.0, std::sin(radians(5.0))) / 1500.0;
   record.echoes.push_back(echo);
-  for (int i = 0; i < 4500; ++i) record.patches.push_back({.range = 1000.0 + i, .level_db = 70.0});
+  for (int i = 0; i < 4500; ++i)
+    record.patches.push_back(
+        {.ground = static_cast<PatchRow::Ground>(i / 1500), .range = 1000.0 + i, .level_db = 70.0});
   record.levels = {.time_step = 0.05,
                    .echo = std::vector<float>(10, 1.0F),
                    .reverberation = std::vector<float>(10, 2.0F),

@@ -245,7 +245,7 @@ def simulate(s: Settings):
                      + 10 * np.log10(area))
             add_reverberation(parts["reverberation"], offsets, s, 2 * t, 10 ** (level / 10) * 1e-12,
                               -a, c, rng)
-            out["patches"] += [(ping + 1, *row)
+            out["patches"] += [(ping + 1, 0, *row)
                                for row in zip(r, area, 2 * t, g, g, a, -a, strength, level)]
         if s.noise_level is not None:
             sigma = np.sqrt(10 ** (s.noise_level / 10) * 1e-12 * s.sample_rate / 2)

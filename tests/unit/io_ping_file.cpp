@@ -76,6 +76,11 @@ TEST(PingFile, GivesBackWhatWasWritten) {
   EXPECT_NEAR(h5.read<double>("echoes/arrival_bearing_deg")[0], 270.0, 1e-9);
   EXPECT_EQ(h5.info("patches/range").shape[0], 2U * 1500);  // every third of 4500
   EXPECT_EQ(h5.attribute_number("patches", "every"), 3.0);
+  const auto ground = h5.read<std::int32_t>("patches/boundary");  // a third of each
+  EXPECT_EQ(std::count(ground.begin(), ground.end(), 0), 1000);
+  EXPECT_EQ(std::count(ground.begin(), ground.end(), 1), 1000);
+  EXPECT_EQ(ground[999], 1);
+  EXPECT_EQ(ground[1000], 2);
   const auto depth = h5.read<double>("rays/depth");
   ASSERT_EQ(depth.size(), 6U);
   EXPECT_TRUE(std::isnan(depth[5]));

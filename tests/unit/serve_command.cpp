@@ -68,7 +68,10 @@ TEST(Command, IsRefusedInOneMessage) {
       {R"({"id": [1], "command": "ping"})", "command: id: expected a number or a string"},
       {"{\"id\": \"" + std::string(200, 'x') + "\", \"command\": \"ping\"}",
        "command: id: expected at most 128 bytes"},
-      {"{\"" + std::string(65, 'k') + "\": 1}", "json: expected keys of at most 64 bytes"},
+      {"{\"" + std::string(65, 'k') + "\": 1}",
+       R"(json: expected keys of 1 to 64 letters, digits and "_")"},
+      {R"({"": 1})", R"(json: expected keys of 1 to 64 letters, digits and "_")"},
+      {R"({"a\u0000b": 1})", R"(json: expected keys of 1 to 64 letters, digits and "_")"},
   };
   for (const auto& one : cases) EXPECT_EQ(refusal(one.line), one.message) << one.line;
 }

@@ -251,6 +251,7 @@ TEST(UnixSocket, RemovesItsOwnNameAlone) {
 
 // What a file says does not reach a client; which key is at fault, and what it should be, does.
 TEST(RefusalOf, SaysTheKeyAndWhatIsExpected) {
+  const std::string file = "a file that holds what docs/formats/scenario.md says";
   const struct {
     std::string where, message;
   } cases[] = {
@@ -258,13 +259,15 @@ TEST(RefusalOf, SaysTheKeyAndWhatIsExpected) {
       {"--set platform: platform.waypoints[1].time", "platform.waypoints[1].time: expected X"},
       {"--set noise", "noise: expected X"},
       {"pings.sample_rate", "pings.sample_rate: expected X"},
-      {"/secret/cast.csv:3", "a file: expected X"},
-      {"/secret/cast.csv", "a file: expected X"},
-      {"cast.csv:3: speed", "speed: expected X"},
+      {"/secret/cast.csv:3", "a file: expected " + file},
+      {"/secret/cast.csv", "a file: expected " + file},
+      {"cast.csv", "a file: expected " + file},
+      {"cast.csv:3: speed", "a file: expected " + file},
+      {"secret/other.toml:3: environment.depth", "a file: expected " + file},
   };
   for (const auto& one : cases) {
-    const Refusal refusal =
-        refusal_of(InputError({.where = one.where, .got = "SECRET", .expected = "X"}));
+    const Refusal refusal = refusal_of(
+        InputError({.where = one.where, .got = "SECRET", .expected = "X"}), "secret/deep.toml");
     EXPECT_EQ(refusal.what(), one.message);
     EXPECT_EQ(refusal.code(), "scenario");
   }

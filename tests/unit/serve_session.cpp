@@ -143,6 +143,25 @@ TEST(Session, TargetsDoNotFollowThePlatform) {
   EXPECT_NEAR(said["targets"][0]["echo_time"].get<double>(), 2.0 * 2000.0 / 1500.0, 1e-6) << said;
 }
 
+// What does not depend on what changed is not traced again.
+TEST(Session, TellsWhatItReused) {
+  Served served;
+  const auto reused = [&](const std::string& update) {
+    if (!update.empty()) served(R"({"command": "update", )" + update + "}");
+    return served(R"({"command": "ping", "time": 0})")["reused"];
+  };
+  EXPECT_EQ(reused("")["ocean"], false);
+  const auto noise = reused(R"("noise": {"spectral_level_db": 50})");
+  EXPECT_EQ(noise["ocean"], true);
+  EXPECT_EQ(noise["legs"], 2);  // there and back
+  EXPECT_EQ(noise["legs_searched"], 0);
+  EXPECT_EQ(noise["reverberation"], true);
+  const auto target = reused(R"("targets": {"position": [2000, 0, 300]})");
+  EXPECT_EQ(target["legs_searched"], 2);
+  EXPECT_EQ(target["reverberation"], true);
+  EXPECT_EQ(reused(R"("sound_speed": {"kind": "isovelocity", "speed": 1490})")["ocean"], false);
+}
+
 TEST(Session, UpdatesChangeWhatIsHeard) {
   Served served;
   const auto samples = [&] {
@@ -371,6 +390,8 @@ TEST(Session, ReadsFilesOfTheDataFolder) {
   static_cast<void>(data.write("good.csv", "depth,speed\n0,1500\n1000,1520\n"));
   static_cast<void>(data.write("bad.csv", "depth,speed\n0,1500\nSECRET,1520\n"));
   static_cast<void>(data.write("worse.csv", "SECRET\n"));
+  static_cast<void>(data.write("order.csv", "depth,speed\n0,1500\n777.25,1520\n5,1500\n"));
+  static_cast<void>(data.write("short.csv", "depth,speed\n777.25,1500\n778.25,1450\n"));
   serve::SessionSettings settings;
   settings.data = serve::DataFolder(data.path());
   Served served(support::served_scenario, settings);
@@ -378,7 +399,9 @@ TEST(Session, ReadsFilesOfTheDataFolder) {
     return served.refusal(R"({"command": "update", "sound_speed": {"file": ")" + name + "\"}}");
   };
   EXPECT_EQ(cast("good.csv").substr(0, 1), "{");
-  for (const std::string name : {"bad.csv", "worse.csv", "missing.csv", "../x.csv"}) {
+  for (const std::string name :
+       {"bad.csv", "worse.csv", "order.csv", "short.csv", "missing.csv", "../x.csv"}) {
+    EXPECT_THAT(cast(name), Not(HasSubstr("777.25"))) << name;
     const std::string message = cast(name);
     EXPECT_THAT(message, HasSubstr("expected")) << name;
     EXPECT_THAT(message, Not(HasSubstr("SECRET"))) << name;

@@ -145,6 +145,15 @@ TEST(Summary, AxesByValueAndOverTwo) {
   EXPECT_EQ(column(two, "kind")[1], 1.0);  // the last axis is fastest
 }
 
+TEST(Summary, AGridOfManyValuesIsTakenByValueUnlessBinsAreAsked) {
+  Table table = made_up(1000);
+  for (std::size_t i = 0; i < 1000; ++i) table.values[0][i] = 100.0 * double(i % 40);
+  const auto by_value = summarise(asking({{{.column = "x"}}}), table);
+  EXPECT_EQ(named(by_value, "pd_by_x").values[0].size(), 36U);  // 25 valid rows to each
+  const auto bins = summarise(asking({{{.column = "x", .bins = 5}}}), table);
+  EXPECT_EQ(named(bins, "pd_by_x").values[0].size(), 5U);
+}
+
 TEST(Summary, EqualCountsFillBinsAlike) {
   const auto tables =
       summarise(asking({{{.column = "x", .bins = 9, .equal_count = true}}}), made_up(1000));

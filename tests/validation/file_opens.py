@@ -65,11 +65,11 @@ TABLES = {
         "ping target channel highlight outgoing returning delay doppler_factor level_db "
         "arrival_elevation_deg arrival_bearing_deg",
     "patches":
-        "ping range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
+        "ping boundary range area delay grazing_in_deg grazing_out_deg launch_elevation_deg "
         "arrival_elevation_deg scattering_strength_db level_db",
 }
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
-SUMMARY = "present paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
+SUMMARY = "present array paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
 REUSE = "reuse_ocean legs_searched legs_reused reuse_reverberation"
 INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning",

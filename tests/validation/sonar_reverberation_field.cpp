@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
 #include "support/reverberant_sea.h"
@@ -539,6 +540,59 @@ TEST(ReverberationField, FastSynthesisIsDirectSynthesis) {
     peak = std::max(peak, std::abs(plain[i]));
   }
   EXPECT_LT(worst, 1e-4 * peak);
+}
+
+// Every row of the file says what scattered, and all three are among them.
+TEST(ReverberationField, RowsSayWhatScattered) {
+  Scenario s = quiet_sea();
+  s.reverberation.surface_scatters = true;
+  s.reverberation.bottom = Lambert{};
+  s.reverberation.volume = {{.top = 1000.0, .bottom = 1050.0, .strength_db = -75.0}};
+  s.pings.recording_duration = 8.0;
+  const Sea sea(s);
+  std::array<int, 3> rows{};
+  for (const PatchRow& row : sea.ping(1).rows(100'000).rows) {
+    ++rows[static_cast<std::size_t>(row.ground)];
+    if (row.ground == PatchRow::Ground::volume) {
+      EXPECT_NEAR(row.scattering_strength_db, -75.0 + db_from_power(50.0), 1e-9);
+    } else if (row.ground == PatchRow::Ground::bottom) {
+      EXPECT_NEAR(row.scattering_strength_db,
+                  -27.0 + db_from_power(std::sin(row.grazing_in) * std::sin(row.grazing_out)),
+                  1e-9);
+    }
+  }
+  for (const int n : rows) EXPECT_GT(n, 20);
+}
+
+// The stretches of Doppler factors that a source promises hold all that it makes: every kind of
+// motion, one platform and two.
+TEST(ReverberationField, DopplerFactorsLieWhereTheyArePromised) {
+  for (const auto kind :
+       {ScattererMotion::Kind::still, ScattererMotion::Kind::bragg, ScattererMotion::Kind::spread})
+    for (const bool bistatic : {false, true})
+      for (const double speed : {0.0, 4.0}) {
+        Scenario s = quiet_sea();
+        s.reverberation.surface_scatters = true;
+        s.reverberation.surface_field.motion = {
+            .kind = kind, .speed_rms = 1.0, .current = {0.5, -0.3}};
+        s.platforms[0].track.start.velocity = {speed, 0.5 * speed, 0.1 * speed};
+        if (bistatic) {
+          s.platforms.push_back(s.platforms[0]);
+          s.platforms[1].track.start.position.x() += 2000.0;
+          s.arrays[0].platform = 1;
+        }
+        s.pings.recording_duration = 9.0;
+        const Sea sea(s);
+        const PingReverberation ping = sea.ping(1);
+        const std::vector<DopplerSpan> spans = ping.dopplers();
+        for (const Return& r : ping.returns())
+          ASSERT_TRUE(std::any_of(spans.begin(), spans.end(),
+                                  [&](const DopplerSpan& span) {
+                                    return r.doppler >= span.lowest - 1e-12 &&
+                                           r.doppler <= span.highest + 1e-12;
+                                  }))
+              << r.doppler << ' ' << int(kind) << ' ' << bistatic << ' ' << speed;
+      }
 }
 
 }  // namespace

@@ -240,6 +240,111 @@ TEST(Transect, ReverberationOverAFlatShapeIsThatOfTheLayeredOcean) {
     expect_same(*ring[0].paths, *plane.paths, 2.7e-4, 2.7e-3, 0.01);
 }
 
+/// Around the platform, in the plane of the first sector.
+GroundPaths level_of(const Scenario& s, const PropagationPaths& paths, double depth) {
+  return *BoundaryFans(paths)
+              .around(s.platforms[0].track.start.position, GroundLevel(depth),
+                      {.sectors = 6,
+                       .spacing = 20.0,
+                       .max_range = 4000.0,
+                       .frequency = 4000.0,
+                       .limits = limits_of(s.propagation)})
+              ->planes[0]
+              .paths;
+}
+
+// The same of a depth in the water, passed from above and below, before and after bounces, above
+// and below the platform. Paths that turn within a cell of the level may be on either side of it:
+// their cells have paths more or less, or an amplitude off by more than the rest's 1 % (it goes to
+// infinity where dr/dα does): two at most. Lengths within
+// twice the delays' tolerance, 0.8 m: they are linear over the mean speed.
+TEST(Transect, LevelsOfTheWaterOverAFlatShapeAreThoseOfTheLayeredOcean) {
+  Scenario flat = reverberant();
+  flat.environment.bottom.shape.reset();
+  Scenario shaped = flat;
+  shaped.environment.bottom.shape =
+      BoundaryShape(std::vector{-5000.0, 9000.0}, std::vector{900.0, 900.0},
+                    ShapeInterpolation::piecewise_linear);
+  const PropagationPaths a(flat.environment, flat.transect), b(shaped.environment, shaped.transect);
+  for (const double depth : {40.0, 100.0, 400.0, 850.0}) {
+    const GroundPaths layered = level_of(flat, a, depth), marched = level_of(shaped, b, depth);
+    ASSERT_EQ(layered.cells(), marched.cells());
+    int unlike = 0, compared = 0;
+    for (std::size_t cell = 0; cell < layered.cells(); ++cell) {
+      if (layered.paths(cell).size() != marched.paths(cell).size()) {
+        ++unlike;
+        continue;
+      }
+      for (const GroundPath& p : layered.paths(cell)) {
+        const auto off = [&](const GroundPath& other) {
+          return std::abs(other.launch_elevation - p.launch_elevation) +
+                 std::abs(other.delay - p.delay);
+        };
+        const auto all = marched.paths(cell);
+        const auto same = std::min_element(
+            all.begin(), all.end(),
+            [&](const GroundPath& x, const GroundPath& y) { return off(x) < off(y); });
+        EXPECT_NEAR(same->delay, p.delay, 2.7e-4) << depth << ' ' << cell;
+        EXPECT_NEAR(same->length, p.length, 0.8) << depth << ' ' << cell;
+        EXPECT_NEAR(same->grazing, p.grazing, 2.7e-3) << depth << ' ' << cell;
+        EXPECT_EQ(same->downward, p.downward) << depth << ' ' << cell;
+        if (std::abs(same->amplitude - p.amplitude) > 0.01 * std::abs(p.amplitude)) ++unlike;
+        ++compared;
+      }
+    }
+    EXPECT_GE(compared, 950) << depth;
+    EXPECT_LE(unlike, 2) << depth;
+  }
+}
+
+// Over the wedge a layer ends where the sea floor rises above it.
+TEST(Transect, ALayerEndsWhereTheSeaFloorCutsIt) {
+  const Scenario s = reverberant();
+  const PropagationPaths paths(s.environment, s.transect);
+  const BoundaryFan fan =
+      *BoundaryFans(paths).around(s.platforms[0].track.start.position, GroundLevel(700.0),
+                                  {.sectors = 6,
+                                   .spacing = 20.0,
+                                   .max_range = 6000.0,
+                                   .frequency = 4000.0,
+                                   .limits = limits_of(s.propagation)});
+  const double here = paths.along(s.platforms[0].track.start.position);
+  // 900 m − x/20 is 700 m at x = 4 km.
+  const double upslope = (4000.0 - here) / std::cos(pi / 6.0);
+  double furthest = 0.0;
+  for (std::size_t cell = 0; cell < fan.planes[0].paths->cells(); ++cell)
+    if (!fan.planes[0].paths->paths(cell).empty()) furthest = fan.planes[0].paths->range(cell);
+  EXPECT_NEAR(furthest, upslope, 40.0);
+  const GroundPaths& down = *fan.planes[2].paths;
+  EXPECT_FALSE(down.paths(down.cells() - 1).empty());
+}
+
+// What a ping expects to hear of a layer: the layered ocean's within the grids' 1 % of amplitude
+// (0.09 dB each way), from the first echo of the layer on.
+TEST(Transect, VolumeReverberationOverAFlatShapeIsThatOfTheLayeredOcean) {
+  const auto expected = [](bool shaped) {
+    Scenario s = reverberant();
+    s.environment.bottom.shape.reset();
+    if (shaped)
+      s.environment.bottom.shape =
+          BoundaryShape(std::vector{-5000.0, 9000.0}, std::vector{900.0, 900.0},
+                        ShapeInterpolation::piecewise_linear);
+    s.reverberation.surface_scatters = false;
+    s.reverberation.volume = {{.top = 350.0, .bottom = 450.0, .strength_db = -75.0}};
+    const PropagationPaths paths(s.environment, s.transect);
+    const Pulse pulse(s.pulse);
+    const BeamPattern pattern(s.transmitters[0], 0.375);
+    const ReverberationModel model(s, paths, pulse);
+    const PingReverberation ping = model.ping({.pattern = pattern, .pulse = pulse, .latest = 4.0});
+    std::vector<double> levels;
+    for (double t = 0.5; t < 4.0; t += 0.1) levels.push_back(ping.expected_db(t));
+    return levels;
+  };
+  const auto layered = expected(false), shaped = expected(true);
+  for (std::size_t i = 0; i < layered.size(); ++i)
+    EXPECT_NEAR(shaped[i], layered[i], 0.2) << 0.5 + 0.1 * double(i);
+}
+
 // A surface that slopes by h′ along the transect, seen under β: sin(grazing) is |t·n| with the true
 // normal n = (h′, −1)/√(1 + h′²) in (x, z) and t = (cos θ cos β, cos θ sin β, −sin θ).
 TEST(Transect, GrazingAnglesAreThoseToTheTrueFacet) {

@@ -1,0 +1,28 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "raytrace/layered/layer.h"
+
+namespace asdic {
+
+/// A speed at which the fan of an ocean is singular; `logarithmic` where it is a smooth extremum of
+/// the profile, near which a ray lingers.
+struct CriticalSpeed {
+  double speed = 0.0;
+  bool logarithmic = false;
+};
+
+/// Between two speeds, these included: of rays that turn at a knot, graze a boundary, or are
+/// horizontal at a cut. \return increasing
+[[nodiscard]] std::vector<CriticalSpeed> critical_speeds(std::span<const Layer> layers,
+                                                         double slowest, double fastest);
+
+/// Nodes of the fan between two neighbours of them: sines at the slower one's depth, denser towards
+/// 0, where r(σ) bends within the distance to the next slower knot; geometric towards logarithmic
+/// ends. \param analytic  one law over the whole depth: few, wide intervals; a table has one from
+/// sample to sample
+void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analytic,
+               std::vector<double>& sigma);
+
+}  // namespace asdic

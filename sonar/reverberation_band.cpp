@@ -1,0 +1,109 @@
+#include "sonar/reverberation_band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/ocean/absorption.h"
+#include "sonar/ping_bounds.h"
+
+namespace asdic {
+namespace {
+
+using Response = std::function<double(double frequency)>;
+
+constexpr double lowest = 1.0;  // [Hz]: below, no law of absorption or scattering means anything
+
+/// Chebyshev points of a band.
+BandNodes points_of(double centre, double half_width, std::size_t count) {
+  BandNodes nodes{.centre = centre, .half_width = half_width, .frequencies = {}};
+  for (std::size_t k = 0; k < count; ++k)
+    nodes.frequencies.push_back(centre - half_width * std::cos(pi * (static_cast<double>(k) + 0.5) /
+                                                               static_cast<double>(count)));
+  return nodes;
+}
+
+/// How far interpolation through the nodes is off, over the largest value in the band.
+double error_of(const BandNodes& nodes, const Response& response) {
+  constexpr int tried = 32;
+  std::vector<double> known;
+  for (const double f : nodes.frequencies) known.push_back(response(std::max(lowest, f)));
+  double worst = 0.0, largest = 0.0;
+  for (int i = 0; i <= tried; ++i) {
+    const double f = nodes.centre + nodes.half_width * (2.0 * i / tried - 1.0);
+    const double exact = response(std::max(lowest, f));
+    double sum = 0.0;
+    for (std::size_t k = 0; k < known.size(); ++k) sum += nodes.basis(k, f) * known[k];
+    worst = std::max(worst, std::abs(sum - exact));
+    largest = std::max(largest, std::abs(exact));
+  }
+  return largest > 0.0 ? worst / largest : 0.0;
+}
+
+/// Angles as boundaries see them.
+std::vector<ScatterGeometry> geometries() {
+  std::vector<ScatterGeometry> all;
+  for (const double in : {2.0, 8.0, 20.0, 45.0, 80.0})
+    for (const double out : {2.0, 20.0, 80.0})
+      for (const double turn : {180.0, 90.0})
+        all.push_back(
+            {.grazing_in = radians(in), .grazing_out = radians(out), .azimuth = radians(turn)});
+  return all;
+}
+
+}  // namespace
+
+ReverberationBand::ReverberationBand(const Scenario& scenario, const PropagationPaths& paths,
+                                     std::span<const ScatteringSheet::Law> laws,
+                                     const Transmitter& projector, const Kinematics& source,
+                                     double heading, double centre, double half_band,
+                                     double latest) {
+  const auto nepers_per_metre = [&](double frequency) {
+    return absorption_db_per_km(scenario.environment.absorption, frequency) / 1000.0 *
+           std::numbers::ln10 / 20.0;
+  };
+  const double at_centre = nepers_per_metre(centre);
+  const double longest = fastest_water(scenario.environment) * latest;
+  std::vector<Response> responses;
+  for (const double length : {0.0, longest}) {
+    const auto water = [=](double f) {
+      return std::exp(-(nepers_per_metre(f) - at_centre) * length);
+    };
+    responses.emplace_back(water);
+    for (const ScatteringSheet::Law& law : laws)
+      for (const ScatterGeometry& geometry : geometries())
+        responses.emplace_back([=](double f) {
+          return water(f) * std::sqrt(std::visit(
+                                [&](const auto& l) { return l.cross_section(geometry, f); }, law));
+        });
+  }
+  std::size_t count = 1;
+  for (const Response& response : responses)
+    while (count < most_points && error_of(points_of(centre, half_band, count), response) > error)
+      ++count;
+
+  const double c = paths.speed_at(source.position);
+  const auto pattern_at = [&](double frequency) {
+    return BeamPattern(projector, c / frequency, c, heading, c / centre);
+  };
+  // A product of polynomials of K₁ and K₂ points is one of K₁ + K₂ − 1.
+  count += nodes_for(0.0, pi * half_band * pattern_at(centre).longest_delay(), error) - 1;
+  nodes_ = points_of(centre, half_band, count);
+  for (const double f : nodes_.frequencies) patterns_.push_back(pattern_at(std::max(lowest, f)));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double f = std::max(lowest, nodes_.frequencies[k]);
+    points_.push_back(
+        {.frequency = f, .pattern = &patterns_[k], .more_nepers = nepers_per_metre(f) - at_centre});
+  }
+}
+
+Synthesizer ReverberationBand::synthesizer(const Pulse& pulse, const Recording& recording,
+                                           double max_doppler) const {
+  std::vector<std::function<double(double)>> filters;
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    filters.emplace_back(
+        [this, k](double beside) { return nodes_.basis(k, nodes_.centre + beside); });
+  return Synthesizer(pulse, recording, max_doppler, filters);
+}
+
+}  // namespace asdic

@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sonar/band_response.h"
+#include "sonar/propagation_paths.h"
+#include "sonar/scattering_sheet.h"
+#include "sonar/synthesis.h"
+#include "sonar/transmitter.h"
+
+namespace asdic {
+
+/// The few frequencies at which a ping's reverberation is known, and what differs there: the
+/// water's absorption, the scattering laws, the transmitter's pattern.
+///
+/// A return's amplitude is A(f) ≈ Σ_k ℓ_k(f)·A(f_k), f_k Chebyshev points of the pulse's band: it
+/// has an amplitude for every f_k, and the pulse goes through ℓ_k. As many points as interpolate
+/// absorption times √σ to 10⁻⁴ of its largest value, found by trying (paths up to the longest, a
+/// fan of angles), and those that the pattern asks for by its bound. docs/theory/reverberation.md,
+/// "Across the band"
+class ReverberationBand {
+ public:
+  /// \param projector  as it pings   \param latest  end of the record, since the ping [s]
+  /// \param half_band  of the pulse [Hz]
+  ReverberationBand(const Scenario& scenario, const PropagationPaths& paths,
+                    std::span<const ScatteringSheet::Law> laws, const Transmitter& projector,
+                    const Kinematics& source, double heading, double centre, double half_band,
+                    double latest);
+
+  [[nodiscard]] std::span<const BandPoint> points() const noexcept { return points_; }
+  /// One whose colours are the points.
+  [[nodiscard]] Synthesizer synthesizer(const Pulse& pulse, const Recording& recording,
+                                        double max_doppler) const;
+
+  static constexpr double error = 1e-4;           ///< of the largest amplitude in the band
+  static constexpr std::size_t most_points = 16;  ///< for laws with kinks, which ask for more
+
+ private:
+  BandNodes nodes_;
+  std::vector<BeamPattern> patterns_;
+  std::vector<BandPoint> points_;
+};
+
+}  // namespace asdic

@@ -1,0 +1,51 @@
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sonar/ping.h"
+#include "sonar/stream.h"
+
+namespace asdic {
+
+int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
+              const PingOptions& options) {
+  const int count = simulator.pings();
+  const bool continuous = simulator.scenario().pings.continuous;
+  Stream stream(simulator.scenario());
+  ReceiverElectronics::Carried carried;
+  int next = 1, done = 0;
+  // Two pings in flight a thread keep the writer fed; more would only cost memory.
+  const auto in_flight =
+      static_cast<std::size_t>(std::max(2, tbb::this_task_arena::max_concurrency()));
+  tbb::parallel_pipeline(
+      in_flight,
+      tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
+                                  [&](tbb::flow_control& flow) {
+                                    if (next > count || options.stop.stop_requested()) {
+                                      flow.stop();
+                                      return 0;
+                                    }
+                                    return next++;
+                                  }) &
+          tbb::make_filter<int, std::shared_ptr<PingRecord>>(
+              tbb::filter_mode::parallel,
+              [&](int ping) {
+                return std::make_shared<PingRecord>(continuous ? simulator.sound(ping)
+                                                               : simulator.simulate(ping));
+              }) &
+          tbb::make_filter<std::shared_ptr<PingRecord>, void>(
+              tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
+                if (continuous) {
+                  stream.take(*record);
+                  simulator.complete(*record, &carried);
+                }
+                sink(std::move(*record));
+                ++done;
+                if (options.progress) options.progress(done);
+              }));
+  return done;
+}
+
+}  // namespace asdic
