@@ -91,6 +91,21 @@ else
   verdict soak FAILED "at most $few kB over 50 pings, $many kB over 800"
 fi
 
+# Studies: the same bits by threads, parts and ranks, with 20 kills; memory flat over 10⁵ realisations.
+cd "$root"
+if said=$(/usr/bin/python3 tests/validation/study_runs.py 20 2>&1); then
+  verdict studies good "$(grep killed <<<"$said" | head -n 1)"
+else
+  verdict studies FAILED "$(tail -n 1 <<<"$said")"
+fi
+if [ -x build/ci/tests/property_study ]; then
+  if said=$(ASDIC_SOAK=100000 build/ci/tests/property_study --gtest_filter='Soak.*' 2>&1); then
+    verdict study-soak good "100000 realisations in memory that stays the same"
+  else
+    verdict study-soak FAILED "$(grep kB <<<"$said" | head -n 1)"
+  fi
+fi
+
 # 10 000 served updates and pings: none lost, no more memory after them.
 cd "$root"
 if said=$(/usr/bin/python3 tests/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then

@@ -21,7 +21,7 @@ from same_study import differences  # noqa: E402
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 ASDIC_MPI = ASDIC.with_name("asdic-mpi")
 KILLS = int(sys.argv[1]) if len(sys.argv) > 1 else 3
-COUNT = 240
+COUNT = 480
 
 STUDY = """
 [study]
@@ -131,7 +131,7 @@ def threads_and_parts():
     run("merge", *parts, "-o", "copied.h5", "--copy")
     same("copied.h5", "3 parts, copied")
     said = run("merge", *parts[:2], "-o", "no.h5", status=2).stderr
-    check("found no part with 80 of 240 realisations: 0:80" in said, f"a gap: {said}")
+    check("found no part with 160 of 480 realisations: 0:160" in said, f"a gap: {said}")
 
 
 def interrupted():
@@ -154,7 +154,7 @@ def killed():
     for k in range(KILLS):
         run_ = start("study", "study.toml", "-o", "k.h5", "--threads", 1 + k % 3, "-q")
         wait_for_journal("k.h5.journal", run_)
-        time.sleep(random.uniform(0.0, 4.0 / KILLS))
+        time.sleep(random.uniform(0.0, 1.0 / KILLS))
         run_.kill()
         run_.communicate()
         if Path("k.h5").exists():  # it had been done
