@@ -24,10 +24,10 @@ struct LocaliserSettings {
 
 /// Who sent and who heard one ping. Times count from the ping's start.
 struct SonarPlaces {
-  Kinematics source;                     ///< when the ping starts
-  Kinematics array;                      ///< the same of the array's reference point
+  Kinematics source;                         ///< when the ping starts
+  Kinematics array;                          ///< the same of the array's reference point
   const TransmitPattern* pattern = nullptr;  ///< of the transmitter; none: all round
-  ArrayShape shape;                      ///< of the array
+  ArrayShape shape;                          ///< of the array
 };
 
 /// From delay, direction and Doppler factor to a place, by the paths of sound.
