@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "study/imprint.h"
+#include "io/digest.h"
 
 namespace asdic::study {
 namespace {
