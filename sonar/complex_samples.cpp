@@ -62,13 +62,13 @@ class Silence {
 /// is left out, as an anti-alias filter would.
 void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
                              std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   const Recording& recording = plan.recording;
   const double period = static_cast<double>(plan.passband_length) / recording.sample_rate;
   const auto new_carrier_bin = static_cast<std::ptrdiff_t>(std::round(recording.carrier * period));
   const double beside = recording.carrier - static_cast<double>(new_carrier_bin) / period;
   const double cycles =
-      (plan.carrier - recording.carrier) * recording.start - recording.carrier * recording.epoch;
+      (plan.carrier - recording.carrier) * recording.start - recording.carrier * epoch_;
   const std::complex<double> turn = std::polar(scale / static_cast<double>(plan.length),
                                                2.0 * pi * (cycles - std::round(cycles)));
   const ComplexFft<float> fft(plan.length), fine(plan.passband_length);
@@ -107,12 +107,12 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
 /// The same out of the baseband's samples, where its whole band lies within the recorded one.
 void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
                                        std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   static const Taps taps(kaiser_beta);
   const Recording& recording = plan.recording;
   const auto period = static_cast<std::ptrdiff_t>(plan.length);
   const double beside = plan.carrier - recording.carrier;
-  const double from_start = beside * recording.start - recording.carrier * recording.epoch;
+  const double from_start = beside * recording.start - recording.carrier * epoch_;
   const double step = plan.rate / recording.sample_rate;
   const std::complex<double> turn_step = std::polar(1.0, 2.0 * pi * beside / recording.sample_rate);
   const Silence silence(baseband);
@@ -160,7 +160,7 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
 
 void Synthesizer::add_complex(const Baseband& baseband, double scale,
                               std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   const double period = static_cast<double>(plan.passband_length) / plan.recording.sample_rate;
   const double furthest = std::abs(plan.carrier - plan.recording.carrier) +
                           static_cast<double>(plan.highest_bin) / period;
