@@ -1,12 +1,14 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
 #include "core/units.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
+#include "sonar/turning.h"
 
 namespace asdic {
 namespace {
@@ -24,6 +26,8 @@ struct GridSpan {
   std::ptrdiff_t begin = 0, end = 0;
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
 };
+
+constexpr std::size_t block = Turning::block;
 
 /// A sample of a return of amplitude 1: the pulse's envelope, and what turns it.
 struct ShapeSample {
@@ -216,19 +220,23 @@ class CurvedSynthesis {
       const double slope =
           (last_lag - first_lag) / (piece.heard.back() - piece.heard.front());  // dλ/dt
       const double cycles = plan_.carrier * (first_lag + slope * (time(i) - piece.heard.front()));
-      std::complex<double> turn = std::polar(1.0, -2.0 * pi * (cycles - std::nearbyint(cycles)));
-      const std::complex<double> step =
-          std::polar(1.0, -2.0 * pi * plan_.carrier * slope / plan_.rate);
-      for (; i < end; ++i) {
-        std::complex<float> sum = 0.0F;
-        const std::complex<float>* value = w.values.data() + (i - w.span.begin);
-        for (const float k : weight) {
-          sum += k * *value;
-          value += w.span.size();
+      const double per_sample = plan_.carrier * slope / plan_.rate;  // cycles
+      Turning turning(-cycles, -per_sample);
+      while (i < end) {
+        const auto count = static_cast<std::size_t>(
+            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(block)));
+        std::array<float, 2 * block> sum{};
+        for (std::size_t k = 0; k < weight.size(); ++k) {
+          const float* value = reinterpret_cast<const float*>(
+              w.values.data() + k * w.span.size() + static_cast<std::size_t>(i - w.span.begin));
+          for (std::size_t j = 0; j < 2 * count; ++j) sum[j] += weight[k] * value[j];
         }
-        row[at] += sum * std::complex<float>(turn);
-        turn *= step;
-        if (++at == plan_.length) at = 0;
+        turning.turn(sum);
+        for (std::size_t j = 0; j < count; ++j) {
+          row[at] += std::complex<float>(sum[2 * j], sum[2 * j + 1]);
+          if (++at == plan_.length) at = 0;
+        }
+        i += static_cast<std::ptrdiff_t>(count);
       }
     }
   }
