@@ -48,7 +48,7 @@ double cost_of_grid(std::size_t length) {
 
 Baseband Synthesizer::baseband(std::span<const Return> returns,
                                std::span<const Vec3> phones) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   std::vector<double> dopplers;
   dopplers.reserve(returns.size());
   for (const Return& r : returns) {
@@ -65,7 +65,7 @@ Baseband Synthesizer::baseband(std::span<const Return> returns,
 }
 
 Baseband Synthesizer::baseband(const ReturnSource& source, std::span<const Vec3> phones) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   std::vector<DopplerSpan> spans = source.dopplers();
   for (DopplerSpan& span : spans) {
     span.lowest = std::max(span.lowest, 1.0 - plan.max_doppler);

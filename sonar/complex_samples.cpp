@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "core/units.h"
 #include "sonar/interpolation_taps.h"
@@ -19,13 +21,27 @@ using Taps = InterpolationTaps<float, 24>;
 constexpr double kaiser_beta = 9.73;
 static_assert(DelayKernel::oversampling >= 1.35);
 
+/// Real taps, each twice: as they multiply interleaved complex samples.
+using TwiceEach = Eigen::Array<float, 2 * Taps::taps, 1>;
+
+/// Σ w_k·x_k in lanes of four samples. \param samples  [taps] real and imaginary part in turn
+std::complex<float> weighted(const float* samples, const TwiceEach& weights) {
+  using Lanes = Eigen::Array<float, 8, 1>;
+  static_assert(2 * Taps::taps % 8 == 0);
+  Lanes sum = Lanes::Zero();
+  for (int k = 0; k < 2 * Taps::taps; k += 8)
+    sum += Eigen::Map<const Lanes>(samples + k) * weights.segment<8>(k);
+  const Eigen::Array4f half = sum.head<4>() + sum.tail<4>();
+  return {half[0] + half[2], half[1] + half[3]};
+}
+
 /// Samples of the record that are interpolated at one time: their taps stay in the cache.
-constexpr std::size_t block = 128;
+constexpr std::size_t block = 64;
 
 /// Where the samples of a block lie between those of the baseband, and what turns them.
 struct Places {
   std::array<std::ptrdiff_t, block> first;  // of the samples under the taps
-  std::array<Taps::Weights, block> weights;
+  std::array<TwiceEach, block> weights;
   std::array<std::complex<float>, block> turn;
 };
 
@@ -38,8 +54,7 @@ class Silence {
       const auto row = baseband.channel(n);
       for (std::size_t b = 0; b < blocks_; ++b) {
         const auto part = row.subspan(b * length, std::min(length, row.size() - b * length));
-        heard_[b] = heard_[b] || std::any_of(part.begin(), part.end(),
-                                             [](std::complex<float> x) { return x != 0.0F; });
+        heard_[b] = heard_[b] || !all_zero(part);
       }
     }
   }
@@ -51,6 +66,14 @@ class Silence {
   }
 
  private:
+  /// All bits but the signs, in lanes.
+  [[nodiscard]] static bool all_zero(std::span<const std::complex<float>> part) {
+    const float* x = reinterpret_cast<const float*>(part.data());
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < 2 * part.size(); ++i) bits |= std::bit_cast<std::uint32_t>(x[i]);
+    return (bits & 0x7FFFFFFFU) == 0;
+  }
+
   static constexpr std::size_t length = 64;
   std::size_t blocks_;
   std::vector<bool> heard_;
@@ -62,13 +85,13 @@ class Silence {
 /// is left out, as an anti-alias filter would.
 void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
                              std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   const Recording& recording = plan.recording;
   const double period = static_cast<double>(plan.passband_length) / recording.sample_rate;
   const auto new_carrier_bin = static_cast<std::ptrdiff_t>(std::round(recording.carrier * period));
   const double beside = recording.carrier - static_cast<double>(new_carrier_bin) / period;
   const double cycles =
-      (plan.carrier - recording.carrier) * recording.start - recording.carrier * recording.epoch;
+      (plan.carrier - recording.carrier) * recording.start - recording.carrier * epoch_;
   const std::complex<double> turn = std::polar(scale / static_cast<double>(plan.length),
                                                2.0 * pi * (cycles - std::round(cycles)));
   const ComplexFft<float> fft(plan.length), fine(plan.passband_length);
@@ -107,12 +130,12 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
 /// The same out of the baseband's samples, where its whole band lies within the recorded one.
 void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
                                        std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   static const Taps taps(kaiser_beta);
   const Recording& recording = plan.recording;
   const auto period = static_cast<std::ptrdiff_t>(plan.length);
   const double beside = plan.carrier - recording.carrier;
-  const double from_start = beside * recording.start - recording.carrier * recording.epoch;
+  const double from_start = beside * recording.start - recording.carrier * epoch_;
   const double step = plan.rate / recording.sample_rate;
   const std::complex<double> turn_step = std::polar(1.0, 2.0 * pi * beside / recording.sample_rate);
   const Silence silence(baseband);
@@ -131,11 +154,12 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
       const double position = static_cast<double>(begin + i) * step;
       const double below = std::floor(position);
       at.first[i] = static_cast<std::ptrdiff_t>(below) - Taps::before;
-      at.weights[i] = taps.at(static_cast<float>(position - below));
+      const Taps::Weights once = taps.at(static_cast<float>(position - below));
+      for (int k = 0; k < Taps::taps; ++k)
+        at.weights[i][2 * k] = at.weights[i][2 * k + 1] = once[k];
       at.turn[i] = std::complex<float>(turn);
       turn *= turn_step;
     }
-    using Under = Eigen::Map<const Eigen::Array<float, 2, Taps::taps>>;
     // The samples under the block's taps, wrapped around the period.
     std::vector<std::complex<float>> under(static_cast<std::size_t>(highest - lowest + 1));
     for (std::size_t n = 0; n < baseband.channels; ++n) {
@@ -146,11 +170,11 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
       }
       float* out = samples.data() + (n * recording.samples + begin) * 2;
       for (std::size_t i = 0; i < count; ++i) {
-        const Under part(reinterpret_cast<const float*>(under.data() + (at.first[i] - lowest)));
-        const Eigen::Array2f sum = (part.rowwise() * at.weights[i].transpose()).rowwise().sum();
-        const std::complex<float> value = std::complex<float>(sum[0], sum[1]) * at.turn[i];
-        out[2 * i] += value.real();
-        out[2 * i + 1] += value.imag();
+        const std::complex<float> sum = weighted(
+            reinterpret_cast<const float*>(under.data() + (at.first[i] - lowest)), at.weights[i]);
+        const std::complex<float> by = at.turn[i];
+        out[2 * i] += sum.real() * by.real() - sum.imag() * by.imag();
+        out[2 * i + 1] += sum.real() * by.imag() + sum.imag() * by.real();
       }
     }
   };
@@ -160,7 +184,7 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
 
 void Synthesizer::add_complex(const Baseband& baseband, double scale,
                               std::span<float> samples) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   const double period = static_cast<double>(plan.passband_length) / plan.recording.sample_rate;
   const double furthest = std::abs(plan.carrier - plan.recording.carrier) +
                           static_cast<double>(plan.highest_bin) / period;

@@ -1,12 +1,14 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
 #include "core/units.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
+#include "sonar/turning.h"
 
 namespace asdic {
 namespace {
@@ -25,6 +27,15 @@ struct GridSpan {
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
 };
 
+constexpr std::size_t block = Turning::block;
+
+/// A sample of a return of amplitude 1: the pulse's envelope, and what turns it.
+struct ShapeSample {
+  std::complex<double> pulse;
+  std::complex<float> turn;
+};
+using Shape = std::vector<ShapeSample>;
+
 /// A return as it is heard at a few lags about the array's reference point,
 /// g(t − λ_k), g(τ) = A·c(u(τ))·e^{i2π(f·u(τ) − f_c·τ)}: between Chebyshev points λ_k of the
 /// phones' lags the band-limited g is a polynomial.
@@ -41,8 +52,10 @@ struct Waveforms {
 /// middle.
 class CurvedSynthesis {
  public:
-  CurvedSynthesis(const Synthesizer::Plan& plan, std::span<const Vec3> phones, Baseband& baseband)
+  CurvedSynthesis(const Synthesizer::Plan& plan, std::span<const Vec3> phones, Baseband& baseband,
+                  PropagationMemory* memory)
       : plan_(plan),
+        memory_(memory),
         pulse_(plan.pulses.front()),
         phones_(phones),
         baseband_(baseband),
@@ -130,16 +143,42 @@ class CurvedSynthesis {
     return w;
   }
 
-  void evaluate(const CurvedReturn& r, Waveforms& w) const {
-    w.values.resize(w.lags.size() * w.span.size());
-    std::complex<float>* out = w.values.data();
+  /// c(u) and e^{i2π(f·u − f_c·τ)} of one sample after the other, lag by lag.
+  [[nodiscard]] Shape shape(const DelayCurve& curve, const Waveforms& w) const {
+    Shape found;
+    found.reserve(w.lags.size() * w.span.size());
     for (const double lag : w.lags)
       for (std::ptrdiff_t i = w.span.begin; i < w.span.end; ++i) {
         const double t = time(i) - lag;
-        const double u = r.curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
-        *out++ = std::complex<float>(r.straight.amplitude * pulse_.at(u)) *
-                 turned(pulse_.centre_frequency() * u - plan_.carrier * t);
+        const double u = curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
+        found.push_back({pulse_.at(u), turned(pulse_.centre_frequency() * u - plan_.carrier * t)});
       }
+    return found;
+  }
+
+  /// The same, out of what is kept for that curve and those lags.
+  [[nodiscard]] std::shared_ptr<const Shape> recalled(const DelayCurve& curve,
+                                                      const Waveforms& w) const {
+    if (memory_ == nullptr) return std::make_shared<const Shape>(shape(curve, w));
+    ExactKey key(Kept::waveform, plan_.identity);
+    key.add(w.span.begin).add(w.span.end);
+    for (const double lag : w.lags) key.add(lag);
+    for (const DelayCurve::Piece& piece : curve.pieces())
+      for (std::size_t i = 0; i < piece.heard.size(); ++i)
+        key.add(piece.heard[i]).add(piece.sent[i]);
+    if (auto kept = memory_->find<Shape>(key)) return kept;
+    auto made = std::make_shared<Shape>(shape(curve, w));
+    const std::size_t bytes = made->capacity() * sizeof(ShapeSample);
+    return memory_->keep(key, std::move(made), bytes);
+  }
+
+  void evaluate(const CurvedReturn& r, Waveforms& w) const {
+    w.values.resize(w.lags.size() * w.span.size());
+    if (w.values.empty()) return;
+    const auto kept = recalled(r.curve, w);
+    std::transform(kept->begin(), kept->end(), w.values.begin(), [&](const ShapeSample& s) {
+      return std::complex<float>(r.straight.amplitude * s.pulse) * s.turn;
+    });
   }
 
   /// ℓ_k(λ): Lagrange's polynomials in barycentric form.
@@ -181,19 +220,23 @@ class CurvedSynthesis {
       const double slope =
           (last_lag - first_lag) / (piece.heard.back() - piece.heard.front());  // dλ/dt
       const double cycles = plan_.carrier * (first_lag + slope * (time(i) - piece.heard.front()));
-      std::complex<double> turn = std::polar(1.0, -2.0 * pi * (cycles - std::nearbyint(cycles)));
-      const std::complex<double> step =
-          std::polar(1.0, -2.0 * pi * plan_.carrier * slope / plan_.rate);
-      for (; i < end; ++i) {
-        std::complex<float> sum = 0.0F;
-        const std::complex<float>* value = w.values.data() + (i - w.span.begin);
-        for (const float k : weight) {
-          sum += k * *value;
-          value += w.span.size();
+      const double per_sample = plan_.carrier * slope / plan_.rate;  // cycles
+      Turning turning(-cycles, -per_sample);
+      while (i < end) {
+        const auto count = static_cast<std::size_t>(
+            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(block)));
+        std::array<float, 2 * block> sum{};
+        for (std::size_t k = 0; k < weight.size(); ++k) {
+          const float* value = reinterpret_cast<const float*>(
+              w.values.data() + k * w.span.size() + static_cast<std::size_t>(i - w.span.begin));
+          for (std::size_t j = 0; j < 2 * count; ++j) sum[j] += weight[k] * value[j];
         }
-        row[at] += sum * std::complex<float>(turn);
-        turn *= step;
-        if (++at == plan_.length) at = 0;
+        turning.turn(sum);
+        for (std::size_t j = 0; j < count; ++j) {
+          row[at] += std::complex<float>(sum[2 * j], sum[2 * j + 1]);
+          if (++at == plan_.length) at = 0;
+        }
+        i += static_cast<std::ptrdiff_t>(count);
       }
     }
   }
@@ -215,6 +258,7 @@ class CurvedSynthesis {
   }
 
   const Synthesizer::Plan& plan_;
+  PropagationMemory* memory_;  // of shapes; null: none
   const BandLimitedPulse& pulse_;
   std::span<const Vec3> phones_;
   Baseband& baseband_;
@@ -223,8 +267,8 @@ class CurvedSynthesis {
 
 void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
                              Baseband& baseband) const {
-  assert(baseband.channels == phones.size() && baseband.samples == plan_.front().length);
-  CurvedSynthesis(plan_.front(), phones, baseband).add(returns);
+  assert(baseband.channels == phones.size() && baseband.samples == plan_->length);
+  CurvedSynthesis(*plan_, phones, baseband, memory_).add(returns);
 }
 
 }  // namespace asdic

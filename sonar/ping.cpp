@@ -197,7 +197,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   const double peak_pressure = std::numbers::sqrt2 *
                                amplitude_from_db(emission.projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
-  const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_);
+  const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory());
   std::optional<ReverberationBand> band;
   std::optional<Synthesizer> coloured;
   if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {

@@ -4,13 +4,11 @@ namespace asdic {
 
 std::size_t ExactKey::hash() const noexcept {
   std::uint64_t h = 0;
-  for (const std::uint64_t word : words_) {  // splitmix64's mixing of each word into the state
-    h = (h ^ word) + 0x9E3779B97F4A7C15U;
-    h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9U;
-    h = (h ^ (h >> 27)) * 0x94D049BB133111EBU;
-    h ^= h >> 31;
-  }
-  return h;
+  for (const std::uint64_t word : words_)  // one to one in every word
+    h = (std::rotl(h, 29) ^ word) * 0x9E3779B97F4A7C15U;
+  h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9U;  // splitmix64's mixing
+  h = (h ^ (h >> 27)) * 0x94D049BB133111EBU;
+  return h ^ (h >> 31);
 }
 
 PropagationMemory::Value PropagationMemory::recall(const ExactKey& key) {

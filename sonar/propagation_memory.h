@@ -13,7 +13,7 @@
 namespace asdic {
 
 /// What is kept: the first word of its keys. One kind, one type.
-enum class Kept : std::uint64_t { slice, legs, followed_legs, boundary_fan };
+enum class Kept : std::uint64_t { slice, legs, followed_legs, boundary_fan, synthesis, waveform };
 
 /// All the numbers that decide a result, bit for bit.
 class ExactKey {

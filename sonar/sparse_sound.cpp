@@ -41,7 +41,8 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
     return BeamPattern(projector, c / frequency, c, heading, c / centre);
   };
 
-  const double half_band = Synthesizer(pulse, recording, max_doppler).half_band();
+  const double half_band =
+      Synthesizer(pulse, recording, max_doppler, context.paths.memory()).half_band();
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.colour.path_length);
   const double lowest = std::max(1.0, centre - half_band);

@@ -13,14 +13,18 @@
 namespace asdic {
 
 Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
-                         const std::function<double(double)>& filter) {
-  plan_.emplace_back(pulse, recording, max_doppler, std::vector{filter});
-}
+                         const std::function<double(double)>& filter)
+    : Synthesizer(pulse, recording, max_doppler, std::vector{filter}) {}
 Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
-                         const std::vector<std::function<double(double)>>& filters) {
-  plan_.emplace_back(pulse, recording, max_doppler, filters);
-}
-double Synthesizer::half_band() const noexcept { return plan_.front().pulses.front().half_band(); }
+                         const std::vector<std::function<double(double)>>& filters)
+    : plan_(std::make_shared<const Plan>(pulse, recording, max_doppler, filters)),
+      epoch_(recording.epoch) {}
+Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+                         PropagationMemory& memory)
+    : plan_(Plan::recalled(pulse, recording, max_doppler, memory)),
+      epoch_(recording.epoch),
+      memory_(&memory) {}
+double Synthesizer::half_band() const noexcept { return plan_->pulses.front().half_band(); }
 Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
@@ -36,7 +40,7 @@ void append_channels(Baseband& all, Baseband&& more) {
 
 void Synthesizer::add_samples(const Baseband& baseband, double scale,
                               std::span<float> samples) const {
-  const Recording& recording = plan_.front().recording;
+  const Recording& recording = plan_->recording;
   assert(samples.size() == baseband.channels * recording.samples * recording.components());
   if (recording.is_complex())
     add_complex(baseband, scale, samples);
@@ -46,7 +50,7 @@ void Synthesizer::add_samples(const Baseband& baseband, double scale,
 
 void Synthesizer::add_passband(const Baseband& baseband, double scale,
                                std::span<float> pressure) const {
-  const Plan& plan = plan_.front();
+  const Plan& plan = *plan_;
   const std::size_t samples = plan.recording.samples;
   assert(baseband.samples == plan.length && baseband.carrier == plan.carrier);
   assert(pressure.size() == baseband.channels * samples);

@@ -2,10 +2,12 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sonar/delay_curve.h"
+#include "sonar/propagation_memory.h"
 #include "sonar/pulse.h"
 #include "sonar/return_source.h"
 
@@ -63,6 +65,11 @@ class Synthesizer {
   /// through filter k).
   Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
               const std::vector<std::function<double(double)>>& filters);
+  /// The first, unfiltered, out of what is kept for an equal pulse, recording and Doppler bound:
+  /// the same bits. The waveforms of curved returns are kept as well. \param memory  must outlive
+  /// this
+  Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
+              PropagationMemory& memory);
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
@@ -97,7 +104,9 @@ class Synthesizer {
   friend class BlockSynthesis;
   friend class CurvedSynthesis;
   struct Plan;
-  std::vector<Plan> plan_;  // a vector of one keeps FFTW's types out of the header
+  std::shared_ptr<const Plan> plan_;     // apart from this, it keeps FFTW's types out of the header
+  double epoch_;                         // of the recording; a plan serves all
+  PropagationMemory* memory_ = nullptr;  // null: nothing is kept
 };
 
 /// The reference: every return's exact stretched pulse evaluated at every sample. \return [phones ×

@@ -1,6 +1,7 @@
 #include "sonar/synthesis_plan.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <sstream>
 
@@ -54,11 +55,49 @@ std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& recor
   return pulses;
 }
 
+std::uint64_t next_identity() {
+  static std::atomic<std::uint64_t> next{0};
+  return next++;
+}
+
+Recording without_epoch(Recording recording) {
+  recording.epoch = 0.0;
+  return recording;
+}
+
+/// All that a plan depends on; a file's name and the epoch change nothing.
+ExactKey key_of(const PulseSettings& pulse, const Recording& record, double max_doppler) {
+  ExactKey key(Kept::synthesis, 0);
+  key.add(static_cast<int>(pulse.kind)).add(static_cast<int>(pulse.window));
+  key.add(pulse.frequency).add(pulse.start_frequency).add(pulse.end_frequency);
+  key.add(pulse.duration).add(pulse.tukey_fraction).add(pulse.sample_rate);
+  for (const double sample : pulse.samples) key.add(sample);
+  key.add(record.sample_rate).add(record.start).add(record.samples).add(record.carrier);
+  return key.add(max_doppler);
+}
+
 }  // namespace
+
+std::shared_ptr<const Synthesizer::Plan> Synthesizer::Plan::recalled(const Pulse& sent,
+                                                                     const Recording& record,
+                                                                     double doppler,
+                                                                     PropagationMemory& memory) {
+  const ExactKey key = key_of(sent.settings(), record, doppler);
+  if (auto kept = memory.find<Plan>(key)) return kept;
+  auto made =
+      std::make_shared<Plan>(sent, record, doppler, std::vector{std::function<double(double)>()});
+  // The pulse: two doubles for each of some 4·half_band samples a second; the expansion no more.
+  const BandLimitedPulse& pulse = made->pulses.front();
+  const double samples = 8.0 * pulse.half_band() * pulse.half_duration();
+  const std::size_t bytes = sizeof(Plan) + made->deconvolution.capacity() * sizeof(float) +
+                            static_cast<std::size_t>(4.0 * samples) * sizeof(double);
+  return memory.keep(key, std::move(made), bytes);
+}
 
 Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
                         const std::vector<std::function<double(double)>>& filters)
-    : recording((check(sent, record, doppler), record)),
+    : identity(next_identity()),
+      recording(without_epoch((check(sent, record, doppler), record))),
       max_doppler(doppler),
       pulse_duration(sent.duration()),
       pulses(filtered(sent, record, filters)),

@@ -1,6 +1,8 @@
 #pragma once
 #include <complex>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,7 +23,14 @@ struct Synthesizer::Plan {
   Plan(const Pulse& pulse, const Recording& recording, double max_doppler,
        const std::vector<std::function<double(double)>>& filters);
 
-  Recording recording;
+  /// Of the pulse as it is, out of `memory` if an equal one was made before.
+  [[nodiscard]] static std::shared_ptr<const Plan> recalled(const Pulse& pulse,
+                                                            const Recording& recording,
+                                                            double max_doppler,
+                                                            PropagationMemory& memory);
+
+  std::uint64_t identity;  ///< for keys of what is worked out of it: no other plan's
+  Recording recording;     ///< but for the epoch, which changes nothing here: 0
   double max_doppler;
   double pulse_duration;                 ///< T, unstretched [s]
   std::vector<BandLimitedPulse> pulses;  ///< [colours] through a filter each; alike but for that

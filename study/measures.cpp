@@ -143,11 +143,8 @@ void receiver(const MeasurePlan& plan, const ReceiverAnswer& answer, Collector& 
 }
 
 /// The ping with its samples, or without where nothing needs them.
-template <class Simulator>
-PingRecord heard(const Simulator& simulator, const MeasurePlan& plan) {
-  if constexpr (requires { simulator.levels(1); })
-    if (!plan.needs_samples()) return simulator.levels(plan.ping);
-  return simulator.simulate(plan.ping);
+PingRecord heard(const PingSimulator& simulator, const MeasurePlan& plan) {
+  return plan.needs_samples() ? simulator.simulate(plan.ping) : simulator.levels(plan.ping);
 }
 
 /// One pass over the measures. \param simulator, record  null where columns alone are wanted

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <functional>
@@ -144,6 +145,56 @@ TEST(SharedPropagation, ArraysShareTheWayOut) {
   EXPECT_EQ(one, 2);                // out and back
   EXPECT_EQ(two.legs_searched, 3);  // and back to the other
   EXPECT_EQ(two.legs_reused, 1);
+}
+
+/// What a vehicle's processor asks for, of a target so near and fast that delays are curves.
+Scenario in_baseband() {
+  Scenario s = layered();
+  s.reverberation.enabled = false;
+  s.pulse.duration = 1.0;
+  s.pings.samples = Samples::baseband;
+  s.pings.carrier = 4000.0;
+  s.pings.baseband_rate = 400.0;
+  return s;
+}
+
+// Plans of the synthesis and shapes of echoes are kept, too: of whatever they were made for before,
+// and by however many threads, a ping is the same bit for bit.
+TEST(SharedSynthesis, NoBitChangesWhateverIsKept) {
+  const auto shared = std::make_shared<SharedPropagation>();
+  const std::vector<Change> changes = {
+      {"nothing", [](Scenario&) {}},
+      {"seed", [](Scenario& s) { s.seed = 77; }},
+      {"strength", [](Scenario& s) { s.targets[0].strength_db = 3.0; }},
+      {"heading", [](Scenario& s) { s.arrays[0] = line_array(3, 0.1875, 1.1, 0.0); }},
+      {"phones", [](Scenario& s) { s.arrays[0] = line_array(5, 0.1875, 1.1, 0.0); }},
+      {"window", [](Scenario& s) { s.pulse.window = PulseWindow::tukey; }},
+      {"taper",
+       [](Scenario& s) {
+         s.pulse.window = PulseWindow::tukey;
+         s.pulse.tukey_fraction = 0.3;
+       }},
+      {"duration", [](Scenario& s) { s.pulse.duration = 0.8; }},
+      {"sweep", [](Scenario& s) { s.pulse.kind = PulseKind::lfm; }},
+      {"rate", [](Scenario& s) { s.pings.baseband_rate = 500.0; }},
+      {"carrier", [](Scenario& s) { s.pings.carrier = 3990.0; }},
+      {"record", [](Scenario& s) { s.pings.recording_duration = 3.5; }},
+      {"pressure", [](Scenario& s) { s.pings.samples = Samples::pressure; }},
+      {"speed", [](Scenario& s) { s.targets[0].track.start.velocity.x() = -9.0; }},
+      {"wide band", [](Scenario& s) { s.propagation.wide_band = true; }}};
+  bool curved = false;
+  for (const int threads : {1, 2, 7}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    for (const Change& change : changes) {
+      SCOPED_TRACE(change.name);
+      Scenario s = in_baseband();
+      change.make(s);
+      const PingRecord record = PingSimulator(s, shared).simulate(1);
+      EXPECT_TRUE(same(record, PingSimulator(s).simulate(1)));
+      for (const EchoPath& echo : record.echoes) curved = curved || echo.curve.has_value();
+    }
+  }
+  EXPECT_TRUE(curved);  // else nothing of this was asked
 }
 
 }  // namespace
