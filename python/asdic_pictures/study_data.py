@@ -69,10 +69,14 @@ class Study:
     complete: bool
     columns: list          # of the table: inputs and measures, valid rows alone
     summary: list          # of SummaryTable
+    skipped: int = 0       # realisations that made no scenario
 
     def heading(self) -> str:
-        some = "" if self.complete else " (not complete)"
-        return f"{self.title or self.path} · {self.realisations} realisations{some}"
+        notes = [f"{self.skipped} skipped"] if self.skipped else []
+        notes += [] if self.complete else ["not complete"]
+        some = f" ({', '.join(notes)})" if notes else ""
+        many = "realisation" if self.realisations == 1 else "realisations"
+        return f"{self.title or self.path} · {self.realisations} {many}{some}"
 
     def tables(self, test) -> list:
         return [t for t in self.summary if test(t)]
@@ -112,7 +116,8 @@ def read(path: str) -> Study:
             columns = [_column(n, d, valid) for n, d in f["table"].items()]
             summary = [_summary(n, g) for n, g in f["summary"].items()]
             return Study(path, _text(f.attrs.get("title", "")), int(valid.size),
-                         bool(f.attrs.get("complete", 1)), columns, summary)
+                         bool(f.attrs.get("complete", 1)), columns, summary,
+                         int(np.sum(~valid)))
     except (KeyError, OSError, ValueError) as error:
         raise InputError(path, f"what cannot be read ({error})",
                          "a whole file of `asdic study` or `asdic merge`") from error
