@@ -2,6 +2,7 @@
 
 #include "app/provenance.h"
 #include "core/error.h"
+#include "io/digest.h"
 #include "io/ping/growing_table.h"
 
 namespace asdic::app {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "io/hdf5/elements.h"
 #include "io/hdf5/handles.h"
 
 namespace asdic {
@@ -43,6 +44,34 @@ std::string last_message() {
   return inner == messages.back() ? inner : inner + "; " + messages.back();
 }
 
+template <>
+std::int64_t native_type<std::int8_t>() {
+  return H5T_NATIVE_INT8;
+}
+template <>
+std::int64_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+std::int64_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+std::int64_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+std::int64_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+
+Handle make_parents() {
+  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(list, 1);
+  H5Pset_char_encoding(list, H5T_CSET_UTF8);
+  return list;
+}
+
 void fail(const std::filesystem::path& file, const std::string& object, const std::string& action) {
   std::string text = file.string() + ": ";
   if (!object.empty()) text += object + ": ";
@@ -53,43 +82,13 @@ void fail(const std::filesystem::path& file, const std::string& object, const st
 
 namespace {
 
+using hdf5::dims;
 using hdf5::Handle;
-
-template <class T>
-hid_t native_type();
-template <>
-hid_t native_type<std::int8_t>() {
-  return H5T_NATIVE_INT8;
-}
-template <>
-hid_t native_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-hid_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-hid_t native_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-std::vector<hsize_t> dims(const Shape& shape) { return {shape.begin(), shape.end()}; }
+using hdf5::make_parents;
+using hdf5::native_type;
 
 std::size_t product(const Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
-
-/// Link creation that makes the groups on the way.
-Handle make_parents() {
-  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(list, 1);
-  H5Pset_char_encoding(list, H5T_CSET_UTF8);
-  return list;
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "io/ping_file.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -15,6 +13,7 @@
 #include "io/hdf5/scale.h"
 #include "io/ping/growing_table.h"
 #include "io/ping/sections.h"
+#include "io/ping/tables.h"
 #include "sonar/stream.h"
 
 namespace asdic {
@@ -22,71 +21,10 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_patches = 2000;  // rows a ping
-using Type = ElementType;
-
-std::vector<GrowingTable::Column> echo_columns() {
-  return {{"ping", "number of the ping", "", Type::int32},
-          {"target", "number of the target", "", Type::int32},
-          {"array", "number of the array", "", Type::int32},
-          {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
-          {"highlight", "number of the target's highlight, -1: a point", "", Type::int32},
-          {"outgoing", "path of the leg source to target", "", Type::int32},
-          {"returning", "path of the leg target to array", "", Type::int32},
-          {"delay", "from the start of the ping to the echo's leading edge", "s"},
-          {"doppler_factor", "received over transmitted frequency", ""},
-          {"level_db", "peak envelope over sqrt 2, pulse not windowed, re 1 uPa", "dB"},
-          {"arrival_elevation_deg", "elevation of travel at the array, positive up", "degree"},
-          {"arrival_bearing_deg", "bearing of travel at the array", "degree"}};
-}
-
-std::vector<GrowingTable::Column> patch_columns() {
-  return {{"ping", "number of the ping", "", Type::int32},
-          {"boundary", "0 surface, 1 bottom, 2 volume", "", Type::int8},
-          {"bearing_deg", "of the sector, clockwise from north; NaN: the whole ring", "degree"},
-          {"range", "of the cell's centre from the source", "m"},
-          {"area", "of the ring, or of this sector and its mirror image", "m2"},
-          {"delay", "there and back", "s"},
-          {"grazing_in_deg", "angle at which sound comes to the surface", "degree"},
-          {"grazing_out_deg", "angle at which sound leaves the surface", "degree"},
-          {"launch_elevation_deg", "of the outgoing path, positive up", "degree"},
-          {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
-          {"scattering_strength_db", "of this pair of angles", "dB"},
-          {"level_db", "expected, of that area, pulse not windowed, re 1 uPa", "dB"}};
-}
-
-std::vector<GrowingTable::Column> interference_columns() {
-  return {{"ping", "number of the ping", "", Type::int32},
-          {"interferer", "number of the ship", "", Type::int32},
-          {"array", "number of the array", "", Type::int32},
-          {"delay", "since it left the ship, at the record's first sample", "s"},
-          {"doppler_factor", "heard over sent frequency", ""},
-          {"range", "from where the ship was, horizontal", "m"},
-          {"bearing_deg", "of travel", "degree"},
-          {"launch_elevation_deg", "at the ship, positive up", "degree"},
-          {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
-          {"amplitude_real", "re 1 m", ""},
-          {"amplitude_imag", "re 1 m", ""},
-          {"surface_bounces", "", "", Type::int32},
-          {"bottom_bounces", "", "", Type::int32}};
-}
 
 std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
-
-std::string sha256(std::string_view text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned size = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw RunError("SHA-256 failed");
-  std::string result;
-  constexpr std::string_view digits = "0123456789abcdef";
-  for (unsigned i = 0; i < size; ++i) {
-    result += digits[digest[i] >> 4];
-    result += digits[digest[i] & 15];
-  }
-  return result;
-}
 
 struct PingFileWriter::Impl {
   std::filesystem::path path, part;
@@ -106,10 +44,10 @@ struct PingFileWriter::Impl {
         file(Hdf5File::create(part)),
         scenario(s),
         arrivals(file),
-        echoes(file, "echoes", "echo", echo_columns()),
-        patches(file, "patches", "patch", patch_columns()) {
+        echoes(file, "echoes", "echo", ping_file::echo_columns()),
+        patches(file, "patches", "patch", ping_file::patch_columns()) {
     if (scenario.interferers.empty()) return;
-    interference.emplace(file, "interference", "heard_path", interference_columns());
+    interference.emplace(file, "interference", "heard_path", ping_file::interference_columns());
     std::string names;
     for (const Interferer& ship : scenario.interferers)
       names += (names.empty() ? "" : ",") + ship.name;

@@ -96,7 +96,4 @@ class PingFile {
   std::size_t components_ = 1;
 };
 
-/// SHA-256 in hexadecimal.
-[[nodiscard]] std::string sha256(std::string_view text);
-
 }  // namespace asdic

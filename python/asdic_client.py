@@ -37,7 +37,10 @@ class Ping:
 
 
 class Client:
-    """One connection. Commands are answered in order; a client of several threads needs a lock."""
+    """One connection; a client of several threads needs a lock. Commands are carried out in order.
+    With several under way (send, receive), a refusal may overtake the answers of those that wait:
+    tell them by their `id`.
+    """
 
     def __init__(self, reader, writer, token=None, when_full="busy", close=()):
         self._reader, self._writer, self._close = reader, writer, close

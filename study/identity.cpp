@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include "io/ping_file.h"
+#include "io/digest.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_writer.h"
 #include "study/study.h"

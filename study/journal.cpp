@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "study/row_bytes.h"
 #include "study/sqlite.h"
 
 namespace asdic::study {
@@ -27,60 +28,6 @@ constexpr const char* schema =
     " vals BLOB, kept INTEGER, checksum TEXT);"
     "CREATE TABLE IF NOT EXISTS series(idx INTEGER PRIMARY KEY, shape TEXT, pressure BLOB,"
     " checksum TEXT);";
-
-template <class T>
-std::span<const std::byte> bytes_of(const std::vector<T>& values) {
-  return std::as_bytes(std::span<const T>(values));
-}
-
-template <class T>
-std::vector<T> vector_of(std::span<const std::byte> bytes) {
-  std::vector<T> values(bytes.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
-  return values;
-}
-
-std::string_view view(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-/// 64 bits of SHA-256: damage is found, malice is not looked for.
-std::string checksum(std::string_view text) { return sha256(text).substr(0, 16); }
-
-std::string checksum(const Row& row, bool kept) {
-  std::string text = std::to_string(row.index) + (row.valid ? "v" : "-") + (kept ? "k" : "-") +
-                     std::to_string(row.fault.size()) + row.fault;
-  text += view(bytes_of(row.values));
-  return checksum(text);
-}
-
-std::string shape_text(const std::vector<std::size_t>& shape) {
-  std::string text;
-  for (const std::size_t n : shape) text += std::to_string(n) + " ";
-  return text;
-}
-
-std::vector<std::size_t> shape_of(const std::string& text) {
-  std::vector<std::size_t> shape;
-  for (const char* at = text.c_str(); *at != '\0';) {
-    char* end = nullptr;
-    shape.push_back(std::strtoull(at, &end, 10));
-    if (end == at) break;
-    at = *end == ' ' ? end + 1 : end;
-  }
-  return shape;
-}
-
-std::string checksum_of_series(std::uint64_t index, const std::string& shape,
-                               std::span<const std::byte> pressure) {
-  return checksum(std::to_string(index) + ":" + shape + sha256(view(pressure)));
-}
-
-/// A missing number has the same bits however it came about.
-void one_kind_of_nan(std::vector<double>& values) {
-  for (double& value : values)
-    if (std::isnan(value)) value = std::numeric_limits<double>::quiet_NaN();
-}
 
 }  // namespace
 
@@ -378,35 +325,6 @@ void Journal::series_shapes(
                         "SELECT idx,shape FROM series WHERE idx>=? AND idx<? ORDER BY idx");
   get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
   while (get.step()) take(static_cast<std::uint64_t>(get.integer(0)), shape_of(get.text(1)));
-}
-
-std::filesystem::path journal_of(const std::filesystem::path& output) {
-  return output.string() + ".journal";
-}
-
-std::filesystem::path journal_of(const std::filesystem::path& output, int rank) {
-  return output.string() + ".rank" + std::to_string(rank) + ".journal";
-}
-
-std::vector<std::filesystem::path> journals_of(const std::filesystem::path& output) {
-  std::vector<std::filesystem::path> found;
-  const std::string stem = output.filename().string() + ".";
-  const auto folder = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(stem) || !name.ends_with(".journal")) continue;
-    const std::string middle = name.substr(stem.size() - 1, name.size() - stem.size() - 7);
-    if (middle.empty() || middle.starts_with(".rank")) found.push_back(output.parent_path() / name);
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-void remove_journal(const std::filesystem::path& path) {
-  std::error_code ignored;
-  for (const char* suffix : {"-wal", "-shm", ""})
-    std::filesystem::remove(path.string() + suffix, ignored);
 }
 
 }  // namespace asdic::study

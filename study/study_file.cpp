@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "study/digest.h"
+#include "io/digest.h"
 
 namespace asdic::study {
 namespace {

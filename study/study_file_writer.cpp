@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/error.h"
+#include "io/digest.h"
 #include "io/hdf5/scale.h"
-#include "study/digest.h"
 #include "study/study_file.h"
 
 namespace asdic::study {

@@ -3,37 +3,14 @@
 
 #include <stdexcept>
 
-#include "io/hdf5/handles.h"
+#include "io/hdf5/elements.h"
 
 namespace asdic {
 namespace {
 
+using hdf5::dims;
 using hdf5::Handle;
-
-template <class T>
-hid_t native_type();
-template <>
-hid_t native_type<std::int8_t>() {
-  return H5T_NATIVE_INT8;
-}
-template <>
-hid_t native_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-hid_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-hid_t native_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-std::vector<hsize_t> dims(const Shape& shape) { return {shape.begin(), shape.end()}; }
+using hdf5::native_type;
 
 /// A space with `rows` rows from `first` on selected, each as large as `row` says.
 Handle rows_of(const Shape& shape, std::size_t first, std::size_t rows, const Shape& row) {
@@ -68,8 +45,7 @@ void Hdf5File::write_virtual(const std::string& dataset, const Shape& shape,
   if (at != shape.front()) throw std::logic_error(dataset + ": parts do not fill the shape");
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), dims(shape).data(), nullptr),
                      H5Sclose);
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
+  const Handle links = hdf5::make_parents();
   const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), native_type<T>(), space,
                                           links, properties, H5P_DEFAULT),
                                dataset, "creating the dataset"),

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "io/digest.h"
 #include "io/ping/growing_table.h"
 #include "sonar/sampling.h"
 

@@ -12,6 +12,19 @@ from .data import InputError
 
 KIND = "asdic study"
 
+PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm"}
+DECIBELS = "_db"
+SHORT = {"snr": "SNR"}
+
+
+def spoken(name: str) -> str:
+    """A column's name as words: "snr_matched_db" → "SNR matched". The unit says that it is in dB."""
+    word, _, rest = name.partition("_")
+    if word in PROPORTIONS:
+        return f"{PROPORTIONS[word]}, {rest}" if rest else PROPORTIONS[word]
+    words = name.replace(DECIBELS + "_", "_", 1)  # a target's name may follow
+    return " ".join(SHORT.get(w, w) for w in words.removesuffix(DECIBELS).split("_"))
+
 
 @dataclass
 class Column:
@@ -25,9 +38,14 @@ class Column:
     labels: list = field(default_factory=list)
 
     def label(self) -> str:
-        """For an axis: "range / m"."""
-        words = self.name.replace("_", " ")
-        return f"{words} / {self.unit}" if self.unit and self.unit != "1" else words
+        """For an axis: "range / km", "echo level / dB re 1 µPa"."""
+        words, unit = spoken(self.name), "km" if self.scale() != 1.0 else self.unit
+        return f"{words} / {unit}" if unit and unit != "1" else words
+
+    def scale(self) -> float:
+        """Of the values in a picture: metres that are many are drawn as kilometres."""
+        good = np.abs(self.values[np.isfinite(self.values)])
+        return 1e-3 if self.unit == "m" and good.max(initial=0.0) >= 1e4 else 1.0
 
 
 @dataclass
@@ -88,6 +106,9 @@ def read(path: str) -> Study:
             if np.any(np.asarray(f["index"][()]) < 0):
                 raise InputError(path, "rows of a part that is not there",
                                  "all parts where the catalogue knows them")
+            if not valid.any():
+                raise InputError(path, f"{valid.size} realisations, and none of them valid",
+                                 "at least one that is: let the study go on")
             columns = [_column(n, d, valid) for n, d in f["table"].items()]
             summary = [_summary(n, g) for n, g in f["summary"].items()]
             return Study(path, _text(f.attrs.get("title", "")), int(valid.size),

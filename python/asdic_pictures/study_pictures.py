@@ -6,22 +6,31 @@ from __future__ import annotations
 import numpy as np
 
 from . import style
-from .study_data import Study, SummaryTable
+from .study_data import Study, SummaryTable, spoken
 
 MOST_PANELS = 12
+YES_OR_NO = ("detected", "false_alarm")
 
 
 def panels(study: Study, what: str, count: int, height: float = 2.6):
     """A grid of axes for `count` small pictures. → figure, axes [count]"""
-    columns = min(3, count)
+    columns = 2 if count == 4 else min(3, count)
     rows = -(-count // columns)
     fig, axes = style.figure(what, max(4.2, 0.9 + height * rows), nrows=rows, ncols=columns,
                              squeeze=False)
     flat = axes.ravel()
     for unused in flat[count:]:
-        unused.set_visible(False)
-    style.subtitle(flat[0], study.heading())
+        unused.remove()
+    heading(flat[0], study)
     return fig, flat[:count]
+
+
+def heading(axes, study: Study) -> None:
+    """style.subtitle over several axes: its length moves none of them, nor their colour bars."""
+    axes.set_title(" ", fontsize=9.5)  # keeps its height free
+    line = axes.annotate(style.shorten(study.heading()), (0.0, 1.0), (0.0, 8.0), "axes fraction",
+                         "offset points", color="#555555", fontsize=9.5, annotation_clip=False)
+    line.set_in_layout(False)
 
 
 def banded(table: SummaryTable) -> list:
@@ -42,8 +51,12 @@ def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | No
         names = [at.labels[int(k)] if 0 <= k < len(at.labels) else f"{k:g}" for k in at.values]
         axes.set_xticks(place, [style.shorten(n, 18) for n in names])
     else:
-        axes.fill_between(at.values, low, high, color=colour, alpha=0.2, lw=0)
-        axes.plot(at.values, value.values, "-o", ms=3.5, color=colour, label=label)
+        place = at.values * at.scale()
+        axes.fill_between(place, low, high, color=colour, alpha=0.2, lw=0)
+        axes.plot(place, value.values, "-o", ms=3.5, color=colour, label=label)
+        if f"{x}_low" in table:  # of bins: the whole of them, not the middles alone
+            edges = np.concatenate([table[f"{x}_low"].values, table[f"{x}_high"].values])
+            axes.set_xlim(edges.min() * at.scale(), edges.max() * at.scale())
     axes.set_xlabel(at.label())
     axes.grid(True)
 
@@ -55,6 +68,19 @@ def axes_of(table: SummaryTable) -> list:
     return [n for n in before if not n.endswith(("_low", "_high")) or n.rsplit("_", 1)[0] not in before]
 
 
+def title(table: SummaryTable, names: list) -> str:
+    """What a table along inputs shows: "Probability of detection against range"."""
+    what = spoken(names[0]) if len(names) == 1 and names[0].startswith(("pd", "pfa")) else "means"
+    along = " and ".join(spoken(n) for n in axes_of(table))
+    return f"{what[0].upper()}{what[1:]} against {along}"
+
+
+def top(values) -> float:
+    """Upper limit of an axis of probabilities: 1, or near what is there when that is tiny."""
+    greatest = np.nanmax(values, initial=0.0)
+    return 1.02 if greatest > 0.2 or greatest == 0.0 else 1.1 * greatest
+
+
 def draw_by(study: Study) -> dict:
     """Probabilities and means along one input."""
     figures = {}
@@ -62,14 +88,43 @@ def draw_by(study: Study) -> dict:
         names = banded(table)[:MOST_PANELS]
         if not names:
             continue
-        fig, axes = panels(study, table.title, len(names), 3.0)
+        fig, axes = panels(study, title(table, names), len(names), 3.0)
         for k, (name, a) in enumerate(zip(names, axes)):
             band(a, table, axes_of(table)[0], name, style.colour(k + 1))
             a.set_ylabel(table[name].label())
             if table[name].values.size and not table.name.startswith("means"):
-                a.set_ylim(-0.02, 1.02)
+                limit = top(table[f"{name}_high"].values)
+                a.set_ylim(-0.02 * limit, limit)
         figures[table.name] = fig
     return figures
+
+
+def bins(table: SummaryTable, column) -> np.ndarray:
+    """Edges of the cells of a map along one of its inputs, as they are drawn: those of the bins, or
+    half-way between values.
+    """
+    if f"{column.name}_low" in table:
+        low, high = table[f"{column.name}_low"].values, table[f"{column.name}_high"].values
+        return np.unique(np.concatenate([low, high])) * column.scale()
+    return style.cell_edges(np.unique(column.values) * column.scale())
+
+
+def name_ticks(column):
+    """Where the values of a column of names are, and the names."""
+    there = np.unique(column.values)
+    names = [column.labels[int(k)] if 0 <= k < len(column.labels) else f"{k:g}" for k in there]
+    return there, [style.shorten(n, 18) for n in names]
+
+
+def numbers(axes, across, down, value) -> None:
+    """Writes the value of each cell into it, if there is room."""
+    if value.shape[0] > 12 or value.shape[1] > 10:
+        return
+    for (column, row), v in np.ndenumerate(value):
+        if np.isfinite(v):
+            middle = across[column:column + 2].mean(), down[row:row + 2].mean()
+            axes.text(*middle, f"{v:.2g}" if v < 0.1 else f"{v:.2f}", ha="center", va="center",
+                      fontsize=8, path_effects=style.OVER_MAP)
 
 
 def draw_map(study: Study) -> dict:
@@ -78,16 +133,27 @@ def draw_map(study: Study) -> dict:
     for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 2):
         names = banded(table)[:MOST_PANELS]
         x, y = (table[n] for n in axes_of(table))
-        across, down = np.unique(x.values), np.unique(y.values)
-        if not names or across.size * down.size != x.values.size:
+        across, down = bins(table, x), bins(table, y)
+        cells = (across.size - 1, down.size - 1)
+        if not names or cells[0] * cells[1] != x.values.size:
             continue
-        fig, axes = panels(study, table.title, len(names), 3.4)
+        fig, axes = panels(study, title(table, names), len(names), 3.4)
         for name, a in zip(names, axes):
-            value = table[name].values.reshape(across.size, down.size)
-            image = a.pcolormesh(across, down, value.T, cmap=style.MAP, shading="nearest")
+            value = table[name].values.reshape(cells)
+            probability = not table.name.startswith("means")
+            limit = top(table[f"{name}_high"].values) if probability else None
+            image = a.pcolormesh(across, down, value.T, cmap=style.MAP,
+                                 vmin=0.0 if probability else None,
+                                 vmax=min(limit, 1.0) if probability else None)
+            for axis, column in ((a.xaxis, x), (a.yaxis, y)):
+                if column.labels:
+                    axis.set_ticks(*name_ticks(column))
+            style.image_frame(a)
             a.set_xlabel(x.label())
             a.set_ylabel(y.label())
             fig.colorbar(image, ax=a, label=table[name].label())
+            if probability and len(names) == 1:
+                numbers(a, across, down, value)
         figures[table.name] = fig
     return figures
 
@@ -107,7 +173,7 @@ def draw_roc(study: Study) -> dict:
                           color=style.colour(k), alpha=0.2, lw=0)
         axes.plot(pfa[seen], pd[seen], color=style.colour(k), label=name)
     chance = np.geomspace(max(least, 1e-9), 1.0, 50)
-    axes.plot(chance, chance, color=style.GREY, lw=0.8, ls="--")
+    axes.plot(chance, chance, color=style.GREY, lw=0.8, ls="--", label="by chance")
     axes.set_xscale("log")
     axes.set_xlim(chance[0], 1.0)
     axes.set_ylim(0.0, 1.02)
@@ -127,13 +193,22 @@ def draw_histograms(study: Study) -> dict:
         return {}
     fig, axes = panels(study, "What was drawn (grey) and what came out", len(columns))
     for column, a in zip(columns, axes):
-        values = column.values[np.isfinite(column.values)]
+        values = column.values[np.isfinite(column.values)] * column.scale()
         colour = style.BLUE if column.role == "measure" else style.GREY
+        different = np.unique(values).size
+        yes_or_no = column.name.startswith(YES_OR_NO) and set(values) <= {0.0, 1.0}
         if column.labels:
             count = np.bincount(values.astype(int), minlength=len(column.labels))
             a.bar(np.arange(count.size), count, color=colour)
             names = [style.shorten(n, 14) for n in column.labels]
             a.set_xticks(np.arange(len(names)), names, rotation=20 if len(names) > 3 else 0)
+        elif yes_or_no or different <= min(12, values.size // 4):  # a number of phones, say
+            there, count = np.unique(values, return_counts=True)
+            a.bar(np.arange(there.size), count, width=0.7, color=colour)
+            a.set_xticks(np.arange(there.size),
+                         [("no", "yes")[int(v)] if yes_or_no else f"{v:.6g}" for v in there])
+            if there.size < 3:
+                a.set_xlim(-0.75, there.size - 0.25)
         else:
             a.hist(values, bins=min(60, max(8, int(np.sqrt(values.size)))), color=colour)
         a.set_xlabel(column.label())
@@ -149,7 +224,8 @@ def draw_sensitivity(study: Study) -> dict:
     measures, inputs = table["measure"], table["input"]
     if not measures.labels or not inputs.labels:
         return {}
-    fig, axes = style.figure("Which input matters", 1.8 + 0.45 * len(measures.labels), ncols=2)
+    fig, axes = style.figure("Which input matters", max(3.4, 1.8 + 0.45 * len(measures.labels)),
+                             ncols=2, sharey=True)
     for a, name, title, low in ((axes[0], "first_order", "share of the variance", 0.0),
                                 (axes[1], "rank_correlation", "rank correlation", -1.0)):
         grid = np.full((len(measures.labels), len(inputs.labels)), np.nan)
@@ -157,14 +233,17 @@ def draw_sensitivity(study: Study) -> dict:
         image = a.imshow(grid, cmap="RdBu_r" if low < 0 else style.MAP, vmin=low, vmax=1.0,
                          aspect="auto")
         for (row, column), value in np.ndenumerate(grid):
-            if np.isfinite(value):
-                a.text(column, row, f"{value:.2f}".replace("-", "−"), ha="center", va="center",
-                       fontsize=8, path_effects=style.OVER_MAP)
-        a.set_xticks(np.arange(len(inputs.labels)), [n.replace("_", " ") for n in inputs.labels],
+            if not np.isfinite(value):  # of names without an order
+                a.text(column, row, "–", ha="center", va="center", fontsize=8, color=style.GREY)
+            else:
+                words = f"{round(value, 2) + 0.0:.2f}".replace("-", "−")  # never −0.00
+                a.text(column, row, words, ha="center", va="center", fontsize=8,
+                       path_effects=style.OVER_MAP)
+        a.set_xticks(np.arange(len(inputs.labels)), [spoken(n) for n in inputs.labels],
                      rotation=25, ha="right")
-        a.set_yticks(np.arange(len(measures.labels)), [n.replace("_", " ") for n in measures.labels])
+        a.set_yticks(np.arange(len(measures.labels)), [spoken(n) for n in measures.labels])
         fig.colorbar(image, ax=a, label=title)
-    style.subtitle(axes[0], study.heading())
+    heading(axes[0], study)
     return {"sensitivity": fig}
 
 

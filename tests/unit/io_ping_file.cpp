@@ -1,3 +1,4 @@
+#include "io/digest.h"
 #include "io/ping_file.h"
 
 #include <gmock/gmock.h>

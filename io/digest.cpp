@@ -1,4 +1,4 @@
-#include "study/digest.h"
+#include "io/digest.h"
 
 #include <openssl/evp.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace asdic::study {
+namespace asdic {
 
 struct Digest::Impl {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
@@ -44,4 +44,10 @@ std::string Digest::text() {
   return result;
 }
 
-}  // namespace asdic::study
+std::string sha256(std::string_view text) {
+  Digest digest;
+  digest.add(std::span(text.data(), text.size()));
+  return digest.text();
+}
+
+}  // namespace asdic

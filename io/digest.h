@@ -3,8 +3,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
-namespace asdic::study {
+namespace asdic {
 
 /// SHA-256 of bytes that come piece by piece.
 class Digest {
@@ -27,4 +28,7 @@ class Digest {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace asdic::study
+/// SHA-256 of a text, in hexadecimal.
+[[nodiscard]] std::string sha256(std::string_view text);
+
+}  // namespace asdic

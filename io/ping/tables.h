@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "io/ping/growing_table.h"
+
+// The columns of a ping file's tables (docs/formats/ping.md).
+namespace asdic::ping_file {
+
+[[nodiscard]] std::vector<GrowingTable::Column> echo_columns();
+[[nodiscard]] std::vector<GrowingTable::Column> patch_columns();
+[[nodiscard]] std::vector<GrowingTable::Column> interference_columns();
+
+}  // namespace asdic::ping_file

@@ -1,0 +1,140 @@
+#pragma once
+#include <cmath>
+#include <complex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "raytrace/beams/beam.h"
+#include "raytrace/beams/column_sum.h"
+#include "raytrace/beams/field_run.h"
+#include "raytrace/beams/layered_crossings.h"
+#include "raytrace/beams/tube_error.h"
+
+// The partial sums of a field: each adds rays of one fan, and a field is the sum of a few.
+namespace asdic {
+
+/// One source and one fan, ready to be summed.
+struct FieldWork {
+  const PropagationCase& run_case;
+  const RayTracer& tracer;
+  double source_depth;
+  const BeamFan& fan;
+  const Progress& progress;
+  BeamSetting setting;
+  TraceLimits limits;
+  const FieldCheck& also;
+  std::vector<double> level;        // [ranges] of TubeError
+  std::vector<double>& tube_share;  // [beams − 1]
+  double* end_share;                // [2] of the first and the last ray
+
+  [[nodiscard]] BeamLaunch launch(std::size_t i, double source_speed) const {
+    const double elevation = fan.elevation[i];
+    BeamLaunch launch{elevation, launch_amplitude(run_case, source_depth, source_speed, elevation)};
+    if (fan.graded) {
+      launch.higher = fan.to_next(i), launch.lower = fan.to_next(i > 0 ? i - 1 : 0);
+      // but for rounding, within a tube that was divided evenly
+      if (std::abs(launch.higher - launch.lower) < 1e-9 * launch.higher)
+        launch.lower = launch.higher;
+    }
+    return launch;
+  }
+};
+
+/// Nothing yet at the receivers of a case.
+[[nodiscard]] inline FieldSum empty_field(const PropagationCase& run_case) {
+  const ReceiverGrid& grid = run_case.receivers;
+  return {.ranges = grid.ranges,
+          .depths = grid.depths,
+          .irregular = grid.irregular,
+          .sum = std::vector<std::complex<double>>(grid.size())};
+}
+
+/// Every kind of beam, receiver by receiver.
+class PlainPart {
+ public:
+  explicit PlainPart(const FieldWork& work)
+      : work_(work), setting_{work.setting, work.setting}, field_{empty_field(work.run_case), {}} {
+    setting_[1].spacing *= 2.0;
+    if (work.also.half) field_[1] = field_[0];
+  }
+  void add(std::size_t i) {
+    const double elevation = work_.fan.elevation[i];
+    work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
+    const BeamLaunch launch = work_.launch(i, ray_.source_speed);
+    add_beam(setting_[0], launch, ray_, field_[0]);
+    if (work_.also.half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
+    const FieldSum& field = field_[half ? 1 : 0];
+    return field.sum[column * field.rows() + row];
+  }
+
+ private:
+  const FieldWork& work_;
+  BeamSetting setting_[2];
+  RayTrajectory ray_;
+  FieldSum field_[2];
+};
+
+/// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
+class FastPart {
+ public:
+  FastPart(const FieldWork& work, const LayeredCrossings* layered)
+      : work_(work), layered_(layered) {
+    const ReceiverGrid& grid = work.run_case.receivers;
+    BeamSetting setting = work.setting;
+    sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    setting.spacing *= 2.0;
+    if (work.also.half) sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    if (work.also.bound) tubes_.emplace(work.setting, grid.depths, grid.ranges.size());
+  }
+  void add(std::size_t i) {
+    if (work_.also.bound && i > 0) {
+      if (last_ + 1 != i)
+        cross(i - 1, before_);  // the packet's first: another part has that ray
+      else
+        std::swap(here_, before_);
+    }
+    const BeamLaunch launch = cross(i, here_);
+    sum_[0].add(launch, here_.crossings);
+    if (work_.also.half && i % 2 == 0) sum_[1].add(launch, here_.crossings);
+    if (work_.also.bound && i > 0)
+      work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
+    if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))
+      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
+          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
+    last_ = i;
+  }
+  void finish() { tubes_->finish(); }
+  [[nodiscard]] double bound_at(std::size_t column, std::size_t row) const {
+    return tubes_->at(column, row);
+  }
+  [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
+    return sum_[half ? 1 : 0].at(column, row);
+  }
+
+ private:
+  BeamLaunch cross(std::size_t i, RayAtColumns& out) {
+    const double elevation = work_.fan.elevation[i];
+    if (layered_ == nullptr || !layered_->find(elevation, workspace_, out.crossings)) {
+      MarchedCrossings marched(out.crossings);
+      out.crossings.source_speed =
+          work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
+                                  elevation, work_.limits, marched);
+    }
+    const BeamLaunch launch = work_.launch(i, out.crossings.source_speed);
+    if (work_.also.bound) out.foretell(work_.setting, launch);
+    return launch;
+  }
+
+  const FieldWork& work_;
+  const LayeredCrossings* layered_;
+  LayeredCrossings::Workspace workspace_;
+  RayAtColumns here_, before_;
+  std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_
+  std::vector<ColumnSum> sum_;
+  std::optional<TubeError> tubes_;
+};
+
+}  // namespace asdic
