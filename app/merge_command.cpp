@@ -54,10 +54,28 @@ study::Study study_of(const Options& options) {
   return study;
 }
 
+/// Nothing but results of the same study is written over.
+void check_existing(const std::filesystem::path& output, const std::string& identity) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error)) return;
+  std::string got = "a file that is no study's";
+  try {
+    const study::StudyFile there(output);
+    if (there.imprint().identity == identity) return;
+    got = "results of another study (identity " + there.imprint().identity + ")";
+  } catch (const InputError&) {
+  }
+  throw InputError({.where = output.string(),
+                    .got = got,
+                    .expected = "no such file, or results of this study (identity " + identity +
+                                "); another output"});
+}
+
 int merge(const Options& options) {
   const study::Study study = study_of(options);
   std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   for (const auto& part : parts) check_output(options.output, part);
+  check_existing(options.output, study::identity(study));
   study::MergeOptions how = options.merge;
   if (!options.study.empty()) how.text = study.text;
   const study::MergeReport report = study::merge(

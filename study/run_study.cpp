@@ -71,12 +71,19 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
     const StudyFile file(output);
     if (file.imprint().identity != work.imprint.identity)
       throw refuse("results of another study (identity " + file.imprint().identity + ")");
-    const bool same = file.complete() && file.range() == range && !until &&
-                      file.stopped_by().empty() && file.imprint().text == work.imprint.text &&
+    const IndexRange there = file.range();
+    const bool whole = file.complete() && file.stopped_by().empty();
+    if (there.first < range.first || there.end > range.end || (until && whole))
+      throw InputError({.where = output.string(),
+                        .got = "realisations " + to_text(there) + " of this study",
+                        .expected = "none beyond the " + to_text(range) +
+                                    " that are asked for, which would be all that is kept; another "
+                                    "output, or --fresh to write over it"});
+    const bool same = whole && there == range && file.imprint().text == work.imprint.text &&
                       file.imprint().overrides == work.imprint.overrides;
     return same ? Existing::complete : Existing::partial;
   } catch (const InputError& fault) {
-    if (fault.fault().expected.starts_with("no such file")) throw;
+    if (fault.fault().expected.ends_with("--fresh to write over it")) throw;
     throw refuse(fault.fault().got);
   }
 }

@@ -9,6 +9,10 @@
 namespace asdic {
 namespace {
 
+/// A ray that turns beside a maximum of c spreads so much that no number leads to the receiver: its
+/// path is left out, at 10⁻⁸ of the others' amplitude and less [m].
+constexpr double furthest_miss = 1.0;
+
 std::complex<double> integer_power(std::complex<double> base, int exponent) {
   std::complex<double> product = 1.0;
   for (int i = 0; i < exponent; ++i) product *= base;
@@ -67,6 +71,7 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   // step of Newton's method, in the smaller of σ = sin θ and k = cos θ.
   const Rays miss = tasks.range - traced.slowness * tasks.of(up.per_slowness, middle.per_slowness,
                                                              down.per_slowness);
+  p.miss = miss;
   const Rays k_traced = traced.slowness * c_ref;
   Rays k_step = miss * c_ref / p.range_per_slowness;  // dr/dk = (dr/dξ)/c_ref
   Rays sigma_step = -k_step * k_traced / traced.sigma;
@@ -141,6 +146,7 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
   for (std::size_t i = 0; i < tasks.count; ++i) {
     const Branch& branch = tasks.task[i]->branch;
     if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
+    if (!(std::abs(lanes.miss[i]) < furthest_miss)) continue;
     const std::complex<double> reflection(lanes.reflection.real[i], lanes.reflection.imag[i]);
     if (std::norm(reflection) < faintest * faintest) continue;
 

@@ -35,6 +35,7 @@ class PathBuilder {
  private:
   /// What follows from a root in straight formulae, for a batch of them.
   struct PathLanes {
+    Rays miss;  // of the ray traced, at the receiver's depth [m]
     Rays slowness, range_per_slowness, q, spreading, delay, length;
     Rays launch, arrival, surface_grazing, bottom_grazing;  // angles from the horizontal
     ComplexLanes reflection;
