@@ -18,6 +18,7 @@ std::vector<double> fan(const Transmitter& transmitter) {
   const double half = all_round ? radians(20.0) : 1.5 * transmitter.beamwidth;
   const double axis = all_round ? 0.0 : transmitter.elevation;
   std::vector<double> elevations;
+  elevations.reserve(fan_rays);
   for (int i = 0; i < fan_rays; ++i)
     elevations.push_back(
         std::clamp(axis + half * (2.0 * i / (fan_rays - 1) - 1.0), radians(-89.0), radians(89.0)));

@@ -97,7 +97,7 @@ void add_field_command(CLI::App& program, Action& action) {
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer(
       "What is run stands in [run] of the scenario (docs/formats/scenario.md).\n"
-      "Example:  asdic field scenarios/slope.toml -o slope.h5 && asdic plot slope.h5");
+      "Example:  asdic field scenarios/wedge.toml -o wedge.h5 && asdic plot wedge.h5");
   command->callback([options, &action] { action = [options] { return field(*options); }; });
 }
 

@@ -64,7 +64,7 @@ std::filesystem::path picture_source(const std::filesystem::path& result,
                                      const TemporaryFolder& folder, const std::string& name) {
   if (is_hdf5(result)) return result;
   const PropagationFile content = read_result(result);
-  const std::filesystem::path path = folder.path() / (name + ".h5");
+  std::filesystem::path path = folder.path() / (name + ".h5");
   Hdf5File file = Hdf5File::create(path);
   write_hdf5_result(file, content);
   add_sea(file, result, content);

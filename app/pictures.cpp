@@ -40,6 +40,7 @@ std::string python() {
 /// Runs a program without a shell. \return its exit status, 128 + n after signal n
 int run(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t child = 0;

@@ -55,7 +55,7 @@ void add_study_command(CLI::App& program, Action& action) {
                     "make no realisations: write a file of those that are there");
   command->footer(
       "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it was.\n"
-      "Example:  asdic study scenarios/studies/detection.toml -o detection.h5");
+      "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
   command->callback([options, &action] { action = [options] { return study_run(*options); }; });
 }
 
