@@ -6,7 +6,6 @@
 #include "io/scenario_reader.h"
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
-#include "serve/inline_toml.h"
 #include "serve/update.h"
 
 namespace asdic::serve {

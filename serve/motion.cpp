@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "io/scenario/sections.h"
-#include "serve/inline_toml.h"
+#include "io/text/toml_value.h"
 
 namespace asdic::serve {
 namespace {

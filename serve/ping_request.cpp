@@ -4,7 +4,7 @@
 
 #include "io/scenario/sections.h"
 #include "io/text/toml_table.h"
-#include "serve/inline_toml.h"
+#include "io/text/toml_value.h"
 #include "serve/update.h"
 
 namespace asdic::serve {

@@ -6,7 +6,7 @@
 #include "io/scenario/sections.h"
 #include "io/text/quote.h"
 #include "io/text/toml_table.h"
-#include "serve/inline_toml.h"
+#include "io/text/toml_value.h"
 #include "serve/motion.h"
 
 namespace asdic::serve {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <sstream>
-#include <tuple>
 #include <utility>
 
 #include "core/error.h"
@@ -118,12 +117,8 @@ double width_of(const Pulse& pulse) {
   };
   thread_local std::array<Known, 4> known;
   thread_local std::size_t next = 0;
-  const auto numbers = [](const PulseSettings& p) {
-    return std::tie(p.kind, p.frequency, p.start_frequency, p.end_frequency, p.duration, p.window,
-                    p.tukey_fraction);
-  };
   for (const Known& k : known)
-    if (k.width > 0.0 && numbers(k.settings) == numbers(s)) return k.width;
+    if (k.width > 0.0 && k.settings == s) return k.width;
   const double width = bandwidth(pulse_spectrum(pulse, pulse.centre_frequency()), 40.0);
   known[next++ % known.size()] = {s, width};
   return width;

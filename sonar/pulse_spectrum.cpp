@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "core/units.h"
 #include "sonar/fft.h"
@@ -60,30 +59,23 @@ PulseSpectrum analysed(const Pulse& pulse, double centre) {
   return spectrum;
 }
 
-/// The numbers that the spectrum of a pulse without samples of its own depends on.
-auto numbers_of(const PulseSettings& s) {
-  return std::make_tuple(s.kind, s.frequency, s.start_frequency, s.end_frequency, s.duration,
-                         s.window, s.tukey_fraction);
-}
-
 }  // namespace
 
 /// It takes a millisecond, as long as all else of a cheap ping, and studies ask for the same one
-/// again and again: each thread keeps the last, found by the very numbers that it depends on.
+/// again and again: each thread keeps the last, found by equal settings.
 PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
   constexpr std::size_t most_kept = std::size_t{1} << 17;
   if (pulse.settings().kind == PulseKind::file) return analysed(pulse, centre);
   struct Kept {
-    decltype(numbers_of(PulseSettings{})) numbers;
+    PulseSettings settings;
     double centre = 0.0;
     PulseSpectrum spectrum;
   };
   thread_local Kept kept;
-  const auto numbers = numbers_of(pulse.settings());
-  if (!kept.spectrum.bins.empty() && kept.numbers == numbers && kept.centre == centre)
+  if (!kept.spectrum.bins.empty() && kept.settings == pulse.settings() && kept.centre == centre)
     return kept.spectrum;
   PulseSpectrum spectrum = analysed(pulse, centre);
-  if (spectrum.bins.size() <= most_kept) kept = {numbers, centre, spectrum};
+  if (spectrum.bins.size() <= most_kept) kept = {pulse.settings(), centre, spectrum};
   return spectrum;
 }
 

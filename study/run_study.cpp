@@ -122,9 +122,9 @@ void import_rows(const std::filesystem::path& path, IndexRange range, Journal& j
 namespace {
 
 /// Indices that are missing, one after the other.
-class Todo {
+class Remaining {
  public:
-  explicit Todo(IndexSet missing) : missing_(std::move(missing)) {}
+  explicit Remaining(IndexSet missing) : missing_(std::move(missing)) {}
 
   std::optional<std::uint64_t> next() {
     if (at_ >= missing_.ranges().size()) return {};
@@ -222,11 +222,11 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
   journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
 
   if (!run.assemble_only && !estimate.enough()) {
-    Todo todo(done.missing(run.range));
+    Remaining remaining(done.missing(run.range));
     Teller teller(run, outcome.before, outcome.total);
     teller.tell(estimate);
     outcome.made = study::run(
-        work.realise, [&] { return todo.next(); },
+        work.realise, [&] { return remaining.next(); },
         [&](Row&& row) {
           journals.own().append(row);
           estimate.add(std::move(row));

@@ -186,6 +186,18 @@ void apply_override(TomlValue& root, const std::string& assignment) {
       override_value(std::string_view(assignment).substr(equals + 1), origin);
 }
 
+void set_key(TomlValue& table, const std::string& key, TomlValue value) {
+  if (TomlValue* found = table.find(key))
+    *found = std::move(value);
+  else
+    std::get<TomlValue::Table>(table.data).push_back({key, std::move(value)});
+}
+
+void erase_key(TomlValue& table, const std::string& key) {
+  std::erase_if(std::get<TomlValue::Table>(table.data),
+                [&](const TomlEntry& entry) { return entry.key == key; });
+}
+
 std::string to_text(double number) {
   if (std::isnan(number)) return "nan";
   std::array<char, 32> buffer{};

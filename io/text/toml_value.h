@@ -54,6 +54,11 @@ void apply_override(TomlValue& root, const std::string& assignment);
 [[nodiscard]] TomlValue& value_at(TomlValue& root, std::string_view path,
                                   const std::string& origin);
 
+/// Sets a key of a table, or adds it.
+void set_key(TomlValue& table, const std::string& key, TomlValue value);
+/// Takes a key out of a table, if it is there.
+void erase_key(TomlValue& table, const std::string& key);
+
 /// The shortest decimal that reads back as the same number.
 [[nodiscard]] std::string to_text(double number);
 

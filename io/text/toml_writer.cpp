@@ -61,6 +61,26 @@ std::string list(std::span<const std::string> items) {
   return text + "]";
 }
 
+/// A value on one line.
+struct Inline {
+  std::string operator()(std::monostate) const { return "\"\""; }
+  std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+  std::string operator()(std::int64_t number) const { return std::to_string(number); }
+  std::string operator()(double number) const { return toml_number(number); }
+  std::string operator()(const std::string& text) const { return quoted(text); }
+  std::string operator()(const TomlValue::Array& items) const {
+    std::string result;
+    for (const TomlValue& item : items) result += (result.empty() ? "" : ", ") + inline_toml(item);
+    return "[" + result + "]";
+  }
+  std::string operator()(const TomlValue::Table& entries) const {
+    std::string result;
+    for (const TomlEntry& entry : entries)
+      result += (result.empty() ? "" : ", ") + quoted(entry.key) + " = " + inline_toml(entry.value);
+    return "{" + result + "}";
+  }
+};
+
 }  // namespace
 
 std::string toml_number(double value) {
@@ -141,5 +161,7 @@ void TomlWriter::angles(const std::string& name, std::span<const double> angles)
   }
   line(name + "_deg", list(items));
 }
+
+std::string inline_toml(const TomlValue& value) { return std::visit(Inline{}, value.data); }
 
 }  // namespace asdic

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/text/toml_value.h"
+
 namespace asdic {
 
 /// TOML text, table by table. Numbers are the shortest that read back as the same bits.
@@ -33,6 +35,10 @@ class TomlWriter {
 
 /// A number as TOML takes it: like to_text(), but −0 keeps its sign.
 [[nodiscard]] std::string toml_number(double value);
+
+/// A value on one line: {"name" = "ship", "position" = [0, 0, 100]}. Numbers read back as the same
+/// bits.
+[[nodiscard]] std::string inline_toml(const TomlValue& value);
 
 /// Degrees that radians() turns into exactly these bits, the shortest near; empty if there are
 /// none.

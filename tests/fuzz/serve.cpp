@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "fuzz/fuzz_target.h"
+#include "io/text/toml_writer.h"
 #include "serve/command.h"
-#include "serve/inline_toml.h"
 #include "serve/line_splitter.h"
 #include "serve/live_scenario.h"
 #include "serve/update.h"

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "io/text/toml_writer.h"
 #include "serve/caps.h"
 #include "serve/command_queue.h"
 #include "serve/data_folder.h"
-#include "serve/inline_toml.h"
 #include "serve/latency.h"
 #include "serve/live_scenario.h"
 #include "serve/pace.h"
