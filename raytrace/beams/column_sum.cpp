@@ -36,46 +36,6 @@ ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
   if (even) spacing_ = step, per_spacing_ = 1.0 / step;
 }
 
-/// What add_evenly needs of each crossing: its bell's height and sharpness a = cos²θ/2σ², and how
-/// bell and phase go on from one group of rows to the next.
-void ColumnSum::prepare_recurrences(std::size_t n) {
-  const float step = static_cast<float>(lanes) * static_cast<float>(spacing_);
-  const float share_scale = static_cast<float>(setting_.spacing) / root_of_two_pi;
-  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_, &sharpness_, &height_})
-    array->resize(n + lanes);
-  for (std::size_t i = 0; i < n; i += lanes) {
-    Lanes c, s;
-    cos_sin(load(&wave_number_[i]) * step, c, s);
-    store(c, &turn_cosine_[i]);
-    store(s, &turn_sine_[i]);
-    const Lanes per_sigma = 1.0F / load(&least_[i]);
-    const Lanes u = load(&cosine_[i]) * per_sigma;
-    store(0.5F * u * u, &sharpness_[i]);
-    store(load(&amplitude_[i]) * share_scale * per_sigma, &height_[i]);
-    store(exponential(-(u * u) * (step * step)), &ratio_of_ratio_[i]);  // exp(−2aD²)
-  }
-  find_even_ways(n);
-}
-
-/// Which crossings add_evenly is for: Way::even, told for all at once.
-void ColumnSum::find_even_ways(std::size_t n) {
-  is_even_.resize(n);
-  const auto spacing = static_cast<float>(setting_.spacing);
-  const float *growth_of = growth_.data(), *q_of = q_.data(), *cosine = cosine_.data(),
-              *least = least_.data();
-  const double *above = above_.data(), *below = below_.data();
-  const std::int32_t *first = first_.data(), *last = last_.data();
-  std::int32_t* is_even = is_even_.data();
-  ASDIC_INDEPENDENT
-  for (std::size_t i = 0; i < n; ++i) {
-    const float growth = std::abs(growth_of[i]), q = std::abs(q_of[i]);
-    const auto reach = static_cast<float>(above[i] > below[i] ? above[i] : below[i]);
-    // the least width holds all over the beam, and q has no zero in it
-    const bool constant = (q > growth * reach) & ((q + growth * reach) * spacing < least[i]);
-    is_even[i] = constant & (cosine[i] >= 8.0F * spacing * growth) & (last[i] > first[i]);
-  }
-}
-
 ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
   const float growth = std::abs(growth_[i]), q = std::abs(q_[i]);
   const auto spacing = static_cast<float>(setting_.spacing);
@@ -88,15 +48,7 @@ ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
 
 template <bool coherent, bool is_hat>
 void ColumnSum::add_rows(const Crossings& x) {
-  const bool some_even = coherent && !is_hat && spacing_ > 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (some_even && is_even_[i] != 0) {
-      const std::size_t at = x.column[i] * stride_;
-      add_evenly(i, real_.data() + at, imaginary_.data() + at);
-    } else {
-      add_crossing_rows<coherent, is_hat>(x, i);
-    }
-  }
+  for (std::size_t i = 0; i < x.size(); ++i) add_crossing_rows<coherent, is_hat>(x, i);
 }
 
 template <bool coherent, bool is_hat>
@@ -247,12 +199,14 @@ void ColumnSum::add_half(const BeamLaunch& launch, const Crossings& crossings, H
   prepare(launch, crossings);
   const bool is_hat = setting_.kind == BeamKind::hat, even = spacing_ > 0.0;
   if (setting_.coherent) {
-    if (is_hat && even) return add_narrow_hats<true>(crossings);
+    if (even) return is_hat ? add_narrow_hats<true>(crossings) : add_even_gaussians(crossings);
     is_hat ? add_rows<true, true>(crossings) : add_rows<true, false>(crossings);
   } else {
     if (is_hat && even) return add_narrow_hats<false>(crossings);
     is_hat ? add_rows<false, true>(crossings) : add_rows<false, false>(crossings);
   }
 }
+
+template void ColumnSum::add_crossing_rows<true, false>(const Crossings&, std::size_t);
 
 }  // namespace asdic

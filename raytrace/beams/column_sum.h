@@ -38,8 +38,7 @@ class ColumnSum {
   void prepare(const BeamLaunch& launch, const Crossings& crossings);
   void find_rows(const Crossings& crossings);
   void find_rows_of_half(const Crossings& crossings);
-  void prepare_recurrences(std::size_t n);
-  void find_even_ways(std::size_t n);
+  void find_even(std::size_t n);
   [[nodiscard]] Way way(std::size_t i) const noexcept;
   template <bool coherent, bool is_hat>
   void add_rows(const Crossings& crossings);
@@ -47,7 +46,7 @@ class ColumnSum {
   void add_crossing_rows(const Crossings& crossings, std::size_t i);
   template <bool coherent>
   void add_narrow_hats(const Crossings& crossings);
-  void add_evenly(std::size_t i, float* real, float* imaginary) const;
+  void add_even_gaussians(const Crossings& crossings);
   void add_plainly(const Crossings& crossings, std::size_t i);
 
   /// The half of a hat that is being added.
@@ -70,12 +69,10 @@ class ColumnSum {
   std::vector<float> amplitude_, phase_, wave_number_;  // at the ray; dφ/dz
   std::vector<float> cosine_, sine_, q_, growth_;       // |cos θ|, sin θ, q, dq/dz
   std::vector<float> least_;                            // least σ of a Gaussian
-  std::vector<float> turn_cosine_, turn_sine_, ratio_of_ratio_, sharpness_,
-      height_;                              // of add_evenly
-  std::vector<float> offset_;               // of the first row from the ray [m]
-  std::vector<double> above_, below_;       // how far the beam reaches [m]
-  std::vector<std::int32_t> first_, last_;  // rows within reach, [first, last)
-  std::vector<std::int32_t> is_even_;       // for add_evenly
+  std::vector<float> offset_;                           // of the first row from the ray [m]
+  std::vector<double> above_, below_;                   // how far the beam reaches [m]
+  std::vector<std::int32_t> first_, last_;              // rows within reach, [first, last)
+  std::vector<std::int32_t> is_even_;                   // for add_even_gaussians
 };
 
 }  // namespace asdic

@@ -60,7 +60,6 @@ void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
   if (coherent)
     for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
   find_rows(x);
-  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
 }
 
 void ColumnSum::find_rows(const Crossings& x) {

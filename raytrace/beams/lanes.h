@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <experimental/simd>
+#include <utility>
 
 #include "core/units.h"
 
@@ -22,6 +24,32 @@ inline Lanes load(const float* from) noexcept {
 }
 inline void store(const Lanes& value, float* to) noexcept {
   value.copy_to(to, std::experimental::element_aligned);
+}
+
+/// A square of [lanes × lanes] numbers, in place.
+inline void transpose(float* square) noexcept {
+  if constexpr (lanes == 8) {
+    using Eight [[gnu::vector_size(32)]] = float;
+    Eight r[8], t[8];
+    std::memcpy(r, square, sizeof r);
+    for (int i = 0; i < 8; i += 2) {
+      t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+      t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4)
+      for (int j = i; j < i + 2; ++j) {
+        r[j] = __builtin_shufflevector(t[j], t[j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+        r[j + 2] = __builtin_shufflevector(t[j], t[j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+      }
+    for (int i = 0; i < 4; ++i) {
+      t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+      t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    std::memcpy(square, t, sizeof t);
+  } else {
+    for (std::size_t i = 0; i < lanes; ++i)
+      for (std::size_t j = 0; j < i; ++j) std::swap(square[i * lanes + j], square[j * lanes + i]);
+  }
 }
 
 /// 0, 1, 2, …
