@@ -90,6 +90,7 @@ void ColumnSum::add_even_gaussians(const Crossings& x) {
   find_even(x.size());
   FirstRows first;
   for (std::size_t i = 0; i < x.size(); i += lanes) {
+    const std::size_t used = std::min(lanes, x.size() - i);
     const Lanes q = load(&q_[i]), per_sigma = 1.0F / load(&least_[i]);
     const Lanes u = load(&cosine_[i]) * per_sigma, tilt = 0.5F * load(&growth_[i]) / q;
     const EvenBeams beams{.height = load(&amplitude_[i]) * share_scale * per_sigma * sqrt(abs(q)),
@@ -99,7 +100,6 @@ void ColumnSum::add_even_gaussians(const Crossings& x) {
                           .wave_number = load(&wave_number_[i]),
                           .offset = load(&offset_[i])};
     beams.first_rows(spacing, first);
-    const std::size_t used = std::min(lanes, x.size() - i);
     for (std::size_t l = 0; l < used; ++l) {
       const std::size_t j = i + l;
       if (is_even_[j] == 0) {
