@@ -129,7 +129,7 @@ void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sin
 }
 
 /// Where c(z) = 1/ξ: Newton's method inside a shrinking bracket, for the law is monotone in the
-/// layer.
+/// layer; until what a step leaves, δ²·c″/2c′, is below what rounding of c leaves, c·ε/c′.
 Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
   const Rays target = 1.0 / rays.slowness;
   const bool rises = layer.c_bottom > layer.c_top;
@@ -144,9 +144,10 @@ Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
     where(!slower, high) = z;
     Rays next = z + (target - here.c) / here.dc_dz;
     where(!(next > low && next < high), next) = 0.5 * (low + high);
-    const Rays step = abs(next - z);
+    const Rays step = next - z;
     where(!done, z) = next;
-    done = done || step <= 1e-15 * (abs(z) + 1.0);
+    done = done || step * step * abs(here.d2c_dz2) <= 2e-16 * target ||
+           abs(step * here.dc_dz) <= 2e-16 * target;
     if (all_of(done)) break;
   }
   return z;
