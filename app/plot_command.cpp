@@ -41,7 +41,7 @@ int plot(const Options& options) {
   std::string pictures = options.folder;
   std::vector<std::string> words;
   if (is_study_file(options.file)) {
-    static_cast<void>(study::StudyFile(options.file));
+    study::StudyFile(options.file).check_parts();
   } else if (is_ping_file(options.file)) {
     static_cast<void>(PingFile(options.file));
   } else {

@@ -75,13 +75,20 @@ class StudyFile {
   /// The k-th of them, [channels × its own samples × iq].
   [[nodiscard]] std::vector<float> series(std::size_t k) const;
 
+  /// Where the rows of a catalogue lie; {} for a file that holds its own.
+  [[nodiscard]] std::vector<std::filesystem::path> parts() const;
+  /// \throws InputError naming the first part that is not there: HDF5 would show nothing instead
+  void check_parts() const;
   /// Compares every dataset with its SHA-256 in the manifest.
-  /// \throws InputError naming the first that differs, or is not there
+  /// \throws InputError naming the first that differs, or is not there; of a catalogue, the part
+  /// that is gone or has changed
   void verify() const;
 
   [[nodiscard]] const Hdf5File& file() const noexcept { return file_; }
 
  private:
+  void check_each_part() const;
+
   Hdf5File file_;
   Imprint imprint_;
   IndexRange range_;
