@@ -41,6 +41,8 @@ class Connection::Impl {
     process();
   }
 
+  [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
+
   void turn_away(const std::string& code, const std::string& message) {
     tick();
     end_with(refusal_answer("null", code, message, true));
@@ -88,16 +90,17 @@ class Connection::Impl {
     if (!worker_) return shake_hands(line);
     try {
       if (line.too_long)
-        throw Refusal("limit", refusal_text("", "a longer line",
+        throw Refusal("limit", refusal_text("line", "a longer one",
                                             "at most " + std::to_string(limits_.line_bytes) +
                                                 " bytes a line"));
       Command command = read_command(line.text, limits_);
       command.received = active_;
       const std::string id = command.id;
       if (worker_->offer(std::move(command))) return;
-      send(refusal_answer(id, "busy",
-                          "found " + std::to_string(limits_.queued_pings) +
-                              " commands waiting, expected fewer: wait for an answer"));
+      send(refusal_answer(
+          id, "busy",
+          refusal_text("queue", std::to_string(limits_.queued_pings) + " commands waiting",
+                       "fewer: wait for an answer")));
     } catch (const Refusal& refusal) {
       send(refusal_answer(line.too_long ? "null" : id_of(line.text, limits_), refusal.code(),
                           refusal.what()));
@@ -108,9 +111,11 @@ class Connection::Impl {
     try {
       const Handshake shake = read_handshake(line.text);
       if (!ends_.token.empty() && !same_secret(shake.token, ends_.token))
-        throw Refusal("token", "expected the server's token");
+        throw Refusal("token", refusal_text("token", shake.token.empty() ? "none" : "another",
+                                            "the server's"));
       waits_ = shake.waits;
     } catch (const Refusal& refusal) {
+      refused_ = refusal.what();
       return end_with(refusal_answer("null", refusal.code(), refusal.what(), true));
     }
     splitter_.set_longest(limits_.line_bytes);
@@ -248,7 +253,12 @@ class Connection::Impl {
         give_up();
       } else if (ends_.socket && !worker_ && !closing_) {
         if (silent > double(limits_.handshake_seconds))
-          end_with(refusal_answer("null", "handshake", "expected a handshake sooner", true));
+          end_with(refusal_answer(
+              "null", "handshake",
+              refusal_text("first line",
+                           "none within " + std::to_string(limits_.handshake_seconds) + " s",
+                           "one sooner"),
+              true));
       } else if (ends_.socket && silent > double(limits_.idle_seconds)) {
         if (!outbox_.empty())
           give_up();
@@ -266,7 +276,11 @@ class Connection::Impl {
   }
 
   void say_idle() {
-    send(refusal_answer("null", "idle", "expected a command sooner", true));
+    send(refusal_answer(
+        "null", "idle",
+        refusal_text("command", "none within " + std::to_string(limits_.idle_seconds) + " s",
+                     "one sooner"),
+        true));
     reading_is_over();
   }
 
@@ -286,6 +300,7 @@ class Connection::Impl {
   double active_;  // when the client was last heard of, or took something [s]
   double leaves_at_ = 0.0;
 
+  std::string refused_;    // why the handshake was
   bool waits_ = false;     // the client would rather wait than be told "busy"
   bool reading_ = false;   // a read is under way
   bool ended_ = false;     // the client has sent its last byte
@@ -308,5 +323,6 @@ void Connection::turn_away(const std::string& code, const std::string& message) 
   impl_->turn_away(code, message);
 }
 void Connection::stop() { impl_->stop(); }
+const std::string& Connection::refused() const noexcept { return impl_->refused(); }
 
 }  // namespace asdic::serve
