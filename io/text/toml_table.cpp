@@ -26,6 +26,14 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
+/// "target.0.depth" of "target[0].depth": as --set has it.
+std::string dotted(const std::string& path) {
+  std::string text;
+  for (const char c : path)
+    if (c != ']') text += c == '[' ? '.' : c;
+  return text;
+}
+
 std::string element(const std::string& key, std::size_t index) {
   return key + "[" + std::to_string(index) + "]";
 }
@@ -69,8 +77,8 @@ InputError TomlTable::fault_at(const TomlValue& value, const std::string& key,
                                const std::string& expected, std::optional<std::string> got) const {
   const std::string path = path_of(key);
   const std::string& origin = value.origin.empty() ? fallback_origin_ : value.origin;
-  // "--set pulse.duration" already names the key.
-  const std::string where = origin == "--set " + path ? origin : origin + ": " + path;
+  // "--set pulse.duration", or "--set target.0.depth" of target[0].depth, already names the key.
+  const std::string where = origin == "--set " + dotted(path) ? origin : origin + ": " + path;
   return InputError({.where = where, .got = got.value_or(value.describe()), .expected = expected});
 }
 
