@@ -51,6 +51,28 @@ struct Journal::Impl {
     sqlite::Statement(database, "REPLACE INTO meta VALUES(?,?)").bind(0, key).bind(1, value).run();
   }
 
+  /// From now on it is this study's.
+  void take_over(const Imprint& imprint) {
+    database.execute("BEGIN");
+    set_meta("identity", imprint.identity);
+    set_meta("columns", to_json(imprint.columns));
+    set_meta("study", imprint.text);
+    set_meta("format", std::string(format));
+    database.execute("COMMIT");
+    identity = imprint.identity;
+  }
+
+  [[nodiscard]] std::int64_t count_rows() const {
+    sqlite::Statement count(database, "SELECT COUNT(*) FROM row");
+    return count.step() ? count.integer(0) : 0;
+  }
+
+  /// Which rows are there, without a look at what is in them.
+  void find_done() {
+    sqlite::Statement get(database, "SELECT idx FROM row ORDER BY idx");
+    while (get.step()) done.add(static_cast<std::uint64_t>(get.integer(0)));
+  }
+
   void check_format() {
     if (const std::string found = meta("format"); found != format)
       throw InputError({.where = database.path().string(),
@@ -217,21 +239,20 @@ Journal::Journal(const std::filesystem::path& path) : impl_(std::make_unique<Imp
 
 Journal::Journal(const std::filesystem::path& path, const Imprint& imprint)
     : impl_(std::make_unique<Impl>(path)) {
-  if (impl_->meta("format").empty()) {
-    impl_->database.execute("BEGIN");
-    impl_->set_meta("identity", imprint.identity);
-    impl_->set_meta("columns", to_json(imprint.columns));
-    impl_->set_meta("study", imprint.text);
-    impl_->set_meta("format", std::string(format));
-    impl_->database.execute("COMMIT");
-  }
+  if (impl_->meta("format").empty()) impl_->take_over(imprint);
   impl_->check_format();
   impl_->identity = impl_->meta("identity");
-  if (impl_->identity != imprint.identity)
-    throw InputError({.where = path.string(),
-                      .got = "the journal of another study (identity " + impl_->identity + ")",
-                      .expected = "that of this one (identity " + imprint.identity +
-                                  "); another output, or --fresh to begin anew"});
+  if (const std::int64_t rows = impl_->count_rows();
+      impl_->identity != imprint.identity && rows > 0)
+    throw InputError(
+        {.where = path.string(),
+         .got = (rows == 1 ? "a realisation" : std::to_string(rows) + " realisations") +
+                " of another study" + how_changed(impl_->meta("study"), imprint.text) +
+                " (identity " + impl_->identity + ")",
+         .expected = "those of this one (identity " + imprint.identity +
+                     "): --fresh throws them away and begins anew, another -o keeps "
+                     "them"});
+  if (impl_->identity != imprint.identity) impl_->take_over(imprint);
   if (impl_->meta("columns") != to_json(imprint.columns))
     throw InputError({.where = path.string(),
                       .got = "rows with other columns, of another version of asdic",
@@ -272,6 +293,19 @@ void Journal::add(const Session& session) {
 void Journal::append(const Row& row) {
   const std::lock_guard lock(impl_->mutex);
   impl_->append(row);
+}
+
+void Journal::drop_skipped() {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<std::uint64_t> skipped;
+  {
+    sqlite::Statement get(impl_->database, "SELECT idx FROM row WHERE valid=0");
+    while (get.step()) skipped.push_back(static_cast<std::uint64_t>(get.integer(0)));
+  }
+  if (skipped.empty()) return;
+  for (const std::uint64_t index : skipped) impl_->drop(index);
+  impl_->done = {};
+  impl_->find_done();
 }
 
 void Journal::commit() {

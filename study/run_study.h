@@ -17,6 +17,7 @@ struct Work {
   Realise realise{};
   Summarise summarise{};
   std::function<RunningEstimate()> estimate{};  ///< without a row
+  bool skips = true;  ///< rows that were skipped count as made (on_error = "skip")
 };
 
 /// \param realiser  outlives the work
@@ -63,8 +64,8 @@ StudyOutcome run_study(const Work& work, const StudyRun& run);
 class Journals {
  public:
   /// \param own  that this process writes to; made if it is not there. "": none
-  Journals(const std::filesystem::path& output, const Imprint& imprint,
-           const std::filesystem::path& own);
+  /// \param work  of which study; unless it skips, skipped rows are thrown away, to be made again
+  Journals(const std::filesystem::path& output, const Work& work, const std::filesystem::path& own);
 
   [[nodiscard]] Journal& own() noexcept { return *own_; }
   [[nodiscard]] IndexSet done() const;
@@ -94,6 +95,8 @@ enum class Existing {
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
                   Journals& journals, StudyOutcome& outcome);
 /// Puts the rows of a file into a journal, as if they had just been made.
-void import_rows(const std::filesystem::path& file, IndexRange range, Journal& journal);
+/// \param skipped  those that were skipped, too
+void import_rows(const std::filesystem::path& file, IndexRange range, bool skipped,
+                 Journal& journal);
 
 }  // namespace asdic::study

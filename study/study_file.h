@@ -22,7 +22,7 @@ struct StudyResults {
   Table table{};             ///< sorted by index; inputs and measures
   Table reuse{};             ///< columns that tell how rows were made, for /run
   std::vector<std::string> faults{};  ///< "17: why it was skipped", the first of them
-  std::vector<SummaryTable> summary{};
+  Summary summary{};
   std::vector<Session> sessions{};
 
   [[nodiscard]] bool complete() const noexcept { return table.index.size() == range.size(); }

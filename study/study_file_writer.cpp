@@ -226,8 +226,12 @@ void Writer::write_pressure(const SeriesSource& series, const Shape& row) {
 }
 
 void Writer::write_summary() {
+  const Summary& summary = results_.summary;
   file_.make_group("summary");
-  for (const SummaryTable& table : results_.summary) {
+  file_.set_attribute("summary", "confidence", summary.confidence);
+  file_.set_attribute("summary", "proportion_interval", summary.proportion_interval);
+  file_.set_attribute("summary", "intervals", summary.intervals);
+  for (const SummaryTable& table : summary.tables) {
     const std::string group = "summary/" + table.name;
     file_.make_group(group);
     file_.set_attribute(group, "title", table.title);

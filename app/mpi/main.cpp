@@ -83,6 +83,7 @@ int study_run(const StudyOptions& options, const study::mpi::Session& session) {
         study::work_of(order->study, [&](std::uint64_t index) { return realiser->realise(index); });
   });
   if (status != success) return status;
+  order->ranks = session.size();
   const std::string identity = session.shared(work.imprint.identity);
   status = together(session, [&] {
     if (identity != work.imprint.identity)

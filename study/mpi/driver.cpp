@@ -272,9 +272,9 @@ Start look_around(const Work& work, const StudyRun& run, OrderedEstimate& estima
       run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
   const bool no_journals = journals_of(run.output).empty();
   if (existing == Existing::complete && no_journals) return {.complete = true};
-  Journals journals(run.output, work.imprint, journal_of(run.output, 0));
+  Journals journals(run.output, work, journal_of(run.output, 0));
   if (existing == Existing::partial && no_journals)
-    import_rows(run.output, run.range, journals.own());
+    import_rows(run.output, run.range, work.skips, journals.own());
   journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
   outcome.damaged = journals.damaged();
   const IndexSet done = journals.done().within(run.range);
@@ -307,7 +307,7 @@ StudyOutcome lead(const Work& work, const StudyRun& run, const Session& session)
   outcome.made = dealer.deal();
   outcome.estimate = estimate.estimate();
   if (outcome.before + outcome.made == outcome.total || estimate.enough()) {
-    Journals journals(run.output, work.imprint, {});
+    Journals journals(run.output, work, {});
     write_output(work, run, estimate, journals, outcome);
   }
   return outcome;

@@ -270,6 +270,17 @@ TEST_F(Drawn, TracksAndProfilesReachTheScenario) {
   }
 }
 
+TEST_F(Drawn, ColumnsHaveTheUnitsOfTheirKeys) {
+  const std::string law = " = { law = \"uniform\", low = 40, high = 50 }\n";
+  const Study study = read("[study]\nrealisations = 4\n[vary]\n\"noise.spectral_level_db\"" + law +
+                           "\"transmitter.source_level_db\"" + law + "\"target.0.strength_db\"" +
+                           law + "[measure]\necho_level = true\n");
+  std::vector<std::string> units;
+  for (const Column& column : columns(study)) units.push_back(column.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"dB re 1 µPa²/Hz", "dB re 1 µPa at 1 m", "dB",
+                                             "dB re 1 µPa"}));
+}
+
 TEST_F(Drawn, CastsAndWaypointsAreDrawnWhole) {
   std::ofstream(folder_.path() / "slow.csv") << "depth,speed\n0,1450\n1000,1450\n";
   const Study study = read(
@@ -306,6 +317,7 @@ TEST_F(Drawn, IdentityIsOfWhatDecidesTheRows) {
                                "[vary]\n\"target.0.range\" = { law = \"uniform\", low = "
                                "1e3, high = 3e3 }\n" +
                                measure)));
+  EXPECT_EQ(one, identity(read(head + "on_error = \"skip\"\n" + vary + measure)));
   const std::string latin = "[study]\ndesign = \"latin_hypercube\"\nrealisations = ";
   EXPECT_NE(identity(read(latin + "4\n" + vary + measure)),
             identity(read(latin + "5\n" + vary + measure)));

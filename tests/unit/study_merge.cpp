@@ -27,8 +27,8 @@ class Merge : public testing::Test {
                    const MergeOptions& options = {}) {
     try {
       report = merge(
-          parts, folder / "merged.h5",
-          [](const Imprint&, const Table&) { return std::vector<SummaryTable>{}; }, options);
+          parts, folder / "merged.h5", [](const Imprint&, const Table&) { return Summary{}; },
+          options);
     } catch (const InputError& error) {
       EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5"));
       EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5.part"));
@@ -117,10 +117,17 @@ TEST_F(Merge, WarnsOfAMixOfProcessors) {
 TEST_F(Merge, ACatalogueCanBeMovedWithItsParts) {
   std::filesystem::create_directory(folder / "here");
   const auto a = part("here/a.h5", {0, 60}), b = part("here/b.h5", {60, 90});
-  merge({a, b}, folder / "here/all.h5",
-        [](const Imprint&, const Table&) { return std::vector<SummaryTable>{}; });
+  merge({a, b}, folder / "here/all.h5", [](const Imprint&, const Table&) { return Summary{}; });
   std::filesystem::rename(folder / "here", folder / "there");
   EXPECT_NO_THROW(StudyFile(folder / "there/all.h5").verify());
+}
+
+TEST_F(Merge, TheFileTellsItsConfidence) {
+  const auto a = part("a.h5", {0, 90});
+  const Hdf5File file = Hdf5File::open(a);
+  EXPECT_EQ(file.attribute_number("summary", "confidence"), 0.95);
+  EXPECT_EQ(file.attribute_text("summary", "proportion_interval"), "wilson");
+  EXPECT_TRUE(file.has_attribute("summary", "intervals"));
 }
 
 // A catalogue whose parts are not what they were says which of them.
