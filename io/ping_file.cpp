@@ -320,7 +320,6 @@ void PingFileWriter::append(const PingRecord& record) {
   to.append_summary(record);
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});
-  to.file.append<std::int32_t>("ping", std::array{std::int32_t{record.ping}});
   const Timings& t = record.timings;
   to.file.append<double>("run/time_rays", std::array{t.rays});
   to.file.append<double>("run/time_eigenrays", std::array{t.eigenrays});
@@ -335,6 +334,10 @@ void PingFileWriter::append(const PingRecord& record) {
                               std::array{std::int8_t{reuse.reverberation}});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   to.file.append<double>("run/time_write", std::array{wall.count()});
+  // It counts once all of it is there: what one flush writes comes in no order, and the program may
+  // be killed in the middle of it.
+  to.file.flush();
+  to.file.append<std::int32_t>("ping", std::array{std::int32_t{record.ping}});
   to.file.flush();
   ++to.pings;
 }
