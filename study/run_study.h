@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -37,6 +38,7 @@ struct StudyRun {
   std::optional<double> until{};  ///< half-width of the confidence interval to stop at
   bool fresh = false;             ///< begins anew, whatever is there
   bool assemble_only = false;     ///< makes no rows: a file of those that are there
+  std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
   Session session{};
   std::stop_token stop{};
   std::function<void(const Progress&)> progress{};  ///< a few times a second

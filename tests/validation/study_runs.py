@@ -6,6 +6,7 @@ and again; what a kill leaves is never a file that is not whole, and nothing com
 """
 import os
 import random
+import re
 import signal
 import sqlite3
 import subprocess
@@ -174,9 +175,9 @@ def by_mpi():
         return
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
-    def mpirun(ranks):
+    def mpirun(ranks, *more):
         words = ["mpirun", "--oversubscribe", "-n", str(ranks),
-                 *command("study", "study.toml", "-o", "m.h5", "-q", program=ASDIC_MPI)]
+                 *command("study", "study.toml", "-o", "m.h5", "-q", *more, program=ASDIC_MPI)]
         return subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                 env=environment)
     for ranks in (2, 4):
@@ -186,6 +187,7 @@ def by_mpi():
         same("m.h5", f"mpirun -n {ranks}")
         Path("m.h5").unlink()
     stopped_by_mpi(mpirun)
+    silent_rank(mpirun)
     job = mpirun(3)
     wait_for_journal("m.h5.rank1.journal", job)
     ranks = ranks_of(job)
@@ -216,6 +218,22 @@ def stopped_by_mpi(mpirun):
     check(rows_in("m.h5.rank*.journal") > 0, "ranks told to end: nothing was kept")
     for journal in Path(".").glob("m.h5.rank*.journal*"):
         journal.unlink()
+
+
+def silent_rank(mpirun):
+    """A rank that hangs: the others do not wait for it for ever."""
+    job = mpirun(3, "--silence", 2)
+    wait_for_journal("m.h5.rank2.journal", job)
+    os.kill(ranks_of(job)[-1], signal.SIGSTOP)
+    said = job.communicate(timeout=120)[1]
+    check(job.returncode != 0, "a silent rank: status 0")
+    check(re.search(r"rank \d has not been heard of for 2 s: it is taken for dead", said),
+          f"a silent rank: said {said}")
+    check(rows_in("m.h5.rank*.journal") > 0, "a silent rank: nothing was kept")
+    job = mpirun(2)
+    check(job.wait() == 0, f"after a silent rank: {job.communicate()}")
+    same("m.h5", "mpirun -n 3, a rank stopped, then -n 2")
+    Path("m.h5").unlink()
 
 
 def ranks_of(job):
