@@ -1,5 +1,6 @@
 // What a study's file says of itself: its root, summary, manifest, and how it came about.
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "study/study_file_writer.h"
@@ -70,13 +71,16 @@ void StudyFileWriter::write_summary() {
 }
 
 void StudyFileWriter::write_manifest() {
+  Json datasets = Json::object();
+  for (const auto& [name, noted] : noted_)
+    datasets[name] = {{"shape", noted.shape}, {"sha256", noted.sha256}};
   const Json manifest = {{"identity", results_.imprint.identity},
                          {"first", results_.range.first},
                          {"end", results_.range.end},
                          {"rows", results_.table.index.size()},
                          {"complete", results_.complete()},
                          {"columns", Json::parse(to_json(results_.imprint.columns))},
-                         {"datasets", manifest_}};
+                         {"datasets", datasets}};
   file_.write_text("manifest", manifest.dump());
   describe(file_, "manifest", "JSON: what the file is to hold, with SHA-256 of each dataset");
 }

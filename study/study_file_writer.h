@@ -1,6 +1,6 @@
 #pragma once
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,7 +39,7 @@ class StudyFileWriter {
 
   /// Notes a dataset in the manifest.
   void note(const std::string& dataset, const Shape& shape, const std::string& sha256) {
-    manifest_[dataset] = {{"shape", shape}, {"sha256", sha256}};
+    noted_[dataset] = {.shape = shape, .sha256 = sha256};
   }
 
   /// A column, here or in the parts.
@@ -85,7 +85,11 @@ class StudyFileWriter {
   Hdf5File file_;
   const StudyResults& results_;
   const std::vector<CataloguePart>& catalogue_;
-  nlohmann::json manifest_ = nlohmann::json::object();
+  struct Noted {
+    Shape shape;
+    std::string sha256;
+  };
+  std::map<std::string, Noted> noted_;
 };
 
 }  // namespace asdic::study
