@@ -212,6 +212,11 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
   const std::string name =
       table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull",
                            "categorical", "list", "grid", "track", "profile_eof", "profile_casts"});
+  // A half of the cube is that of the even indices, and a list of two has its first value there.
+  if (name == "list" && study.design == Design::sobol)
+    throw table.fault("law",
+                      "\"categorical\" or \"grid\" in a Sobol' design, whose points go to and "
+                      "fro with the index as the values of a list do");
   if (name == "categorical" || name == "list" || name == "grid")
     return read_choice(name, table, value, variable);
   if (name == "profile_eof") return read_modes(table, study);

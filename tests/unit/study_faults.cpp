@@ -72,6 +72,13 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {vary + "\"environment.wind_speed\" = { law = \"uniform\", low = 5, high = 6, min = 7 }\n",
        "study.toml:4: vary.\"environment.wind_speed\".min: found 7, expected limits within which "
        "the law has values"},
+      {study +
+           "design = \"sobol\"\n[vary]\n\"environment.wind_speed\" = { law = \"list\", values = "
+           "[1, 2] }\n" +
+           measure,
+       "study.toml:5: vary.\"environment.wind_speed\".law: found \"list\", expected "
+       "\"categorical\" "
+       "or \"grid\" in a Sobol' design"},
       {vary + "\"environment.wind_speed\" = { law = \"rayleigh\" }\n",
        "study.toml:4: vary.\"environment.wind_speed\".mean: found nothing, expected a number above "
        "0, or \"scale\""},
