@@ -1,5 +1,6 @@
 #include "serve/client_key.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
@@ -70,6 +71,19 @@ const TomlValue* below(const TomlValue* at, std::string_view path) {
   return at;
 }
 
+/// The key by which a command moves what the scenario moves by another: ".waypoints[0].position" of
+/// a platform whose "position" it gave. "": neither is of motion.
+std::string same_motion(const TomlValue* table, std::string_view rest) {
+  constexpr std::array<std::string_view, 8> ways{
+      "position", "waypoints", "velocity", "speed", "heading_deg", "range", "depth", "bearing_deg"};
+  const std::string_view first = rest.substr(std::min<std::size_t>(1, rest.size()));
+  const std::string_view word = first.substr(0, first.find_first_of(".["));
+  if (table == nullptr || std::find(ways.begin(), ways.end(), word) == ways.end()) return "";
+  for (const std::string_view key : ways)
+    if (table->find(key) != nullptr) return std::string(key);
+  return "";
+}
+
 }  // namespace
 
 ClientKey client_key(const std::string& key, const TomlValue& fields, const TomlValue& document) {
@@ -91,6 +105,9 @@ ClientKey client_key(const std::string& key, const TomlValue& fields, const Toml
       table = i ? element(table, *i) : nullptr;
     }
     const TomlValue* value = below(table, rest.starts_with('.') ? rest.substr(1) : rest);
+    if (value == nullptr)  // one way of saying where something is stands for another
+      if (const std::string motion = same_motion(table, rest); !motion.empty())
+        return {.name = where + "." + motion, .given = true, .under = true};
     return {.name = where + tail, .given = value != nullptr, .under = table != nullptr};
   }
   return {.name = key};

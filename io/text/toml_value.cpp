@@ -236,7 +236,8 @@ std::string nearest_name(std::string_view typed, std::span<const std::string> na
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
   for (const std::string& name : names) {
-    if (const std::size_t d = edits(typed, name); d < best_distance) {
+    const bool without_unit = name.starts_with(std::string(typed) + '_');  // heading of heading_deg
+    if (const std::size_t d = without_unit ? 1 : edits(typed, name); d < best_distance) {
       best_distance = d;
       best = name;
     }

@@ -281,6 +281,16 @@ TEST(Session, RefusesInOneMessage) {
        "scenario: platform.position: found depth 2000 m at 0 s, expected a depth between the "
        "surface (0 m) and the bottom "
        "(1000 m)"},
+      {update + R"("time": 30, "platform": {"position": [0, 0, 2000], "speed": 2,
+                    "heading_deg": 10}})",
+       "scenario: platform.position: found depth 2000 m at 0 s, expected a depth between the "
+       "surface (0 m) and the bottom (1000 m)"},
+      {update + R"("platform": {"heading": 3}})",
+       "value: platform.heading: found an unknown key, expected a known key (did you mean "
+       "\"heading_deg\"?)"},
+      {update + R"("targets": {"name": "new", "postion": [0, 900, 100]}})",
+       "value: targets.postion: found an unknown key, expected a known key (did you mean "
+       "\"position\"?)"},
       {update + R"("targets": {"name": "new", "position": [0, 900, 100]}})",
        "scenario: targets.strength_db: found nothing, expected a target strength from -200 to 200 "
        "dB"},
