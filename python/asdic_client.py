@@ -90,9 +90,9 @@ class Client:
 
         try:
             client = cls(process.stdout, process.stdin, close=(End,), **options)
-        except (ConnectionError, BrokenPipeError):
-            process.wait()
-            raise
+        except ConnectionError:
+            raise ConnectionError(f"{program} serve has ended with status {process.wait()}; its "
+                                  "standard error says why") from None
         client.process = process
         return client
 

@@ -6,10 +6,10 @@
 #include <asio.hpp>
 #include <chrono>
 
+#include "serve/connection_words.h"
 #include "serve/line_splitter.h"
 #include "serve/outbox.h"
 #include "serve/refusal.h"
-#include "serve/token.h"
 
 namespace asdic::serve {
 
@@ -88,32 +88,21 @@ class Connection::Impl {
   void take(const LineSplitter::Line& line) {
     active_ = engine_.clock();
     if (!worker_) return shake_hands(line);
+    if (line.too_long) return send(line_too_long(limits_));
     try {
-      if (line.too_long)
-        throw Refusal("limit", refusal_text("line", "a longer one",
-                                            "at most " + std::to_string(limits_.line_bytes) +
-                                                " bytes a line"));
       Command command = read_command(line.text, limits_);
       command.received = active_;
       const std::string id = command.id;
       if (worker_->offer(std::move(command))) return;
-      send(refusal_answer(
-          id, "busy",
-          refusal_text("queue", std::to_string(limits_.queued_pings) + " commands waiting",
-                       "fewer: wait for an answer")));
+      send(queue_full(id, limits_));
     } catch (const Refusal& refusal) {
-      send(refusal_answer(line.too_long ? "null" : id_of(line.text, limits_), refusal.code(),
-                          refusal.what()));
+      send(refusal_answer(id_of(line.text, limits_), refusal.code(), refusal.what()));
     }
   }
 
   void shake_hands(const LineSplitter::Line& line) {
     try {
-      const Handshake shake = read_handshake(line.text);
-      if (!ends_.token.empty() && !same_secret(shake.token, ends_.token))
-        throw Refusal("token", refusal_text("token", shake.token.empty() ? "none" : "another",
-                                            "the server's"));
-      waits_ = shake.waits;
+      waits_ = checked_handshake(line.text, ends_.token).waits;
     } catch (const Refusal& refusal) {
       refused_ = refusal.what();
       return end_with(refusal_answer("null", refusal.code(), refusal.what(), true));
@@ -252,18 +241,14 @@ class Connection::Impl {
       } else if (stopping_ && !outbox_.empty() && silent > last_words) {
         give_up();
       } else if (ends_.socket && !worker_ && !closing_) {
-        if (silent > double(limits_.handshake_seconds))
-          end_with(refusal_answer(
-              "null", "handshake",
-              refusal_text("first line",
-                           "none within " + std::to_string(limits_.handshake_seconds) + " s",
-                           "one sooner"),
-              true));
+        if (silent > double(limits_.handshake_seconds)) end_with(handshake_too_late(limits_));
       } else if (ends_.socket && silent > double(limits_.idle_seconds)) {
-        if (!outbox_.empty())
+        if (!outbox_.empty()) {
           give_up();
-        else if (worker_->idle() && !closing_)
-          say_idle();
+        } else if (worker_->idle() && !closing_) {
+          send(idle_too_long(limits_));
+          reading_is_over();
+        }
       }
       tick();
     });
@@ -273,15 +258,6 @@ class Connection::Impl {
     drop();
     std::error_code ignored;
     out_.cancel(ignored);
-  }
-
-  void say_idle() {
-    send(refusal_answer(
-        "null", "idle",
-        refusal_text("command", "none within " + std::to_string(limits_.idle_seconds) + " s",
-                     "one sooner"),
-        true));
-    reading_is_over();
   }
 
   Engine& engine_;
