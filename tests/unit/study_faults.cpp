@@ -78,7 +78,7 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
            measure,
        "study.toml:5: vary.\"environment.wind_speed\".law: found \"list\", expected "
        "\"categorical\" "
-       "or \"grid\" in a Sobol' design"},
+       "or \"grid\" for an even number of values in a Sobol' design"},
       {vary + "\"environment.wind_speed\" = { law = \"rayleigh\" }\n",
        "study.toml:4: vary.\"environment.wind_speed\".mean: found nothing, expected a number above "
        "0, or \"scale\""},
