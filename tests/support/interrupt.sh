@@ -64,9 +64,27 @@ wait_until() {
   done
 }
 
-# FILE holds a whole ping: it has grown past the first (8.4 MB with the tables), which was flushed before. has_ping FILE
-has_ping() { [ "$(stat -c %s "$1" 2>/dev/null || echo 0)" -gt 9000000 ]; }
-wait_for_ping() { wait_until "a ping was in $1" has_ping "$1"; }
+# Waits until FILE counts a ping, as a reader finds it while the program $run writes: for ever, but for a minute.
+# wait_for_ping FILE
+wait_for_ping() {
+  HDF5_USE_FILE_LOCKING=FALSE /usr/bin/python3 - "$1" "$run" <<'PY' || fail "no ping in $1: the program ended, or a minute is over"
+import os
+import sys
+import time
+import h5py
+end = time.monotonic() + 60.0
+while time.monotonic() < end:
+    os.kill(int(sys.argv[2]), 0)  # fails when it is gone
+    try:
+        with h5py.File(sys.argv[1], "r") as f:
+            if f["ping"].shape[0] > 0:
+                sys.exit(0)
+    except (OSError, KeyError, RuntimeError):
+        pass  # not there yet, or in the middle of a change
+    time.sleep(0.002)
+sys.exit(1)
+PY
+}
 
 # The program $run has taken the SIGINT that it was sent: its handler is gone, or it is gone itself. A second one sent
 # before that would be one with the first.
