@@ -129,6 +129,8 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
     print(fmt::format(": {:.3g}/s on {}", static_cast<double>(outcome.made) / seconds,
                       workers(order)));
   print("\n");
+  if (outcome.skipped > 0)
+    print(fmt::format("{} of them skipped; /faults in the file says why\n", outcome.skipped));
   if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
   if (outcome.stopped_early)
     print(fmt::format("enough after {}\n", count_of(outcome.range.size(), "realisation")));

@@ -200,6 +200,7 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     stopped_by = until_text(*run.until);
     outcome.stopped_early = true;
   }
+  outcome.skipped = estimate.skipped();
   outcome.complete =
       assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;

@@ -39,6 +39,7 @@ class GoOn : public testing::Test {
           work,
           {.output = folder / "s.h5", .range = {0, study.realisations}, .assemble_only = assemble});
       before = outcome.before;
+      skipped = outcome.skipped;
       return outcome.written ? "written" : "not written";
     } catch (const InputError& error) {
       return error.what();
@@ -50,7 +51,7 @@ class GoOn : public testing::Test {
 
   TemporaryDirectory folder;
   std::atomic<int> made = 0;
-  std::uint64_t before = 0;
+  std::uint64_t before = 0, skipped = 0;
 };
 
 #define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << (text)
@@ -69,6 +70,7 @@ TEST_F(GoOn, SkippingGoesOnWhereItStopped) {
   EXPECT_EQ(said(study("skip", 2000.0)), "written");
   EXPECT_EQ(before, 2U);
   EXPECT_EQ(made, 4);
+  EXPECT_EQ(skipped, 2U);
   EXPECT_EQ(StudyFile(folder / "s.h5").table().valid,
             (std::vector<std::uint8_t>{1, 1, 0, 1, 1, 0}));
   // And back: those that were skipped are made again, and fail; the file stays.
