@@ -43,9 +43,17 @@ TomlValue convert(const toml::node& node, const std::string& origin, const std::
   return value;
 }
 
+/// The names of a dotted path; one in quotes may have dots in it: vary."target.0.range".high
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> parts;
   for (std::size_t start = 0; start <= path.size();) {
+    const auto quote =
+        path.substr(start).starts_with('"') ? path.find('"', start + 1) : std::string_view::npos;
+    if (quote != std::string_view::npos && (quote + 1 == path.size() || path[quote + 1] == '.')) {
+      parts.emplace_back(path.substr(start + 1, quote - start - 1));
+      start = quote + 2;
+      continue;
+    }
     const auto dot = std::min(path.find('.', start), path.size());
     parts.emplace_back(path.substr(start, dot - start));
     start = dot + 1;

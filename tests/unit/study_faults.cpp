@@ -232,6 +232,29 @@ TEST_F(Drawn, TheStudySetsKeysOfItsScenarioForGood) {
       InputError);
 }
 
+// A law is reached by its key in quotes.
+TEST_F(Drawn, AnOverrideReachesALaw) {
+  const std::string text =
+      "[study]\nrealisations = 4\n[vary]\n\"target.0.range\" = { law = \"uniform\", low = 1000, "
+      "high = 2000 }\n[measure]\necho_level = true\n";
+  static_cast<void>(read(text));
+  const std::string path = (folder_.path() / "study.toml").string();
+  const std::vector<std::string> higher{R"(vary."target.0.range".low=1999)"};
+  for (std::uint64_t i = 0; i < 4; ++i)
+    EXPECT_GE(Realiser(read_study(path, higher)).realise(i).values[0], 1999.0);
+  const std::vector<std::string> wrong{R"(vary."target.0.range".low=2001)"};
+  try {
+    static_cast<void>(read_study(path, wrong));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("vary.\"target.0.range\".high: found 2000, expected a "
+                        "number above 2001"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(Drawn, GridWalksThroughAllCombinationsTheLastFastest) {
   const Study study = read(
       "[study]\ndesign = \"grid\"\n[vary]\n"
