@@ -118,7 +118,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"convert none.toml a.env", 2, {"none.toml: found no such file, expected a scenario"}},
         Fault{"convert none.shd a.h5", 2, {"none.shd: found no such file, expected a result"}},
         Fault{"compare a.shd b.shd", 2, {"a.shd: found no such file, expected a result"}},
-        Fault{"ocean --latitude 30 --longitude 0 --data none", 2, {"none/", "found no such file, expected a netCDF file"}},
+        Fault{"ocean --latitude 30 --longitude 0 --data none",
+              2,
+              {"none/", "found no such file, expected a netCDF file"}},
         Fault{"ping small.toml --set include='\"none.toml\"'", 2, {"no such file", "expected"}}));
 
 // A file that was cut at any place is refused by whoever reads it, never crashed on.
