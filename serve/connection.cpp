@@ -111,20 +111,14 @@ class Connection::Impl {
     worker_ = std::make_unique<SessionWorker>(
         engine_,
         SessionWorker::Ways{.deliver = [this](Answer answer) { deliver(std::move(answer)); },
-                            .goes_on = [this] { post([this] { process(); }); },
+                            .goes_on = [this] { asio::post(io_, [this] { process(); }); },
                             .behind = [this] { return behind(); },
-                            .done = [this] { post([this] { session_is_over(); }); }});
-  }
-
-  /// From the session's thread into this one.
-  template <class Work>
-  void post(Work work) {
-    asio::post(io_, std::move(work));
+                            .done = [this] { asio::post(io_, [this] { session_is_over(); }); }});
   }
 
   void deliver(Answer answer) {
     outbox_.expect(answer);
-    post([this, answer = std::move(answer)]() mutable { queue_up(std::move(answer)); });
+    asio::post(io_, [this, answer = std::move(answer)]() mutable { queue_up(std::move(answer)); });
   }
 
   void session_is_over() {
