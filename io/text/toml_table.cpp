@@ -14,11 +14,6 @@ const TomlValue& empty_table() {
   return empty;
 }
 
-std::string article(std::string_view noun) {
-  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + std::string(noun);
-}
-
 std::string join(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -39,28 +34,6 @@ std::string element(const std::string& key, std::size_t index) {
 }
 
 }  // namespace
-
-bool Quantity::holds(double value) const {
-  return std::isfinite(value) && (above ? value > low : value >= low) && value <= high;
-}
-
-std::string Quantity::expected() const {
-  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  std::string text = has_low || has_high ? article(noun) : "a finite " + std::string(noun);
-  if (has_low && has_high) {
-    text += above ? " above " : " from ";
-    text += to_text(low) + (above ? " and at most " : " to ") + to_text(high);
-  } else if (has_low) {
-    text += (above ? " above " : " of at least ") + to_text(low);
-  } else if (has_high) {
-    text += " of at most " + to_text(high);
-  }
-  if (!unit.empty()) {
-    text += has_low || has_high ? " " : " in ";
-    text += unit;
-  }
-  return text;
-}
 
 TomlTable::TomlTable(const TomlValue& table, std::string path)
     : table_(&table), path_(std::move(path)) {
