@@ -21,7 +21,9 @@ RECORD = ("--set", 'pings={samples="baseband", recording_duration=60.0, baseband
 
 
 def still(sonar, ping):
-    pass
+    """The scenario's target goes away in an hour of pings: here it stays."""
+    if ping == 0:
+        sonar.update(targets={"velocity": [0.0, 0.0, 0.0]})
 
 
 def target_moves(sonar, ping):

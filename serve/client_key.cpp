@@ -107,7 +107,7 @@ ClientKey client_key(const std::string& key, const TomlValue& fields, const Toml
     const TomlValue* value = below(table, rest.starts_with('.') ? rest.substr(1) : rest);
     if (value == nullptr)  // one way of saying where something is stands for another
       if (const std::string motion = same_motion(table, rest); !motion.empty())
-        return {.name = where + "." + motion, .given = true, .under = true};
+        return {.name = where.append(".").append(motion), .given = true, .under = true};
     return {.name = where + tail, .given = value != nullptr, .under = table != nullptr};
   }
   return {.name = key};
