@@ -35,6 +35,9 @@ struct RayHistory {
 /// A piece of a ray within one cell of the ocean, where everything is smooth. `end` is the state
 /// before, the next segment's `begin` the state after the jump of p (and direction) between them.
 struct RaySegment {
+  RaySegment() = default;
+  RaySegment(const RayState& from, const RayState& to, const RayHistory& before)
+      : begin(from), end(to), history(before) {}
   RayState begin, end;
   RayHistory history;                 ///< up to `begin`
   double c_begin = 0.0, c_end = 0.0;  ///< speed by the cell's law [m/s]
