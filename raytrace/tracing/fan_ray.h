@@ -115,6 +115,10 @@ struct ExactCrossing {
   ColumnCrossing crossing;
 };
 
+/// \param tracer  of the ray
+[[nodiscard]] ExactCrossing cross_leg(const RayTrajectory& ray, const RayTracer& tracer,
+                                      const LegOfRay& leg, double range);
+
 /// \param tracer  of the ray   \param leg  index of the leg   \param history  which it must have;
 /// none if the ray has another
 [[nodiscard]] std::optional<ExactCrossing> cross_column(const RayTrajectory& ray,

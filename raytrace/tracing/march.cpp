@@ -206,6 +206,8 @@ void March::store() {
   s.c_nn_end = there_.c_nn;
   s.alpha_begin = cell_->row->alpha(y_.depth);
   s.alpha_end = cell_->row->alpha(next_.depth);
+  s.row = static_cast<std::uint32_t>(row_);
+  s.column = static_cast<std::uint32_t>(column_);
 }
 
 /// A segment owns its begin, not its end.
