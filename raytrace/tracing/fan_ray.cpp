@@ -253,6 +253,7 @@ ExactCrossing cross_leg(const RayTrajectory& ray, const RayTracer& tracer, const
     const RayState y = tracer.state_at_range(s, range);
     found.state = y;
     found.history = s.history;
+    found.row = s.row;
     found.c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
     found.real = true;
     if (sense_of(s) * y.q < 0.0) ++found.history.caustics;

@@ -111,7 +111,8 @@ struct ExactCrossing {
   RayState state;
   RayHistory history;
   double c = 0.0;
-  bool real = false;  ///< the leg passes the column, or ends within a millimetre of it
+  std::uint32_t row = 0;  ///< of the water
+  bool real = false;      ///< the leg passes the column, or ends within a millimetre of it
   ColumnCrossing crossing;
 };
 

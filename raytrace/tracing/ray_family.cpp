@@ -79,45 +79,53 @@ void WholeRay::sign(const Environment& environment) {
   }
 }
 
-bool RayFamily::make(const FamilyRays& rays, const RayTracer& tracer, std::size_t leg,
-                     std::uint32_t column, double range) {
+RayFamily::Made RayFamily::make(const FamilyRays& rays, const RayTracer& tracer, std::size_t leg,
+                                std::uint32_t column, double range) {
   column_ = column;
   leg_ = leg;
   from_ = rays[0]->fan.angle;
   width_ = rays[4]->fan.angle - from_;
   sign_ = rays[0]->fan.legs[leg].sign;
+  by_slopes_ = slopes_tell(tracer.environment());
   std::array<double, family_size> z{}, dz{}, t{}, dt{};
   for (std::size_t i = 0; i < family_size; ++i) {
     known_[i] = cross_leg(rays[i]->ray, tracer, rays[i]->fan.parts[leg], range);
     const ExactCrossing& x = known_[i];
-    if (!x.real || !std::isfinite(x.crossing.slope)) return false;
+    if (!x.real || !std::isfinite(x.crossing.slope)) return Made::too_wide;
+    if (x.row != known_[0].row) return Made::rows_differ;
     z[i] = x.crossing.depth;
     dz[i] = x.crossing.slope * width_;
     t[i] = x.state.time;
     dt[i] = x.state.zeta * dz[i];
   }
-  by_slopes_ = slopes_tell(tracer.environment());
-  if (!by_slopes_) {
+  if (by_slopes_) {
+    depth_ = {places, z, dz};
+    delay_ = {places, t, dt};
+  } else {
     depth_ = {places, z};
     delay_ = {places, t};
-    const double cosine = known_[2].crossing.cosine;
-    if (!(std::abs(middle_miss([&](std::size_t i) { return z[i]; })) * cosine < cubic_depth_miss &&
-          std::abs(middle_miss([&](std::size_t i) { return t[i]; })) * known_[2].c <
-              cubic_depth_miss))
-      return false;
-    return tells_the_rest() && counts_agree();
   }
-  depth_ = {places, z, dz};
-  delay_ = {places, t, dt};
-  const OsculatingPolynomial<3> depth({0.0, 0.5, 1.0}, {z[0], z[2], z[4]}, {dz[0], dz[2], dz[4]});
-  const OsculatingPolynomial<3> delay({0.0, 0.5, 1.0}, {t[0], t[2], t[4]}, {dt[0], dt[2], dt[4]});
+  return tells_places() && tells_the_rest() && counts_agree() ? Made::good : Made::too_wide;
+}
+
+bool RayFamily::tells_places() const noexcept {
+  const auto& k = known_;
+  const auto z = [&](std::size_t i) { return k[i].crossing.depth; };
+  const auto dz = [&](std::size_t i) { return k[i].crossing.slope * width_; };
+  const auto t = [&](std::size_t i) { return k[i].state.time; };
+  const auto dt = [&](std::size_t i) { return k[i].state.zeta * dz(i); };
+  if (!by_slopes_)
+    return std::abs(middle_miss(z)) * k[2].crossing.cosine < cubic_depth_miss &&
+           std::abs(middle_miss(t)) * k[2].c < cubic_depth_miss;
+  const OsculatingPolynomial<3> depth({0.0, 0.5, 1.0}, {z(0), z(2), z(4)}, {dz(0), dz(2), dz(4)});
+  const OsculatingPolynomial<3> delay({0.0, 0.5, 1.0}, {t(0), t(2), t(4)}, {dt(0), dt(2), dt(4)});
   for (const std::size_t i : {std::size_t{1}, std::size_t{3}}) {
     const auto [there, slope] = depth.at(places[i]);
-    const double miss = std::max(std::abs(there - z[i]), 0.1 * std::abs(slope - dz[i]));
-    if (!(miss * known_[i].crossing.cosine < quintic_miss)) return false;
-    if (!(std::abs(delay.at(places[i]).value - t[i]) * known_[i].c < quintic_miss)) return false;
+    const double miss = std::max(std::abs(there - z(i)), 0.1 * std::abs(slope - dz(i)));
+    if (!(miss * k[i].crossing.cosine < quintic_miss)) return false;
+    if (!(std::abs(delay.at(places[i]).value - t(i)) * k[i].c < quintic_miss)) return false;
   }
-  return tells_the_rest() && counts_agree();
+  return true;
 }
 
 bool RayFamily::tells_the_rest() const noexcept {

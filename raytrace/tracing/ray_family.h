@@ -70,9 +70,14 @@ using FamilyRays = std::array<const WholeRay*, family_size>;
 /// the straight facets.
 class RayFamily {
  public:
-  /// \return whether the polynomials tell the rays: what is left out is judged by leaving out two
-  /// of the five, or one (ray_family.cpp)
-  [[nodiscard]] bool make(const FamilyRays& rays, const RayTracer& tracer, std::size_t leg,
+  enum class Made : unsigned char {
+    good,
+    rows_differ,  ///< they cross the column in several rows of the water: no one polynomial
+    too_wide,
+  };
+  /// Whether the polynomials tell the rays: what is left out is judged by leaving out two of the
+  /// five, or one (ray_family.cpp).
+  [[nodiscard]] Made make(const FamilyRays& rays, const RayTracer& tracer, std::size_t leg,
                           std::uint32_t column, double range);
 
   [[nodiscard]] std::uint32_t column() const noexcept { return column_; }
@@ -84,6 +89,7 @@ class RayFamily {
   void bounces(double angle, const FamilyRays& rays, std::vector<Bounce>& out) const;
 
  private:
+  [[nodiscard]] bool tells_places() const noexcept;
   [[nodiscard]] bool tells_the_rest() const noexcept;
   [[nodiscard]] bool counts_agree() const noexcept;
 

@@ -123,8 +123,14 @@ bool RootFinder::search_family(const FamilyRays& rays, std::size_t leg) {
   // the farthest first: where polynomials fail, they fail there
   const bool forward = a.fan.legs[leg].end.range >= a.fan.legs[leg].begin.range;
   if (forward) std::reverse(family_columns_.begin(), family_columns_.end());
-  for (const std::uint32_t k : family_columns_)
-    if (!families_.emplace_back().make(rays, tracer_, leg, k, columns_[k].range)) return false;
+  std::size_t apart = 0;
+  for (const std::uint32_t k : family_columns_) {
+    const auto made = families_.emplace_back().make(rays, tracer_, leg, k, columns_[k].range);
+    if (made == RayFamily::Made::good) continue;
+    if (made == RayFamily::Made::too_wide || ++apart >= worth_a_family) return false;
+    families_.pop_back();
+    edge_columns_.push_back(k);
+  }
   family_rays_ = rays;
   ray_.source_speed = a.ray.source_speed;
   const auto search_between_all = [&](std::uint32_t k) {
