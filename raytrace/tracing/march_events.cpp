@@ -99,24 +99,27 @@ void March::plan_series(bool down, double longest) {
   }
   Place end = course_.at(step_);
   const auto take = [&](Event event, const Line& line) {
-    if (line.distance(end.range, end.depth) >= 0.0) return;
+    const double beyond = -line.distance(end.range, end.depth);
+    if (beyond <= 0.0) return;
     event_ = event;
-    step_ = falling_root(0.0, step_, step_, [&](double h) {
+    const double before = std::max(line.distance(y_.range, y_.depth), 0.0);
+    const double guess = step_ * before / (before + beyond);  // where the chord meets it
+    step_ = falling_root(0.0, step_, guess > 0.0 ? guess : step_, [&](double h) {
       const Place p = course_.at(h);
       return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
     });
     end = course_.at(step_);
   };
-  const auto before = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
+  const auto in_front = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
   const auto behind = [](double range) { return Line{.range = range, .nr = 1.0, .nz = 0.0}; };
   take(Event::row_top, {.depth = row.top, .nz = 1.0});
   take(Event::row_bottom, {.depth = row.bottom, .nz = -1.0});
   if (cell_->law == Law::bilinear) {
     take(Event::column_begin, behind(ocean_.column_begin(column_)));
-    take(Event::column_end, before(ocean_.column_end(column_)));
+    take(Event::column_end, in_front(ocean_.column_end(column_)));
   }
   take(Event::least_range, behind(limits_.min_range));
-  take(Event::greatest_range, before(limits_.max_range));
+  take(Event::greatest_range, in_front(limits_.max_range));
   take(Event::greatest_depth, {.depth = limits_.max_depth, .nz = -1.0});
 }
 
