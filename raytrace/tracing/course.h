@@ -56,6 +56,10 @@ class Course {
   [[nodiscard]] ValueSlope advance(double h) const noexcept {
     return series_.value_and_slope(series_.motion, PowerSeries::tr, h);
   }
+  /// Depth less that of the begin, likewise.
+  [[nodiscard]] ValueSlope sink(double h) const noexcept {
+    return series_.value_and_slope(series_.place, PowerSeries::depth, h);
+  }
   [[nodiscard]] RayState end(double h) const noexcept;
 
  private:

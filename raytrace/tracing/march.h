@@ -39,7 +39,9 @@ class March {
   };
 
   [[nodiscard]] bool cross_rows();
-  [[nodiscard]] bool clear_of(BoundaryKind kind, double turn) const;
+  [[nodiscard]] double cross_by_invariant(double line);
+  [[nodiscard]] double cross_by_series(double line);
+  [[nodiscard]] bool clear_of(BoundaryKind kind, double sine, double turn) const;
   void enter(double depth);
   void enter_cell(std::size_t row, std::size_t column);
   [[nodiscard]] bool begin_step();

@@ -56,7 +56,10 @@ Wall::Wall(const Boundary& boundary, BoundaryKind kind) {
       const double b = z1 - third * shape.at(end, i).slope;
       high = std::min({high, a, b});
       low = std::max({low, a, b});
+      for (const double rise : {a - z0, b - a, z1 - b})  // and its slope among theirs
+        steepest = std::max(steepest, std::abs(rise) / third);
     }
+    steepest = std::max(steepest, std::abs(slope));
     facets.push_back({.begin = shape.facet_begin(i),
                       .end = shape.facet_end(i),
                       .extreme = above ? low : high,

@@ -20,7 +20,8 @@ struct Facet {
 /// A shaped boundary, facet by facet; empty for a flat one.
 struct Wall {
   std::vector<Facet> facets;
-  bool straight = true;  ///< the facets are their lines
+  bool straight = true;   ///< the facets are their lines
+  double steepest = 0.0;  ///< no facet's slope is greater anywhere
 
   Wall(const Boundary& boundary, BoundaryKind kind);
 };
