@@ -83,7 +83,8 @@ Kernel marched_rays(const char* name) {
   const auto tracer = std::make_shared<const RayTracer>(ocean.environment, 500.0);
   return [tracer, depth = ocean.source_depth, ray = RayTrajectory{}]() mutable {
     for (int i = 0; i < 100; ++i)
-      tracer->trace(0.0, depth, -1.0 + 0.02 * (i + 0.3), {.max_range = 12e3}, ray);
+      tracer->trace(0.0, depth, -1.0 + 0.02 * (i + 0.3), {.min_range = -1e3, .max_range = 12e3},
+                    ray);
     keep(ray);
   };
 }
