@@ -161,7 +161,8 @@ std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
   std::vector<ScatteringField> fields;
   for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
-  return {scenario_, context, std::move(fields)};
+  auto expected = std::make_shared<const ExpectedReverberation>(fields, context.pulse.duration());
+  return {scenario_, context, std::move(fields), std::move(expected)};
 }
 
 }  // namespace asdic
