@@ -93,6 +93,8 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int32_t>("run/legs_reused", "sets of eigenrays that were known", "");
   growing<std::int8_t>("run/reuse_reverberation",
                        "1 if all paths to scattering boundaries were known", "");
+  growing<std::int8_t>("run/reuse_expected_level",
+                       "1 if the reverberation's expected level was known", "");
   if (targets == 0) return;
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});
@@ -333,6 +335,8 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<std::int32_t>("run/legs_reused", std::array{std::int32_t{reuse.legs_reused}});
   to.file.append<std::int8_t>("run/reuse_reverberation",
                               std::array{std::int8_t{reuse.reverberation}});
+  to.file.append<std::int8_t>("run/reuse_expected_level",
+                              std::array{std::int8_t{reuse.expected_level}});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   to.file.append<double>("run/time_write", std::array{wall.count()});
   to.file.flush();

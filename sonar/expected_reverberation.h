@@ -1,9 +1,11 @@
 #pragma once
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "sonar/propagation_memory.h"
 #include "sonar/pulse.h"
 #include "sonar/scattering_field.h"
 
@@ -28,6 +30,10 @@ struct ExpectedReverberation {
 
   /// \param pulse_duration  [s]
   ExpectedReverberation(std::span<const ScatteringField> fields, double pulse_duration);
+  /// Of all that it depends on; none where a pattern has no key.
+  [[nodiscard]] static std::optional<ExactKey> key(std::span<const ScatteringField> fields,
+                                                   double pulse_duration);
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
   AudibleLimits limits;
   std::vector<Sample> samples;

@@ -76,7 +76,9 @@ double PingSimulator::ground_spacing() const { return reverberation_->ground_spa
 PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
   const PingSchedule& schedule = scenario_.pings;
   PingRecord record;
-  record.reuse = {.ocean = known_ocean_, .reverberation = scenario_.reverberation.enabled};
+  record.reuse = {.ocean = known_ocean_,
+                  .reverberation = scenario_.reverberation.enabled,
+                  .expected_level = scenario_.reverberation.enabled};
   record.ping = ping;
   record.transmitter = sent.transmitter;
   record.start_time = sent.time;

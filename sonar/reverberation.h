@@ -22,7 +22,7 @@ struct ReverberationContext {
   double time = 0.0;                     ///< of the ping, since the start of the scenario [s]
   std::uint32_t ping = 1;                ///< counted from 1: the key of weights that last one ping
   double latest = 0.0;                   ///< end of the record, since the ping [s]
-  Reuse* reuse = nullptr;                ///< is told whether anything had to be traced
+  Reuse* reuse = nullptr;                ///< is told what had to be traced or worked out
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
 };
 
@@ -140,6 +140,8 @@ class ReverberationModel {
   };
   [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
   [[nodiscard]] std::vector<Part> parts() const;
+  [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
+      std::span<const ScatteringField> fields, const ReverberationContext& context) const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;
