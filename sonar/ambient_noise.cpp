@@ -8,9 +8,37 @@
 #include "sonar/sampling.h"
 
 namespace asdic {
+namespace {
+
+bool deforms(const ReceiverArray& array) { return array.towed || !array.shapes.empty(); }
+
+/// Its phones to the micrometre: a towed line that goes straight on has the shape that it had, and
+/// its factors are found again.
+std::vector<Vec3> shape_of(const Scenario& scenario, std::size_t array, int ping, double time) {
+  std::vector<Vec3> phones = phones_at(scenario, static_cast<int>(array), ping, time);
+  if (!deforms(scenario.arrays[array])) return phones;
+  for (Vec3& phone : phones) phone = (phone * 1e6).array().round().matrix() / 1e6;
+  return phones;
+}
+
+/// A bound on how long an array is in any ping's shape [m].
+double extent(const ReceiverArray& array) {
+  double most = 0.0;
+  if (array.towed) {
+    const auto [first, last] =
+        std::minmax_element(array.towed->behind.begin(), array.towed->behind.end());
+    return *last - *first;
+  }
+  for (const std::vector<Vec3>& shape : array.shapes)
+    for (const Vec3& phone : shape) most = std::max(most, (phone - shape.front()).norm());
+  return 2.0 * most;
+}
+
+}  // namespace
 
 AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& paths)
-    : settings_(scenario.noise),
+    : scenario_(scenario),
+      settings_(scenario.noise),
       seed_(scenario.seed),
       continuous_(scenario.pings.continuous),
       rate_(recorded_rate(scenario)),
@@ -23,10 +51,12 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
     first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
     const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
     arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
-                         scenario.arrays[a].phones, settings_.coherence, settings_.directions, c,
+                         shape_of(scenario, a, 1, 0.0), settings_.coherence, settings_.directions,
+                         c,
                          NoiseKey{.seed = seed_,
                                   .purpose = Draw::coherent_noise,
-                                  .first_channel = first_channels_.back()});
+                                  .first_channel = first_channels_.back()},
+                         extent(scenario.arrays[a]), &paths.memory());
   }
   first_channels_.push_back(channels_of(scenario));
 }
@@ -50,7 +80,7 @@ void AmbientNoise::add(PingRecord& record) const {
     arrays_[a].add(
         std::span(record.pressure)
             .subspan(first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row),
-        first, continuous_ ? 0 : ping);
+        first, continuous_ ? 0 : ping, shape_of(scenario_, a, record.ping, record.start_time));
 }
 
 }  // namespace asdic

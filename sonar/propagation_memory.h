@@ -22,7 +22,8 @@ enum class Kept : std::uint64_t {
   boundary_fan,
   synthesis,
   waveform,
-  expected_reverberation
+  expected_reverberation,
+  noise_factors
 };
 
 /// All the numbers that decide a result, bit for bit.
