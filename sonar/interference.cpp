@@ -147,7 +147,7 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
     Arrivals next;
     for (const HeardPath& one : nodes[i + 1]) next.push_back(one.path);
     for (const HeardPath& one : nodes[i]) {
-      const Arrival* same = same_path(next, one.path);
+      const Arrival* same = same_path(next, one.path, paths_.layered());
       const auto at = same == nullptr ? next.size() : static_cast<std::size_t>(same - next.data());
       if (at < next.size() && !taken[at]) {
         taken[at] = true;
