@@ -10,6 +10,8 @@
 namespace asdic {
 namespace {
 
+constexpr std::uint32_t before_all = 0x80000000U;  // no ping has that number
+
 bool deforms(const ReceiverArray& array) { return array.towed || !array.shapes.empty(); }
 
 /// Its phones to the micrometre: a towed line that goes straight on has the shape that it had, and
@@ -61,7 +63,7 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
   first_channels_.push_back(channels_of(scenario));
 }
 
-void AmbientNoise::add(PingRecord& record) const {
+void AmbientNoise::add(PingRecord& record, std::int64_t later) const {
   if (!settings_.any() || record.pressure.empty()) return;
   const auto ping = static_cast<std::uint32_t>(record.ping);
   if (settings_.plain()) {
@@ -69,13 +71,13 @@ void AmbientNoise::add(PingRecord& record) const {
     add_white_noise(record.pressure, record.phones.size(),
                     record.recording.is_complex() ? white_baseband_variance(level, rate_)
                                                   : white_noise_variance(level, rate_),
-                    seed_, ping);
+                    seed_, later < 0 ? ping | before_all : ping);
     return;
   }
   const std::size_t row = record.recording.samples * record.recording.components();
   // Pings of a stream leave at whole samples: the first sample of this part, counted from the
   // scenario's start.
-  const std::int64_t first = continuous_ ? std::llround(record.start_time * rate_) : 0;
+  const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
   for (std::size_t a = 0; a < arrays_.size(); ++a)
     arrays_[a].add(
         std::span(record.pressure)

@@ -20,8 +20,9 @@ class AmbientNoise {
   /// \param scenario, paths  must outlive this
   AmbientNoise(const Scenario& scenario, const PropagationPaths& paths);
 
-  /// Adds the noise to a record's pressure.
-  void add(PingRecord& record) const;
+  /// Adds the noise to a record's pressure. \param later  samples by which what is added lies after
+  /// the record's; white noise has no time: before the record's it is another, else the same
+  void add(PingRecord& record, std::int64_t later = 0) const;
 
   /// Mean-square pressure within the recorded band [Pa²].
   [[nodiscard]] double recorded_power() const noexcept { return recorded_power_; }

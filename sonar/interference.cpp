@@ -162,7 +162,7 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
   return all;
 }
 
-void Interference::add(PingRecord& record) const {
+void Interference::add(PingRecord& record, std::int64_t later) const {
   const Recording& recording = record.recording;
   if (scenario_.interferers.empty() || recording.samples == 0) return;
   const bool complex = recording.is_complex();
@@ -178,6 +178,7 @@ void Interference::add(PingRecord& record) const {
     clock.zero = record.start_time + recording.start;
     clock.carrier_zero = recording.start + recording.epoch;
   }
+  clock.first += later;
   static const FractionalDelay interpolate;
   for (std::size_t ship_index = 0; ship_index < scenario_.interferers.size(); ++ship_index) {
     const Interferer& ship = scenario_.interferers[ship_index];
@@ -191,7 +192,7 @@ void Interference::add(PingRecord& record) const {
     }
     for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
       const int array = static_cast<int>(a);
-      for (HeardPath& path : heard_at(ship, array, clock.time(clock.first))) {
+      for (HeardPath& path : heard_at(ship, array, clock.time(clock.first - later))) {
         path.interferer = static_cast<int>(ship_index);
         record.interference.push_back(path);
       }

@@ -22,8 +22,8 @@ class Interference {
   Interference(const Scenario& scenario, const PropagationPaths& paths);
 
   /// Adds the ships to a record's pressure, and to the record how they are heard at its first
-  /// sample.
-  void add(PingRecord& record) const;
+  /// sample. \param later  samples by which what is added lies after the record's
+  void add(PingRecord& record, std::int64_t later = 0) const;
 
  private:
   struct Clock;

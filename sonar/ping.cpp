@@ -252,6 +252,22 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   return record;
 }
 
+/// Noise and ships at the phones in samples first … of a record that may lie outside of it.
+std::vector<float> PingSimulator::surroundings(const PingRecord& record, std::int64_t first,
+                                               std::int64_t samples) const {
+  PingRecord part;
+  part.ping = record.ping;
+  part.start_time = record.start_time;
+  part.recording = record.recording;
+  part.recording.samples = static_cast<std::size_t>(samples);
+  part.phones = record.phones;
+  part.pressure.assign(part.phones.size() * part.recording.samples * part.recording.components(),
+                       0.0F);
+  interference_.add(part, first);
+  noise_.add(part, first);
+  return std::move(part.pressure);
+}
+
 void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
   Stopwatch watch;
   if (receivers_.is_flat()) {
@@ -260,9 +276,13 @@ void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* c
   } else {  // the sound of the ping has passed the receivers; this has to as well
     std::vector<float> heard =
         std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
-    interference_.add(record);
-    noise_.add(record);
-    receivers_.respond(record.pressure, record.recording, carried);
+    const auto ahead = static_cast<std::int64_t>(receivers_.ahead(record.recording));
+    ReceiverElectronics::Carried own;
+    if (carried == nullptr) carried = &own;
+    if (carried->empty()) *carried = surroundings(record, -ahead, 2 * ahead);
+    interference_.add(record, ahead);
+    noise_.add(record, ahead);
+    receivers_.respond(record.pressure, record.recording, *carried);
     std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
                    std::plus<>{});
   }
