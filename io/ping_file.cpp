@@ -93,6 +93,8 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int32_t>("run/legs_reused", "sets of eigenrays that were known", "");
   growing<std::int8_t>("run/reuse_reverberation",
                        "1 if all paths to scattering boundaries were known", "");
+  growing<std::int32_t>("run/band_points", "frequencies at which reverberation is known", "");
+  growing<double>("run/band_error", "largest error of its amplitudes between them", "");
   growing<std::int8_t>("run/reuse_expected_level",
                        "1 if the reverberation's expected level was known", "");
   if (targets == 0) return;
@@ -320,6 +322,8 @@ void PingFileWriter::append(const PingRecord& record) {
   to.append_geometry(record);
   to.append_tables(record);
   to.append_summary(record);
+  to.file.append<std::int32_t>("run/band_points", std::array{std::int32_t{record.band.points}});
+  to.file.append<double>("run/band_error", std::array{record.band.error});
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});
   to.file.append<std::int32_t>("ping", std::array{std::int32_t{record.ping}});

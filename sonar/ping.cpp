@@ -208,6 +208,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                  emission.pulse.centre_frequency(), synthesizer.half_band(),
                  end_of(record.recording));
     coloured.emplace(band->synthesizer(emission.pulse, record.recording, max_doppler_));
+    record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
   record.timings.synthesis = watch.lap();
 
