@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/units.h"
+#include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 
 namespace asdic::app {
@@ -46,6 +49,7 @@ void PingReport::add(const PingRecord& record) {
     ++lines_;
     table_.row(summary_row(record.ping, degrees(record.elevation), target));
   }
+  band_error_ = std::max(band_error_, record.band.error);
   const Timings& t = record.timings;
   total_.rays += t.rays;
   total_.eigenrays += t.eigenrays;
@@ -59,6 +63,11 @@ std::string PingReport::text(double wall) const {
   std::string result =
       fmt::format("{}\n", emphasised(scenario_.title.empty() ? scenario_.path : scenario_.title));
   for (const std::string& note : scenario_.notes) result += fmt::format("note: {}\n", note);
+  if (band_error_ > ReverberationBand::error)
+    result += fmt::format(
+        "note: reverberation across the band is right to {:.1e} of its largest amplitude, not to "
+        "{:.0e}: a law has a kink there\n",
+        band_error_, ReverberationBand::error);
   const PingSchedule& p = scenario_.pings;
   result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
                         count_of(channels_of(scenario_), "phone"), p.recording_duration,

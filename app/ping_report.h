@@ -26,6 +26,7 @@ class PingReport {
  private:
   const Scenario& scenario_;
   Table table_{summary_columns()};
+  double band_error_ = 0.0;  // of reverberation, where it is more than asked for
   int pings_ = 0, lines_ = 0, left_out_ = 0;
   Timings total_;
 };

@@ -61,6 +61,8 @@ void PingFileWriter::append(const PingRecord& record) {
   to.append_geometry(record);
   to.append_tables(record);
   to.append_summary(record);
+  to.file.append<std::int32_t>("run/band_points", std::array{std::int32_t{record.band.points}});
+  to.file.append<double>("run/band_error", std::array{record.band.error});
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});
   const Timings& t = record.timings;
@@ -75,6 +77,8 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<std::int32_t>("run/legs_reused", std::array{std::int32_t{reuse.legs_reused}});
   to.file.append<std::int8_t>("run/reuse_reverberation",
                               std::array{std::int8_t{reuse.reverberation}});
+  to.file.append<std::int8_t>("run/reuse_expected_level",
+                              std::array{std::int8_t{reuse.expected_level}});
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   to.file.append<double>("run/time_write", std::array{wall.count()});
   // It counts once all of it is there: what one flush writes comes in no order, and the program may

@@ -8,9 +8,39 @@
 #include "sonar/sampling.h"
 
 namespace asdic {
+namespace {
+
+constexpr std::uint32_t before_all = 0x80000000U;  // no ping has that number
+
+bool deforms(const ReceiverArray& array) { return array.towed || !array.shapes.empty(); }
+
+/// Its phones to the micrometre: a towed line that goes straight on has the shape that it had, and
+/// its factors are found again.
+std::vector<Vec3> shape_of(const Scenario& scenario, std::size_t array, int ping, double time) {
+  std::vector<Vec3> phones = phones_at(scenario, static_cast<int>(array), ping, time);
+  if (!deforms(scenario.arrays[array])) return phones;
+  for (Vec3& phone : phones) phone = (phone * 1e6).array().round().matrix() / 1e6;
+  return phones;
+}
+
+/// A bound on how long an array is in any ping's shape [m].
+double extent(const ReceiverArray& array) {
+  double most = 0.0;
+  if (array.towed) {
+    const auto [first, last] =
+        std::minmax_element(array.towed->behind.begin(), array.towed->behind.end());
+    return *last - *first;
+  }
+  for (const std::vector<Vec3>& shape : array.shapes)
+    for (const Vec3& phone : shape) most = std::max(most, (phone - shape.front()).norm());
+  return 2.0 * most;
+}
+
+}  // namespace
 
 AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& paths)
-    : settings_(scenario.noise),
+    : scenario_(scenario),
+      settings_(scenario.noise),
       seed_(scenario.seed),
       continuous_(scenario.pings.continuous),
       rate_(recorded_rate(scenario)),
@@ -23,15 +53,17 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
     first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
     const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
     arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
-                         scenario.arrays[a].phones, settings_.coherence, settings_.directions, c,
+                         shape_of(scenario, a, 1, 0.0), settings_.coherence, settings_.directions,
+                         c,
                          NoiseKey{.seed = seed_,
                                   .purpose = Draw::coherent_noise,
-                                  .first_channel = first_channels_.back()});
+                                  .first_channel = first_channels_.back()},
+                         extent(scenario.arrays[a]), &paths.memory());
   }
   first_channels_.push_back(channels_of(scenario));
 }
 
-void AmbientNoise::add(PingRecord& record) const {
+void AmbientNoise::add(PingRecord& record, std::int64_t later) const {
   if (!settings_.any() || record.pressure.empty()) return;
   const auto ping = static_cast<std::uint32_t>(record.ping);
   if (settings_.plain()) {
@@ -39,18 +71,18 @@ void AmbientNoise::add(PingRecord& record) const {
     add_white_noise(record.pressure, record.phones.size(),
                     record.recording.is_complex() ? white_baseband_variance(level, rate_)
                                                   : white_noise_variance(level, rate_),
-                    seed_, ping);
+                    seed_, later < 0 ? ping | before_all : ping);
     return;
   }
   const std::size_t row = record.recording.samples * record.recording.components();
   // Pings of a stream leave at whole samples: the first sample of this part, counted from the
   // scenario's start.
-  const std::int64_t first = continuous_ ? std::llround(record.start_time * rate_) : 0;
+  const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
   for (std::size_t a = 0; a < arrays_.size(); ++a)
     arrays_[a].add(
         std::span(record.pressure)
             .subspan(first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row),
-        first, continuous_ ? 0 : ping);
+        first, continuous_ ? 0 : ping, shape_of(scenario_, a, record.ping, record.start_time));
 }
 
 }  // namespace asdic

@@ -12,21 +12,24 @@ namespace asdic {
 /// The sea's own noise at all phones of a scenario.
 ///
 /// White noise, independent from phone to phone, is drawn sample by sample, ping by ping
-/// (sonar/noise.h). All other noise is BlockNoise: one coherent group an array, arrays independent
-/// of one another; separate pings are draws of their own, a stream is one draw of its absolute
-/// time.
+/// (sonar/noise.h). All other noise is BlockNoise: one coherent group an array, in the shape that
+/// it has in a ping, arrays independent of one another; separate pings are draws of their own, a
+/// stream is one draw of its absolute time.
 class AmbientNoise {
  public:
+  /// \param scenario, paths  must outlive this
   AmbientNoise(const Scenario& scenario, const PropagationPaths& paths);
 
-  /// Adds the noise to a record's pressure.
-  void add(PingRecord& record) const;
+  /// Adds the noise to a record's pressure. \param later  samples by which what is added lies after
+  /// the record's; white noise has no time: before the record's it is another, else the same
+  void add(PingRecord& record, std::int64_t later = 0) const;
 
   /// Mean-square pressure within the recorded band [Pa²].
   [[nodiscard]] double recorded_power() const noexcept { return recorded_power_; }
 
  private:
-  const NoiseSettings settings_;
+  const Scenario& scenario_;
+  const NoiseSettings& settings_;
   std::uint64_t seed_;
   bool continuous_;
   double rate_, carrier_, recorded_power_ = 0.0;

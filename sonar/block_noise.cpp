@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t blocks_at_once = 4;
 constexpr std::size_t tile = 256;  // bins of all phones that stay in the cache
 
-std::size_t block_length(double rate, std::span<const Vec3> phones, double sound_speed) {
-  double across = 0.0;
+std::size_t block_length(double rate, std::span<const Vec3> phones, double across,
+                         double sound_speed) {
   for (const Vec3& a : phones)
     for (const Vec3& b : {phones.front(), phones.back()})
       across = std::max(across, 2.0 * (a - b).norm());  // a bound on the longest separation
@@ -40,28 +40,38 @@ struct BlockNoise::Scratch {
 
 BlockNoise::BlockNoise(const std::function<double(double)>& density, double sample_rate,
                        double carrier, std::span<const Vec3> phones, NoiseCoherence coherence,
-                       const NoiseDirections& directions, double sound_speed, const NoiseKey& key)
-    : phones_(phones.size()),
-      block_(block_length(sample_rate, phones, sound_speed)),
+                       const NoiseDirections& directions, double sound_speed, const NoiseKey& key,
+                       double across, PropagationMemory* memory)
+    : shape_(phones.begin(), phones.end()),
+      phones_(phones.size()),
+      block_(block_length(sample_rate, phones, across, sound_speed)),
       bins_(carrier > 0.0 ? block_ : block_ / 2 + 1),
       complex_(carrier > 0.0),
       key_(key),
+      coherence_(coherence),
+      directions_(directions),
+      sound_speed_(sound_speed),
+      lowest_(complex_ ? carrier - 0.5 * sample_rate : 0.0),
+      step_(sample_rate / static_cast<double>(block_)),
+      memory_(memory),
       scale_(bins_, 0.0F),
       window_(block_) {
-  const double step = sample_rate / static_cast<double>(block_);
-  const double lowest = complex_ ? carrier - 0.5 * sample_rate : 0.0;
   for (std::size_t i = 0; i < bins_; ++i) {
-    const double f = lowest + static_cast<double>(i) * step;
+    const double f = lowest_ + static_cast<double>(i) * step_;
     if (!(f > 0.0) || (!complex_ && i + 1 == bins_)) continue;  // the last bin has no phase
     // Real: E|a|² = S·Δf/2 for the bin and as much for its mirror. Complex: b has twice the
     // density.
-    scale_[i] = static_cast<float>(std::sqrt(density(f) * step * (complex_ ? 1.0 : 0.25)));
+    scale_[i] = static_cast<float>(std::sqrt(density(f) * step_ * (complex_ ? 1.0 : 0.25)));
   }
   for (std::size_t n = 0; n < block_; ++n)
     window_[n] = static_cast<float>(
         std::sin(pi * (static_cast<double>(n) + 0.5) / static_cast<double>(block_)));
-  if (coherence != NoiseCoherence::independent && phones_ > 1)
-    factors_.emplace(coherence, directions, phones, sound_speed, lowest, step, bins_);
+  if (coherence != NoiseCoherence::independent && phones_ > 1) factors_ = factors_of(phones);
+}
+
+std::shared_ptr<const CoherenceFactors> BlockNoise::factors_of(std::span<const Vec3> phones) const {
+  return CoherenceFactors::recalled(memory_, coherence_, directions_, phones, sound_speed_, lowest_,
+                                    step_, bins_);
 }
 
 /// Independent spectra of every phone, already scaled.
@@ -87,14 +97,14 @@ void BlockNoise::draw(std::span<const std::int64_t> blocks, std::uint32_t realis
 }
 
 /// In place, from the last phone up: row i needs the rows before it as they were drawn.
-void BlockNoise::correlate(std::size_t blocks, Scratch& s) const {
+void BlockNoise::correlate(const CoherenceFactors& factors, std::size_t blocks, Scratch& s) const {
   std::array<float, tile> re{}, im{};
-  const bool real = factors_->is_real();
+  const bool real = factors.is_real();
   for (std::size_t first = 0; first < bins_; first += tile) {
     const std::size_t n = std::min(tile, bins_ - first);
     for (std::size_t i = phones_; i-- > 0;) {
       for (std::size_t j = i + 1; j-- > 0;) {
-        factors_->element(i, j, first, std::span(re).first(n), std::span(im).first(n));
+        factors.element(i, j, first, std::span(re).first(n), std::span(im).first(n));
         for (std::size_t b = 0; b < blocks; ++b) {
           float* __restrict yr = s.real.data() + (b * phones_ + i) * bins_ + first;
           float* __restrict yi = s.imaginary.data() + (b * phones_ + i) * bins_ + first;
@@ -147,6 +157,19 @@ void BlockNoise::sound(std::size_t block, std::size_t phone, Scratch& s) const {
 }
 
 void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation) const {
+  add(rows, first, realisation, factors_.get());
+}
+
+void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
+                     std::span<const Vec3> shape) const {
+  assert(shape.size() == phones_);
+  const bool as_ever = !factors_ || std::equal(shape.begin(), shape.end(), shape_.begin());
+  const auto factors = as_ever ? factors_ : factors_of(shape);
+  add(rows, first, realisation, factors.get());
+}
+
+void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
+                     const CoherenceFactors* factors) const {
   const std::size_t width = complex_ ? 2 : 1;
   assert(rows.size() % (phones_ * width) == 0);
   const auto samples = static_cast<std::int64_t>(rows.size() / (phones_ * width));
@@ -171,7 +194,7 @@ void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t re
               .subspan(task * blocks_at_once)
               .first(std::min(blocks_at_once, blocks.size() - task * blocks_at_once));
       draw(some, realisation, s);
-      if (factors_) correlate(some.size(), s);
+      if (factors != nullptr) correlate(*factors, some.size(), s);
       for (std::size_t b = 0; b < some.size(); ++b) {
         const std::int64_t begin = some[b] * hop - first;  // of the block, in the rows
         const std::int64_t low = std::max<std::int64_t>(0, begin),

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,31 +31,44 @@ class BlockNoise {
   /// \param density  one-sided, of frequency [Pa²/Hz]; asked for at frequencies above 0
   /// \param carrier  of complex baseband p₊·e^{−i2πft} [Hz]; 0: real pressure
   /// \param phones   [n] positions [m]   \param coherence  between them
+  /// \param across   of their longest shape, if they have others [m]
+  /// \param memory   of factors that others have made; must outlive this
   BlockNoise(const std::function<double(double)>& density, double sample_rate, double carrier,
              std::span<const Vec3> phones, NoiseCoherence coherence,
-             const NoiseDirections& directions, double sound_speed, const NoiseKey& key);
+             const NoiseDirections& directions, double sound_speed, const NoiseKey& key,
+             double across = 0.0, PropagationMemory* memory = nullptr);
 
   /// Adds the samples `first` … to rows. \param rows  [phones × samples × components] [Pa]
   void add(std::span<float> rows, std::int64_t first, std::uint32_t realisation) const;
+  /// The same for phones in another shape: the same independent normals, correlated as it asks for.
+  void add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
+           std::span<const Vec3> shape) const;
 
   [[nodiscard]] std::size_t block() const noexcept { return block_; }  ///< N
   /// Of the coherence; null where phones are independent.
-  [[nodiscard]] const CoherenceFactors* factors() const noexcept {
-    return factors_ ? &*factors_ : nullptr;
-  }
+  [[nodiscard]] const CoherenceFactors* factors() const noexcept { return factors_.get(); }
 
  private:
   struct Scratch;
   void draw(std::span<const std::int64_t> blocks, std::uint32_t realisation, Scratch& s) const;
-  void correlate(std::size_t blocks, Scratch& s) const;
+  void correlate(const CoherenceFactors& factors, std::size_t blocks, Scratch& s) const;
+  void add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
+           const CoherenceFactors* factors) const;
+  [[nodiscard]] std::shared_ptr<const CoherenceFactors> factors_of(
+      std::span<const Vec3> phones) const;
   void sound(std::size_t block, std::size_t phone, Scratch& s) const;
 
+  std::vector<Vec3> shape_;
   std::size_t phones_, block_, bins_;
   bool complex_;
   NoiseKey key_;
+  NoiseCoherence coherence_;
+  NoiseDirections directions_;
+  double sound_speed_, lowest_, step_;  // of the bins [Hz]
+  PropagationMemory* memory_;
   std::vector<float> scale_;   // [bins] of the normals
   std::vector<float> window_;  // [block]
-  std::optional<CoherenceFactors> factors_;
+  std::shared_ptr<const CoherenceFactors> factors_;
 };
 
 }  // namespace asdic

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace asdic {
@@ -43,6 +44,11 @@ std::size_t bytes_of(const BoundaryFan& fan) {
   return bytes;
 }
 
+std::uint64_t next_identity() {
+  static std::atomic<std::uint64_t> next{0};
+  return next++;
+}
+
 }  // namespace
 
 const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
@@ -74,6 +80,7 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   if (!entry) entry = memory.keep(key, std::make_shared<Entry>(), sizeof(Entry));
   tbb::collaborative_call_once(entry->traced, [&] {
     entry->fan = trace(place, level, settings);
+    entry->fan.identity = next_identity();
     memory.charge(key, bytes_of(entry->fan));
   });
   return {entry, &entry->fan};

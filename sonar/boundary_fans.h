@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct BoundaryFan {
   std::vector<FanPlane> planes;
   double first_bearing = 0.0;  ///< [rad]
   int sectors = 1;
+  std::uint64_t identity = 0;  ///< for keys of what is worked out of it: no other fan's
 
   [[nodiscard]] const FanPlane& towards(double bearing) const noexcept;
 };

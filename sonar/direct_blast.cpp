@@ -26,7 +26,7 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
     const Vec3 from =
         transmitter_at(scenario, context.transmitter, context.ping_time + sent).position;
     const Way way = closely.way(from, sent, track, offset, std::span(&met.path, 1));
-    const Arrival* path = same_path(way.leg.arrivals, met.path);
+    const Arrival* path = same_path(way.leg.arrivals, met.path, context.paths.layered());
     if (path == nullptr) return std::nullopt;
     const MetPath then = closely.meet(from, sent, track, offset, way, *path);
     return PulseMoment{

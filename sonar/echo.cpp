@@ -32,6 +32,7 @@ class EchoFinder {
         array_track_(scenario_.platforms[static_cast<std::size_t>(array_.platform)].track),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
+        layered_(context.paths.layered()),
         moving_(context.paths, limits_of(scenario_.propagation), context.frequency,
                 context.ping_time, 1e-7, context.reuse),
         closely_(context.paths, limits_of(scenario_.propagation), context.frequency,
@@ -72,8 +73,8 @@ class EchoFinder {
           moved ? moving_.way(struck.position, there.time, array_track_, offset, back.leg.arrivals)
                 : back;
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
-        const Arrival* path =
-            moved ? same_path(home.leg.arrivals, back.leg.arrivals[j]) : &back.leg.arrivals[j];
+        const Arrival* path = moved ? same_path(home.leg.arrivals, back.leg.arrivals[j], layered_)
+                                    : &back.leg.arrivals[j];
         if (path == nullptr) continue;  // by then it is gone
         const PathPair pair{
             .source = source,
@@ -198,13 +199,13 @@ class EchoFinder {
     then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
     const Way out = closely_.way(then.source.position, sent, target_.track, Vec3::Zero(),
                                  std::span(&pair.there.path, 1));
-    const Arrival* path = same_path(out.leg.arrivals, pair.there.path);
+    const Arrival* path = same_path(out.leg.arrivals, pair.there.path, layered_);
     if (path == nullptr) return std::nullopt;
     then.there = closely_.meet(then.source.position, sent, target_.track, Vec3::Zero(), out, *path);
     then.target = target_.track.at(context_.ping_time + then.there.time);
     const Way home = closely_.way(then.target.position, then.there.time, array_track_, offset,
                                   std::span(&pair.home.path, 1));
-    path = same_path(home.leg.arrivals, pair.home.path);
+    path = same_path(home.leg.arrivals, pair.home.path, layered_);
     if (path == nullptr) return std::nullopt;
     then.home =
         closely_.meet(then.target.position, then.there.time, array_track_, offset, home, *path);
@@ -224,6 +225,7 @@ class EchoFinder {
   const Track& array_track_;
   const Target& target_;
   int index_;
+  bool layered_;
   MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
 };
 

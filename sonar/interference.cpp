@@ -6,22 +6,15 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <utility>
 
 #include "sonar/fractional_delay.h"
-#include "sonar/geometry.h"
-#include "sonar/moving_paths.h"
-#include "sonar/noise_spectrum.h"
-#include "sonar/ping_bounds.h"
-#include "sonar/sampling.h"
+#include "sonar/interference_stretch.h"
 
 namespace asdic {
 namespace {
 
-constexpr std::int64_t chunk = 64;    // samples over which phases are stepped
+constexpr std::int64_t chunk = interference_chunk;
 constexpr double node_spacing = 0.5;  // [s], about
-
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a - b + 1) / b; }
 
 std::complex<double> turns(double cycles) {
   return std::polar(1.0, 2.0 * pi * (cycles - std::floor(cycles)));
@@ -29,140 +22,42 @@ std::complex<double> turns(double cycles) {
 
 }  // namespace
 
-double source_density(const Interferer& ship, double frequency) noexcept {
-  double level = -infinity;
-  if (ship.table)
-    level = level_db(*ship.table, frequency);
-  else if (ship.level_db)
-    level =
-        *ship.level_db + ship.slope_db_per_decade * std::log10(std::max(frequency, 100.0) / 1000.0);
-  return power_from_db(level) * micropascal * micropascal;
-}
-
-/// Samples are numbered from the scenario's start in a stream, else from the record's.
-struct Interference::Clock {
-  std::int64_t first = 0, samples = 0, node = chunk;  // node spacing
-  double zero = 0.0;                                  // time of sample 0 [s]
-  double carrier_zero = 0.0;                          // on the carrier's clock [s]
-  double rate = 1.0;
-
-  [[nodiscard]] double time(std::int64_t sample) const {
-    return zero + static_cast<double>(sample) / rate;
-  }
-};
-
-/// One path between two nodes: everything straight in time.
-struct Interference::Stretch {
-  std::int64_t begin = 0;  // sample of its first node
-  std::array<double, 2> delay{}, length{};
-  std::array<std::complex<double>, 2> amplitude{};
-  std::array<Vec3, 2> moveout{};
-};
-
-Interference::Interference(const Scenario& scenario, const PropagationPaths& paths)
-    : scenario_(scenario),
-      paths_(paths),
-      frequency_(scenario.interferers.empty() ? 0.0
-                                              : Pulse(pulse_of(scenario, 0)).centre_frequency()),
-      rate_(recorded_rate(scenario)),
-      carrier_(recorded_carrier(scenario)),
-      // Twice oversampled, for the interpolation: the band is half of the rate.
-      source_rate_(carrier_ > 0.0 ? 2.0 * rate_ : rate_),
-      source_carrier_(carrier_ > 0.0 ? carrier_ : 0.25 * rate_) {
-  double fastest_platform = 0.0;
-  for (const Platform& p : scenario.platforms)
-    fastest_platform = std::max(fastest_platform, fastest(p.track));
-  for (std::size_t i = 0; i < scenario.interferers.size(); ++i) {
-    const Interferer& ship = scenario.interferers[i];
-    // What Doppler would shift out of the band is left out.
-    const double doppler = (fastest(ship.track) + fastest_platform) / 1300.0;
-    const double low = std::max(0.0, source_carrier_ - 0.25 * source_rate_) * (1.0 + doppler),
-                 high = (source_carrier_ + 0.25 * source_rate_) * (1.0 - doppler);
-    const std::array<Vec3, 1> point = {Vec3::Zero()};
-    sources_.emplace_back(
-        [&](double f) { return f >= low && f <= high ? source_density(ship, f) : 0.0; },
-        source_rate_, source_carrier_, point, NoiseCoherence::independent, NoiseDirections{},
-        1500.0, NoiseKey{.seed = scenario.seed, .purpose = Draw::ship_noise, .first_channel = i});
-  }
-}
-
-/// Paths that arrive at a time, delays those from where the ship was when each left it.
-std::vector<HeardPath> Interference::heard_at(const Interferer& ship, int array,
-                                              double time) const {
-  const Kinematics receiver = array_at(scenario_, array, time);
-  const PathLimits limits = limits_of(scenario_.propagation);
-  double left = time;
-  Arrivals found;
-  Kinematics source;
-  for (int i = 0; i < 4; ++i) {  // each round gains a factor v/c
-    source = ship.track.at(left);
-    found = paths_.find(source.position, receiver.position, frequency_, limits);
-    if (found.empty() || source.velocity.isZero()) break;
-    const double before = std::exchange(left, time - found.front().delay);
-    if (std::abs(left - before) < 1e-7) break;
-  }
-  const Separation way = separation(source.position, receiver.position);
-  const double c_source = paths_.speed_at(source.position),
-               c_array = paths_.speed_at(receiver.position);
-  std::vector<HeardPath> heard;
-  for (const Arrival& path : found) {
-    const Vec3 leaving = slowness_vector(way.bearing, path.launch_elevation, c_source);
-    const Vec3 arriving = slowness_vector(way.bearing, path.arrival_elevation, c_array);
-    // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
-    const double along = leaving.dot(source.velocity);
-    const double delay = (path.delay - along * (time - left)) / (1.0 - along);
-    heard.push_back({.array = array,
-                     .delay = delay,
-                     .doppler = (1.0 - arriving.dot(receiver.velocity)) / (1.0 - along),
-                     .range = way.range,
-                     .bearing = way.bearing,
-                     .slowness = arriving,
-                     .moveout = arriving / (1.0 - along),
-                     .path = path});
-  }
-  return heard;
-}
-
-std::vector<Interference::Stretch> Interference::stretches(const Interferer& ship, int array,
-                                                           const Clock& clock) const {
-  const std::int64_t from = floor_div(clock.first, clock.node),
-                     to = floor_div(clock.first + clock.samples - 1, clock.node);
-  const auto count = static_cast<std::size_t>(to - from + 2);
-  std::vector<std::vector<HeardPath>> nodes(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    nodes[i] =
-        heard_at(ship, array, clock.time((from + static_cast<std::int64_t>(i)) * clock.node));
-  });
-  std::vector<Stretch> all;
-  for (std::size_t i = 0; i + 1 < count; ++i) {
-    const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;
-    std::vector<bool> taken(nodes[i + 1].size(), false);
-    const auto add = [&](const HeardPath& a, const HeardPath& b, double a_there, double b_there) {
-      all.push_back({.begin = begin,
-                     .delay = {a.delay, b.delay},
-                     .length = {a.path.path_length, b.path.path_length},
-                     .amplitude = {a_there * a.path.amplitude, b_there * b.path.amplitude},
-                     .moveout = {a.moveout, b.moveout}});
-    };
-    Arrivals next;
-    for (const HeardPath& one : nodes[i + 1]) next.push_back(one.path);
-    for (const HeardPath& one : nodes[i]) {
-      const Arrival* same = same_path(next, one.path);
-      const auto at = same == nullptr ? next.size() : static_cast<std::size_t>(same - next.data());
-      if (at < next.size() && !taken[at]) {
-        taken[at] = true;
-        add(one, nodes[i + 1][at], 1.0, 1.0);
-      } else {
-        add(one, one, 1.0, 0.0);
-      }
+/// A chunk of one path whose losses depend on frequency: Σ_k A_k(t)·q_k on the samples of the
+/// source that it spans, interpolated and turned as one signal. \param u  where it lies between
+/// the nodes, and how fast that grows   \param at  place of its first sample in the source
+/// \param step  from sample to sample   \param z, turn  phase of the first, and from one to the
+/// next
+void Interference::add_band(const Stretch& path, std::span<const float> source, std::size_t length,
+                            std::array<double, 2> u, double at, double step, std::complex<double> z,
+                            std::complex<double> turn, std::span<std::complex<double>> sum) {
+  static const FractionalDelay interpolate;
+  constexpr std::int64_t reach = FractionalDelay::taps;
+  const auto last = static_cast<double>(sum.size() - 1);
+  const auto first = static_cast<std::int64_t>(std::floor(std::min(at, at + last * step))) - reach;
+  const auto end =
+      static_cast<std::int64_t>(std::floor(std::max(at, at + last * step))) + reach + 1;
+  std::vector<float> coloured(2 * static_cast<std::size_t>(end - first), 0.0F);
+  for (std::size_t k = 0; k < path.band[0].size(); ++k) {
+    const std::complex<double> slope = path.band[1][k] - path.band[0][k];
+    const float* q = source.data() + k * length + 2 * first;
+    for (std::int64_t j = 0; j < end - first; ++j) {
+      // The output's sample that is heard there; amplitudes hardly change from one to the next.
+      const double i = (static_cast<double>(first + j) - at) / step;
+      const std::complex<float> a(path.band[0][k] + (u[0] + i * u[1]) * slope);
+      const std::complex<float> product = a * std::complex<float>(q[2 * j], q[2 * j + 1]);
+      coloured[2 * static_cast<std::size_t>(j)] += product.real();
+      coloured[2 * static_cast<std::size_t>(j) + 1] += product.imag();
     }
-    for (std::size_t j = 0; j < next.size(); ++j)
-      if (!taken[j]) add(nodes[i + 1][j], nodes[i + 1][j], 0.0, 1.0);
   }
-  return all;
+  for (std::size_t i = 0; i < sum.size(); ++i, z *= turn) {
+    const double place = at + static_cast<double>(i) * step, whole = std::floor(place);
+    sum[i] += z * std::complex<double>(
+                      interpolate(coloured.data() + 2 * (static_cast<std::int64_t>(whole) - first),
+                                  static_cast<float>(place - whole)));
+  }
 }
 
-void Interference::add(PingRecord& record) const {
+void Interference::add(PingRecord& record, std::int64_t later) const {
   const Recording& recording = record.recording;
   if (scenario_.interferers.empty() || recording.samples == 0) return;
   const bool complex = recording.is_complex();
@@ -178,6 +73,7 @@ void Interference::add(PingRecord& record) const {
     clock.zero = record.start_time + recording.start;
     clock.carrier_zero = recording.start + recording.epoch;
   }
+  clock.first += later;
   static const FractionalDelay interpolate;
   for (std::size_t ship_index = 0; ship_index < scenario_.interferers.size(); ++ship_index) {
     const Interferer& ship = scenario_.interferers[ship_index];
@@ -191,9 +87,9 @@ void Interference::add(PingRecord& record) const {
     }
     for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
       const int array = static_cast<int>(a);
-      for (HeardPath& path : heard_at(ship, array, clock.time(clock.first))) {
-        path.interferer = static_cast<int>(ship_index);
-        record.interference.push_back(path);
+      for (Heard& one : heard_at(ship, array, clock.time(clock.first - later), false)) {
+        one.path.interferer = static_cast<int>(ship_index);
+        record.interference.push_back(std::move(one.path));
       }
       const std::vector<Stretch> all = stretches(ship, array, clock);
       if (all.empty()) continue;
@@ -214,8 +110,12 @@ void Interference::add(PingRecord& record) const {
                            (clock.time(clock.first + clock.samples + clock.node) - least + reach) *
                            source_rate_)) +
                        margin;
-      std::vector<float> source(broadband ? 2 * static_cast<std::size_t>(end - begin) : 0, 0.0F);
-      if (broadband) sources_[ship_index].add(source, begin, 0);
+      const std::size_t parts = std::max<std::size_t>(1, band_.size());
+      const std::size_t part_length = broadband ? 2 * static_cast<std::size_t>(end - begin) : 0;
+      std::vector<float> source(parts * part_length, 0.0F);
+      for (std::size_t k = 0; broadband && k < parts; ++k)
+        sources_[ship_index * parts + k].add(
+            std::span(source).subspan(k * part_length, part_length), begin, 0);
       const double depth = array_at(scenario_, array, clock.time(clock.first)).position.z();
       std::vector<double> loss;
       for (const Tonal& tonal : ship.tonals)
@@ -248,7 +148,12 @@ void Interference::add(PingRecord& record) const {
               path->amplitude[0] + u0 * (path->amplitude[1] - path->amplitude[0]);
           const double clock_cycles =
               carrier_ * (clock.carrier_zero + static_cast<double>(sample) / clock.rate);
-          if (broadband) {
+          if (broadband && !band_.empty()) {
+            add_band(*path, source, part_length, {u0, du}, left * source_rate_ - double(begin),
+                     step * source_rate_,
+                     turns(source_carrier_ * left) * std::conj(turns(clock_cycles)),
+                     turns(source_carrier_ * step - carrier_ / clock.rate), sum);
+          } else if (broadband) {
             std::complex<double> z = turns(source_carrier_ * left) * std::conj(turns(clock_cycles));
             const std::complex<double> turn = turns(source_carrier_ * step - carrier_ / clock.rate);
             for (std::int64_t i = 0; i < chunk; ++i, z *= turn) {

@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <complex>
+#include <span>
 #include <vector>
 
 #include "sonar/block_noise.h"
@@ -16,28 +19,43 @@ namespace asdic {
 /// path are straight lines in time, so the signal q(t − τ(t)) is shifted and stretched
 /// continuously; a path that is not there at one of them fades. A plane wave crosses the array.
 /// Nodes lie on the grid of absolute time in a stream: its parts join without a seam, and do not
-/// depend on where they begin. docs/theory/interference.md
+/// depend on where they begin.
+///
+/// Losses are those at the first pulse's centre; with `wide_band` they are found at frequencies f_k
+/// of the recorded band, and a path's amplitude is straight between them: the signal is a sum of
+/// parts q_k, each through a hat over f_k, with an amplitude of its own.
+/// docs/theory/interference.md
 class Interference {
  public:
   Interference(const Scenario& scenario, const PropagationPaths& paths);
 
   /// Adds the ships to a record's pressure, and to the record how they are heard at its first
-  /// sample.
-  void add(PingRecord& record) const;
+  /// sample. \param later  samples by which what is added lies after the record's
+  void add(PingRecord& record, std::int64_t later = 0) const;
 
  private:
   struct Clock;
   struct Stretch;
-  [[nodiscard]] std::vector<HeardPath> heard_at(const Interferer& ship, int array,
-                                                double time) const;
+  /// A path with its amplitudes across the band.
+  struct Heard {
+    HeardPath path;
+    std::vector<std::complex<double>> band;  // [frequencies]
+  };
+  [[nodiscard]] std::vector<Heard> heard_at(const Interferer& ship, int array, double time,
+                                            bool across_the_band) const;
   [[nodiscard]] std::vector<Stretch> stretches(const Interferer& ship, int array,
                                                const Clock& clock) const;
+
+  static void add_band(const Stretch& path, std::span<const float> source, std::size_t length,
+                       std::array<double, 2> u, double at, double step, std::complex<double> z,
+                       std::complex<double> turn, std::span<std::complex<double>> sum);
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;
   double frequency_;  ///< of the eigenrays' losses [Hz]
   double rate_, carrier_;
-  std::vector<BlockNoise> sources_;  // [interferers]
+  std::vector<double> band_;         // frequencies of losses; empty: frequency_ alone
+  std::vector<BlockNoise> sources_;  // [interferers × max(1, band)]
   double source_rate_, source_carrier_;
 };
 

@@ -21,14 +21,21 @@ Vec3 slowness_vector(double bearing, double elevation, double sound_speed) {
   return direction(bearing, elevation) / sound_speed;
 }
 
-const Arrival* same_path(const Arrivals& arrivals, const Arrival& path) {
+const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool layered) {
+  constexpr double near = radians(1.0);
+  const double near_level = 1.0 - std::cos(2.0 * near);  // Δξ/ξ of a level ray turned by that
   const Arrival* nearest = nullptr;
-  double least = radians(1.0);
+  double least = infinity;
   for (const Arrival& a : arrivals) {
     if (a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
         a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
       continue;
-    const double difference = std::abs(a.launch_elevation - path.launch_elevation);
+    const double turned = std::abs(a.launch_elevation - path.launch_elevation);
+    const double changed =
+        std::abs(a.horizontal_slowness / path.horizontal_slowness - 1.0);  // of ξ, over ξ
+    const bool one_way = (a.launch_elevation < 0.0) == (path.launch_elevation < 0.0);
+    if (!(turned < near || (layered && one_way && changed < near_level))) continue;
+    const double difference = layered ? changed + (one_way ? 0.0 : 1.0) : turned;
     if (difference < least) {
       least = difference;
       nearest = &a;
@@ -95,7 +102,7 @@ MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, co
     const double moved = (then.position - met.way.end.position).norm();
     if (settled(moved, c, std::max(met.way.leg.range, moved))) break;
     Way again = way_at(from, track, offset, met.time, std::span(&met.path, 1));
-    const Arrival* same = same_path(again.leg.arrivals, met.path);
+    const Arrival* same = same_path(again.leg.arrivals, met.path, paths_.layered());
     if (same == nullptr) break;
     met.path = *same;
     met.way = std::move(again);

@@ -31,9 +31,15 @@ struct MetPath {
   double time = 0.0;  ///< of arrival, since the start of the ping [s]
 };
 
-/// The same path after its ends have moved by metres: same history, nearest launch angle. Null if
-/// it is there no more.
-[[nodiscard]] const Arrival* same_path(const Arrivals& arrivals, const Arrival& path);
+/// The same path after its ends have moved by metres: same history, and launched within a degree.
+///
+/// In a layered ocean of those the nearest horizontal slowness ξ = cos θ/c, which the ray keeps, or
+/// one that is as near as that of level rays two degrees apart: a ray that leaves almost level
+/// turns by degrees, √(2Δc/c), when its end sinks by metres through a thermocline, and ξ hardly
+/// changes. Two paths of one history that leave upwards and downwards (a duct) have almost the same
+/// ξ: the direction keeps them apart. Elsewhere the nearest launch angle. Null if it is there no
+/// more.
+[[nodiscard]] const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool layered);
 
 /// Finds where sound meets things that move: 7 m/s over 20 s is 144 m. Source:
 /// docs/theory/echoes.md

@@ -266,6 +266,29 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
   }
 }
 
+std::shared_ptr<const CoherenceFactors> CoherenceFactors::recalled(
+    PropagationMemory* memory, NoiseCoherence kind, const NoiseDirections& directions,
+    std::span<const Vec3> phones, double sound_speed, double first, double step, std::size_t bins) {
+  const auto made = [&] {
+    return std::make_shared<CoherenceFactors>(kind, directions, phones, sound_speed, first, step,
+                                              bins);
+  };
+  if (memory == nullptr) return made();
+  const auto& [dipole_exponent, elevation, level_db] = directions;
+  ExactKey key(Kept::noise_factors, static_cast<std::uint64_t>(kind));
+  key.add_all(dipole_exponent, elevation, level_db, sound_speed, first, step, bins);
+  for (const Vec3& phone : phones) key.add(phone);
+  if (auto known = memory->find<CoherenceFactors>(key)) return known;
+  auto fresh = made();
+  const std::size_t bytes = fresh->bytes();
+  return memory->keep(key, std::move(fresh), bytes);
+}
+
+std::size_t CoherenceFactors::bytes() const noexcept {
+  return sizeof *this + (nodes_.capacity() + node_of_.capacity()) * sizeof(std::size_t) +
+         fraction_.capacity() * sizeof(float) + factor_.capacity() * sizeof(factor_[0]);
+}
+
 void CoherenceFactors::element(std::size_t row, std::size_t column, std::size_t first,
                                std::span<float> real, std::span<float> imaginary) const noexcept {
   const std::size_t n = nodes_.size(), more = n > 1 ? 1 : 0;

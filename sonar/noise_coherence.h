@@ -1,10 +1,12 @@
 #pragma once
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sonar/noise_settings.h"
+#include "sonar/propagation_memory.h"
 
 namespace asdic {
 
@@ -38,6 +40,13 @@ class CoherenceFactors {
                    std::span<const Vec3> phones, double sound_speed, double first, double step,
                    std::size_t bins);
 
+  /// The same out of a memory, if they were made of the same numbers before; null: made.
+  [[nodiscard]] static std::shared_ptr<const CoherenceFactors> recalled(
+      PropagationMemory* memory, NoiseCoherence kind, const NoiseDirections& directions,
+      std::span<const Vec3> phones, double sound_speed, double first, double step,
+      std::size_t bins);
+
+  [[nodiscard]] std::size_t bytes() const noexcept;
   [[nodiscard]] std::size_t phones() const noexcept { return phones_; }
   [[nodiscard]] std::size_t nodes() const noexcept { return nodes_.size(); }
   [[nodiscard]] bool is_real() const noexcept { return real_; }  ///< all of every factor

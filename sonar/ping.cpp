@@ -1,7 +1,6 @@
 #include "sonar/ping.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -17,24 +16,13 @@
 #include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 #include "sonar/sparse_sound.h"
+#include "sonar/stopwatch.h"
 #include "sonar/transmitter.h"
 
 namespace asdic {
 namespace {
 
 constexpr std::size_t most_patch_rows = 2000;
-
-/// Wall time since it was made or last read [s].
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
                                                  SharedPropagation* shared, bool& known) {
@@ -76,7 +64,9 @@ double PingSimulator::ground_spacing() const { return reverberation_->ground_spa
 PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
   const PingSchedule& schedule = scenario_.pings;
   PingRecord record;
-  record.reuse = {.ocean = known_ocean_, .reverberation = scenario_.reverberation.enabled};
+  record.reuse = {.ocean = known_ocean_,
+                  .reverberation = scenario_.reverberation.enabled,
+                  .expected_level = scenario_.reverberation.enabled};
   record.ping = ping;
   record.transmitter = sent.transmitter;
   record.start_time = sent.time;
@@ -206,6 +196,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                  emission.pulse.centre_frequency(), synthesizer.half_band(),
                  end_of(record.recording));
     coloured.emplace(band->synthesizer(emission.pulse, record.recording, max_doppler_));
+    record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
   record.timings.synthesis = watch.lap();
 
@@ -248,45 +239,6 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   });
   record.timings.noise = watch.lap();
   return record;
-}
-
-void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
-  Stopwatch watch;
-  if (receivers_.is_flat()) {
-    interference_.add(record);
-    noise_.add(record);
-  } else {  // the sound of the ping has passed the receivers; this has to as well
-    std::vector<float> heard =
-        std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
-    interference_.add(record);
-    noise_.add(record);
-    receivers_.respond(record.pressure, record.recording, carried);
-    std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
-                   std::plus<>{});
-  }
-  if (scenario_.pings.blanking) blank(record);
-  receivers_.convert(record.pressure, record.recording);
-  record.timings.noise += watch.lap();
-}
-
-/// Nothing is heard on the transmitter's own platform until the pulse has left.
-void PingSimulator::blank(PingRecord& record) const {
-  const Recording& recording = record.recording;
-  const double sent = pulse(record.transmitter).duration() - recording.start;
-  const auto deaf = static_cast<std::ptrdiff_t>(
-      recording.components() *
-      std::min(recording.samples,
-               static_cast<std::size_t>(std::ceil(std::max(0.0, sent * recording.sample_rate)))));
-  const int carrier = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)].platform;
-  const std::size_t row = recording.samples * recording.components();
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-    if (scenario_.arrays[a].platform != carrier) continue;
-    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
-    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
-      const auto begin = record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
-      std::fill(begin, begin + deaf, 0.0F);
-    }
-  }
 }
 
 PingRecord PingSimulator::simulate(int ping) const { return simulate(ping, transmission(ping)); }

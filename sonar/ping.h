@@ -75,6 +75,8 @@ class PingSimulator {
   [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
                                                 PingRecord& record,
                                                 std::span<const BandPoint> band) const;
+  [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
+                                                std::int64_t samples) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;

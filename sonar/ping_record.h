@@ -97,6 +97,12 @@ struct Timings {
          write = 0.0;  ///< wall time [s]
 };
 
+/// How reverberation is known across a pulse's band, where it has amplitudes of its own there.
+struct BandFit {
+  int points = 1;      ///< frequencies; 1: the centre's amplitudes are taken for all
+  double error = 0.0;  ///< of absorption times √σ between them, over its largest value
+};
+
 /// Everything about one ping: what the phones heard, and the truth behind it.
 struct PingRecord {
   int ping = 1;             ///< counted from 1
@@ -116,6 +122,7 @@ struct PingRecord {
   std::vector<TargetSummary> summary;
   Timings timings;
   Reuse reuse;
+  BandFit band;
 };
 
 }  // namespace asdic

@@ -10,10 +10,21 @@
 #include <utility>
 #include <vector>
 
+#include "core/units.h"
+
 namespace asdic {
 
 /// What is kept: the first word of its keys. One kind, one type.
-enum class Kept : std::uint64_t { slice, legs, followed_legs, boundary_fan, synthesis, waveform };
+enum class Kept : std::uint64_t {
+  slice,
+  legs,
+  followed_legs,
+  boundary_fan,
+  synthesis,
+  waveform,
+  expected_reverberation,
+  noise_factors
+};
 
 /// All the numbers that decide a result, bit for bit.
 class ExactKey {
@@ -28,6 +39,18 @@ class ExactKey {
     return *this;
   }
   ExactKey& add(double value) { return add(std::bit_cast<std::uint64_t>(value)); }
+  ExactKey& add(const Vec2& value) { return add_all(value.x(), value.y()); }
+  ExactKey& add(const Vec3& value) { return add_all(value.x(), value.y(), value.z()); }
+  ExactKey& add(const std::vector<double>& values) {
+    add(values.size());
+    for (const double value : values) add(value);
+    return *this;
+  }
+  template <class... Values>
+  ExactKey& add_all(const Values&... values) {
+    (add(values), ...);
+    return *this;
+  }
 
   [[nodiscard]] bool operator==(const ExactKey&) const = default;
   [[nodiscard]] std::size_t hash() const noexcept;

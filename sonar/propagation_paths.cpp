@@ -38,14 +38,15 @@ std::size_t bytes_of(const Environment& slice) {
 }
 
 /// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
-/// to a degree beyond (as same_path in moving_paths.h).
+/// to a degree beyond, five at least: those that leave almost level turn most (same_path in
+/// moving_paths.h).
 PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
   PathLimits needed{.max_surface_bounces = 0, .max_bottom_bounces = 0, .max_launch_angle = 0.0};
   for (const Arrival& path : known) {
     needed.max_surface_bounces = std::max(needed.max_surface_bounces, path.surface_bounces);
     needed.max_bottom_bounces = std::max(needed.max_bottom_bounces, path.bottom_bounces);
-    needed.max_launch_angle =
-        std::max(needed.max_launch_angle, std::abs(path.launch_elevation) + radians(1.0));
+    needed.max_launch_angle = std::max(
+        {needed.max_launch_angle, std::abs(path.launch_elevation) + radians(1.0), radians(5.0)});
   }
   limits.max_surface_bounces = std::min(limits.max_surface_bounces, needed.max_surface_bounces);
   limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);

@@ -94,19 +94,24 @@ double ReceiverElectronics::memory() const noexcept {
   return longest;
 }
 
-void ReceiverElectronics::respond(std::span<float> noise, const Recording& recording,
-                                  Carried* carried) const {
-  if (flat_) return;
-  const std::size_t width = recording.components(), part = recording.samples;
-  assert(noise.size() == channels_.size() * part * width);
+std::size_t ReceiverElectronics::ahead(const Recording& recording) const noexcept {
+  if (flat_) return 0;
   // A turn of the phase has no end in time; this many samples hold all but −40 dB of it.
   constexpr std::size_t least = 2048;
-  const std::size_t half =
-      std::max(least, static_cast<std::size_t>(std::ceil(memory() * recording.sample_rate)));
-  const std::size_t before = 2 * half, length = fast_fft_length((before + part + 1) / 2) * 2;
+  return std::max(least, static_cast<std::size_t>(std::ceil(memory() * recording.sample_rate)));
+}
+
+void ReceiverElectronics::respond(std::span<float> heard, const Recording& recording,
+                                  Carried& carried) const {
+  if (flat_) return;
+  const std::size_t width = recording.components(), part = recording.samples;
+  const std::size_t half = ahead(recording), before = 2 * half,
+                    length = fast_fft_length((before + part + 1) / 2) * 2;
+  assert(heard.size() == channels_.size() * part * width);
+  assert(carried.size() == channels_.size() * before * width);
   Carried inputs(channels_.size() * before * width);
   oneapi::tbb::parallel_for(std::size_t{0}, channels_.size(), [&](std::size_t channel) {
-    float* row = noise.data() + channel * part * width;
+    float* row = heard.data() + channel * part * width;
     FftBuffer<std::complex<float>> x(length);
     const auto value = [&](std::size_t i) {
       return width == 2 ? std::complex<float>(row[2 * i], row[2 * i + 1])
@@ -114,10 +119,7 @@ void ReceiverElectronics::respond(std::span<float> noise, const Recording& recor
     };
     for (std::size_t i = 0; i < before; ++i) {
       const std::size_t at = (channel * before + i) * width;
-      if (carried != nullptr && !carried->empty())
-        x[i] = {(*carried)[at], width == 2 ? (*carried)[at + 1] : 0.0F};
-      else
-        x[i] = value((i + part * (before / part + 1) - before) % part);
+      x[i] = {carried[at], width == 2 ? carried[at + 1] : 0.0F};
     }
     for (std::size_t i = 0; i < part; ++i) x[before + i] = value(i);
     for (std::size_t i = 0; i < before; ++i) {
@@ -146,7 +148,7 @@ void ReceiverElectronics::respond(std::span<float> noise, const Recording& recor
       if (width == 2) row[i * width + 1] = x[before + i].imag();
     }
   });
-  if (carried != nullptr) *carried = std::move(inputs);
+  carried = std::move(inputs);
 }
 
 void ReceiverElectronics::convert(std::span<float> samples, const Recording& recording) const {

@@ -24,12 +24,14 @@ class ReceiverElectronics {
   /// The sound of one ping, filtered in its period of the synthesis: there are no edges in it.
   void respond(Baseband& sound) const;
 
-  /// Inputs of the part before, which a filter still needs.
+  /// Half of the filters' memory [samples]: as much of what is to come is needed; 0 if flat.
+  [[nodiscard]] std::size_t ahead(const Recording& recording) const noexcept;
+  /// The inputs before those of a part, [channels × 2·ahead × components].
   using Carried = std::vector<float>;
-  /// Noise of one part of a stream, [channels × samples × components], by overlap and save: it goes
-  /// on from the part before without a gap. It comes out half a filter late, which noise does not
-  /// mind. Without a part before, its own end stands for it.
-  void respond(std::span<float> noise, const Recording& recording, Carried* carried) const;
+  /// What has no beginning, through the response by overlap and save. \param heard  [channels ×
+  /// samples × components] in: the sound `ahead` samples after each sample of the part; out: the
+  /// part   \param carried  in: the inputs before them; out: those before the next part's
+  void respond(std::span<float> heard, const Recording& recording, Carried& carried) const;
 
   /// Rounds to the converter's steps and clips: −full scale … full scale − 1 step, real and
   /// imaginary part each.

@@ -1,54 +1,13 @@
 #include "sonar/reverberation.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <tuple>
+#include <utility>
 
 namespace asdic {
 namespace {
-
-constexpr std::size_t block = 64;  // rings that one task works through
-
-double ring_area(const ScattererGrid& grid, std::uint32_t ring) noexcept {
-  return 2.0 * pi * (ring + 0.5) * grid.spacing * grid.spacing;
-}
-
-double sector_bearing(const ScattererGrid& grid, int sector) noexcept {
-  return grid.first_bearing + 2.0 * pi * (sector + 0.5) / grid.azimuths;
-}
-
-/// The middle of a cell.
-Vec2 centre(const ScattererGrid& grid, std::uint32_t ring, int sector) noexcept {
-  const double bearing = sector_bearing(grid, sector);
-  return grid.anchor + (ring + 0.5) * grid.spacing * Vec2(std::sin(bearing), std::cos(bearing));
-}
-
-/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \return what they put out, in
-/// their order
-template <class Item, class F>
-std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
-  const std::size_t visited = (rings + step - 1) / step, blocks = (visited + block - 1) / block;
-  std::vector<std::vector<Item>> parts(blocks);
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-    PathPairs scratch;
-    for (std::size_t i = b * block; i < std::min(visited, (b + 1) * block); ++i)
-      f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
-  });
-  std::size_t total = 0;
-  for (const auto& part : parts) total += part.size();
-  std::vector<Item> all;
-  all.reserve(total);
-  for (auto& part : parts) {
-    all.insert(all.end(), part.begin(), part.end());
-    part = {};
-  }
-  return all;
-}
 
 /// Three normals that belong to a scatterer, held at four standard deviations.
 Vec3 own_velocity(double rms, std::uint64_t entity, std::uint64_t seed) {
@@ -62,148 +21,14 @@ Vec3 own_velocity(double rms, std::uint64_t entity, std::uint64_t seed) {
 }  // namespace
 
 PingReverberation::PingReverberation(const Scenario& scenario, const ReverberationContext& context,
-                                     std::vector<ScatteringField> fields)
-    : scenario_(scenario), context_(context), fields_(std::move(fields)) {
-  find_limits();
-  by_sectors_ = expected_returns_ > static_cast<double>(scenario_.reverberation.most_returns);
-  blocks_ = by_sectors_ ? sector_blocks() : rings_;
-}
-
-/// Not so where a platform has left the anchor behind: then rings around it are not hers.
-bool PingReverberation::all_round(const ScatteringField& field) const noexcept {
-  const Vec2 source = field.sheet.ends().source.position.head<2>();
-  return field.sheet.all_round() && (source - field.grid.anchor).norm() < 0.5 * field.grid.spacing;
-}
-
-std::vector<int> PingReverberation::sample_sectors(const ScatteringField& field) const {
-  if (all_round(field)) return {0};
-  const auto rings = static_cast<int>(std::max(1U, field.grid.rings));
-  const int n = std::min(std::clamp(400'000 / rings, 12, 36), field.grid.azimuths);
-  std::vector<int> sectors;
-  for (int i = 0; i < n; ++i) sectors.push_back(i * field.grid.azimuths / n);
-  return sectors;
-}
-
-/// Rings so near each other are sampled only once that eight still lie within a stretch.
-std::uint32_t PingReverberation::sample_step(const ScatteringField& field) const {
-  constexpr double slow_sea = 1400.0, samples = 8.0;
-  const double delay = 2.0 * field.grid.spacing / slow_sea;  // from ring to ring, at most
-  return static_cast<std::uint32_t>(std::clamp(limits_.stretch / (samples * delay), 1.0, 1e6));
-}
-
-void PingReverberation::find_limits() {
-  constexpr double left_out = 1e-5;  // of the power in a stretch
-  constexpr double faintest = 1e-8;  // of the loudest pair of a place
-  limits_.stretch = 0.25 * context_.pulse.duration();
-  struct Found {
-    Sample sample;
-    double ring_power, share;  // of a whole ring like this place; how much of it that stands for
-    double scatterers;         // of that ring
-  };
-  std::vector<Found> all;
-  std::uint32_t first_place = 0;
-  for (const ScatteringField& field : fields_) {
-    const std::vector<int> sectors = sample_sectors(field);
-    const auto count = static_cast<std::uint32_t>(sectors.size());
-    const std::uint32_t step = sample_step(field);
-    const auto found = over_rings<Found>(
-        field.grid.rings, step, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
-          const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
-          for (std::uint32_t i = 0; i < count; ++i) {
-            field.sheet.pairs_at(centre(field.grid, ring, sectors[i]), pairs);
-            const double share = double(stands_for) / count, area = ring_area(field.grid, ring);
-            double loudest = 0.0;
-            for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
-            for (const PathPair& pair : pairs.found) {
-              if (pair.power < faintest * loudest) continue;
-              out.push_back({{.place = first_place + ring * count + i,
-                              .delay = pair.delay,
-                              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
-                             pair.power * area,
-                             share,
-                             double(field.grid.azimuths) * copies_of(field, ring, sectors[i])});
-            }
-          }
-        });
-    first_place += field.grid.rings * count;
-    all.insert(all.end(), found.begin(), found.end());
-  }
-  struct Entry {
-    std::uint32_t stretch;
-    double power, share;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(all.size());
-  for (const Found& f : all)
-    entries.push_back(
-        {static_cast<std::uint32_t>(f.sample.delay / limits_.stretch), f.ring_power, f.share});
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.stretch, a.power, a.share) < std::tie(b.stretch, b.power, b.share);
-  });
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    double total = 0.0;
-    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
-      total += entries[end].power * entries[end].share;
-    std::size_t first = begin;
-    for (double dropped = 0.0; first < end; ++first) {
-      dropped += entries[first].power * entries[first].share;
-      if (dropped > left_out * total) break;
-    }
-    limits_.least.resize(entries[begin].stretch + 1, 0.0);
-    // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
-    // that lies a little nearer than its middle would be left out of this stretch for it.
-    limits_.least.back() = first > begin ? entries[first - 1].power : 0.0;
-  }
-  std::vector<double> of_ring;  // returns of the field in hand
-  std::size_t next = 0;
-  first_place = 0;
-  for (std::size_t field = 0; field < fields_.size(); ++field) {
-    const std::uint32_t rings = fields_[field].grid.rings;
-    const auto count = static_cast<std::uint32_t>(sample_sectors(fields_[field]).size());
-    of_ring.assign(rings, 0.0);
-    for (; next < all.size() && all[next].sample.place < first_place + rings * count; ++next) {
-      const Found& f = all[next];
-      if (f.ring_power <= limits_.at(f.sample.delay)) continue;
-      samples_.push_back(f.sample);
-      of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
-    }
-    // What was found at one ring belongs to those that it stands for.
-    const std::uint32_t step = sample_step(fields_[field]);
-    for (std::uint32_t ring = 0; ring < rings; ++ring)
-      if (ring % step == 0)
-        of_ring[ring] /= std::min(step, rings - ring);
-      else
-        of_ring[ring] = of_ring[ring - ring % step];
-    first_place += rings * count;
-    cut_into_blocks(field, of_ring);
-  }
-}
-
-void PingReverberation::cut_into_blocks(std::size_t field, const std::vector<double>& of_ring) {
-  constexpr double most = 4096.0;  // returns
-  double held = 0.0;
-  for (std::uint32_t ring = 0; ring < of_ring.size(); ++ring) {
-    if (ring == 0 || held + of_ring[ring] > most) {
-      rings_.push_back({.field = field, .begin = ring});
-      held = 0.0;
-    }
-    held += of_ring[ring];
-    rings_.back().end = ring + 1;
-    rings_.back().expected = static_cast<std::size_t>(std::ceil(held));
-    expected_returns_ += of_ring[ring];
-  }
-}
-
-std::uint32_t PingReverberation::copies_of(const ScatteringField& field, std::uint32_t ring,
-                                           int sector) const {
-  // A cell is seen from source and receiver under no more than twice the angle of a sector: near
-  // them, far from the anchor, it is divided.
-  auto copies = static_cast<std::uint32_t>(field.grid.per_cell);
-  const double range = (ring + 0.5) * field.grid.spacing;
-  if (range >= field.divided_below) return copies;
-  const double nearest = field.sheet.nearest_end(centre(field.grid, ring, sector), field.depth);
-  for (double width = range; width > 2.0 * nearest && copies < 4096; width *= 0.5) copies *= 2;
-  return copies;
+                                     std::vector<ScatteringField> fields,
+                                     std::shared_ptr<const ExpectedReverberation> expected)
+    : scenario_(scenario),
+      context_(context),
+      fields_(std::move(fields)),
+      expected_(std::move(expected)),
+      by_sectors_(expected_->returns > static_cast<double>(scenario_.reverberation.most_returns)) {
+  blocks_ = by_sectors_ ? sector_blocks() : expected_->blocks;
 }
 
 PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
@@ -211,7 +36,7 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
                                                PathPairs& pairs) const {
   const ScattererMotion& motion = field.field.motion;
   const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
-  field.sheet.pairs_at(scatterer.place, pairs, &limits_, ring_area(field.grid, key.ring),
+  field.sheet.pairs_at(scatterer.place, pairs, &expected_->limits, field.ring_area(key.ring),
                        (scatterer.depth_share - 0.5) * field.thickness);
   Met met;
   if (pairs.found.empty()) return met;
@@ -285,25 +110,13 @@ Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sector
   return all;
 }
 
-Returns PingReverberation::plain_returns() const { return collect(rings_, false); }
+Returns PingReverberation::plain_returns() const { return collect(expected_->blocks, false); }
 Returns PingReverberation::sector_returns() const { return collect(sector_blocks(), true); }
 Returns PingReverberation::returns() const { return collect(blocks_, by_sectors_); }
 
 double PingReverberation::expected_db(double t) const {
-  const Pulse& pulse = context_.pulse;
-  double power = 0.0;
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const double since = t - samples_[i].delay;
-    if (since >= 0.0 && since <= pulse.duration())
-      sum += samples_[i].amplitude * pulse.analytic(since);
-    if (i + 1 == samples_.size() || samples_[i + 1].place != samples_[i].place) {
-      power += std::norm(sum);
-      sum = 0.0;
-    }
-  }
   return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
-         db_from_power(power);
+         db_from_power(expected_->power(context_.pulse, t));
 }
 
 PatchRows PingReverberation::rows(std::size_t most) const {
@@ -312,15 +125,14 @@ PatchRows PingReverberation::rows(std::size_t most) const {
       scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
   const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
                        std::vector<PatchRow>& rows) {
-    const ScattererGrid& grid = field.grid;
-    const double ring_of = ring_area(grid, ring);
-    field.sheet.pairs_at(centre(grid, ring, sector), pairs, &limits_, ring_of);
+    const double ring_of = field.ring_area(ring);
+    field.sheet.pairs_at(field.centre(ring, sector), pairs, &expected_->limits, ring_of);
     for (const PathPair& pair : pairs.found)
       rows.push_back({.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
                                 : field.boundary == 1 ? PatchRow::Ground::bottom
                                                       : PatchRow::Ground::surface,
-                      .bearing = all_round(field) ? std::nan("") : sector_bearing(grid, sector),
-                      .range = (ring + 0.5) * grid.spacing,
+                      .bearing = field.all_round() ? std::nan("") : field.bearing(sector),
+                      .range = (ring + 0.5) * field.grid.spacing,
                       .area = share * ring_of * pair.area,
                       .delay = pair.delay,
                       .grazing_in = pair.grazing_in,
@@ -334,7 +146,7 @@ PatchRows PingReverberation::rows(std::size_t most) const {
   // Every how many rings: from the number of pairs of one ring in 32.
   std::vector<PatchRow> counted;
   for (const ScatteringField& field : fields_) {
-    const auto sectors = sample_sectors(field);
+    const auto sectors = field.sample_sectors();
     for (std::uint32_t ring = 0; ring < field.grid.rings; ring += 32)
       for (const int sector : sectors) add(field, ring, sector, 1.0, counted);
   }
@@ -342,7 +154,7 @@ PatchRows PingReverberation::rows(std::size_t most) const {
   const std::size_t all = 32 * counted.size();
   result.every = static_cast<int>(std::max<std::size_t>(1, (all + most - 1) / most));
   for (const ScatteringField& field : fields_) {
-    const auto sectors = sample_sectors(field);
+    const auto sectors = field.sample_sectors();
     const double share = 1.0 / static_cast<double>(sectors.size());
     for (std::uint32_t ring = 0; ring < field.grid.rings;
          ring += static_cast<std::uint32_t>(result.every))

@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "sonar/boundary_fans.h"
+#include "sonar/expected_reverberation.h"
 #include "sonar/ping_record.h"
 #include "sonar/pulse.h"
 #include "sonar/return_source.h"
-#include "sonar/scattering_sheet.h"
+#include "sonar/scattering_field.h"
 #include "sonar/scenario.h"
 #include "sonar/transmit_pattern.h"
 
@@ -21,7 +22,7 @@ struct ReverberationContext {
   double time = 0.0;                     ///< of the ping, since the start of the scenario [s]
   std::uint32_t ping = 1;                ///< counted from 1: the key of weights that last one ping
   double latest = 0.0;                   ///< end of the record, since the ping [s]
-  Reuse* reuse = nullptr;                ///< is told whether anything had to be traced
+  Reuse* reuse = nullptr;                ///< is told what had to be traced or worked out
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
 };
 
@@ -31,18 +32,6 @@ struct PatchRows {
   int every = 1;
 };
 
-/// The scatterers of one boundary or layer, as one ping meets them.
-struct ScatteringField {
-  ScatteringSheet sheet;
-  ScattererGrid grid;
-  ScattererField field;  ///< motion and statistics
-  Draw weights;          ///< purpose of their draws
-  std::uint64_t boundary = 0;
-  double depth = 0.0;               ///< near the ends [m]
-  double thickness = 0.0;           ///< of a sheet of the volume [m]
-  double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
-};
-
 /// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
 /// its own delay, direction, Doppler factor and complex Gaussian weight, by all pairs of outgoing
 /// and returning paths. Source and receiver may be anywhere; monostatic is the same place twice.
@@ -50,7 +39,8 @@ struct ScatteringField {
 class PingReverberation final : public ReturnSource {
  public:
   PingReverberation(const Scenario& scenario, const ReverberationContext& context,
-                    std::vector<ScatteringField> fields);
+                    std::vector<ScatteringField> fields,
+                    std::shared_ptr<const ExpectedReverberation> expected);
 
   /// What the array's reference point hears. The weakest pairs are left out as long as all that is
   /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
@@ -71,7 +61,7 @@ class PingReverberation final : public ReturnSource {
   void make(std::size_t block, ReturnBlock& into) const override;
   [[nodiscard]] std::vector<DopplerSpan> dopplers() const override;
   /// How many plain_returns() are, more or less.
-  [[nodiscard]] double expected_returns() const noexcept { return expected_returns_; }
+  [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
 
   /// Expected level at time t since the ping [dB re 1 µPa, peak envelope/√2]: SL + 10·log₁₀ Σ_cells
   /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
@@ -83,16 +73,13 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] const std::vector<ScatteringField>& fields() const noexcept { return fields_; }
 
  private:
-  void find_limits();
-  [[nodiscard]] std::uint32_t sample_step(const ScatteringField& field) const;
+  using Block = ExpectedReverberation::Block;
   /// A scatterer of a cell with what belongs to it alone.
   struct Met {
     std::complex<double> strength = 0.0;  // √(area·texture), times the weight if asked for
     double bragg = 0.0;
     Vec3 velocity = Vec3::Zero();
   };
-  [[nodiscard]] std::uint32_t copies_of(const ScatteringField& field, std::uint32_t ring,
-                                        int sector) const;
   /// Its pairs of paths into `pairs`; nothing if there are none.
   Met meet(const ScatteringField& field, const ScattererKey& key, std::uint64_t entity,
            PathPairs& pairs) const;
@@ -100,7 +87,7 @@ class PingReverberation final : public ReturnSource {
   template <class Visit>
   void for_each_scatterer(const ScatteringField& field, std::uint32_t ring, int sector,
                           PathPairs& pairs, Visit&& visit) const {
-    const std::uint32_t copies = copies_of(field, ring, sector);
+    const std::uint32_t copies = field.copies_of(ring, sector);
     for (std::uint32_t copy = 0; copy < copies; ++copy) {
       const ScattererKey key{.ring = ring,
                              .sector = static_cast<std::uint32_t>(sector),
@@ -117,34 +104,17 @@ class PingReverberation final : public ReturnSource {
   void add_sector(const ScatteringField& field, int sector, ReturnBlock& into) const;
   void add_rings(const ScatteringField& field, std::uint32_t begin, std::uint32_t end,
                  ReturnBlock& into) const;
-  /// Rings or sectors begin…end of a field.
-  struct Block {
-    std::size_t field = 0;
-    std::uint32_t begin = 0, end = 0;
-    std::size_t expected = 0;
-  };
-  void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);
   [[nodiscard]] std::vector<Block> sector_blocks() const;
   /// Half of 1/B, or as much as the limit of returns asks for [s].
   [[nodiscard]] double sector_bin(const ScatteringField& field) const;
   [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
-  [[nodiscard]] bool all_round(const ScatteringField& field) const noexcept;
-  [[nodiscard]] std::vector<int> sample_sectors(const ScatteringField& field) const;
 
   const Scenario& scenario_;
   ReverberationContext context_;
   std::vector<ScatteringField> fields_;
-  AudibleLimits limits_;
-  /// A pair through the middle of a cell of a few sectors, for the expected level.
-  struct Sample {
-    std::uint32_t place = 0;  // pairs of one place add coherently
-    double delay = 0.0;
-    std::complex<double> amplitude = 0.0;  // of the area that the place stands for
-  };
-  std::vector<Sample> samples_;
-  double expected_returns_ = 0.0;
-  std::vector<Block> rings_, blocks_;  // all, if every scatterer is heard; those of returns()
-  bool by_sectors_ = false;
+  std::shared_ptr<const ExpectedReverberation> expected_;
+  bool by_sectors_;
+  std::vector<Block> blocks_;  // those of returns()
 };
 
 /// Makes the reverberation of any ping at any array of a scenario. Built once; shared by threads.
@@ -170,6 +140,8 @@ class ReverberationModel {
   };
   [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
   [[nodiscard]] std::vector<Part> parts() const;
+  [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
+      std::span<const ScatteringField> fields, const ReverberationContext& context) const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;

@@ -23,21 +23,43 @@ BandNodes points_of(double centre, double half_width, std::size_t count) {
   return nodes;
 }
 
-/// How far interpolation through the nodes is off, over the largest value in the band.
-double error_of(const BandNodes& nodes, const Response& response) {
-  constexpr int tried = 32;
-  std::vector<double> known;
-  for (const double f : nodes.frequencies) known.push_back(response(std::max(lowest, f)));
-  double worst = 0.0, largest = 0.0;
-  for (int i = 0; i <= tried; ++i) {
-    const double f = nodes.centre + nodes.half_width * (2.0 * i / tried - 1.0);
-    const double exact = response(std::max(lowest, f));
-    double sum = 0.0;
-    for (std::size_t k = 0; k < known.size(); ++k) sum += nodes.basis(k, f) * known[k];
-    worst = std::max(worst, std::abs(sum - exact));
-    largest = std::max(largest, std::abs(exact));
+/// Some number of points, and how well responses are interpolated through them.
+class Trial {
+ public:
+  Trial(double centre, double half_width, std::size_t count)
+      : nodes_(points_of(centre, half_width, count)) {
+    const std::size_t tried = count <= 16 ? 32 : 4 * count;
+    for (std::size_t i = 0; i <= tried; ++i) {
+      const double share = static_cast<double>(i) / static_cast<double>(tried);
+      between_.push_back(centre + half_width * (2.0 * share - 1.0));
+      for (std::size_t k = 0; k < count; ++k) basis_.push_back(nodes_.basis(k, between_.back()));
+    }
   }
-  return largest > 0.0 ? worst / largest : 0.0;
+
+  [[nodiscard]] std::size_t count() const noexcept { return nodes_.frequencies.size(); }
+  /// How far interpolation through the points is off, over the largest value in the band.
+  [[nodiscard]] double error_of(const Response& response) const {
+    std::vector<double> known;
+    for (const double f : nodes_.frequencies) known.push_back(response(std::max(lowest, f)));
+    double worst = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < between_.size(); ++i) {
+      const double exact = response(std::max(lowest, between_[i]));
+      double sum = 0.0;
+      for (std::size_t k = 0; k < known.size(); ++k) sum += basis_[i * known.size() + k] * known[k];
+      worst = std::max(worst, std::abs(sum - exact));
+      largest = std::max(largest, std::abs(exact));
+    }
+    return largest > 0.0 ? worst / largest : 0.0;
+  }
+
+ private:
+  BandNodes nodes_;
+  std::vector<double> between_, basis_;
+};
+
+/// One more, but a quarter more where a kink asks for many: its error falls as 1/K.
+std::size_t next_count(std::size_t count) noexcept {
+  return std::min(ReverberationBand::most_points, count + (count < 16 ? 1 : count / 4));
 }
 
 /// Angles as boundaries see them.
@@ -77,17 +99,21 @@ ReverberationBand::ReverberationBand(const Scenario& scenario, const Propagation
                                 [&](const auto& l) { return l.cross_section(geometry, f); }, law));
         });
   }
-  std::size_t count = 1;
+  Trial trial(centre, half_band, 1);
   for (const Response& response : responses)
-    while (count < most_points && error_of(points_of(centre, half_band, count), response) > error)
-      ++count;
+    while (trial.count() < most_points && trial.error_of(response) > error)
+      trial = Trial(centre, half_band, next_count(trial.count()));
+  for (const Response& response : responses)
+    reached_ = std::max(reached_, trial.error_of(response));
 
   const double c = paths.speed_at(source.position);
   const auto pattern_at = [&](double frequency) {
     return BeamPattern(projector, c / frequency, c, heading, c / centre);
   };
   // A product of polynomials of K₁ and K₂ points is one of K₁ + K₂ − 1.
-  count += nodes_for(0.0, pi * half_band * pattern_at(centre).longest_delay(), error) - 1;
+  const std::size_t count =
+      trial.count() + nodes_for(0.0, pi * half_band * pattern_at(centre).longest_delay(), error) -
+      1;
   nodes_ = points_of(centre, half_band, count);
   for (const double f : nodes_.frequencies) patterns_.push_back(pattern_at(std::max(lowest, f)));
   for (std::size_t k = 0; k < count; ++k) {

@@ -17,7 +17,8 @@ namespace asdic {
 /// A return's amplitude is A(f) ≈ Σ_k ℓ_k(f)·A(f_k), f_k Chebyshev points of the pulse's band: it
 /// has an amplitude for every f_k, and the pulse goes through ℓ_k. As many points as interpolate
 /// absorption times √σ to 10⁻⁴ of its largest value, found by trying (paths up to the longest, a
-/// fan of angles), and those that the pattern asks for by its bound. docs/theory/reverberation.md,
+/// fan of angles), and those that the pattern asks for by its bound. A law with a kink in the band
+/// may ask for more than there can be: reached() says what was. docs/theory/reverberation.md,
 /// "Across the band"
 class ReverberationBand {
  public:
@@ -33,13 +34,17 @@ class ReverberationBand {
   [[nodiscard]] Synthesizer synthesizer(const Pulse& pulse, const Recording& recording,
                                         double max_doppler) const;
 
+  /// The largest error of absorption times √σ between the points, over its largest value.
+  [[nodiscard]] double reached() const noexcept { return reached_; }
+
   static constexpr double error = 1e-4;           ///< of the largest amplitude in the band
-  static constexpr std::size_t most_points = 16;  ///< for laws with kinks, which ask for more
+  static constexpr std::size_t most_points = 64;  ///< but for the pattern's
 
  private:
   BandNodes nodes_;
   std::vector<BeamPattern> patterns_;
   std::vector<BandPoint> points_;
+  double reached_ = 0.0;
 };
 
 }  // namespace asdic

@@ -158,10 +158,25 @@ std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
   return found;
 }
 
+/// Out of the paths' memory if everything that it depends on is as it was once.
+std::shared_ptr<const ExpectedReverberation> ReverberationModel::expected(
+    std::span<const ScatteringField> fields, const ReverberationContext& context) const {
+  const double duration = context.pulse.duration();
+  const auto key = ExpectedReverberation::key(fields, duration);
+  PropagationMemory& memory = paths_.memory();
+  auto known = key ? memory.find<ExpectedReverberation>(*key) : nullptr;
+  if (known) return known;
+  if (context.reuse != nullptr) context.reuse->expected_level = false;
+  auto made = std::make_shared<ExpectedReverberation>(fields, duration);
+  const std::size_t bytes = made->bytes();
+  return key ? memory.keep(*key, std::move(made), bytes) : made;
+}
+
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
   std::vector<ScatteringField> fields;
   for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
-  return {scenario_, context, std::move(fields)};
+  auto known = expected(fields, context);
+  return {scenario_, context, std::move(fields), std::move(known)};
 }
 
 }  // namespace asdic

@@ -110,6 +110,8 @@ class ScatteringSheet {
 
   /// Distance of a place on the sheet from the nearer of source and receiver, depth included [m].
   [[nodiscard]] double nearest_end(const Vec2& place, double depth) const noexcept;
+  /// Adds all that pairs_at() depends on to a key. \return whether the patterns did
+  [[nodiscard]] bool add_to(ExactKey& key) const;
   [[nodiscard]] const SheetEnds& ends() const noexcept { return ends_; }
   /// Source and receiver share a fan: the paths of a cell are the same out and back.
   [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }

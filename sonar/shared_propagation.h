@@ -10,12 +10,14 @@ namespace asdic {
 
 /// Propagation that simulators of one ocean share, so that a study or a served session traces
 /// nothing twice: the ocean's solver, eigenrays between places, the paths from places to scattering
-/// boundaries, plans of the synthesis and the shapes of echoes whose delays are curves. All of it
-/// is found again by the very numbers it depends on (sonar/ propagation_memory.h), so nothing that
-/// is kept or forgotten changes a bit of what comes out. Shared by threads; memory is bounded.
+/// boundaries, what is expected of reverberation, plans of the synthesis and the shapes of echoes
+/// whose delays are curves. All of it is found again by the very numbers it depends on
+/// (sonar/propagation_memory.h), so nothing that is kept or forgotten changes a bit of what comes
+/// out. Shared by threads; memory is bounded.
 ///
 /// What varies decides what is traced again. Noise, seeds, phases, strengths, headings, wind,
-/// waveforms of the same centre frequency: nothing. A target that moves: its own eigenrays.
+/// waveforms of the same centre frequency: nothing (but what is expected of reverberation is worked
+/// out anew for another wind, law, beam or pulse). A target that moves: its own eigenrays.
 /// A transmitter or an array whose depth changes: its paths to the boundaries as well. A profile, a
 /// boundary: everything.
 class SharedPropagation {

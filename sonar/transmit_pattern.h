@@ -3,6 +3,8 @@
 
 namespace asdic {
 
+class ExactKey;
+
 /// What a projector sends in every direction: complex amplitude, magnitude 1 on the axis.
 class TransmitPattern {
  public:
@@ -13,6 +15,9 @@ class TransmitPattern {
                                                      double elevation) const noexcept = 0;
   /// The same at every bearing: then it is asked once per elevation.
   [[nodiscard]] virtual bool all_round() const noexcept { return false; }
+  /// Adds all that it depends on to a key of what is kept. \return whether it did; what depends on
+  /// one that does not is never kept
+  [[nodiscard]] virtual bool add_to(ExactKey& /*key*/) const { return false; }
 };
 
 }  // namespace asdic

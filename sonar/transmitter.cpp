@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sonar/geometry.h"
+#include "sonar/propagation_memory.h"
 
 namespace asdic {
 namespace {
@@ -130,6 +131,19 @@ std::complex<double> BeamPattern::towards(double bearing, double elevation) cons
   std::complex<double> sum = 0.0;  // what lies further on in that direction is heard earlier
   for (const Element& e : elements_) sum += e.weight * std::polar(1.0, 2.0 * pi * d.dot(e.place));
   return sum;
+}
+
+bool BeamPattern::add_to(ExactKey& key) const {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [taper, wavelength, sound_speed, length, axis, turned, elements, table] = *this;
+  key.add(static_cast<int>(taper)).add_all(wavelength, sound_speed, length, axis, turned);
+  key.add(elements.size());
+  for (const auto& [place, weight] : elements) key.add_all(place, weight.real(), weight.imag());
+  key.add(table ? 1 : 0);
+  if (!table) return true;
+  const auto& [bearings, elevations, level_db] = *table;
+  key.add_all(bearings, elevations, level_db);
+  return true;
 }
 
 double BeamPattern::longest_delay() const noexcept {

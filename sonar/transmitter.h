@@ -77,6 +77,7 @@ class BeamPattern final : public TransmitPattern {
   [[nodiscard]] std::complex<double> towards(double bearing,
                                              double elevation) const noexcept override;
   [[nodiscard]] bool all_round() const noexcept override { return elements_.empty() && !table_; }
+  [[nodiscard]] bool add_to(ExactKey& key) const override;
   /// Delay between its parts as the far field sees them, at most [s].
   [[nodiscard]] double longest_delay() const noexcept;
   [[nodiscard]] double line_length() const noexcept {

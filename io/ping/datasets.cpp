@@ -25,6 +25,10 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int32_t>("run/legs_reused", "sets of eigenrays that were known", "");
   growing<std::int8_t>("run/reuse_reverberation",
                        "1 if all paths to scattering boundaries were known", "");
+  growing<std::int32_t>("run/band_points", "frequencies at which reverberation is known", "");
+  growing<double>("run/band_error", "largest error of its amplitudes between them", "");
+  growing<std::int8_t>("run/reuse_expected_level",
+                       "1 if the reverberation's expected level was known", "");
   if (targets == 0) return;
   const std::vector<std::string> scale{"target_index"}, vector{"target_index", "xyz"};
   growing<double>("target_position", "target at the start of the ping", "m", vector, {targets, 3});

@@ -36,7 +36,7 @@ template <class... Model>
 /// Puts a model under a sea (a table knows none). \param wind_speed  at 10 m [m/s]
 /// \param surface_sound_speed  of the water at the surface [m/s]
 inline void set_sea(AnySurfaceScattering& scattering, double wind_speed,
-                    double surface_sound_speed) noexcept {
+                    double surface_sound_speed) {
   std::visit(
       [&]<class Model>(Model& model) {
         if constexpr (SurfaceScatteringModel<Model>) {

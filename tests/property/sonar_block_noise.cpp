@@ -7,9 +7,11 @@
 #include <cmath>
 #include <complex>
 
+#include "sonar/ambient_noise.h"
 #include "sonar/array.h"
 #include "sonar/fft.h"
 #include "sonar/noise_spectrum.h"
+#include "support/thesis.h"
 
 namespace asdic {
 namespace {
@@ -180,6 +182,70 @@ TEST(BlockNoise, BasebandHasThePressuresSpectrumAndCoherence) {
     power += double(rows[i]) * double(rows[i]) / double(many);
   const NoiseSettings settings{.spectral_level_db = {}, .law = l.law, .directions = {}};
   EXPECT_NEAR(db_from_power(power / (2.0 * noise_power(settings, 1000.0, 2000.0))), 0.0, 0.06);
+}
+
+// An array that is straight in one ping and bent in the next: the noise of each has the coherence
+// of its shape. The other shape is a wrong model that must fail.
+TEST(AmbientNoise, HasTheCoherenceOfTheShapeInEachPing) {
+  Listener l;
+  Scenario s = support::thesis(SoundSpeedProfile::isovelocity(c));
+  s.noise = {.spectral_level_db = {},
+             .law = l.law,
+             .coherence = NoiseCoherence::isotropic,
+             .directions = {}};
+  s.pings.sample_rate = l.rate;
+  const std::vector<Vec3> straight = l.phones, bent = {{0.0, 0.0, 0.0},
+                                                       {0.0, -0.4, 0.0},
+                                                       {-0.2, -0.3, 0.0},
+                                                       {-0.2, 0.05, 0.1}};
+  s.arrays[0].phones = straight;
+  s.arrays[0].shapes = {straight, bent};
+  const PropagationPaths paths(s.environment, s.transect);
+  const AmbientNoise noise(s, paths);
+  for (const int ping : {1, 2}) {
+    PingRecord record;
+    record.ping = ping;
+    record.recording.sample_rate = l.rate;
+    record.recording.samples = many;
+    record.phones.resize(4);
+    record.pressure.assign(4 * many, 0.0F);
+    noise.add(record);
+    Listener right = l, wrong = l;
+    right.phones = ping == 1 ? straight : bent;
+    wrong.phones = ping == 1 ? bent : straight;
+    EXPECT_LT(worst(right, NoiseCoherence::isotropic, record.pressure, many), limit);
+    EXPECT_GT(worst(wrong, NoiseCoherence::isotropic, record.pressure, many), limit);
+  }
+}
+
+// A towed line that goes straight on is the same line in every ping, to rounding: its noise has the
+// bits of an array that keeps that shape, and its factors are kept, not made again.
+TEST(AmbientNoise, KeepsTheFactorsOfALineThatGoesStraightOn) {
+  Scenario s = support::thesis(SoundSpeedProfile::isovelocity(c));
+  s.noise = {.spectral_level_db = {},
+             .law = KnudsenNoise{3.0},
+             .coherence = NoiseCoherence::surface,
+             .directions = {}};
+  s.platforms[0].track.start.velocity = {1.234567, 2.345678, 0.0};
+  s.arrays[0].towed = TowedLine{.behind = {0.0, 1.1, 2.3}};
+  s.arrays[0].phones = phones_at(s, 0, 1, 0.0);
+  const PropagationPaths paths(s.environment, s.transect);
+  const AmbientNoise noise(s, paths);
+  const std::size_t kept = paths.memory().bytes();
+  EXPECT_GT(kept, 0U);
+  std::vector<std::vector<float>> heard;
+  for (const double time : {0.0, 17.3}) {
+    PingRecord record;
+    record.start_time = time;
+    record.recording.sample_rate = s.pings.sample_rate;
+    record.recording.samples = 2000;
+    record.phones.resize(3);
+    record.pressure.assign(3 * 2000, 0.0F);
+    noise.add(record);
+    heard.push_back(record.pressure);
+  }
+  EXPECT_EQ(heard[0], heard[1]);
+  EXPECT_EQ(paths.memory().bytes(), kept);
 }
 
 // Cron & Sherman (1962): side by side 2ᵐ m! J_m(kd)/(kd)ᵐ; one above the other, m = 1:

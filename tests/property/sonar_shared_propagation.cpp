@@ -197,5 +197,172 @@ TEST(SharedSynthesis, NoBitChangesWhateverIsKept) {
   EXPECT_TRUE(curved);  // else nothing of this was asked
 }
 
+/// Two platforms, three boundaries and layers, laws of every kind by name.
+Scenario with_every_field() {
+  Scenario s = layered();
+  s.platforms.push_back(s.platforms[0]);
+  s.platforms[1].track.start.position = {500.0, 0.0, 300.0};
+  s.arrays[0].platform = 1;
+  s.transmitters[0].taper = Taper::hann;
+  s.reverberation.volume = {{.top = 200.0, .bottom = 240.0}};
+  s.reverberation.azimuths = 6;
+  s.pings.recording_duration = 2.5;
+  s.targets[0].track.start = {.position = {900.0, 100.0, 125.0}, .velocity = Vec3::Zero()};
+  for (Platform& platform : s.platforms) platform.track.start.velocity.setZero();
+  return s;
+}
+
+std::vector<Change> changes_of_what_is_expected() {
+  const auto nrl = [](Scenario& s) -> NrlSurface& {
+    return std::get<NrlSurface>(s.reverberation.surface);
+  };
+  const auto ellis_crowe = [](double mu, double nu, double slope) {
+    return [=](Scenario& s) {
+      s.reverberation.bottom = EllisCrowe{.mu_db = mu, .nu_db = nu, .slope_deg = slope};
+    };
+  };
+  const auto table = [](std::vector<double> grazing, std::vector<double> strength) {
+    return [=](Scenario& s) {
+      s.reverberation.bottom = ScatteringTable{.grazing = grazing, .strength_db = strength};
+    };
+  };
+  const auto projectors = [](double amplitude, double phase, double delay, double apart) {
+    return [=](Scenario& s) {
+      s.transmitters[0].projectors = {{.offset = {0.0, 0.0, apart}}, {.offset = {apart, 0.0, 0.0}}};
+      Projector& p = s.transmitters[0].projectors[1];
+      p.amplitude = amplitude, p.phase = phase, p.delay = delay;
+    };
+  };
+  const auto beam = [](double level, double elevation, double bearing) {
+    return [=](Scenario& s) {
+      s.transmitters[0].table = BeamTable{
+          .bearings = {0.0, bearing}, .elevations = {elevation}, .level_db = {0.0, level}};
+    };
+  };
+  return {
+      {"wind", [](Scenario& s) { s.wind_speed = 14.0; }},
+      {"spectral strength", [=](Scenario& s) { nrl(s).A_s *= 2.0; }},
+      {"exponent", [=](Scenario& s) { nrl(s).gamma2 = 3.5; }},
+      {"reference length", [=](Scenario& s) { nrl(s).h0 = 2.0; }},
+      {"law of the surface", [](Scenario& s) { s.reverberation.surface = ChapmanHarris{}; }},
+      {"another", [](Scenario& s) { s.reverberation.surface = OgdenErskine{}; }},
+      {"wind over another",
+       [](Scenario& s) { s.reverberation.surface = OgdenErskine{}, s.wind_speed = 14.0; }},
+      {"surface scatters", [](Scenario& s) { s.reverberation.surface_scatters = false; }},
+      {"Lambert's constant", [](Scenario& s) { s.reverberation.bottom = Lambert{-30.0}; }},
+      {"law of the bottom", ellis_crowe(-27.0, -15.0, 10.0)},
+      {"its diffuse part", ellis_crowe(-28.0, -15.0, 10.0)},
+      {"its facets", ellis_crowe(-27.0, -16.0, 10.0)},
+      {"their slope", ellis_crowe(-27.0, -15.0, 12.0)},
+      {"table", table({0.1, 1.0}, {-30.0, -20.0})},
+      {"angles of a table", table({0.1, 1.1}, {-30.0, -20.0})},
+      {"strengths of a table", table({0.1, 1.0}, {-30.0, -21.0})},
+      {"bottom scatters", [](Scenario& s) { s.reverberation.bottom.reset(); }},
+      {"strength of a layer", [](Scenario& s) { s.reverberation.volume[0].strength_db = -75.0; }},
+      {"sheets of a layer", [](Scenario& s) { s.reverberation.volume[0].sheets = 2; }},
+      {"thickness of a layer",
+       [](Scenario& s) {
+         s.reverberation.volume[0].top -= 4.0, s.reverberation.volume[0].bottom += 4.0;
+       }},
+      {"elevation", [](Scenario& s) { s.transmitters[0].elevation = 0.3; }},
+      {"beamwidth", [](Scenario& s) { s.transmitters[0].beamwidth *= 1.5; }},
+      {"taper", [](Scenario& s) { s.transmitters[0].taper = Taper::rectangular; }},
+      {"no beam", [](Scenario& s) { s.transmitters[0].taper = Taper::omnidirectional; }},
+      {"projectors", projectors(1.0, 0.0, 0.0, 0.2)},
+      {"where they are", projectors(1.0, 0.0, 0.0, 0.21)},
+      {"their amplitudes", projectors(0.9, 0.0, 0.0, 0.2)},
+      {"their phases", projectors(1.0, 0.1, 0.0, 0.2)},
+      {"their delays", projectors(1.0, 0.0, 1e-5, 0.2)},
+      {"steering of projectors",
+       [=](Scenario& s) {
+         projectors(1.0, 0.0, 0.0, 0.2)(s);
+         s.transmitters[0].bearing = 0.3;
+       }},
+      {"table of a beam", beam(-10.0, 0.0, 3.0)},
+      {"its levels", beam(-11.0, 0.0, 3.0)},
+      {"its bearings", beam(-10.0, 0.0, 2.9)},
+      {"its rows", beam(-10.0, 0.1, 3.0)},
+      {"how it is turned",
+       [=](Scenario& s) {
+         beam(-10.0, 0.0, 3.0)(s);
+         s.transmitters[0].bearing = 0.3;
+       }},
+      {"frequency", [](Scenario& s) { s.pulse.frequency = 3900.0; }},
+      {"pulse", [](Scenario& s) { s.pulse.duration = 0.12; }},
+      {"end of the record", [](Scenario& s) { s.pings.recording_duration = 2.6; }},
+      {"sectors", [](Scenario& s) { s.reverberation.azimuths = 7; }},
+      {"rings", [](Scenario& s) { s.reverberation.ground_spacing = 30.0; }},
+      {"scatterers a cell", [](Scenario& s) { s.reverberation.scatterers_per_cell = 2; }},
+      {"source", [](Scenario& s) { s.platforms[0].track.start.position.x() += 1.0; }},
+      {"receiver", [](Scenario& s) { s.platforms[1].track.start.position.y() += 1.0; }},
+      {"depth of the receiver",
+       [](Scenario& s) { s.platforms[1].track.start.position.z() += 1.0; }},
+      {"motion of the source", [](Scenario& s) { s.platforms[0].track.start.velocity.x() = 2.0; }},
+      {"motion of the receiver",
+       [](Scenario& s) { s.platforms[1].track.start.velocity.x() = 2.0; }},
+      {"the array's place",
+       [](Scenario& s) {
+         s.arrays[0].offset = {3.0, 0.0, 0.0};
+       }},
+      {"bounces", [](Scenario& s) { s.propagation.max_surface_bounces = 2; }},
+      {"water", [](Scenario& s) { s.environment.water = SoundSpeedProfile::isovelocity(1490.0); }},
+      {"bottom", [](Scenario& s) { s.environment.bottom.material = Rigid{}; }},
+  };
+}
+
+double expected_db(const PingRecord& record) { return record.summary.front().reverberation_db; }
+
+// What is expected of the reverberation (limits of what is audible, the mean level) is kept, and
+// nothing of it is used for anything else: each change alone is worked out anew, and comes out as
+// if nothing were kept; what does not enter is found again, and so is what was there first.
+TEST(SharedReverberation, EverythingThatEntersTheExpectedLevelIsPartOfItsKey) {
+  const auto shared = std::make_shared<SharedPropagation>();
+  const double first = expected_db(PingSimulator(with_every_field(), shared).levels(1));
+  for (const Change& change : changes_of_what_is_expected()) {
+    SCOPED_TRACE(change.name);
+    Scenario s = with_every_field();
+    change.make(s);
+    const PingRecord anew = PingSimulator(s, shared).levels(1);
+    EXPECT_FALSE(anew.reuse.expected_level);
+    EXPECT_EQ(expected_db(anew), expected_db(PingSimulator(s).levels(1)));
+    const PingRecord again = PingSimulator(s, shared).levels(1);
+    EXPECT_TRUE(again.reuse.expected_level);
+    EXPECT_EQ(expected_db(again), expected_db(anew));
+  }
+  const std::vector<Change> others = {
+      {"nothing", [](Scenario&) {}},
+      {"seed", [](Scenario& s) { s.seed = 77; }},
+      {"noise", [](Scenario& s) { s.noise.spectral_level_db = 55.0; }},
+      {"phones", [](Scenario& s) { s.arrays[0].phones.pop_back(); }},
+      {"statistics", [](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 0.7; }},
+      {"motion", [](Scenario& s) { s.reverberation.bottom_field.motion.speed_rms = 0.5; }}};
+  for (const Change& change : others) {
+    SCOPED_TRACE(change.name);
+    Scenario s = with_every_field();
+    change.make(s);
+    const PingRecord record = PingSimulator(s, shared).levels(1);
+    EXPECT_TRUE(record.reuse.expected_level);
+    EXPECT_EQ(expected_db(record), first);
+  }
+}
+
+// With echoes and reverberation across the band limits are others than at one frequency, and they
+// are kept apart from those.
+TEST(SharedReverberation, PointsOfTheBandArePartOfTheKey) {
+  const auto shared = std::make_shared<SharedPropagation>();
+  Scenario s = with_every_field();
+  EXPECT_FALSE(PingSimulator(s, shared).simulate(1).reuse.expected_level);
+  s.propagation.wide_band = true;
+  for (const bool known : {false, true}) {
+    const PingRecord record = PingSimulator(s, shared).simulate(1);
+    EXPECT_EQ(record.reuse.expected_level, known);
+    EXPECT_TRUE(same(record, PingSimulator(s).simulate(1)));
+  }
+  s.environment.absorption = Thorp{};
+  const PingRecord other = PingSimulator(s, shared).simulate(1);
+  EXPECT_FALSE(other.reuse.expected_level);
+  EXPECT_TRUE(same(other, PingSimulator(s).simulate(1)));
+}
+
 }  // namespace
 }  // namespace asdic

@@ -1,0 +1,198 @@
+#include "sonar/expected_reverberation.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace asdic {
+namespace {
+
+constexpr std::size_t together = 64;  // rings that one task works through
+
+/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \return what they put out, in
+/// their order
+template <class Item, class F>
+std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
+  const std::size_t visited = (rings + step - 1) / step;
+  const std::size_t tasks = (visited + together - 1) / together;
+  std::vector<std::vector<Item>> parts(tasks);
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t b) {
+    PathPairs scratch;
+    for (std::size_t i = b * together; i < std::min(visited, (b + 1) * together); ++i)
+      f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<Item> all;
+  all.reserve(total);
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
+  }
+  return all;
+}
+
+/// Rings so near each other are sampled only once that eight still lie within a stretch.
+std::uint32_t sample_step(const ScatteringField& field, double stretch) {
+  constexpr double slow_sea = 1400.0, samples = 8.0;
+  const double delay = 2.0 * field.grid.spacing / slow_sea;  // from ring to ring, at most
+  return static_cast<std::uint32_t>(std::clamp(stretch / (samples * delay), 1.0, 1e6));
+}
+
+/// A pair through the middle of a cell.
+struct Found {
+  ExpectedReverberation::Sample sample;
+  double ring_power, share;  // of a whole ring like this place; how much of it that stands for
+  double scatterers;         // of that ring
+};
+
+std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double stretch) {
+  constexpr double faintest = 1e-8;  // of the loudest pair of a place
+  std::vector<Found> all;
+  std::uint32_t first_place = 0;
+  for (const ScatteringField& field : fields) {
+    const std::vector<int> sectors = field.sample_sectors();
+    const auto count = static_cast<std::uint32_t>(sectors.size());
+    const std::uint32_t step = sample_step(field, stretch);
+    const auto found = over_rings<Found>(
+        field.grid.rings, step, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+          const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
+          for (std::uint32_t i = 0; i < count; ++i) {
+            field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs);
+            const double share = double(stands_for) / count, area = field.ring_area(ring);
+            double loudest = 0.0;
+            for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
+            for (const PathPair& pair : pairs.found) {
+              if (pair.power < faintest * loudest) continue;
+              out.push_back({{.place = first_place + ring * count + i,
+                              .delay = pair.delay,
+                              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
+                             pair.power * area,
+                             share,
+                             double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
+            }
+          }
+        });
+    first_place += field.grid.rings * count;
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+/// Below which all that is left out of a stretch is a hundred-thousandth of its power.
+std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
+  constexpr double left_out = 1e-5;
+  std::vector<double> least;
+  struct Entry {
+    std::uint32_t stretch;
+    double power, share;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(all.size());
+  for (const Found& f : all)
+    entries.push_back(
+        {static_cast<std::uint32_t>(f.sample.delay / stretch), f.ring_power, f.share});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.stretch, a.power, a.share) < std::tie(b.stretch, b.power, b.share);
+  });
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    double total = 0.0;
+    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
+      total += entries[end].power * entries[end].share;
+    std::size_t first = begin;
+    for (double dropped = 0.0; first < end; ++first) {
+      dropped += entries[first].power * entries[first].share;
+      if (dropped > left_out * total) break;
+    }
+    least.resize(entries[begin].stretch + 1, 0.0);
+    // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
+    // that lies a little nearer than its middle would be left out of this stretch for it.
+    least.back() = first > begin ? entries[first - 1].power : 0.0;
+  }
+  return least;
+}
+
+}  // namespace
+
+ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fields,
+                                             double pulse_duration) {
+  limits.stretch = 0.25 * pulse_duration;
+  const std::vector<Found> all = pairs_at_middles(fields, limits.stretch);
+  limits.least = least_power(all, limits.stretch);
+  std::vector<double> of_ring;  // returns of the field in hand
+  std::size_t next = 0;
+  std::uint32_t first_place = 0;
+  for (std::size_t field = 0; field < fields.size(); ++field) {
+    const std::uint32_t rings = fields[field].grid.rings;
+    const auto count = static_cast<std::uint32_t>(fields[field].sample_sectors().size());
+    of_ring.assign(rings, 0.0);
+    for (; next < all.size() && all[next].sample.place < first_place + rings * count; ++next) {
+      const Found& f = all[next];
+      if (f.ring_power <= limits.at(f.sample.delay)) continue;
+      samples.push_back(f.sample);
+      of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
+    }
+    // What was found at one ring belongs to those that it stands for.
+    const std::uint32_t step = sample_step(fields[field], limits.stretch);
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+      if (ring % step == 0)
+        of_ring[ring] /= std::min(step, rings - ring);
+      else
+        of_ring[ring] = of_ring[ring - ring % step];
+    first_place += rings * count;
+    cut_into_blocks(field, of_ring);
+  }
+}
+
+void ExpectedReverberation::cut_into_blocks(std::size_t field, const std::vector<double>& of_ring) {
+  constexpr double most = 4096.0;  // returns
+  double held = 0.0;
+  for (std::uint32_t ring = 0; ring < of_ring.size(); ++ring) {
+    if (ring == 0 || held + of_ring[ring] > most) {
+      blocks.push_back({.field = field, .begin = ring});
+      held = 0.0;
+    }
+    held += of_ring[ring];
+    blocks.back().end = ring + 1;
+    blocks.back().expected = static_cast<std::size_t>(std::ceil(held));
+    returns += of_ring[ring];
+  }
+}
+
+std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringField> fields,
+                                                   double pulse_duration) {
+  ExactKey key(Kept::expected_reverberation, 0);
+  key.add_all(pulse_duration, fields.size());
+  for (const ScatteringField& f : fields) {
+    // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
+    const auto& [sheet, grid, field, weights, boundary, depth, thickness, divided_below] = f;
+    const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
+    if (!sheet.add_to(key)) return std::nullopt;
+    key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, divided_below);
+  }
+  return key;
+}
+
+std::size_t ExpectedReverberation::bytes() const noexcept {
+  return sizeof *this + limits.least.capacity() * sizeof(double) +
+         samples.capacity() * sizeof(Sample) + blocks.capacity() * sizeof(Block);
+}
+
+double ExpectedReverberation::power(const Pulse& pulse, double t) const {
+  double power = 0.0;
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double since = t - samples[i].delay;
+    if (since >= 0.0 && since <= pulse.duration())
+      sum += samples[i].amplitude * pulse.analytic(since);
+    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
+      power += std::norm(sum);
+      sum = 0.0;
+    }
+  }
+  return power;
+}
+
+}  // namespace asdic

@@ -1,0 +1,51 @@
+#pragma once
+#include <complex>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sonar/propagation_memory.h"
+#include "sonar/pulse.h"
+#include "sonar/scattering_field.h"
+
+namespace asdic {
+
+/// What is known of a ping's reverberation before a weight is drawn: how faint a pair may be to be
+/// left out, the mean level, how many returns there will be. Found from pairs through the middles
+/// of cells. docs/theory/reverberation.md
+struct ExpectedReverberation {
+  /// A pair through the middle of a cell of a few sectors, for the level.
+  struct Sample {
+    std::uint32_t place = 0;  // pairs of one place add coherently
+    double delay = 0.0;
+    std::complex<double> amplitude = 0.0;  // of the area that the place stands for
+  };
+  /// Rings or sectors begin…end of a field.
+  struct Block {
+    std::size_t field = 0;
+    std::uint32_t begin = 0, end = 0;
+    std::size_t expected = 0;  ///< returns
+  };
+
+  /// \param pulse_duration  [s]
+  ExpectedReverberation(std::span<const ScatteringField> fields, double pulse_duration);
+  /// Of all that it depends on; none where a pattern has no key.
+  [[nodiscard]] static std::optional<ExactKey> key(std::span<const ScatteringField> fields,
+                                                   double pulse_duration);
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+  AudibleLimits limits;
+  std::vector<Sample> samples;
+  std::vector<Block> blocks;  ///< all rings, some thousand returns each
+  double returns = 0.0;       ///< if every scatterer is heard
+
+  /// Mean over weights of the peak envelope's square over that of the source at 1 m, at a time
+  /// since the ping [s]: Σ_cells |Σ_pairs A·D·s(t − τ)|².
+  [[nodiscard]] double power(const Pulse& pulse, double t) const;
+
+ private:
+  void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);
+};
+
+}  // namespace asdic

@@ -1,0 +1,185 @@
+// What a scenario's ships send, and the paths along which arrays hear it.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <utility>
+
+#include "sonar/geometry.h"
+#include "sonar/interference_stretch.h"
+#include "sonar/moving_paths.h"
+#include "sonar/noise_spectrum.h"
+#include "sonar/ping_bounds.h"
+#include "sonar/sampling.h"
+
+namespace asdic {
+
+double source_density(const Interferer& ship, double frequency) noexcept {
+  double level = -infinity;
+  if (ship.table)
+    level = level_db(*ship.table, frequency);
+  else if (ship.level_db)
+    level =
+        *ship.level_db + ship.slope_db_per_decade * std::log10(std::max(frequency, 100.0) / 1000.0);
+  return power_from_db(level) * micropascal * micropascal;
+}
+
+namespace {
+
+/// Frequencies between which amplitudes are straight: no path of 50 km changes by more than 0.3
+/// neper from one to the next, so that in the middle it is right to 0.3²/8 = 0.1 dB.
+std::vector<double> frequencies_of_losses(const Environment& ocean, double low, double high) {
+  constexpr double longest = 50e3, straight = 0.3;
+  constexpr int fewest = 3, most = 17;
+  const double depth = 0.0;
+  const double change = longest * (attenuation_np_per_m(ocean, high).at(depth) -
+                                   attenuation_np_per_m(ocean, low).at(depth));
+  const int stretches = static_cast<int>(
+      std::clamp(std::ceil(std::abs(change) / straight), double(fewest - 1), double(most - 1)));
+  std::vector<double> all;
+  for (int i = 0; i <= stretches; ++i) all.push_back(low + (high - low) * i / stretches);
+  return all;
+}
+
+/// The share of a frequency that belongs to node k: 1 there, straight to 0 at its neighbours.
+double hat(const std::vector<double>& nodes, std::size_t k, double f) {
+  if (k > 0 && f < nodes[k]) return std::max(0.0, (f - nodes[k - 1]) / (nodes[k] - nodes[k - 1]));
+  if (k + 1 < nodes.size() && f > nodes[k])
+    return std::max(0.0, (nodes[k + 1] - f) / (nodes[k + 1] - nodes[k]));
+  return 1.0;
+}
+
+}  // namespace
+
+Interference::Interference(const Scenario& scenario, const PropagationPaths& paths)
+    : scenario_(scenario),
+      paths_(paths),
+      frequency_(scenario.interferers.empty() ? 0.0
+                                              : Pulse(pulse_of(scenario, 0)).centre_frequency()),
+      rate_(recorded_rate(scenario)),
+      carrier_(recorded_carrier(scenario)),
+      // Twice oversampled, for the interpolation: the band is half of the rate.
+      source_rate_(carrier_ > 0.0 ? 2.0 * rate_ : rate_),
+      source_carrier_(carrier_ > 0.0 ? carrier_ : 0.25 * rate_) {
+  double fastest_platform = 0.0;
+  for (const Platform& p : scenario.platforms)
+    fastest_platform = std::max(fastest_platform, fastest(p.track));
+  if (scenario.propagation.wide_band && !scenario.interferers.empty()) {
+    const double high = source_carrier_ + 0.25 * source_rate_;
+    band_ = frequencies_of_losses(
+        scenario.environment, std::max(source_carrier_ - 0.25 * source_rate_, 0.01 * high), high);
+  }
+  for (std::size_t i = 0; i < scenario.interferers.size(); ++i) {
+    const Interferer& ship = scenario.interferers[i];
+    // What Doppler would shift out of the band is left out.
+    const double doppler = (fastest(ship.track) + fastest_platform) / 1300.0;
+    const double low = std::max(0.0, source_carrier_ - 0.25 * source_rate_) * (1.0 + doppler),
+                 high = (source_carrier_ + 0.25 * source_rate_) * (1.0 - doppler);
+    const std::array<Vec3, 1> point = {Vec3::Zero()};
+    for (std::size_t k = 0; k < std::max<std::size_t>(1, band_.size()); ++k)
+      sources_.emplace_back(
+          [&](double f) {
+            const double share = band_.empty() ? 1.0 : hat(band_, k, f);
+            return f >= low && f <= high ? share * share * source_density(ship, f) : 0.0;
+          },
+          source_rate_, source_carrier_, point, NoiseCoherence::independent, NoiseDirections{},
+          1500.0, NoiseKey{.seed = scenario.seed, .purpose = Draw::ship_noise, .first_channel = i});
+  }
+}
+
+/// Paths that arrive at a time, delays those from where the ship was when each left it.
+std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, int array,
+                                                        double time, bool across_the_band) const {
+  const Kinematics receiver = array_at(scenario_, array, time);
+  const PathLimits limits = limits_of(scenario_.propagation);
+  double left = time;
+  Arrivals found;
+  Kinematics source;
+  for (int i = 0; i < 4; ++i) {  // each round gains a factor v/c
+    source = ship.track.at(left);
+    found = paths_.find(source.position, receiver.position, frequency_, limits);
+    if (found.empty() || source.velocity.isZero()) break;
+    const double before = std::exchange(left, time - found.front().delay);
+    if (std::abs(left - before) < 1e-7) break;
+  }
+  const Separation way = separation(source.position, receiver.position);
+  const double c_source = paths_.speed_at(source.position),
+               c_array = paths_.speed_at(receiver.position);
+  std::vector<Arrivals> at_frequencies;
+  if (across_the_band)
+    for (const double f : band_)
+      at_frequencies.push_back(paths_.find(source.position, receiver.position, f, limits));
+  std::vector<Heard> heard;
+  for (const Arrival& path : found) {
+    const Vec3 leaving = slowness_vector(way.bearing, path.launch_elevation, c_source);
+    const Vec3 arriving = slowness_vector(way.bearing, path.arrival_elevation, c_array);
+    // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
+    const double along = leaving.dot(source.velocity);
+    const double delay = (path.delay - along * (time - left)) / (1.0 - along);
+    Heard one{.path = {.array = array,
+                       .delay = delay,
+                       .doppler = (1.0 - arriving.dot(receiver.velocity)) / (1.0 - along),
+                       .range = way.range,
+                       .bearing = way.bearing,
+                       .slowness = arriving,
+                       .moveout = arriving / (1.0 - along),
+                       .path = path},
+              .band = {}};
+    for (const Arrivals& arrivals : at_frequencies) {
+      const Arrival* same = same_path(arrivals, path, paths_.layered());
+      one.band.push_back(same == nullptr ? 0.0 : same->amplitude);
+    }
+    heard.push_back(std::move(one));
+  }
+  return heard;
+}
+
+std::vector<Interference::Stretch> Interference::stretches(const Interferer& ship, int array,
+                                                           const Clock& clock) const {
+  const std::int64_t from = floor_div(clock.first, clock.node),
+                     to = floor_div(clock.first + clock.samples - 1, clock.node);
+  const auto count = static_cast<std::size_t>(to - from + 2);
+  const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
+  std::vector<std::vector<Heard>> nodes(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    nodes[i] = heard_at(ship, array, clock.time((from + static_cast<std::int64_t>(i)) * clock.node),
+                        across_the_band);
+  });
+  std::vector<Stretch> all;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;
+    std::vector<bool> taken(nodes[i + 1].size(), false);
+    const auto times = [](double there, std::vector<std::complex<double>> amplitudes) {
+      for (std::complex<double>& amplitude : amplitudes) amplitude *= there;
+      return amplitudes;
+    };
+    const auto add = [&](const Heard& one, const Heard& other, double a_there, double b_there) {
+      const HeardPath &a = one.path, &b = other.path;
+      all.push_back({.begin = begin,
+                     .delay = {a.delay, b.delay},
+                     .length = {a.path.path_length, b.path.path_length},
+                     .amplitude = {a_there * a.path.amplitude, b_there * b.path.amplitude},
+                     .band = {times(a_there, one.band), times(b_there, other.band)},
+                     .moveout = {a.moveout, b.moveout}});
+    };
+    Arrivals next;
+    for (const Heard& one : nodes[i + 1]) next.push_back(one.path.path);
+    for (const Heard& one : nodes[i]) {
+      const Arrival* same = same_path(next, one.path.path, paths_.layered());
+      const auto at = same == nullptr ? next.size() : static_cast<std::size_t>(same - next.data());
+      if (at < next.size() && !taken[at]) {
+        taken[at] = true;
+        add(one, nodes[i + 1][at], 1.0, 1.0);
+      } else {
+        add(one, one, 1.0, 0.0);
+      }
+    }
+    for (std::size_t j = 0; j < next.size(); ++j)
+      if (!taken[j]) add(nodes[i + 1][j], nodes[i + 1][j], 0.0, 1.0);
+  }
+  return all;
+}
+
+}  // namespace asdic

@@ -1,0 +1,71 @@
+// What a record gets that does not come of a ping (PingSimulator::complete).
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "sonar/ping.h"
+#include "sonar/stopwatch.h"
+
+namespace asdic {
+
+/// Noise and ships at the phones in samples first … of a record that may lie outside of it.
+std::vector<float> PingSimulator::surroundings(const PingRecord& record, std::int64_t first,
+                                               std::int64_t samples) const {
+  PingRecord part;
+  part.ping = record.ping;
+  part.start_time = record.start_time;
+  part.recording = record.recording;
+  part.recording.samples = static_cast<std::size_t>(samples);
+  part.phones = record.phones;
+  part.pressure.assign(part.phones.size() * part.recording.samples * part.recording.components(),
+                       0.0F);
+  interference_.add(part, first);
+  noise_.add(part, first);
+  return std::move(part.pressure);
+}
+
+void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* carried) const {
+  Stopwatch watch;
+  if (receivers_.is_flat()) {
+    interference_.add(record);
+    noise_.add(record);
+  } else {  // the sound of the ping has passed the receivers; this has to as well
+    std::vector<float> heard =
+        std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
+    const auto ahead = static_cast<std::int64_t>(receivers_.ahead(record.recording));
+    ReceiverElectronics::Carried own;
+    if (carried == nullptr) carried = &own;
+    if (carried->empty()) *carried = surroundings(record, -ahead, 2 * ahead);
+    interference_.add(record, ahead);
+    noise_.add(record, ahead);
+    receivers_.respond(record.pressure, record.recording, *carried);
+    std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
+                   std::plus<>{});
+  }
+  if (scenario_.pings.blanking) blank(record);
+  receivers_.convert(record.pressure, record.recording);
+  record.timings.noise += watch.lap();
+}
+
+/// Nothing is heard on the transmitter's own platform until the pulse has left.
+void PingSimulator::blank(PingRecord& record) const {
+  const Recording& recording = record.recording;
+  const double sent = pulse(record.transmitter).duration() - recording.start;
+  const auto deaf = static_cast<std::ptrdiff_t>(
+      recording.components() *
+      std::min(recording.samples,
+               static_cast<std::size_t>(std::ceil(std::max(0.0, sent * recording.sample_rate)))));
+  const int carrier = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)].platform;
+  const std::size_t row = recording.samples * recording.components();
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    if (scenario_.arrays[a].platform != carrier) continue;
+    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
+    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
+      const auto begin = record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
+      std::fill(begin, begin + deaf, 0.0F);
+    }
+  }
+}
+
+}  // namespace asdic

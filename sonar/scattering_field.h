@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "reverb/scatterer_field.h"
+#include "sonar/reverberation_settings.h"
+#include "sonar/scattering_sheet.h"
+
+namespace asdic {
+
+/// The scatterers of one boundary or layer, as one ping meets them.
+struct ScatteringField {
+  ScatteringSheet sheet;
+  ScattererGrid grid;
+  ScattererField field;  ///< motion and statistics
+  Draw weights;          ///< purpose of their draws
+  std::uint64_t boundary = 0;
+  double depth = 0.0;               ///< near the ends [m]
+  double thickness = 0.0;           ///< of a sheet of the volume [m]
+  double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
+
+  [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]
+  /// Of a sector's middle, clockwise from north [rad].
+  [[nodiscard]] double bearing(int sector) const noexcept;
+  /// The middle of a cell [m].
+  [[nodiscard]] Vec2 centre(std::uint32_t ring, int sector) const noexcept;
+  /// The same at every bearing: not where a platform has left the anchor behind, since rings around
+  /// it are not hers then.
+  [[nodiscard]] bool all_round() const noexcept;
+  /// Scatterers of a cell. It is seen from source and receiver under no more than twice the angle
+  /// of a sector: near them, far from the anchor, it is divided.
+  [[nodiscard]] std::uint32_t copies_of(std::uint32_t ring, int sector) const;
+  /// The sectors in whose middle pairs are looked at where not every scatterer is.
+  [[nodiscard]] std::vector<int> sample_sectors() const;
+};
+
+}  // namespace asdic
