@@ -146,7 +146,7 @@ template <bool flat, class Law>
 class Expansion {
  public:
   Expansion(const Law& law, const Row& row, double wanted, PowerSeries& y) noexcept
-      : law_(law), row_(row), wanted_(wanted), y_(y) {
+      : row_(row), wanted_(wanted), y_(y), law_(law) {
     q_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q]));
     plane_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q_plane]));
     take(0);
@@ -219,16 +219,16 @@ class Expansion {
     return true;
   }
 
-  Law law_;
-  const Row& row_;
-  double wanted_;
-  PowerSeries& y_;
-  Water w_;
   alignas(32) FourSeries turned_;  // (t_z, −t_r, P, P)
   alignas(32) FourSeries rates_;   // (c_n, c_n, c_s, c_s)
   alignas(32) FourSeries bends_;   // (0, 0, −c_nn, −c_nn)
+  const Row& row_;
+  double wanted_;
+  PowerSeries& y_;
   double q_weight_ = 1.0, plane_weight_ = 1.0;
   double power_ = 1.0, last_ = 0.0, before_ = 0.0;  // the last two terms, weighted, without powers
+  Law law_;
+  Water w_;
 };
 
 }  // namespace

@@ -209,7 +209,8 @@ void RayFamily::complete(double angle, ExactCrossing& there) const noexcept {
 void RayFamily::bounces(double angle, const FamilyRays& rays, std::vector<Bounce>& out) const {
   const Weights w = weights_at((angle - from_) / width_);
   const RayHistory& history = known_[0].history;
-  const auto count = static_cast<std::size_t>(history.surface_bounces + history.bottom_bounces);
+  const int bounced = history.surface_bounces + history.bottom_bounces;
+  const auto count = static_cast<std::size_t>(bounced);
   out.resize(count);
   for (std::size_t k = 0; k < count; ++k) {
     out[k].boundary = rays[0]->ray.bounces[k].boundary;
