@@ -53,7 +53,7 @@ void add_threads_option(CLI::App& command, std::optional<int>& threads) {
       .add_option("--threads", threads,
                   "that compute; default: one a core. The results do not depend on it")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024, "a number"));
 }
 
 CLI::Validator above_zero() {
@@ -65,6 +65,20 @@ CLI::Validator above_zero() {
                    : "found " + text + ", expected a number above 0";
       },
       "ABOVE 0");
+}
+
+CLI::Validator whole_number(int low, int high, const std::string& noun) {
+  return CLI::Validator(
+      [low, high, noun](const std::string& text) {
+        int value = 0;
+        const char* const last = text.data() + text.size();
+        const auto [end, error] = std::from_chars(text.data(), last, value);
+        const bool good = error == std::errc{} && end == last && value >= low && value <= high;
+        return good ? std::string()
+                    : "found " + text + ", expected " + noun + " from " + std::to_string(low) +
+                          " to " + std::to_string(high);
+      },
+      std::to_string(low) + " TO " + std::to_string(high));
 }
 
 }  // namespace asdic::app

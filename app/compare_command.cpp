@@ -162,7 +162,8 @@ void draw(const Options& options) {
 }
 
 int compare_files(const Options& options) {
-  const CompareResult result = compared(options, read_result(options.a), read_result(options.b));
+  const PropagationFile a = read_result(options.a), b = read_result(options.b);
+  const CompareResult result = compared(options, a, b);
   print(options.json ? comparison_json(result) : comparison_table(result));
   if (!options.picture.empty()) draw(options);
   return result.within ? 0 : 1;

@@ -81,7 +81,7 @@ int merge(const Options& options) {
   const study::MergeReport report = study::merge(
       parts, options.output,
       [&](const study::Imprint&, const study::Table& table) {
-        return study::summarise(study, table);
+        return study::summary_of(study, table);
       },
       how);
   for (const std::string& warning : report.warnings) print("warning: " + warning + '\n');

@@ -36,12 +36,18 @@ std::string folder_beside(const std::filesystem::path& file) {
 }
 
 int plot(const Options& options) {
+  std::error_code error;
+  if (!std::filesystem::exists(options.file, error))
+    throw InputError({.where = options.file,
+                      .got = "no such file",
+                      .expected = "a file to draw: HDF5 of asdic ping, study, merge, field, "
+                                  "arrivals or rays, or .shd, .arr, .ray"});
   const TemporaryFolder folder;
   std::filesystem::path file = options.file;
   std::string pictures = options.folder;
   std::vector<std::string> words;
   if (is_study_file(options.file)) {
-    static_cast<void>(study::StudyFile(options.file));
+    study::StudyFile(options.file).check_parts();
   } else if (is_ping_file(options.file)) {
     static_cast<void>(PingFile(options.file));
   } else {

@@ -92,7 +92,8 @@ void add_serve_command(CLI::App& program, Action& action) {
       ->add_option("--tcp", options->port,
                    "port of 127.0.0.1 to listen on, 0 for a free one; clients need a token, which "
                    "is in --token-file, in the variable ASDIC_TOKEN, or made and printed")
-      ->type_name("PORT");
+      ->type_name("PORT")
+      ->check(whole_number(0, 65535, "a port"));
   command->add_option("--token-file", options->token_file, "file whose first line is the token")
       ->type_name("FILE");
   command

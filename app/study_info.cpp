@@ -71,6 +71,7 @@ bool is_study_file(const std::string& path) {
 
 int study_info(const std::string& path) {
   const study::StudyFile file(path);
+  file.check_parts();
   const study::Imprint& imprint = file.imprint();
   const study::Table table = file.table();
   const auto valid =

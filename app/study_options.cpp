@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "app/console.h"
@@ -85,6 +86,25 @@ StudyOrder order_of(const StudyOptions& options) {
   return order;
 }
 
+namespace {
+
+/// "study.h5.journal holds them"; of ranks of MPI, "study.h5.rank*.journal hold them".
+std::string journals_hold(const std::filesystem::path& output) {
+  const auto journals = study::journals_of(output);
+  if (journals.size() == 1) return journals.front().string() + " holds them";
+  const bool ranks_alone =
+      std::find(journals.begin(), journals.end(), study::journal_of(output)) == journals.end();
+  return output.string() + (ranks_alone ? ".rank*.journal" : "*.journal") + " hold them";
+}
+
+/// "4 threads"; "4 ranks of 1 thread"
+std::string workers(const StudyOrder& order) {
+  const std::string threads = count_of(static_cast<std::size_t>(order.threads), "thread");
+  return order.ranks == 1 ? threads : fmt::format("{} ranks of {}", order.ranks, threads);
+}
+
+}  // namespace
+
 int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet,
            double seconds) {
   const std::string file = order.run.output.string();
@@ -94,9 +114,9 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
                       count_of(outcome.damaged, "realisation")));
   if (!outcome.warning.empty()) print("warning: " + outcome.warning + '\n');
   if (!outcome.written)
-    throw RunError(fmt::format(
-        "interrupted after {} of {}; {}.journal holds them, and the same command goes on", there,
-        count_of(outcome.total, "realisation"), file));
+    throw RunError(fmt::format("interrupted after {} of {}; {}, and the same command goes on",
+                               there, count_of(outcome.total, "realisation"),
+                               journals_hold(order.run.output)));
   if (quiet) return 0;
   if (outcome.was_complete) {
     print(fmt::format("{}: complete already, nothing to do; --fresh begins anew\n", file));
@@ -107,8 +127,10 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   print(fmt::format("{} in {}", count_of(outcome.made, "realisation"), duration(seconds)));
   if (outcome.made > 0)
     print(fmt::format(": {:.3g}/s on {}", static_cast<double>(outcome.made) / seconds,
-                      count_of(static_cast<std::size_t>(order.threads), "thread")));
+                      workers(order)));
   print("\n");
+  if (outcome.skipped > 0)
+    print(fmt::format("{} of them skipped; /faults in the file says why\n", outcome.skipped));
   if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
   if (outcome.stopped_early)
     print(fmt::format("enough after {}\n", count_of(outcome.range.size(), "realisation")));

@@ -27,7 +27,8 @@ void add_study_options(CLI::App& command, StudyOptions& options);
 struct StudyOrder {
   study::Study study;
   study::StudyRun run;
-  int threads = 1;
+  int threads = 1;  ///< of each rank
+  int ranks = 1;    ///< of MPI
 };
 
 /// \throws InputError for a study or options that are wrong

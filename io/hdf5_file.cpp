@@ -12,73 +12,6 @@
 #include "io/hdf5/handles.h"
 
 namespace asdic {
-namespace hdf5 {
-
-namespace {
-// Once a write has failed (disk full), HDF5 1.10 crashes when it closes the file, at exit too if
-// left to itself. Files are closed by Hdf5File, so nothing is left to do at exit. It must be said
-// before anybody (netCDF) uses the library: hence before main().
-[[maybe_unused]] const herr_t nothing_at_exit = H5dont_atexit();
-}  // namespace
-
-void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-std::string last_message() {
-  std::vector<std::string> messages;  // innermost first
-  const auto collect = [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
-    if (error->desc != nullptr && *error->desc != '\0')
-      static_cast<std::vector<std::string>*>(into)->emplace_back(error->desc);
-    return 0;
-  };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &messages);
-  if (messages.empty()) return "HDF5 gives no reason";
-  // "file write failed: time = …, errno = 28, error message = 'No space left on device', buf = …"
-  const std::string& inner = messages.front();
-  constexpr std::string_view mark = "error message = '";
-  if (const auto at = inner.find(mark); at != std::string::npos) {
-    const auto begin = at + mark.size();
-    const std::string system = inner.substr(begin, inner.find('\'', begin) - begin);
-    const std::string full = system.starts_with("No space left") ? "the disk is full: " : "";
-    return full + system + " (HDF5: " + inner.substr(0, inner.find(':')) + ")";
-  }
-  return inner == messages.back() ? inner : inner + "; " + messages.back();
-}
-
-template <>
-std::int64_t native_type<std::int8_t>() {
-  return H5T_NATIVE_INT8;
-}
-template <>
-std::int64_t native_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-std::int64_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-std::int64_t native_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-std::int64_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-Handle make_parents() {
-  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(list, 1);
-  H5Pset_char_encoding(list, H5T_CSET_UTF8);
-  return list;
-}
-
-void fail(const std::filesystem::path& file, const std::string& object, const std::string& action) {
-  std::string text = file.string() + ": ";
-  if (!object.empty()) text += object + ": ";
-  throw RunError(text + action + " failed: " + last_message());
-}
-
-}  // namespace hdf5
 
 namespace {
 
@@ -203,77 +136,6 @@ void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
   impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer), dataset, "writing");
 }
 
-template <class T>
-void Hdf5File::create_growing(const std::string& dataset, const Shape& row, std::size_t chunk_rows,
-                              int deflate) {
-  Shape chunk{chunk_rows};
-  chunk.insert(chunk.end(), row.begin(), row.end());
-  create_growing<T>(dataset, row, chunk, deflate);
-}
-
-template <class T>
-void Hdf5File::create_growing(const std::string& dataset, const Shape& row, const Shape& chunk,
-                              int deflate) {
-  std::vector<hsize_t> size{0}, most{H5S_UNLIMITED};
-  for (const std::size_t n : row) {
-    size.push_back(n);
-    most.push_back(n);
-  }
-  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()),
-                     H5Sclose);
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_chunk(properties, static_cast<int>(chunk.size()), dims(chunk).data());
-  if (deflate > 0) H5Pset_deflate(properties, static_cast<unsigned>(deflate));
-  const Handle parents = make_parents();
-  const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), native_type<T>(), space,
-                                          parents, properties, H5P_DEFAULT),
-                               dataset, "creating the dataset"),
-                  H5Dclose);
-}
-
-template <class T>
-void Hdf5File::append(const std::string& dataset, std::span<const T> values) {
-  if (values.empty()) return;
-  const Handle id = impl_->open_dataset(dataset);
-  Shape shape = impl_->shape_of(id, dataset);
-  Shape block(shape);
-  block[0] = 1;
-  const std::size_t row = product(block);
-  if (row == 0 || values.size() % row != 0)
-    throw std::logic_error(dataset + ": not a whole number of rows");
-  block[0] = values.size() / row;
-  std::vector<hsize_t> start(shape.size(), 0);
-  start[0] = shape[0];
-  shape[0] += block[0];
-  impl_->check(H5Dset_extent(id, dims(shape).data()), dataset, "growing");
-  const Handle space(H5Dget_space(id), H5Sclose);
-  const auto count = dims(block);
-  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
-                      H5Sclose);
-  impl_->check(H5Dwrite(id, native_type<T>(), memory, space, H5P_DEFAULT, values.data()), dataset,
-               "writing");
-}
-
-template <class T>
-void Hdf5File::append_padded(const std::string& dataset, std::span<const T> values,
-                             std::size_t length) {
-  Shape shape;
-  {
-    const Handle id = impl_->open_dataset(dataset);
-    shape = impl_->shape_of(id, dataset);
-  }
-  const std::size_t full = shape.back();
-  if (length == full) return append(dataset, values);
-  if (length > full || length == 0 || values.size() % length != 0)
-    throw std::logic_error(dataset + ": lines longer than the dataset's");
-  std::vector<T> padded(values.size() / length * full, T{});
-  for (std::size_t line = 0; line < values.size() / length; ++line)
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(line * length), length,
-                padded.begin() + static_cast<std::ptrdiff_t>(line * full));
-  append<T>(dataset, padded);
-}
-
 void Hdf5File::make_scale(const std::string& dataset, const std::string& dimension) {
   const Handle id = impl_->open_dataset(dataset);
   impl_->check(H5DSset_scale(id, dimension.c_str()), dataset, "making a scale");
@@ -326,13 +188,9 @@ std::vector<T> Hdf5File::read(const std::string& dataset, const Shape& start,
   return values;
 }
 
-#define ASDIC_HDF5_ELEMENT(T)                                                                     \
-  template void Hdf5File::write<T>(const std::string&, std::span<const T>, const Shape&);         \
-  template void Hdf5File::create_growing<T>(const std::string&, const Shape&, std::size_t, int);  \
-  template void Hdf5File::create_growing<T>(const std::string&, const Shape&, const Shape&, int); \
-  template void Hdf5File::append<T>(const std::string&, std::span<const T>);                      \
-  template void Hdf5File::append_padded<T>(const std::string&, std::span<const T>, std::size_t);  \
-  template std::vector<T> Hdf5File::read<T>(const std::string&) const;                            \
+#define ASDIC_HDF5_ELEMENT(T)                                                             \
+  template void Hdf5File::write<T>(const std::string&, std::span<const T>, const Shape&); \
+  template std::vector<T> Hdf5File::read<T>(const std::string&) const;                    \
   template std::vector<T> Hdf5File::read<T>(const std::string&, const Shape&, const Shape&) const;
 ASDIC_HDF5_ELEMENT(std::int8_t)
 ASDIC_HDF5_ELEMENT(std::int32_t)

@@ -100,6 +100,9 @@ class Hdf5File {
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] std::vector<DatasetInfo> datasets() const;  ///< all, sorted by path
   [[nodiscard]] DatasetInfo info(const std::string& dataset) const;
+  /// The files of whose rows a virtual dataset is made, each once, in its order, as they are named
+  /// there; {} for one that holds its own.
+  [[nodiscard]] std::vector<std::filesystem::path> virtual_files(const std::string& dataset) const;
   template <class T>
   [[nodiscard]] std::vector<T> read(const std::string& dataset) const;
   /// A block. \param start, count  one number per dimension

@@ -25,6 +25,13 @@ class Refused(Exception):
         self.code = error.get("code")
 
 
+def _plain(value):
+    """Arrays and numbers of numpy, as fixes of a vehicle often are."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} cannot be sent")
+
+
 class Ping:
     """A ping's answer, and its samples if they came with it.
 
@@ -83,9 +90,9 @@ class Client:
 
         try:
             client = cls(process.stdout, process.stdin, close=(End,), **options)
-        except (ConnectionError, BrokenPipeError):
-            process.wait()
-            raise
+        except ConnectionError:
+            raise ConnectionError(f"{program} serve has ended with status {process.wait()}; its "
+                                  "standard error says why") from None
         client.process = process
         return client
 
@@ -151,7 +158,8 @@ class Client:
         return answer, samples
 
     def _write(self, message):
-        self._writer.write(json.dumps(message, allow_nan=False).encode() + b"\n")
+        line = json.dumps(message, allow_nan=False, default=_plain)
+        self._writer.write(line.encode() + b"\n")
         self._writer.flush()
 
     def close(self):

@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 5> kinds{"ping", "update", "state", "limits", "quit"};
 constexpr std::size_t longest_id = 128;  // bytes of JSON
 constexpr std::size_t longest_name = 64;
+constexpr const char* one_object = "one JSON object a line";
 
 bool plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -26,13 +27,14 @@ bool plain(char c) {
 /// Watches a text while it is parsed: so nothing deep is ever built.
 class Watch {
  public:
-  explicit Watch(std::size_t nesting) : nesting_(nesting) {}
+  /// \param at  the key that was last read, for messages; outlives this
+  Watch(std::size_t nesting, std::string& at) : nesting_(nesting), at_(at) {}
 
   bool operator()(int, Json::parse_event_t event, Json& parsed) {
     using Event = Json::parse_event_t;
     if (event == Event::object_start || event == Event::array_start) {
       if (open_.size() == nesting_)
-        throw Refusal("limit", refusal_text("", "deeper nesting",
+        throw Refusal("limit", refusal_text(at_, "deeper nesting",
                                             "at most " + std::to_string(nesting_) + " levels"));
       open_.emplace_back();
     } else if (event == Event::object_end || event == Event::array_end) {
@@ -41,32 +43,36 @@ class Watch {
       const auto& name = parsed.get_ref<const std::string&>();
       if (name.empty() || name.size() > longest_name ||
           !std::all_of(name.begin(), name.end(), plain))
-        throw Refusal("json", "expected keys of 1 to 64 letters, digits and \"_\"");
+        throw Refusal(
+            "json", refusal_text(at_, "another key", "keys of 1 to 64 letters, digits and \"_\""));
       if (!open_.back().insert(name).second)
         throw Refusal("json", refusal_text(name, "the key twice", "every key once"));
+      at_ = name;
     }
     return true;
   }
 
  private:
   std::size_t nesting_;
+  std::string& at_;
   std::vector<std::set<std::string>> open_;  // the keys of each level that is open
 };
 
 Json parse(std::string_view line, const SessionLimits& limits) {
   if (line.size() > limits.line_bytes)
     throw Refusal("limit",
-                  refusal_text("", "a longer line",
+                  refusal_text("line", "a longer one",
                                "at most " + std::to_string(limits.line_bytes) + " bytes a line"));
+  std::string at = "line";  // where it goes wrong
   try {
-    Json all = Json::parse(line, Watch(limits.nesting));
-    if (!all.is_object()) throw Refusal("json", "expected one JSON object a line");
+    Json all = Json::parse(line, Watch(limits.nesting, at));
+    if (!all.is_object())
+      throw Refusal("json", refusal_text("line", std::string(all.type_name()), one_object));
     return all;
   } catch (const Json::out_of_range&) {  // 1e999
-    throw Refusal("json", refusal_text("", "a number that is not finite", "finite numbers"));
+    throw Refusal("json", refusal_text(at, "a number that is not finite", "finite numbers"));
   } catch (const Json::exception&) {
-    throw Refusal("json",
-                  refusal_text("", "text that is no JSON in UTF-8", "one JSON object a line"));
+    throw Refusal("json", refusal_text("line", "text that is no JSON in UTF-8", one_object));
   }
 }
 
@@ -114,9 +120,12 @@ std::string checked_id(const Json& all) {
   const auto found = all.find("id");
   if (found == all.end()) return "null";
   if (!(found->is_number() || found->is_string() || found->is_null()))
-    throw Refusal("command", "id: expected a number or a string");
+    throw Refusal("command",
+                  refusal_text("id", std::string(found->type_name()), "a number or a string"));
   std::string id = found->dump();
-  if (id.size() > longest_id) throw Refusal("command", "id: expected at most 128 bytes");
+  if (id.size() > longest_id)
+    throw Refusal("command", refusal_text("id", std::to_string(id.size()) + " bytes",
+                                          "at most " + std::to_string(longest_id)));
   return id;
 }
 
@@ -124,7 +133,10 @@ CommandKind checked_kind(const Json& all) {
   const std::string expected = "\"ping\", \"update\", \"state\", \"limits\" or \"quit\"";
   const auto found = all.find("command");
   if (found == all.end() || !found->is_string())
-    throw Refusal("command", refusal_text("command", "", expected));
+    throw Refusal(
+        "command",
+        refusal_text("command", found == all.end() ? "nothing" : std::string(found->type_name()),
+                     expected));
   const auto& name = found->get_ref<const std::string&>();
   for (std::size_t i = 0; i < kinds.size(); ++i)
     if (kinds[i] == name) return static_cast<CommandKind>(i);
@@ -157,7 +169,7 @@ std::string id_of(std::string_view line, const SessionLimits& limits) {
 }
 
 Handshake read_handshake(std::string_view line) {
-  const Refusal wrong("handshake", R"(expected a first line {"asdic": 1})");
+  const Refusal wrong("handshake", refusal_text("first line", "another", R"({"asdic": 1})"));
   SessionLimits strict;
   strict.line_bytes = 4096;
   strict.nesting = 2;

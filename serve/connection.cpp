@@ -6,10 +6,10 @@
 #include <asio.hpp>
 #include <chrono>
 
+#include "serve/connection_words.h"
 #include "serve/line_splitter.h"
 #include "serve/outbox.h"
 #include "serve/refusal.h"
-#include "serve/token.h"
 
 namespace asdic::serve {
 
@@ -40,6 +40,8 @@ class Connection::Impl {
     tick();
     process();
   }
+
+  [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
 
   void turn_away(const std::string& code, const std::string& message) {
     tick();
@@ -86,51 +88,37 @@ class Connection::Impl {
   void take(const LineSplitter::Line& line) {
     active_ = engine_.clock();
     if (!worker_) return shake_hands(line);
+    if (line.too_long) return send(line_too_long(limits_));
     try {
-      if (line.too_long)
-        throw Refusal("limit", refusal_text("", "a longer line",
-                                            "at most " + std::to_string(limits_.line_bytes) +
-                                                " bytes a line"));
       Command command = read_command(line.text, limits_);
       command.received = active_;
       const std::string id = command.id;
       if (worker_->offer(std::move(command))) return;
-      send(refusal_answer(id, "busy",
-                          "found " + std::to_string(limits_.queued_pings) +
-                              " commands waiting, expected fewer: wait for an answer"));
+      send(queue_full(id, limits_));
     } catch (const Refusal& refusal) {
-      send(refusal_answer(line.too_long ? "null" : id_of(line.text, limits_), refusal.code(),
-                          refusal.what()));
+      send(refusal_answer(id_of(line.text, limits_), refusal.code(), refusal.what()));
     }
   }
 
   void shake_hands(const LineSplitter::Line& line) {
     try {
-      const Handshake shake = read_handshake(line.text);
-      if (!ends_.token.empty() && !same_secret(shake.token, ends_.token))
-        throw Refusal("token", "expected the server's token");
-      waits_ = shake.waits;
+      waits_ = checked_handshake(line.text, ends_.token).waits;
     } catch (const Refusal& refusal) {
+      refused_ = refusal.what();
       return end_with(refusal_answer("null", refusal.code(), refusal.what(), true));
     }
     splitter_.set_longest(limits_.line_bytes);
     worker_ = std::make_unique<SessionWorker>(
         engine_,
         SessionWorker::Ways{.deliver = [this](Answer answer) { deliver(std::move(answer)); },
-                            .goes_on = [this] { post([this] { process(); }); },
+                            .goes_on = [this] { asio::post(io_, [this] { process(); }); },
                             .behind = [this] { return behind(); },
-                            .done = [this] { post([this] { session_is_over(); }); }});
-  }
-
-  /// From the session's thread into this one.
-  template <class Work>
-  void post(Work work) {
-    asio::post(io_, std::move(work));
+                            .done = [this] { asio::post(io_, [this] { session_is_over(); }); }});
   }
 
   void deliver(Answer answer) {
     outbox_.expect(answer);
-    post([this, answer = std::move(answer)]() mutable { queue_up(std::move(answer)); });
+    asio::post(io_, [this, answer = std::move(answer)]() mutable { queue_up(std::move(answer)); });
   }
 
   void session_is_over() {
@@ -247,13 +235,14 @@ class Connection::Impl {
       } else if (stopping_ && !outbox_.empty() && silent > last_words) {
         give_up();
       } else if (ends_.socket && !worker_ && !closing_) {
-        if (silent > double(limits_.handshake_seconds))
-          end_with(refusal_answer("null", "handshake", "expected a handshake sooner", true));
+        if (silent > double(limits_.handshake_seconds)) end_with(handshake_too_late(limits_));
       } else if (ends_.socket && silent > double(limits_.idle_seconds)) {
-        if (!outbox_.empty())
+        if (!outbox_.empty()) {
           give_up();
-        else if (worker_->idle() && !closing_)
-          say_idle();
+        } else if (worker_->idle() && !closing_) {
+          send(idle_too_long(limits_));
+          reading_is_over();
+        }
       }
       tick();
     });
@@ -263,11 +252,6 @@ class Connection::Impl {
     drop();
     std::error_code ignored;
     out_.cancel(ignored);
-  }
-
-  void say_idle() {
-    send(refusal_answer("null", "idle", "expected a command sooner", true));
-    reading_is_over();
   }
 
   Engine& engine_;
@@ -286,6 +270,7 @@ class Connection::Impl {
   double active_;  // when the client was last heard of, or took something [s]
   double leaves_at_ = 0.0;
 
+  std::string refused_;    // why the handshake was
   bool waits_ = false;     // the client would rather wait than be told "busy"
   bool reading_ = false;   // a read is under way
   bool ended_ = false;     // the client has sent its last byte
@@ -308,5 +293,6 @@ void Connection::turn_away(const std::string& code, const std::string& message) 
   impl_->turn_away(code, message);
 }
 void Connection::stop() { impl_->stop(); }
+const std::string& Connection::refused() const noexcept { return impl_->refused(); }
 
 }  // namespace asdic::serve

@@ -34,6 +34,8 @@ class Connection {
   void turn_away(const std::string& code, const std::string& message);
   /// The ping in hand is finished and answered, commands that wait are refused, then it closes.
   void stop();
+  /// Why the client's handshake was refused; "": it was not.
+  [[nodiscard]] const std::string& refused() const noexcept;
 
  private:
   class Impl;

@@ -20,9 +20,11 @@ DataFolder::DataFolder(const std::filesystem::path& folder) {
 std::filesystem::path DataFolder::file(const std::string& name, const std::string& where,
                                        std::size_t most_bytes) const {
   const auto refuse = [&](const std::string& expected) {
-    return Refusal("file", refusal_text(where, "", expected));
+    return Refusal("file", refusal_text(where, "no such file", expected));
   };
-  if (folder_.empty()) throw refuse("no file: the server was started without --data-dir");
+  if (folder_.empty())
+    throw Refusal("file",
+                  refusal_text(where, "a file", "none: the server was started without --data-dir"));
   const std::filesystem::path asked(name);
   const bool climbs = std::find(asked.begin(), asked.end(), "..") != asked.end();
   const std::string inside = "the name of a file inside the server's data directory";

@@ -6,11 +6,13 @@
 #include "io/scenario_reader.h"
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
+#include "serve/client_key.h"
 #include "serve/update.h"
 
 namespace asdic::serve {
 namespace {
 
+constexpr const char* other_contents = "other contents";
 constexpr const char* what_files_hold = "a file that holds what docs/formats/scenario.md says";
 
 }  // namespace
@@ -51,21 +53,24 @@ LiveScenario::State LiveScenario::read(const Changes& changes) const {
   return state;
 }
 
-LiveScenario::State LiveScenario::read_for_client(const Changes& changes) const {
+LiveScenario::State LiveScenario::read_for_client(const Changes& changes, const TomlValue& fields,
+                                                  const TomlValue& document) const {
   try {
     return read(changes);
   } catch (const InputError& error) {
-    throw refusal(error, changes);
+    throw refusal(error, changes, fields, document);
   }
 }
 
-Refusal LiveScenario::refusal(const InputError& error, const Changes& changes) const {
+Refusal LiveScenario::refusal(const InputError& error, const Changes& changes,
+                              const TomlValue& fields, const TomlValue& document) const {
   for (const auto& [section, value] : changes) {  // "--set SECTION: SECTION.key"
     const bool here = error.fault().where.starts_with("--set " + section);
     if (here && value.find("\"file\" = ") != std::string::npos)
-      return {"scenario", refusal_text(section, "", what_files_hold)};
+      return {"scenario", refusal_text(client_key(section, fields, document).name, other_contents,
+                                       what_files_hold)};
   }
-  return refusal_of(error, source_.path.string());
+  return refusal_of(error, source_.path.string(), fields, document);
 }
 
 namespace {
@@ -90,7 +95,7 @@ void LiveScenario::update(const TomlValue& fields, double now) {
       document);
   for (const std::string& section : changed)
     set_change(changes, section, inline_toml(*find_section(document, section)));
-  state_ = read_for_client(changes);
+  state_ = read_for_client(changes, fields, document);
   document_ = std::move(document);
   changes_ = std::move(changes);
 }
@@ -110,16 +115,17 @@ std::string LiveScenario::elevation_override(int transmitter, double elevation) 
   return path + ".elevation_deg=" + angle;
 }
 
-LiveScenario::State LiveScenario::with(const PingChanges& wanted) const {
+LiveScenario::State LiveScenario::with(const PingChanges& wanted, const TomlValue& fields) const {
   if (!wanted.any()) return state_;
   TomlValue document = document_;
   Changes changes = changes_;
   for (const std::string& section : apply_ping_changes(wanted, state_.scenario, document))
     set_change(changes, section, inline_toml(*find_section(document, section)));
-  return read_for_client(changes);
+  return read_for_client(changes, fields, document);
 }
 
-Refusal refusal_of(const InputError& error, const std::string& scenario) {
+Refusal refusal_of(const InputError& error, const std::string& scenario, const TomlValue& fields,
+                   const TomlValue& document) {
   const InputFault& fault = error.fault();
   // "deep.toml:12: target.0.position", "--set platform: platform.velocity", "pings.sample_rate",
   // "cast.csv:3: speed", "cast.csv": the key is what comes last.
@@ -132,8 +138,12 @@ Refusal refusal_of(const InputError& error, const std::string& scenario) {
   });
   const bool ours = by_client || fault.where.starts_with(scenario + ":") ||
                     (colon == std::string::npos && is_key && !fault.where.ends_with(".csv"));
-  if (!ours) return {"scenario", refusal_text("a file", "", what_files_hold)};
-  return {"scenario", refusal_text(is_key ? key : "the scenario", "", fault.expected)};
+  if (!ours) return {"scenario", refusal_text("a file", other_contents, what_files_hold)};
+  const std::string own = "what the scenario has";  // which nobody is told
+  if (!is_key) return {"scenario", refusal_text("the scenario", own, fault.expected)};
+  const ClientKey there = client_key(key, fields, document);
+  const bool told = there.given || (there.under && fault.got == "nothing");
+  return {"scenario", refusal_text(there.name, told ? fault.got : own, fault.expected)};
 }
 
 }  // namespace asdic::serve

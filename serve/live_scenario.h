@@ -55,22 +55,27 @@ class LiveScenario {
   void update(const TomlValue& fields, double now);
 
   /// What a client is told of a fault that comes to light when the scenario is used.
-  [[nodiscard]] Refusal refusal(const InputError& error) const { return refusal(error, changes_); }
+  /// \param fields  of the command
+  [[nodiscard]] Refusal refusal(const InputError& error, const TomlValue& fields) const {
+    return refusal(error, changes_, fields, document_);
+  }
 
   /// The override that says a beam's elevation, where the scenario says it. \param elevation [rad]
   [[nodiscard]] std::string elevation_override(int transmitter, double elevation) const;
 
-  /// The scenario with what one ping has of its own. \throws Refusal
-  [[nodiscard]] State with(const PingChanges& changes) const;
+  /// The scenario with what one ping has of its own. \param fields  of the command \throws Refusal
+  [[nodiscard]] State with(const PingChanges& changes, const TomlValue& fields) const;
 
  private:
   /// Sections in the order in which they were first changed.
   using Changes = std::vector<std::pair<std::string, std::string>>;
 
   [[nodiscard]] State read(const Changes& changes) const;  // \throws InputError, Refusal
-  [[nodiscard]] State read_for_client(const Changes& changes) const;
-  /// What a client is told of a fault, with these changes.
-  [[nodiscard]] Refusal refusal(const InputError& error, const Changes& changes) const;
+  [[nodiscard]] State read_for_client(const Changes& changes, const TomlValue& fields,
+                                      const TomlValue& document) const;
+  /// What a client is told of a fault, with these changes, of which `document` is made.
+  [[nodiscard]] Refusal refusal(const InputError& error, const Changes& changes,
+                                const TomlValue& fields, const TomlValue& document) const;
 
   ScenarioSource source_;
   DataFolder data_;
@@ -81,10 +86,12 @@ class LiveScenario {
   State state_;
 };
 
-/// A fault of a scenario in words for a client: its key and what is expected there, not what was
-/// found, which may be a line of a file. Of a fault in a file not even what is expected, which may
-/// name its other values.
-/// \param scenario  path of the scenario's own file
-[[nodiscard]] Refusal refusal_of(const InputError& error, const std::string& scenario);
+/// A fault of a scenario in words for a client: the key as commands have it, and what is expected
+/// there; what was found only where the client said it: else it is the scenario's or a file's. Of a
+/// fault in a file not even what is expected, which may name its other values.
+/// \param scenario  path of the scenario's own file   \param fields  of the command
+/// \param document  the scenario with the command's changes
+[[nodiscard]] Refusal refusal_of(const InputError& error, const std::string& scenario,
+                                 const TomlValue& fields, const TomlValue& document);
 
 }  // namespace asdic::serve

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/text/quote.h"
 #include "io/text/toml_value.h"
 #include "serve/refusal.h"
 
@@ -35,8 +36,10 @@ void check_depth(const Scenario& scenario, const Vec3& place, double time,
                                  " m) and the bottom (" + to_text(std::round(bottom)) + " m)"));
 }
 
-std::string numbered(const std::string& kind, std::size_t index, std::size_t of) {
-  return of == 1 ? kind : kind + "[" + std::to_string(index) + "]";
+/// "targets", or `targets "rock"` of several: as commands call them.
+template <class List>
+std::string called(const std::string& kind, const List& list, std::size_t index) {
+  return list.size() == 1 ? kind : kind + " " + in_quotes(list[index].name);
 }
 
 }  // namespace
@@ -50,19 +53,19 @@ void check_places(const Scenario& scenario, int ping, int transmitter, double ti
   for (const Transmitter& one : scenario.transmitters) {
     const auto platform = static_cast<std::size_t>(one.platform);
     check(scenario.platforms[platform].track, one.offset,
-          numbered("platform", platform, scenario.platforms.size()));
+          called("platform", scenario.platforms, platform));
   }
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     const ReceiverArray& array = scenario.arrays[a];
     for (const Vec3& phone : phones_at(scenario, static_cast<int>(a), ping, time))
       check(scenario.platforms[static_cast<std::size_t>(array.platform)].track,
-            array.offset + phone, numbered("array", a, scenario.arrays.size()));
+            array.offset + phone, called("array", scenario.arrays, a));
   }
   const Vec3 source = transmitter_at(scenario, transmitter, time).position;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const Target& target = scenario.targets[i];
     if (ping < target.first_ping || ping > target.last_ping) continue;
-    const std::string what = numbered("target", i, scenario.targets.size());
+    const std::string what = called("targets", scenario.targets, i);
     check(target.track, Vec3::Zero(), what);
     const double distance = (target.track.at(time).position - source).norm();
     if (distance < 1.0)  // levels refer to 1 m
@@ -71,7 +74,7 @@ void check_places(const Scenario& scenario, int ping, int transmitter, double ti
   }
   for (std::size_t i = 0; i < scenario.interferers.size(); ++i)
     check(scenario.interferers[i].track, Vec3::Zero(),
-          numbered("interferer", i, scenario.interferers.size()));
+          called("interferer", scenario.interferers, i));
 }
 
 }  // namespace asdic::serve

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "serve/connection.h"
+#include "serve/refusal.h"
 #include "serve/unix_socket.h"
 
 namespace asdic::serve {
@@ -68,6 +69,10 @@ class Server::Impl {
     if (mine < 0 || theirs < 0) throw RunError("standard input or output is closed");
     open({.in = mine, .out = theirs, .socket = false, .token = ""}, false);
     io_.run();
+    if (refused_)
+      throw InputError({.where = "standard input: first line",
+                        .got = "another",
+                        .expected = "{\"asdic\": 1}, the handshake (docs/formats/serve.md)"});
   }
 
  private:
@@ -138,13 +143,16 @@ class Server::Impl {
   void open(const Connection::Ends& ends, bool away) {
     const auto place = connections_.emplace(connections_.end());
     *place = std::make_unique<Connection>(io_, engine_, ends, [this, place, away] {
+      refused_ = refused_ || !(*place)->refused().empty();
       connections_.erase(place);
       if (away) --turned_away_;
     });
     if (away) {
       ++turned_away_;
-      (*place)->turn_away("limit", "found " + std::to_string(settings_.limits.connections) +
-                                       " connections, expected fewer: try again later");
+      (*place)->turn_away(
+          "limit",
+          refusal_text("server", std::to_string(settings_.limits.connections) + " connections",
+                       "fewer: try again later"));
     } else {
       (*place)->start();
       if (stopping_) (*place)->stop();
@@ -171,6 +179,7 @@ class Server::Impl {
   std::unique_ptr<SocketName> name_;
   std::list<std::unique_ptr<Connection>> connections_;
   int turned_away_ = 0;
+  bool refused_ = false;  // the handshake of one of them
   bool stopping_ = false;
 };
 

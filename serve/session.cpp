@@ -58,7 +58,7 @@ Answer Session::execute(const Command& command) {
   } catch (const Refusal& refusal) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const InputError& error) {  // out of building a simulator
-    const Refusal refusal = live_.refusal(error);
+    const Refusal refusal = live_.refusal(error, command.fields);
     return refusal_answer(command.id, refusal.code(), refusal.what());
   } catch (const std::bad_alloc&) {
     return refusal_answer(command.id, "run", "not enough memory for this ping");
@@ -117,7 +117,8 @@ Transmission Session::transmission_of(const PingRequest& request) const {
     sent.time = now();
   if (request.elevation) {
     if (scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].table)
-      throw Refusal("value", "elevation_deg: expected none for a transmitter with a table");
+      throw Refusal("value", refusal_text("elevation_deg", to_text(degrees(*request.elevation)),
+                                          "none for a transmitter with a table"));
     sent.elevation = *request.elevation;
   }
   return sent;
@@ -146,11 +147,12 @@ Answer Session::ping(const Command& command) {
   if (settings_.pace.by_the_clock()) {
     const double wanted = start_ + sent.time / *settings_.pace.factor;
     if (wanted > begin + double(settings_.limits.idle_seconds))
-      throw Refusal("limit", "time: expected a ping at most idle_seconds ahead of the clock");
+      throw Refusal("limit", refusal_text("time", to_text(sent.time) + " s",
+                                          "a ping at most idle_seconds ahead of the clock"));
     served.behind = std::max(0.0, begin - wanted);
     due = std::max(due, wanted);
   }
-  const PingSimulator& simulator = simulator_of(live_.with(request.changes));
+  const PingSimulator& simulator = simulator_of(live_.with(request.changes, command.fields));
   const Scenario& scenario = simulator.scenario();
   check_places(scenario, pings_ + 1, sent.transmitter, sent.time);
   const double bytes = double(channels_of(scenario)) * double(recording_of(scenario).samples) * 8.0;

@@ -1,6 +1,7 @@
 #include "serve/update.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "io/scenario/sections.h"
@@ -71,8 +72,10 @@ void update_platforms(TomlTable& reader, const UpdateContext& context, double ti
   const std::vector<TomlValue*> tables = tables_of(document, "platform");
   for (TomlTable& wanted : reader.one_or_more("platform")) {
     const std::size_t i = index_of(wanted, context.scenario.platforms, "platforms");
-    if (!has_motion(wanted))
+    if (!has_motion(wanted)) {
+      wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "a position, velocity, heading_deg, speed or waypoints");
+    }
     set_motion(wanted, context.scenario.platforms[i].track, time, *tables[i]);
     wanted.finish();
   }
@@ -115,10 +118,15 @@ void update_target(TomlTable& wanted, const TomlValue& values, const UpdateConte
     wanted.finish();
     return;
   }
+  constexpr std::array settings{"strength_db", "fluctuation", "scan_pings"};
   Track track;
   if (found == targets.end()) {
-    if (!wanted.has("position") && !wanted.has("waypoints"))
+    if (!wanted.has("position") && !wanted.has("waypoints")) {
+      static_cast<void>(has_motion(wanted));
+      for (const char* key : settings) static_cast<void>(wanted.has(key));
+      wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "the position of a new target");
+    }
     TomlValue table{.data = TomlValue::Table{}, .origin = ""};
     set_key(table, "name", {.data = name, .origin = ""});
     targets.push_back(std::move(table));
@@ -127,7 +135,7 @@ void update_target(TomlTable& wanted, const TomlValue& values, const UpdateConte
   for (const Target& target : context.scenario.targets)
     if (target.name == name) track = target.track;
   const bool moves = has_motion(wanted);
-  for (const char* key : {"strength_db", "fluctuation", "scan_pings"})
+  for (const char* key : settings)
     if (wanted.has(key)) set_key(*found, key, *values.find(key));
   if (moves) set_motion(wanted, track, time, *found);
   if (moves && wanted.has("heading_deg") && found->find("position") != nullptr)

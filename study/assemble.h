@@ -9,7 +9,7 @@
 namespace asdic::study {
 
 /// What [summary] asks for, out of the rows.
-using Summarise = std::function<std::vector<SummaryTable>(const Table& table)>;
+using Summarise = std::function<Summary(const Table& table)>;
 
 /// Makes a file of the rows in journals. An index that lies in several is taken from the first.
 /// \param imprint    of the study; its `realisations` and the range go into the file as they are

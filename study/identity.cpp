@@ -37,9 +37,9 @@ void write(const TomlValue& value, const std::string& key, const std::filesystem
 }  // namespace
 
 std::string identity(const Study& study) {
+  // What becomes of a realisation that fails changes none of those that do not.
   std::string text = "asdic study 1;seed=" + std::to_string(study.seed) +
-                     ";design=" + std::string(name(study.design)) +
-                     ";on_error=" + (study.on_error == OnError::skip ? "skip" : "stop") + ";";
+                     ";design=" + std::string(name(study.design)) + ";on_error=stop;";
   if (study.design == Design::latin_hypercube)
     text += "realisations=" + std::to_string(study.realisations) + ";";
   write(study.scenario, "", study.scenario_path.parent_path(), text);

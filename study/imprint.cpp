@@ -1,5 +1,7 @@
 #include "study/imprint.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -119,6 +121,15 @@ Table take_reuse(Table& table) {
     table.values.erase(table.values.begin() + at);
   }
   return reuse;
+}
+
+std::string how_changed(const std::string& before, const std::string& now) {
+  if (before == now)
+    return ", or of this one before something else than the study file changed (its scenario, "
+           "a --set, a file that they name)";
+  const auto [was, is] = std::mismatch(before.begin(), before.end(), now.begin(), now.end());
+  const auto line = 1 + std::count(now.begin(), is, '\n');
+  return ", or of this one before it changed (line " + std::to_string(line) + " of the study file)";
 }
 
 std::string mixed_builds(const std::vector<Session>& sessions) {

@@ -47,6 +47,10 @@ struct Session {
 /// Takes the columns that tell how a row was made, not what came out, out of a table.
 [[nodiscard]] Table take_reuse(Table& table);
 
+/// ", or of this one before it changed (line 12 of the study file)": where two texts of study files
+/// part, for messages.
+[[nodiscard]] std::string how_changed(const std::string& before, const std::string& now);
+
 /// What is wrong with mixing rows of these: "" where nothing is, else a sentence that names builds
 /// and processors.
 [[nodiscard]] std::string mixed_builds(const std::vector<Session>& sessions);

@@ -18,7 +18,8 @@ namespace asdic::study {
 class Journal {
  public:
   /// Opens or makes it.
-  /// \throws InputError if it is the journal of another study (both identities are told), or
+  /// One without rows is anybody's: it becomes this study's.
+  /// \throws InputError if it holds rows of another study (both identities are told), or is
   /// damaged; RunError if another process has it, or the disk says no
   Journal(const std::filesystem::path& path, const Imprint& imprint);
   /// Opens one that exists, whatever its study.
@@ -34,6 +35,8 @@ class Journal {
   void add(const Session& session);
   /// A row of an index that is there already replaces it.
   void append(const Row& row);
+  /// Throws the rows that were skipped away.
+  void drop_skipped();
   void commit();
   void close();
 

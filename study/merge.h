@@ -21,8 +21,7 @@ struct MergeReport {
 };
 
 /// The summary is made of what the first part tells of the study.
-using SummariseImprint =
-    std::function<std::vector<SummaryTable>(const Imprint& imprint, const Table& table)>;
+using SummariseImprint = std::function<Summary(const Imprint& imprint, const Table& table)>;
 
 /// Puts parts of a study together, in the order of their indices whatever order they are given in.
 /// \throws InputError for a part of another study, a part that is not what its manifest says, an

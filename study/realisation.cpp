@@ -97,7 +97,11 @@ Row Realiser::realise(std::uint64_t index) const {
       keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const InputError& error) {
     const InputError fault = told(error, study.scenario_path, index, impl_->sampler.describe(draw));
-    if (study.on_error == OnError::stop) throw InputError(fault);
+    if (study.on_error == OnError::stop) {
+      InputFault stop = fault.fault();
+      stop.expected += ", or study.on_error = \"skip\"";
+      throw InputError(stop);
+    }
     row.valid = false;
     row.fault = fault.what();
     row.values.resize(impl_->inputs() + impl_->measures, std::numeric_limits<double>::quiet_NaN());

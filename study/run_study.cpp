@@ -9,18 +9,21 @@ namespace asdic::study {
 Work work_of(const Study& study, const Realise& realise) {
   return {.imprint = imprint_of(study),
           .realise = realise,
-          .summarise = [&study](const Table& table) { return summarise(study, table); },
-          .estimate = [&study] { return RunningEstimate(study); }};
+          .summarise = [&study](const Table& table) { return summary_of(study, table); },
+          .estimate = [&study] { return RunningEstimate(study); },
+          .skips = study.on_error == OnError::skip};
 }
 
-Journals::Journals(const std::filesystem::path& output, const Imprint& imprint,
+Journals::Journals(const std::filesystem::path& output, const Work& work,
                    const std::filesystem::path& own) {
   if (!own.empty()) {
-    journals_.push_back(std::make_unique<Journal>(own, imprint));
+    journals_.push_back(std::make_unique<Journal>(own, work.imprint));
     own_ = journals_.front().get();
   }
   for (const std::filesystem::path& path : journals_of(output))
-    if (path != own) journals_.push_back(std::make_unique<Journal>(path, imprint));
+    if (path != own) journals_.push_back(std::make_unique<Journal>(path, work.imprint));
+  if (work.skips) return;
+  for (const auto& journal : journals_) journal->drop_skipped();
 }
 
 IndexSet Journals::done() const {
@@ -70,7 +73,9 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
   try {
     const StudyFile file(output);
     if (file.imprint().identity != work.imprint.identity)
-      throw refuse("results of another study (identity " + file.imprint().identity + ")");
+      throw refuse("results of another study" +
+                   how_changed(file.imprint().text, work.imprint.text) + " (identity " +
+                   file.imprint().identity + ")");
     const IndexRange there = file.range();
     const bool whole = file.complete() && file.stopped_by().empty();
     if (there.first < range.first || there.end > range.end || (until && whole))
@@ -88,7 +93,8 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
   }
 }
 
-void import_rows(const std::filesystem::path& path, IndexRange range, Journal& journal) {
+void import_rows(const std::filesystem::path& path, IndexRange range, bool skipped,
+                 Journal& journal) {
   const StudyFile file(path);
   file.verify();
   const Table table = file.table();
@@ -112,7 +118,8 @@ void import_rows(const std::filesystem::path& path, IndexRange range, Journal& j
           static_cast<std::size_t>(samples[series]);
       ++series;
     }
-    if (row.index >= range.first && row.index < range.end && !journal.done().contains(row.index))
+    if (row.index >= range.first && row.index < range.end && (row.valid || skipped) &&
+        !journal.done().contains(row.index))
       journal.append(row);
   }
   journal.commit();
@@ -168,6 +175,13 @@ class Teller {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+InputError nothing_to_assemble(const std::filesystem::path& output) {
+  return InputError({.where = output.string(),
+                     .got = "no realisation of what is asked for, to assemble",
+                     .expected = "rows in " + journal_of(output).string() +
+                                 ": without --assemble they are made"});
+}
+
 std::string until_text(double half_width) {
   std::string text = std::to_string(half_width);
   while (text.ends_with('0')) text.pop_back();
@@ -186,6 +200,7 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     stopped_by = until_text(*run.until);
     outcome.stopped_early = true;
   }
+  outcome.skipped = estimate.skipped();
   outcome.complete =
       assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;
@@ -211,13 +226,19 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
     outcome.before = outcome.total;
     return outcome;
   }
-  Journals journals(run.output, work.imprint, journal_of(run.output));
+  if (run.assemble_only && existing == Existing::none && no_journals)
+    throw nothing_to_assemble(run.output);
+  Journals journals(run.output, work, journal_of(run.output));
   if (existing == Existing::partial && no_journals)
-    import_rows(run.output, run.range, journals.own());
+    import_rows(run.output, run.range, work.skips, journals.own());
   journals.own().begin(run.session);
   const IndexSet done = journals.done().within(run.range);
   outcome.damaged = journals.damaged();
   outcome.before = done.size();
+  if (run.assemble_only && done.empty()) {
+    journals.close();
+    throw nothing_to_assemble(run.output);
+  }
   OrderedEstimate estimate(work.estimate(), run.range.first, run.until);
   journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
 

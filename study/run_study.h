@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,6 +18,7 @@ struct Work {
   Realise realise{};
   Summarise summarise{};
   std::function<RunningEstimate()> estimate{};  ///< without a row
+  bool skips = true;  ///< rows that were skipped count as made (on_error = "skip")
 };
 
 /// \param realiser  outlives the work
@@ -36,6 +38,7 @@ struct StudyRun {
   std::optional<double> until{};  ///< half-width of the confidence interval to stop at
   bool fresh = false;             ///< begins anew, whatever is there
   bool assemble_only = false;     ///< makes no rows: a file of those that are there
+  std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
   Session session{};
   std::stop_token stop{};
   std::function<void(const Progress&)> progress{};  ///< a few times a second
@@ -43,6 +46,7 @@ struct StudyRun {
 
 struct StudyOutcome {
   std::uint64_t made = 0, before = 0, total = 0;
+  std::uint64_t skipped = 0;   ///< of all that are there, those whose values made no scenario
   std::uint64_t damaged = 0;   ///< rows of journals that had to be made again
   bool written = false;        ///< the output is there
   bool complete = false;       ///< and holds all of its range
@@ -63,8 +67,8 @@ StudyOutcome run_study(const Work& work, const StudyRun& run);
 class Journals {
  public:
   /// \param own  that this process writes to; made if it is not there. "": none
-  Journals(const std::filesystem::path& output, const Imprint& imprint,
-           const std::filesystem::path& own);
+  /// \param work  of which study; unless it skips, skipped rows are thrown away, to be made again
+  Journals(const std::filesystem::path& output, const Work& work, const std::filesystem::path& own);
 
   [[nodiscard]] Journal& own() noexcept { return *own_; }
   [[nodiscard]] IndexSet done() const;
@@ -94,6 +98,8 @@ enum class Existing {
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
                   Journals& journals, StudyOutcome& outcome);
 /// Puts the rows of a file into a journal, as if they had just been made.
-void import_rows(const std::filesystem::path& file, IndexRange range, Journal& journal);
+/// \param skipped  those that were skipped, too
+void import_rows(const std::filesystem::path& file, IndexRange range, bool skipped,
+                 Journal& journal);
 
 }  // namespace asdic::study

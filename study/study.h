@@ -46,7 +46,7 @@ struct Study {
 /// SHA-256 of all that decides the rows (seed, design, scenario with what it includes, variables,
 /// measures, overrides), as hexadecimal text: parts with the same one belong together. How many
 /// realisations are asked for enters only where the design depends on it (Latin hypercube);
-/// the summary never does.
+/// the summary and on_error never do.
 [[nodiscard]] std::string identity(const Study& study);
 
 }  // namespace asdic::study

@@ -175,7 +175,37 @@ std::string digest_of(const Hdf5File& file, const std::string& dataset) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> StudyFile::parts() const {
+  std::vector<std::filesystem::path> all = file_.virtual_files("index");
+  for (std::filesystem::path& part : all) part = path().parent_path() / part;
+  return all;
+}
+
+void StudyFile::check_parts() const {
+  std::error_code error;
+  for (const std::filesystem::path& part : parts())
+    if (!std::filesystem::exists(part, error))
+      throw InputError({.where = path().string(),
+                        .got = "no " + part.string() + ", in which some of its rows lie",
+                        .expected = "all parts of the catalogue where they were when it was "
+                                    "merged; asdic merge --copy makes one file of them"});
+}
+
+/// Of a catalogue whose data differ: the part that is not what it was.
+void StudyFile::check_each_part() const {
+  for (const std::filesystem::path& name : parts()) {
+    const StudyFile part(name);
+    part.verify();
+    if (part.imprint().identity != imprint_.identity)
+      throw InputError({.where = name.string(),
+                        .got = "a part of another study (identity " + part.imprint().identity + ")",
+                        .expected = "the one that " + path().string() +
+                                    " was merged of (identity " + imprint_.identity + ")"});
+  }
+}
+
 void StudyFile::verify() const {
+  check_parts();
   const Json manifest = Json::parse(manifest_);
   for (const auto& [dataset, told] : manifest.at("datasets").items()) {
     const std::string where = path().string() + ": " + dataset;
@@ -184,10 +214,11 @@ void StudyFile::verify() const {
       throw InputError(
           {.where = where, .got = "no such dataset", .expected = "what the manifest lists"});
     const Shape shape = told.at("shape");
-    if (file_.info(dataset).shape != shape || digest_of(file_, dataset) != sum)
-      throw InputError({.where = where,
-                        .got = "data that have changed since they were written",
-                        .expected = "those of the manifest (SHA-256 " + sum.substr(0, 12) + "…)"});
+    if (file_.info(dataset).shape == shape && digest_of(file_, dataset) == sum) continue;
+    check_each_part();
+    throw InputError({.where = where,
+                      .got = "data that have changed since they were written",
+                      .expected = "those of the manifest (SHA-256 " + sum.substr(0, 12) + "…)"});
   }
 }
 

@@ -22,7 +22,7 @@ struct StudyResults {
   Table table{};             ///< sorted by index; inputs and measures
   Table reuse{};             ///< columns that tell how rows were made, for /run
   std::vector<std::string> faults{};  ///< "17: why it was skipped", the first of them
-  std::vector<SummaryTable> summary{};
+  Summary summary{};
   std::vector<Session> sessions{};
 
   [[nodiscard]] bool complete() const noexcept { return table.index.size() == range.size(); }
@@ -75,13 +75,20 @@ class StudyFile {
   /// The k-th of them, [channels × its own samples × iq].
   [[nodiscard]] std::vector<float> series(std::size_t k) const;
 
+  /// Where the rows of a catalogue lie; {} for a file that holds its own.
+  [[nodiscard]] std::vector<std::filesystem::path> parts() const;
+  /// \throws InputError naming the first part that is not there: HDF5 would show nothing instead
+  void check_parts() const;
   /// Compares every dataset with its SHA-256 in the manifest.
-  /// \throws InputError naming the first that differs, or is not there
+  /// \throws InputError naming the first that differs, or is not there; of a catalogue, the part
+  /// that is gone or has changed
   void verify() const;
 
   [[nodiscard]] const Hdf5File& file() const noexcept { return file_; }
 
  private:
+  void check_each_part() const;
+
   Hdf5File file_;
   Imprint imprint_;
   IndexRange range_;

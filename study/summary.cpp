@@ -97,4 +97,17 @@ std::vector<SummaryTable> summarise(const Study& study, const Table& table) {
   return all;
 }
 
+Summary summary_of(const Study& study, const Table& table) {
+  const SummaryPlan& plan = study.summary;
+  std::string intervals = "as of independent draws";
+  if (study.design != Design::random)
+    intervals += ": of this design, " + std::string(name(study.design)) +
+                 ", rather too wide than too narrow (docs/theory/studies.md)";
+  return {.tables = summarise(study, table),
+          .confidence = plan.confidence,
+          .proportion_interval =
+              plan.interval == ProportionInterval::wilson ? "wilson" : "clopper_pearson",
+          .intervals = std::move(intervals)};
+}
+
 }  // namespace asdic::study

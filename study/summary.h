@@ -25,6 +25,15 @@ struct SummaryTable {
 /// All that [summary] asks for, out of the rows alone: the same bits for the same rows.
 [[nodiscard]] std::vector<SummaryTable> summarise(const Study& study, const Table& table);
 
+/// The tables, and what their intervals are.
+struct Summary {
+  std::vector<SummaryTable> tables{};
+  double confidence = 0.95;                    ///< of all intervals
+  std::string proportion_interval = "wilson";  ///< or "clopper_pearson"
+  std::string intervals{};                     ///< what they suppose, in a sentence
+};
+[[nodiscard]] Summary summary_of(const Study& study, const Table& table);
+
 /// The running answer to the study's first question (Pd, or the mean of the first measure).
 struct Estimate {
   std::string name, unit;

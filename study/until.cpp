@@ -18,6 +18,7 @@ OrderedEstimate::OrderedEstimate(RunningEstimate estimate, std::uint64_t first,
 void OrderedEstimate::take(const Row& row) {
   if (enough_) return;
   estimate_.add(row);
+  if (!row.valid) ++skipped_;
   ++next_;
   if (!half_width_ || !is_look(next_ - first_)) return;
   const std::optional<Estimate> now = estimate_.estimate();

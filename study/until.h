@@ -30,13 +30,15 @@ class OrderedEstimate {
   [[nodiscard]] std::optional<Estimate> estimate() const { return estimate_.estimate(); }
   /// How many realisations are enough, once that is known. Later rows no longer count.
   [[nodiscard]] std::optional<std::uint64_t> enough() const noexcept { return enough_; }
+  /// Of these rows, those that were skipped.
+  [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
   [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_.size(); }
 
  private:
   void take(const Row& row);
 
   RunningEstimate estimate_;
-  std::uint64_t first_, next_;
+  std::uint64_t first_, next_, skipped_ = 0;
   std::optional<double> half_width_;
   std::optional<std::uint64_t> enough_;
   std::map<std::uint64_t, Row> waiting_;  // rows after a gap, without their time series

@@ -147,8 +147,13 @@ void read_labels(TomlTable& table, const TomlValue& value, ChoiceLaw& law) {
 }
 
 ChoiceLaw read_choice(const std::string& name, TomlTable& table, const TomlValue& value,
-                      const Variable& variable) {
+                      const Variable& variable, Design design) {
   ChoiceLaw law = read_values(table, value, variable, name == "grid");
+  // Of Sobol' points, one half of the cube has the even indices: so would a list's values be.
+  if (name == "list" && design == Design::sobol && law.values.size() % 2 == 0)
+    throw table.fault("law",
+                      "\"categorical\" or \"grid\" for an even number of values in a Sobol' "
+                      "design, whose points go to and fro with the index as a list does");
   if (name == "list") law.kind = ChoiceLaw::Kind::in_turn;
   if (name == "categorical")
     law.cumulative = read_weights(table, law.values.size());
@@ -213,7 +218,7 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
       table.choice("law", {"uniform", "normal", "log_normal", "triangular", "rayleigh", "weibull",
                            "categorical", "list", "grid", "track", "profile_eof", "profile_casts"});
   if (name == "categorical" || name == "list" || name == "grid")
-    return read_choice(name, table, value, variable);
+    return read_choice(name, table, value, variable, study.design);
   if (name == "profile_eof") return read_modes(table, study);
   if (name == "profile_casts") {
     ChoiceLaw casts = read_casts(table, value, variable, study);

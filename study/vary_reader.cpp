@@ -44,8 +44,10 @@ std::string short_name(std::string_view key) {
 
 /// What the number at a key of a scenario is counted in.
 std::string unit_of(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 14> units{
-      {{"_db", "dB"},
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> units{
+      {{"spectral_level_db", "dB re 1 µPa²/Hz"},
+       {"source_level_db", "dB re 1 µPa at 1 m"},
+       {"_db", "dB"},
        {"_deg", "degrees"},
        {"speed", "m/s"},
        {"frequency", "Hz"},

@@ -71,7 +71,7 @@ class StopTeller {
   std::stop_callback<Tell> callback_;
 };
 
-int study_run(const StudyOptions& options, const study::mpi::Session& session) {
+int study_run(const StudyOptions& options, double silence, const study::mpi::Session& session) {
   const auto begin = std::chrono::steady_clock::now();
   std::unique_ptr<StudyOrder> order;
   std::unique_ptr<study::Realiser> realiser;
@@ -83,6 +83,7 @@ int study_run(const StudyOptions& options, const study::mpi::Session& session) {
         study::work_of(order->study, [&](std::uint64_t index) { return realiser->realise(index); });
   });
   if (status != success) return status;
+  order->ranks = session.size();
   const std::string identity = session.shared(work.imprint.identity);
   status = together(session, [&] {
     if (identity != work.imprint.identity)
@@ -97,6 +98,7 @@ int study_run(const StudyOptions& options, const study::mpi::Session& session) {
                                   static_cast<std::size_t>(order->threads));
   const Interrupt interrupt;
   order->run.stop = interrupt.token();
+  order->run.silence = std::chrono::duration<double>(silence);
   const StopTeller teller(session, order->run);
   study::StudyOutcome outcome;
   std::string said;
@@ -125,6 +127,14 @@ int run(int argc, char** argv) {
   CLI::App* command = program.add_subcommand(
       "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.");
   add_study_options(*command, options);
+  double silence = study::StudyRun{}.silence.count();
+  command
+      ->add_option(
+          "--silence", silence,
+          "after so long without a word of a rank it is taken for dead, and the job ends [s]")
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->check(above_zero());
   command->footer("Example:  mpirun -n 4 asdic-mpi study study.toml -o study.h5");
   try {
     program.parse(argc, argv);  // before MPI: --help needs no ranks
@@ -135,7 +145,7 @@ int run(int argc, char** argv) {
     return bad_input;
   }
   const study::mpi::Session session(argc, argv);
-  const int status = study_run(options, session);
+  const int status = study_run(options, silence, session);
   flush_output();
   return status;
 }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/bellhop/case_parts.h"
+#include "io/bellhop/file_bytes.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -52,9 +53,8 @@ Input read_case(const std::filesystem::path& root) {
   errno = 0;
   auto text = text_of(env);
   if (!text)
-    throw InputError({.where = env,
-                      .got = errno != 0 ? std::strerror(errno) : "a file that cannot be read",
-                      .expected = "the input of a BELLHOP case"});
+    throw InputError(
+        {.where = env, .got = unreadable(errno), .expected = "the input of a BELLHOP case"});
   Texts texts{.env = std::move(*text), .companions = {}};
   for (const char* kind : companion_kinds)
     if (auto companion = text_of(stem.string() + kind))

@@ -5,6 +5,9 @@
 
 namespace asdic::bellhop {
 
+/// Why a file could not be opened, in words for "found …". \param error  errno
+[[nodiscard]] std::string unreadable(int error);
+
 /// A whole file. \throws InputError if it is not there or cannot be read
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path,
                                      const std::string& expected);

@@ -1,6 +1,7 @@
 // Virtual datasets of Hdf5File.
 #include <hdf5.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "io/hdf5/elements.h"
@@ -50,6 +51,24 @@ void Hdf5File::write_virtual(const std::string& dataset, const Shape& shape,
                                           links, properties, H5P_DEFAULT),
                                dataset, "creating the dataset"),
                   H5Dclose);
+}
+
+std::vector<std::filesystem::path> Hdf5File::virtual_files(const std::string& dataset) const {
+  const Handle id = impl_->open_dataset(dataset);
+  const Handle properties(H5Dget_create_plist(id), H5Pclose);
+  std::vector<std::filesystem::path> files;
+  if (H5Pget_layout(properties) != H5D_VIRTUAL) return files;
+  std::size_t count = 0;
+  impl_->check(H5Pget_virtual_count(properties, &count), dataset, "reading what it refers to");
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto size = impl_->check(H5Pget_virtual_filename(properties, i, nullptr, 0), dataset,
+                                   "reading what it refers to");
+    std::string file(static_cast<std::size_t>(size) + 1, '\0');
+    H5Pget_virtual_filename(properties, i, file.data(), file.size());
+    file.resize(static_cast<std::size_t>(size));
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.emplace_back(file);
+  }
+  return files;
 }
 
 #define ASDIC_HDF5_ELEMENT(T)                                                \

@@ -98,6 +98,8 @@ void read_targets(std::vector<TomlTable> tables, Scenario& scenario) {
   for (TomlTable& table : tables) {
     Target target;
     target.name = read_name(table, "target", scenario.targets, tables.size());
+    for (const char* key : {"position", "velocity", "range", "bearing_deg", "depth"})
+      static_cast<void>(table.has(key));  // whichever say where it is: a typo finds them all
     if (table.has("waypoints")) {
       exclude(table, "waypoints", {"position", "velocity", "range", "bearing_deg", "depth"});
       target.track.waypoints = read_waypoints(table);

@@ -14,15 +14,18 @@ const TomlValue& empty_table() {
   return empty;
 }
 
-std::string article(std::string_view noun) {
-  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + std::string(noun);
-}
-
 std::string join(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
     text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + in_quotes(names[i]);
+  return text;
+}
+
+/// "target.0.depth" of "target[0].depth": as --set has it.
+std::string dotted(const std::string& path) {
+  std::string text;
+  for (const char c : path)
+    if (c != ']') text += c == '[' ? '.' : c;
   return text;
 }
 
@@ -31,28 +34,6 @@ std::string element(const std::string& key, std::size_t index) {
 }
 
 }  // namespace
-
-bool Quantity::holds(double value) const {
-  return std::isfinite(value) && (above ? value > low : value >= low) && value <= high;
-}
-
-std::string Quantity::expected() const {
-  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  std::string text = has_low || has_high ? article(noun) : "a finite " + std::string(noun);
-  if (has_low && has_high) {
-    text += above ? " above " : " from ";
-    text += to_text(low) + (above ? " and at most " : " to ") + to_text(high);
-  } else if (has_low) {
-    text += (above ? " above " : " of at least ") + to_text(low);
-  } else if (has_high) {
-    text += " of at most " + to_text(high);
-  }
-  if (!unit.empty()) {
-    text += has_low || has_high ? " " : " in ";
-    text += unit;
-  }
-  return text;
-}
 
 TomlTable::TomlTable(const TomlValue& table, std::string path)
     : table_(&table), path_(std::move(path)) {
@@ -69,8 +50,8 @@ InputError TomlTable::fault_at(const TomlValue& value, const std::string& key,
                                const std::string& expected, std::optional<std::string> got) const {
   const std::string path = path_of(key);
   const std::string& origin = value.origin.empty() ? fallback_origin_ : value.origin;
-  // "--set pulse.duration" already names the key.
-  const std::string where = origin == "--set " + path ? origin : origin + ": " + path;
+  // "--set pulse.duration", or "--set target.0.depth" of target[0].depth, already names the key.
+  const std::string where = origin == "--set " + dotted(path) ? origin : origin + ": " + path;
   return InputError({.where = where, .got = got.value_or(value.describe()), .expected = expected});
 }
 

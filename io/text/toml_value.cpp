@@ -43,9 +43,17 @@ TomlValue convert(const toml::node& node, const std::string& origin, const std::
   return value;
 }
 
+/// The names of a dotted path; one in quotes may have dots in it: vary."target.0.range".high
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> parts;
   for (std::size_t start = 0; start <= path.size();) {
+    const auto quote =
+        path.substr(start).starts_with('"') ? path.find('"', start + 1) : std::string_view::npos;
+    if (quote != std::string_view::npos && (quote + 1 == path.size() || path[quote + 1] == '.')) {
+      parts.emplace_back(path.substr(start + 1, quote - start - 1));
+      start = quote + 2;
+      continue;
+    }
     const auto dot = std::min(path.find('.', start), path.size());
     parts.emplace_back(path.substr(start, dot - start));
     start = dot + 1;
@@ -209,24 +217,36 @@ std::string to_text(double number) {
   return {buffer.data(), end};
 }
 
+namespace {
+
+/// Letters to put in, take out, replace, or swap with the next one: Damerau's distance (Commun. ACM
+/// 7, 171, 1964), of which no letter is edited twice. Three rows at a time.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, above(b.size() + 1), row(b.size() + 1);
+  std::iota(above.begin(), above.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({replace, above[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before = above;
+    above = row;
+  }
+  return above.back();
+}
+
+}  // namespace
+
 std::string nearest_name(std::string_view typed, std::span<const std::string> names) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
   for (const std::string& name : names) {
-    // Levenshtein's distance, one row at a time.
-    std::vector<std::size_t> row(name.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= typed.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= name.size(); ++j) {
-        const std::size_t replace = diagonal + (typed[i - 1] == name[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
+    const bool without_unit = name.starts_with(std::string(typed) + '_');  // heading of heading_deg
+    if (const std::size_t d = without_unit ? 1 : edits(typed, name); d < best_distance) {
+      best_distance = d;
       best = name;
     }
   }

@@ -3,6 +3,7 @@ InputError.
 """
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 
 import h5py
@@ -14,16 +15,18 @@ KIND = "asdic study"
 
 PROPORTIONS = {"pd": "probability of detection", "pfa": "probability of false alarm"}
 DECIBELS = "_db"
+DEGREES = "_deg"
 SHORT = {"snr": "SNR"}
 
 
 def spoken(name: str) -> str:
-    """A column's name as words: "snr_matched_db" → "SNR matched". The unit says that it is in dB."""
+    """A column's name as words: "snr_matched_db" → "SNR matched". The unit says that it is in dB or degrees."""
     word, _, rest = name.partition("_")
     if word in PROPORTIONS:
         return f"{PROPORTIONS[word]}, {rest}" if rest else PROPORTIONS[word]
     words = name.replace(DECIBELS + "_", "_", 1)  # a target's name may follow
-    return " ".join(SHORT.get(w, w) for w in words.removesuffix(DECIBELS).split("_"))
+    words = words.removesuffix(DECIBELS).removesuffix(DEGREES)
+    return " ".join(SHORT.get(w, w) for w in words.split("_"))
 
 
 @dataclass
@@ -99,6 +102,14 @@ def _summary(name, group) -> SummaryTable:
                         [_column(n, group[n]) for n in order])
 
 
+def _order(f) -> list:
+    """Names of the table's columns as the study has them: HDF5 lists them by the alphabet."""
+    there = list(f["table"])
+    told = json.loads(f["manifest"].asstr()[()]) if "manifest" in f else {}
+    order = [c["name"] for c in told.get("columns", []) if c["name"] in there]
+    return order + [name for name in there if name not in order]
+
+
 def read(path: str) -> Study:
     """\\throws InputError"""
     try:
@@ -113,7 +124,7 @@ def read(path: str) -> Study:
             if not valid.any():
                 raise InputError(path, f"{valid.size} realisations, and none of them valid",
                                  "at least one that is: let the study go on")
-            columns = [_column(n, d, valid) for n, d in f["table"].items()]
+            columns = [_column(n, f["table"][n], valid) for n in _order(f)]
             summary = [_summary(n, g) for n, g in f["summary"].items()]
             return Study(path, _text(f.attrs.get("title", "")), int(valid.size),
                          bool(f.attrs.get("complete", 1)), columns, summary,

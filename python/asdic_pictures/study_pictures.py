@@ -9,6 +9,7 @@ from . import style
 from .study_data import Study, SummaryTable, spoken
 
 MOST_PANELS = 12
+MOST_BESIDE = 6  # inputs of two maps side by side
 YES_OR_NO = ("detected", "false_alarm")
 
 
@@ -188,10 +189,12 @@ def draw_roc(study: Study) -> dict:
 
 def draw_histograms(study: Study) -> dict:
     columns = [c for c in study.columns if np.isfinite(c.values).any()]
+    all_of_them = len(columns)
     columns = sorted(columns, key=lambda c: c.role != "measure")[:MOST_PANELS]
     if not columns:
         return {}
-    fig, axes = panels(study, "What was drawn (grey) and what came out", len(columns))
+    some = f", {len(columns)} of {all_of_them} columns" if len(columns) < all_of_them else ""
+    fig, axes = panels(study, "What was drawn (grey) and what came out" + some, len(columns))
     for column, a in zip(columns, axes):
         values = column.values[np.isfinite(column.values)] * column.scale()
         colour = style.BLUE if column.role == "measure" else style.GREY
@@ -224,8 +227,11 @@ def draw_sensitivity(study: Study) -> dict:
     measures, inputs = table["measure"], table["input"]
     if not measures.labels or not inputs.labels:
         return {}
-    fig, axes = style.figure("Which input matters", max(3.4, 1.8 + 0.45 * len(measures.labels)),
-                             ncols=2, sharey=True)
+    height = max(3.9, 1.8 + 0.45 * len(measures.labels))
+    if len(inputs.labels) > MOST_BESIDE:  # one above the other: there would be no room for numbers
+        fig, axes = style.figure("Which input matters", 1.8 * height, nrows=2, sharex=True)
+    else:
+        fig, axes = style.figure("Which input matters", height, ncols=2, sharey=True)
     for a, name, title, low in ((axes[0], "first_order", "share of the variance", 0.0),
                                 (axes[1], "rank_correlation", "rank correlation", -1.0)):
         grid = np.full((len(measures.labels), len(inputs.labels)), np.nan)

@@ -16,15 +16,13 @@ const float root_of_two_pi = static_cast<float>(std::sqrt(2.0 * pi));
 }  // namespace
 
 ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
-                     std::size_t columns)
+                     std::span<float> memory)
     : setting_(setting),
       spacing_of_fan_(setting.spacing),
       depths_(depths),
       padded_depths_(depths.begin(), depths.end()) {
   padded_depths_.resize(depths.size() + lanes, depths.back() + 1e6);
-  stride_ = (depths.size() + 2 * lanes - 1) / lanes * lanes;
-  real_.assign(columns * stride_, 0.0F);
-  if (setting.coherent) imaginary_.assign(columns * stride_, 0.0F);
+  stride_ = stride_of(depths.size());
   first_depth_ = depths.front();
   const double wavelength = 1500.0 / setting.frequency;
   const double step =
@@ -34,46 +32,11 @@ ColumnSum::ColumnSum(const BeamSetting& setting, std::span<const double> depths,
     even = even && std::abs(depths[k] - (first_depth_ + double(k) * step)) <
                        std::min(1e-3 * step, 1e-5 * wavelength);
   if (even) spacing_ = step, per_spacing_ = 1.0 / step;
-}
-
-/// What add_evenly needs of each crossing: its bell's height and sharpness a = cos²θ/2σ², and how
-/// bell and phase go on from one group of rows to the next.
-void ColumnSum::prepare_recurrences(std::size_t n) {
-  const float step = static_cast<float>(lanes) * static_cast<float>(spacing_);
-  const float share_scale = static_cast<float>(setting_.spacing) / root_of_two_pi;
-  for (auto* array : {&turn_cosine_, &turn_sine_, &ratio_of_ratio_, &sharpness_, &height_})
-    array->resize(n + lanes);
-  for (std::size_t i = 0; i < n; i += lanes) {
-    Lanes c, s;
-    cos_sin(load(&wave_number_[i]) * step, c, s);
-    store(c, &turn_cosine_[i]);
-    store(s, &turn_sine_[i]);
-    const Lanes per_sigma = 1.0F / load(&least_[i]);
-    const Lanes u = load(&cosine_[i]) * per_sigma;
-    store(0.5F * u * u, &sharpness_[i]);
-    store(load(&amplitude_[i]) * share_scale * per_sigma, &height_[i]);
-    store(exponential(-(u * u) * (step * step)), &ratio_of_ratio_[i]);  // exp(−2aD²)
-  }
-  find_even_ways(n);
-}
-
-/// Which crossings add_evenly is for: Way::even, told for all at once.
-void ColumnSum::find_even_ways(std::size_t n) {
-  is_even_.resize(n);
-  const auto spacing = static_cast<float>(setting_.spacing);
-  const float *growth_of = growth_.data(), *q_of = q_.data(), *cosine = cosine_.data(),
-              *least = least_.data();
-  const double *above = above_.data(), *below = below_.data();
-  const std::int32_t *first = first_.data(), *last = last_.data();
-  std::int32_t* is_even = is_even_.data();
-  ASDIC_INDEPENDENT
-  for (std::size_t i = 0; i < n; ++i) {
-    const float growth = std::abs(growth_of[i]), q = std::abs(q_of[i]);
-    const auto reach = static_cast<float>(above[i] > below[i] ? above[i] : below[i]);
-    // the least width holds all over the beam, and q has no zero in it
-    const bool constant = (q > growth * reach) & ((q + growth * reach) * spacing < least[i]);
-    is_even[i] = constant & (cosine[i] >= 8.0F * spacing * growth) & (last[i] > first[i]);
-  }
+  paired_ = even && setting.coherent && setting.kind == BeamKind::hat;
+  sum_ = setting.coherent ? memory : memory.first(memory.size() / 2);
+  std::fill(sum_.begin(), sum_.end(), 0.0F);
+  real_ = sum_.first(memory.size() / 2);
+  imaginary_ = sum_.subspan(real_.size());
 }
 
 ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
@@ -83,20 +46,31 @@ ColumnSum::Way ColumnSum::way(std::size_t i) const noexcept {
   if (q == 0.0F) return Way::none;
   if (cosine_[i] < (is_hat ? 2.0F : 8.0F) * spacing * growth) return Way::plain;
   if (last_[i] <= first_[i]) return Way::none;
-  return Way::lanes;
+  return Way::several;
+}
+
+void ColumnSum::absorb(const ColumnSum& other) {
+  float* to = sum_.data();
+  const float* from = other.sum_.data();
+  ASDIC_INDEPENDENT
+  for (std::size_t i = 0; i < sum_.size(); ++i) to[i] += from[i];
 }
 
 template <bool coherent, bool is_hat>
 void ColumnSum::add_rows(const Crossings& x) {
-  const bool some_even = coherent && !is_hat && spacing_ > 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (some_even && is_even_[i] != 0) {
-      const std::size_t at = x.column[i] * stride_;
-      add_evenly(i, real_.data() + at, imaginary_.data() + at);
-    } else {
-      add_crossing_rows<coherent, is_hat>(x, i);
+  for (std::size_t i = 0; i < x.size(); ++i) add_crossing_rows<coherent, is_hat>(x, i);
+}
+
+void ColumnSum::add_lanes(std::size_t at, const Lanes& re, const Lanes& im) {
+  if (paired_) {
+    for (std::size_t l = 0; l < lanes; ++l) {
+      sum_[2 * (at + l)] += re[l];
+      sum_[2 * (at + l) + 1] += im[l];
     }
+    return;
   }
+  store(load(&real_[at]) + re, &real_[at]);
+  store(load(&imaginary_[at]) + im, &imaginary_[at]);
 }
 
 template <bool coherent, bool is_hat>
@@ -104,8 +78,7 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
   const Way how = way(i);
   if (how == Way::none) return;
   if (how == Way::plain) return add_plainly(x, i);
-  float* real = real_.data() + x.column[i] * stride_;
-  float* imaginary = coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
+  const std::size_t column = x.column[i] * stride_;
   const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
   const float share_scale = spacing / root_of_two_pi;
   const auto row_spacing = static_cast<float>(spacing_);
@@ -145,65 +118,10 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
       }
       Lanes c, s;
       cos_sin(angle, c, s);
-      store(load(real + k) + weight * c, real + k);
-      store(load(imaginary + k) + weight * s, imaginary + k);
+      add_lanes(column + k, weight * c, weight * s);
     } else {
-      store(load(real + k) + weight, real + k);
-    }
-  }
-}
-
-/// Hats that reach a few evenly spaced rows only: as many crossings at a time as there are lanes,
-/// row by row downwards, where the phase turns evenly.
-template <bool coherent>
-void ColumnSum::add_narrow_hats(const Crossings& x) {
-  constexpr int most_rows = 12;
-  const auto spacing = static_cast<float>(setting_.spacing), per_spacing = 1.0F / spacing;
-  const auto row_spacing = static_cast<float>(spacing_);
-  float re[most_rows * lanes], im[most_rows * lanes];
-  for (std::size_t i = 0; i < x.size(); i += lanes) {
-    const std::size_t used = std::min(lanes, x.size() - i);
-    int rows = 0;
-    for (std::size_t l = 0; l < used; ++l) rows = std::max(rows, last_[i + l] - first_[i + l]);
-    const Lanes cosine = load(&cosine_[i]), q0 = load(&q_[i]), growth = load(&growth_[i]);
-    if (rows > most_rows || any_of(cosine < 2.0F * spacing * abs(growth))) {
-      for (std::size_t l = 0; l < used; ++l) add_crossing_rows<coherent, true>(x, i + l);
-      continue;
-    }
-    Lanes amplitude = load(&amplitude_[i]), dz = load(&offset_[i]), c, s, turn_c, turn_s;
-    where(q0 == 0.0F, amplitude) = 0.0F;
-    if constexpr (coherent) {
-      const Lanes wave_number = load(&wave_number_[i]);
-      cos_sin(load(&phase_[i]) + wave_number * dz, c, s);
-      cos_sin(wave_number * row_spacing, turn_c, turn_s);
-    }
-    for (int m = 0; m < rows; ++m) {
-      const Lanes per_q = 1.0F / max(abs(q0 + growth * dz), Lanes(1e-30F));
-      const Lanes share = max(Lanes(0.0F), 1.0F - abs(dz) * cosine * per_q * per_spacing);
-      const Lanes weight = amplitude * share * (coherent ? sqrt(per_q) : per_q);
-      float* to = re + static_cast<std::size_t>(m) * lanes;
-      if constexpr (coherent) {
-        store(weight * c, to);
-        store(weight * s, im + static_cast<std::size_t>(m) * lanes);
-        const Lanes c_next = c * turn_c - s * turn_s;
-        s = s * turn_c + c * turn_s;
-        c = c_next;
-      } else {
-        store(weight, to);
-      }
-      dz += row_spacing;
-    }
-    // A hat is zero beyond its rows, and columns are padded: as many rows for all cost less than
-    // branches that nobody can foretell.
-    const bool alike = half_ == Half::both && rows <= static_cast<int>(lanes);
-    for (std::size_t l = 0; l < used; ++l) {
-      const std::size_t base = x.column[i + l] * stride_ + static_cast<std::size_t>(first_[i + l]);
-      const int count = alike ? rows : last_[i + l] - first_[i + l];
-      for (int m = 0; m < count; ++m) {
-        const std::size_t from = static_cast<std::size_t>(m) * lanes + l;
-        real_[base + static_cast<std::size_t>(m)] += re[from];
-        if constexpr (coherent) imaginary_[base + static_cast<std::size_t>(m)] += im[from];
-      }
+      float* to = real_.data() + column + k;
+      store(load(to) + weight, to);
     }
   }
 }
@@ -219,12 +137,15 @@ void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
                           .dq_ds = x.dq_ds[i],
                           .loss = std::polar(x.level[i], x.phase[i]),
                           .mirror = x.mirror[i]};
-  float* real = real_.data() + x.column[i] * stride_;
-  float* imaginary = setting_.coherent ? imaginary_.data() + x.column[i] * stride_ : nullptr;
+  const std::size_t column = x.column[i] * stride_;
   beams::add_crossing(setting_, launch_, launched_, x.source_speed, crossing, depths_,
                       [&](std::size_t k, std::complex<double> p) {
-                        real[k] += static_cast<float>(p.real());
-                        if (imaginary != nullptr) imaginary[k] += static_cast<float>(p.imag());
+                        const std::size_t at = column + k;
+                        sum_[paired_ ? 2 * at : at] += static_cast<float>(p.real());
+                        if (paired_)
+                          sum_[2 * at + 1] += static_cast<float>(p.imag());
+                        else if (setting_.coherent)
+                          imaginary_[at] += static_cast<float>(p.imag());
                       });
 }
 
@@ -244,15 +165,19 @@ void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {
 
 void ColumnSum::add_half(const BeamLaunch& launch, const Crossings& crossings, Half half) {
   half_ = half;
-  prepare(launch, crossings);
   const bool is_hat = setting_.kind == BeamKind::hat, even = spacing_ > 0.0;
+  is_hat ? prepare<true>(launch, crossings) : prepare<false>(launch, crossings);
   if (setting_.coherent) {
-    if (is_hat && even) return add_narrow_hats<true>(crossings);
+    if (even) return is_hat ? add_hats<true>(crossings) : add_even_gaussians(crossings);
     is_hat ? add_rows<true, true>(crossings) : add_rows<true, false>(crossings);
   } else {
-    if (is_hat && even) return add_narrow_hats<false>(crossings);
+    if (is_hat && even) return add_hats<false>(crossings);
     is_hat ? add_rows<false, true>(crossings) : add_rows<false, false>(crossings);
   }
 }
+
+template void ColumnSum::add_crossing_rows<true, false>(const Crossings&, std::size_t);
+template void ColumnSum::add_crossing_rows<true, true>(const Crossings&, std::size_t);
+template void ColumnSum::add_crossing_rows<false, true>(const Crossings&, std::size_t);
 
 }  // namespace asdic

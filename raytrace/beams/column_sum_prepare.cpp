@@ -9,18 +9,23 @@
 // vectorises.
 namespace asdic {
 
+template <bool is_hat>
 void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
   const std::size_t n = x.size();
+  const auto make_room = [n](auto& array) {  // the last lanes are read, and count for nothing
+    array.resize(n + lanes);
+    std::fill_n(array.end() - lanes, lanes, 0);
+  };
   for (auto* array :
        {&amplitude_, &phase_, &wave_number_, &cosine_, &sine_, &q_, &growth_, &least_, &offset_})
-    array->assign(n + lanes, 0.0F);  // the last lanes are read, and count for nothing
-  above_.resize(n), below_.resize(n), first_.resize(n), last_.resize(n);
+    make_room(*array);
+  make_room(first_), make_room(last_);
+  above_.resize(n), below_.resize(n);
   const double f = setting_.frequency, spacing = setting_.spacing;
   launched_ = beams::launch_factor(setting_, launch);
   const bool coherent = setting_.coherent;
   // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
-  const bool is_hat = setting_.kind == BeamKind::hat;
-  const double times = is_hat ? 1.0 : 4.0, least_factor = is_hat ? 0.0 : 1.0;
+  constexpr double times = is_hat ? 1.0 : 4.0;
   const double widening_scale = times * spacing;
   const double *speeds = x.speed.data(), *qs = x.q.data(), *levels = x.level.data(),
                *times_of = x.time.data(), *phases = x.phase.data(), *sines = x.sine.data(),
@@ -30,7 +35,7 @@ void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
         *growth_out = growth_.data(), *least_out = least_.data();
   double *above = above_.data(), *below = below_.data();
   const double launched2 = launched_ * launched_ / x.source_speed;
-  const double k_unit = -2.0 * pi * f;
+  const double k_unit = -2.0 * pi * f, wavelength_share = pi / f;
   ASDIC_INDEPENDENT
   for (std::size_t i = 0; i < n; ++i) {
     const double c = speeds[i], q = qs[i];
@@ -38,30 +43,37 @@ void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
     amplitude[i] = static_cast<float>(intensity);
     const double cycles = f * times_of[i];
     phase[i] = static_cast<float>(phases[i] - 2.0 * pi * (cycles - std::floor(cycles)));
-    wave_number[i] = static_cast<float>(k_unit * sines[i] / c);
     const double cosine = std::abs(cosines[i]);
     const double growth = dq_ds[i] * sines[i];
     cosine_out[i] = static_cast<float>(cosine);
     sine_out[i] = static_cast<float>(sines[i]);
     q_out[i] = static_cast<float>(q);
     growth_out[i] = static_cast<float>(growth);
-    const double a = 0.2 * f * times_of[i], b = pi * c / f;
-    const double least = least_factor * (a < b ? a : b);
-    least_out[i] = static_cast<float>(least);
-    // (|q| + |dq/dz|·4σ/cos θ)·Δα < σ: the least width holds all over the beam
-    const double most = (std::abs(q) + std::abs(growth) * times * least / cosine) * spacing;
-    const double widens = most < least ? 0.0 : widening_scale;
-    const double widening = widens * (q < 0.0 ? -growth : growth);
-    const double narrow = std::abs(q) * spacing;
-    const double width = times * (narrow > least ? narrow : least);
-    above[i] = width / (cosine + (widening < 0.0 ? widening : 0.0));
-    below[i] = width / (cosine - (widening > 0.0 ? widening : 0.0));
+    double widening = widening_scale * (q < 0.0 ? -growth : growth);
+    double width = times * std::abs(q) * spacing;
+    if constexpr (!is_hat) {
+      const double a = 0.2 * f * times_of[i], b = wavelength_share * c;
+      const double least = a < b ? a : b;
+      least_out[i] = static_cast<float>(least);
+      // (|q| + |dq/dz|·4σ/cos θ)·Δα < σ: the least width holds all over the beam
+      const double most = (std::abs(q) * cosine + std::abs(growth) * times * least) * spacing;
+      widening = most < least * cosine ? 0.0 : widening;
+      width = width > times * least ? width : times * least;
+    }
+    // width/cos θ on the side where the beam narrows, width/(cos θ − |widening|) on the other
+    const double far = cosine - std::abs(widening), both = cosine * far;
+    const double per_all = 1.0 / (both * c), per_both = width * per_all * c;
+    above[i] = per_both * (widening < 0.0 ? cosine : far);
+    below[i] = per_both * (widening > 0.0 ? cosine : far);
+    wave_number[i] = static_cast<float>(k_unit * sines[i] * both * per_all);
   }
   if (coherent)
     for (std::size_t i = 0; i < n; ++i) amplitude[i] = std::sqrt(amplitude[i]);
   find_rows(x);
-  if (!is_hat && coherent && spacing_ > 0.0) prepare_recurrences(n);
 }
+
+template void ColumnSum::prepare<true>(const BeamLaunch&, const Crossings&);
+template void ColumnSum::prepare<false>(const BeamLaunch&, const Crossings&);
 
 void ColumnSum::find_rows(const Crossings& x) {
   const std::size_t n = x.size();

@@ -53,17 +53,24 @@ struct FieldWork {
 /// Every kind of beam, receiver by receiver.
 class PlainPart {
  public:
-  explicit PlainPart(const FieldWork& work)
+  PlainPart(const FieldWork& work, std::span<float> /*memory*/)
       : work_(work), setting_{work.setting, work.setting}, field_{empty_field(work.run_case), {}} {
     setting_[1].spacing *= 2.0;
     if (work.also.half) field_[1] = field_[0];
   }
+  [[nodiscard]] static std::size_t room(const FieldWork& /*work*/) noexcept { return 0; }
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
     const BeamLaunch launch = work_.launch(i, ray_.source_speed);
     add_beam(setting_[0], launch, ray_, field_[0]);
     if (work_.also.half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
+  }
+  /// Adds what another part has.
+  void absorb(const PlainPart& other) {
+    for (std::size_t h = 0; h < 2; ++h)
+      for (std::size_t n = 0; n < field_[h].sum.size(); ++n)
+        field_[h].sum[n] += other.field_[h].sum[n];
   }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     const FieldSum& field = field_[half ? 1 : 0];
@@ -80,14 +87,20 @@ class PlainPart {
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:
-  FastPart(const FieldWork& work, const LayeredCrossings* layered)
+  FastPart(const FieldWork& work, std::span<float> memory, const LayeredCrossings* layered)
       : work_(work), layered_(layered) {
     const ReceiverGrid& grid = work.run_case.receivers;
     BeamSetting setting = work.setting;
-    sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    const std::size_t one = ColumnSum::room(grid.depths.size(), grid.ranges.size());
+    sum_.emplace_back(setting, grid.depths, memory.first(one));
     setting.spacing *= 2.0;
-    if (work.also.half) sum_.emplace_back(setting, grid.depths, grid.ranges.size());
+    if (work.also.half) sum_.emplace_back(setting, grid.depths, memory.subspan(one));
     if (work.also.bound) tubes_.emplace(work.setting, grid.depths, grid.ranges.size());
+  }
+  /// Numbers of memory for the sums.
+  [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {
+    const ReceiverGrid& grid = work.run_case.receivers;
+    return ColumnSum::room(grid.depths.size(), grid.ranges.size()) * (work.also.half ? 2 : 1);
   }
   void add(std::size_t i) {
     if (work_.also.bound && i > 0) {
@@ -107,6 +120,10 @@ class FastPart {
     last_ = i;
   }
   void finish() { tubes_->finish(); }
+  /// Adds what another part has, but for the bound.
+  void absorb(const FastPart& other) {
+    for (std::size_t h = 0; h < sum_.size(); ++h) sum_[h].absorb(other.sum_[h]);
+  }
   [[nodiscard]] double bound_at(std::size_t column, std::size_t row) const {
     return tubes_->at(column, row);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "core/error.h"
@@ -80,17 +81,21 @@ TraceLimits field_limits(const PropagationCase& run_case) {
 namespace {
 
 /// Sums the fan in `count` parts, which take turns at packets of neighbouring rays. Each is made
-/// from `work` and `more` by the thread that fills it, and has add(i) for ray i and at(column, row,
-/// half).
+/// from `work`, room(work) numbers of memory and `more` by the thread that fills it, and has add(i)
+/// for ray i and at(column, row, half).
 template <class Part, class... More>
 FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more) {
   constexpr std::size_t packet = 16;
   std::vector<std::optional<Part>> parts(count);
+  // In one block: what a C library gives back to the system after each field, and gets again page
+  // by page, goes by the largest block.
+  const std::size_t room = Part::room(work);
+  const auto memory = std::make_unique_for_overwrite<float[]>(count * room);
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
-    parts[p].emplace(work, more...);
+    parts[p].emplace(work, std::span<float>(memory.get() + p * room, room), more...);
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
       const std::size_t last = std::min(first + packet, beams);
@@ -102,6 +107,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   if (stopped) throw Interrupted();
   const ReceiverGrid& grid = work.run_case.receivers;
   const std::size_t rows = grid.rows(), columns = grid.ranges.size();
+  for (std::size_t p = 1; p < parts.size(); ++p) parts[0]->absorb(*parts[p]);
   FanField result;
   const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
     field.resize(grid.size());
@@ -114,8 +120,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
         scale[j - from] = field_scale(work.setting, grid.ranges[j]);
       for (std::size_t k = 0; k < rows; ++k)
         for (std::size_t j = from; j < to; ++j) {
-          std::complex<double> sum = 0.0;
-          for (const auto& part : parts) sum += part->at(j, k, half);
+          const std::complex<double> sum = parts[0]->at(j, k, half);
           field[k * columns + j] =
               scale[j - from] * (work.setting.coherent ? sum : std::sqrt(sum.real()));
         }

@@ -1,8 +1,15 @@
 #pragma once
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <experimental/simd>
+#include <utility>
 
 #include "core/units.h"
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 
 /// The compiler may take the next loop's iterations for independent.
 #if defined(__clang__)
@@ -22,6 +29,97 @@ inline Lanes load(const float* from) noexcept {
 }
 inline void store(const Lanes& value, float* to) noexcept {
   value.copy_to(to, std::experimental::element_aligned);
+}
+
+#if defined(__AVX2__) && !defined(__AVX512F__)
+/// For each set of eight lanes, its members in order.
+inline constexpr auto packing_orders = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> orders{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (std::uint8_t l = 0, n = 0; l < 8; ++l)
+      if ((bits >> l & 1U) != 0) orders[bits][n++] = l;
+  return orders;
+}();
+#endif
+
+/// As many whole numbers.
+using WholeLanes = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
+
+inline WholeLanes load(const std::int32_t* from) noexcept {
+  return WholeLanes(from, std::experimental::element_aligned);
+}
+inline Lanes to_lanes(const WholeLanes& numbers) noexcept {
+  return std::experimental::static_simd_cast<Lanes>(numbers);
+}
+
+/// Puts some of the lanes side by side: those that are `wanted`.
+class Packing {
+ public:
+  explicit Packing(const WholeLanes::mask_type& wanted) noexcept {
+    std::uint32_t bits = 0;
+    for (std::size_t l = 0; l < lanes; ++l) bits |= (wanted[l] ? 1U : 0U) << l;
+    count_ = static_cast<std::size_t>(std::popcount(bits));
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    order_ = _mm256_cvtepu8_epi32(
+        _mm_loadl_epi64(reinterpret_cast<const __m128i*>(packing_orders[bits].data())));
+#else
+    for (std::size_t l = 0, n = 0; l < lanes; ++l)
+      if (wanted[l]) order_[n++] = l;
+#endif
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+  /// The wanted ones of [lanes] numbers; what `to` gets behind them is without meaning.
+  void pack(const float* from, float* to) const noexcept {
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), order_));
+#else
+    for (std::size_t n = 0; n < count_; ++n) to[n] = from[order_[n]];
+#endif
+  }
+  void pack(const std::int32_t* from, std::int32_t* to) const noexcept {
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    const auto* source = reinterpret_cast<const __m256i*>(from);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(source), order_));
+#else
+    for (std::size_t n = 0; n < count_; ++n) to[n] = from[order_[n]];
+#endif
+  }
+
+ private:
+  std::size_t count_ = 0;
+#if defined(__AVX2__) && !defined(__AVX512F__)
+  __m256i order_;
+#else
+  std::array<std::size_t, lanes> order_{};
+#endif
+};
+
+/// A square of [lanes × lanes] numbers, in place.
+inline void transpose(float* square) noexcept {
+  if constexpr (lanes == 8) {
+    using Eight [[gnu::vector_size(32)]] = float;
+    Eight r[8], t[8];
+    std::memcpy(r, square, sizeof r);
+    for (int i = 0; i < 8; i += 2) {
+      t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+      t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4)
+      for (int j = i; j < i + 2; ++j) {
+        r[j] = __builtin_shufflevector(t[j], t[j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+        r[j + 2] = __builtin_shufflevector(t[j], t[j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+      }
+    for (int i = 0; i < 4; ++i) {
+      t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+      t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    std::memcpy(square, t, sizeof t);
+  } else {
+    for (std::size_t i = 0; i < lanes; ++i)
+      for (std::size_t j = 0; j < i; ++j) std::swap(square[i * lanes + j], square[j * lanes + i]);
+  }
 }
 
 /// 0, 1, 2, …
@@ -75,8 +173,7 @@ inline Lanes exponential(const Lanes& argument) noexcept {
   const Lanes e =
       1.0F + f * (1.0F + f * (0.5F + f * (1.0F / 6 +
                                           f * (1.0F / 24 + f * (1.0F / 120 + f * (1.0F / 720))))));
-  using Whole = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
-  const Whole bits = (std::experimental::static_simd_cast<Whole>(n) + 127) << 23;
+  const WholeLanes bits = (std::experimental::static_simd_cast<WholeLanes>(n) + 127) << 23;
   return e * __builtin_bit_cast(Lanes, bits);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "raytrace/beams/arc.h"
 #include "raytrace/beams/lanes.h"
 #include "raytrace/layered/lane_math.h"
 
@@ -11,35 +12,8 @@ namespace asdic {
 
 namespace {
 
-/// atanh(w)/w as a function of w²: a series to 5e-11 where w² < 0.1.
-inline double atanh_over_w(double w2) noexcept {
-  return 1.0 +
-         w2 * (1.0 / 3 +
-               w2 * (1.0 / 5 +
-                     w2 * (1.0 / 7 +
-                           w2 * (1.0 / 9 +
-                                 w2 * (1.0 / 11 +
-                                       w2 * (1.0 / 13 + w2 * (1.0 / 15 + w2 * (1.0 / 17))))))));
-}
-constexpr double series_limit = 0.1;
-
-/// The same number into the next few places.
 using Doubles = std::experimental::native_simd<double>;
 constexpr std::size_t doubles = Doubles::size();
-inline void fill(double value, double* to) noexcept {
-  Doubles(value).copy_to(to, std::experimental::element_aligned);
-}
-
-/// τ over a range Δ within one layer. \param w_over_g  ξΔ/(1 − s_a·s_b)
-inline double layer_time(double w_over_g, double g) noexcept {
-  const double w = w_over_g * g;
-  return w * w < series_limit ? w_over_g * atanh_over_w(w * w) : std::atanh(w) / g;
-}
-
-/// asin(y)/y for |y| < 0.3 or so, y half the angle by which the ray turns.
-inline double asin_over_y(double y2) noexcept {
-  return 1.0 + y2 * (1.0 / 6 + y2 * (3.0 / 40 + y2 * (15.0 / 336 + y2 * (105.0 / 3456))));
-}
 
 }  // namespace
 
@@ -64,6 +38,18 @@ std::optional<LayeredCrossings> LayeredCrossings::make(const Environment& enviro
   result.environment_ = &environment;
   result.ranges_ = ranges.first(static_cast<std::size_t>(
       std::lower_bound(ranges.begin(), ranges.end(), limits.max_range) - ranges.begin()));
+  const std::size_t columns = result.ranges_.size();
+  if (columns > 1) {
+    const double step = (ranges[columns - 1] - ranges[0]) / static_cast<double>(columns - 1);
+    bool even = step > 0.0;
+    for (std::size_t j = 0; j < columns; ++j)
+      even = even && std::abs(ranges[j] - (ranges[0] + static_cast<double>(j) * step)) < same_line;
+    if (even) result.columns_per_metre_ = 1.0 / step;
+  }
+  result.padded_ranges_ = std::vector<double>(columns + doubles);
+  std::copy_n(ranges.begin(), columns, result.padded_ranges_.begin());
+  result.columns_ = std::vector<std::uint32_t>(columns);
+  std::iota(result.columns_.begin(), result.columns_.end(), 0U);
   result.alpha_ = alpha.at(0.0);
   result.faintest_ = limits.faintest;
   result.depth_.push_back(top);
@@ -86,186 +72,116 @@ std::size_t LayeredCrossings::first_layer(double sine) const noexcept {
   return source_on_node_ && sine < 0.0 ? source_layer_ - 1 : source_layer_;
 }
 
-/// exp(−∫α ds): the last layer's arc is its chord times asin(y)/y.
-void LayeredCrossings::absorb(double xi, std::size_t n, Workspace& work, Crossings& out) const {
-  const double *ranges = ranges_.data(), *r_a = work.r.data(), *z_a = work.z.data(),
-               *g_a = work.g.data(), *depth = out.depth.data();
-  double* length = work.length.data();
-  ASDIC_INDEPENDENT
-  for (std::size_t j = 0; j < n; ++j) {
-    const double d = ranges[j] - r_a[j], dz = depth[j] - z_a[j];
-    const double chord = std::sqrt(d * d + dz * dz), y = 0.5 * chord * xi * g_a[j];
-    length[j] += chord * asin_over_y(y * y);
+/// The first column from `column` on whose range is not below `range`. Evenly spaced ones may be
+/// one off for rounding: an arc that goes on for a rounding error is the same ray.
+inline std::size_t LayeredCrossings::column_at(double range, std::size_t column) const noexcept {
+  const std::size_t columns = ranges_.size();
+  if (columns_per_metre_ > 0.0) {
+    const double place = std::ceil((range - ranges_.front()) * columns_per_metre_);
+    const int end = static_cast<int>(std::min(static_cast<double>(columns), std::max(0.0, place)));
+    return static_cast<std::size_t>(end);
   }
-  for (std::size_t j = 0; j < n; j += doubles) {  // beyond n there is room
-    const Rays nepers = min(alpha_ * load(length + j), Rays(700.0));
-    store(load(&out.level[j]) * exponential(-nepers), &out.level[j]);
-  }
+  while (column < columns && ranges_[column] < range) ++column;
+  return column;
 }
 
 bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings& out) const {
   const double cosine = std::cos(launch_elevation), sine = -std::sin(launch_elevation);
   if (!(cosine > 1e-3) || std::abs(sine) < 1e-9) return false;
-  const double xi = cosine / source_speed_, xi2 = xi * xi, slow = 1.0 / xi;
-  const std::size_t layers = gradient_.size(), nodes = depth_.size(), columns = ranges_.size();
-
-  // Each layer once: sin θ at its nodes, the range and time it takes to pass it. Where ξc > 1 the
-  // ray does not come; the numbers there are not used.
-  work.sine.resize(nodes), work.reach.resize(layers), work.time.resize(layers);
-  double* s_at = work.sine.data();
-  for (std::size_t i = 0; i < nodes; ++i)
-    s_at[i] = std::sqrt(std::max(0.0, 1.0 - xi2 * speed_[i] * speed_[i]));
-  double *layer_reach = work.reach.data(), *layer_time_at = work.time.data();
-  const double *c_at = speed_.data(), *z_at = depth_.data(), *g_at = gradient_.data();
-  std::int64_t steep = 0;
-  ASDIC_INDEPENDENT
-  for (std::size_t i = 0; i < layers; ++i) {
-    const double a = s_at[i], b = s_at[i + 1];
-    const double reach = xi * (c_at[i] + c_at[i + 1]) * (z_at[i + 1] - z_at[i]) / (a + b + 1e-30);
-    const double w_over_g = xi * reach / (1.0 - a * b), w = w_over_g * g_at[i];
-    layer_reach[i] = reach;
-    layer_time_at[i] = w_over_g * atanh_over_w(w * w);
-    steep += w * w * (a * b > 0.0 ? 1.0 : 0.0) >= series_limit ? 1 : 0;
-  }
-  work.jump.resize(nodes);
-  double* jump = work.jump.data();
-  ASDIC_INDEPENDENT
-  for (std::size_t i = 1; i < layers; ++i) jump[i] = (g_at[i] - g_at[i - 1]) * xi2 / s_at[i];
-  if (steep > 0)
-    for (std::size_t i = 0; i < layers; ++i)
-      work.time[i] = layer_time(xi * work.reach[i] / (1.0 - s_at[i] * s_at[i + 1]), gradient_[i]);
-
-  for (auto* array : {&work.r, &work.s, &work.z, &work.cosine, &work.tau, &work.q, &work.p, &work.g,
-                      &work.length})
-    array->resize(columns + doubles);
-  out.resize(columns + doubles);
-  out.source_speed = source_speed_;
-  double *r_to = work.r.data(), *s_to = work.s.data(), *z_to = work.z.data(),
-         *cos_to = work.cosine.data(), *tau_to = work.tau.data(), *q_to = work.q.data(),
-         *p_to = work.p.data(), *g_to = work.g.data(), *level_to = out.level.data(),
-         *phase_to = out.phase.data(), *mirror_to = out.mirror.data();
-
-  std::complex<double> coefficient[2];  // of surface and bottom, once they are met
-  double loss[2] = {-1.0, -1.0}, turn[2] = {0.0, 0.0};
-  double level = 1.0, phase = 0.0, mirror = 1.0, sense = 1.0, length = 0.0;
-  bool flat_series = true;
-  // Where the ray enters a layer.
-  std::size_t layer = first_layer(sine), column = 0;
-  double r = 0.0, tau = 0.0, q = 0.0, p = 1.0 / source_speed_, s = sine, z = source_depth_,
-         cos_a = cosine;
-  bool inside = !(source_on_node_);  // the first layer is entered from within
-  while (column < columns) {
-    const double g = gradient_[layer];
-    const bool down = s > 0.0;
-    const std::size_t exit_node = down ? layer + 1 : layer;
-    const bool turns = xi * speed_[exit_node] >= 1.0 || s_at[exit_node] == 0.0;
-    double reach, time, s_end;
-    std::size_t node;
-    if (turns) {  // and leaves through the node by which it came, or lies on that side
-      node = down ? layer : layer + 1;
-      s_end = down ? -s_at[node] : s_at[node];
-      reach = (s - s_end) / (xi * g);
-      time = layer_time(xi * reach / (1.0 - s * s_end), g);
-    } else {
-      node = exit_node;
-      s_end = down ? s_at[node] : -s_at[node];
-      if (inside) {
-        const double cos_end = xi * speed_[node];
-        reach = (depth_[node] - z) * (cos_a + cos_end) / (s + s_end);
-        time = layer_time(xi * reach / (1.0 - s * s_end), g);
-      } else {
-        reach = work.reach[layer];
-        time = work.time[layer];
-      }
-    }
-    inside = false;
-    const double r_end = r + reach;
-    if (column < columns && ranges_[column] < r_end) {
-      flat_series &=
-          xi2 * g * g * reach * reach < series_limit * (1.0 - s * s) * (1.0 - s_end * s_end);
-      const std::size_t first = column;
-      while (column < columns && ranges_[column] < r_end) ++column;
-      // four at a time; what is written too many is overwritten by the layers to come
-      for (std::size_t j = first; j < column; j += doubles) {
-        fill(r, r_to + j), fill(s, s_to + j), fill(z, z_to + j), fill(cos_a, cos_to + j);
-        fill(tau, tau_to + j), fill(q, q_to + j), fill(p, p_to + j), fill(g, g_to + j);
-        fill(level, level_to + j), fill(phase, phase_to + j), fill(mirror, mirror_to + j);
-      }
-      if (alpha_ != 0.0)
-        for (std::size_t j = first; j < column; j += doubles) fill(length, work.length.data() + j);
-    }
-    if (alpha_ != 0.0) {
-      const double dz = depth_[node] - z, chord = std::sqrt(reach * reach + dz * dz);
-      const double y = 0.5 * chord * xi * g;
-      length += chord * (y * y < 0.05 ? asin_over_y(y * y) : std::asin(y) / y);
-    }
-    // The layer's end, and what happens there.
-    r = r_end;
-    tau += time;
-    q += p * (reach * slow);
-    if (q * sense < 0.0) {
-      sense = -sense;
-      phase += 0.5 * pi;
-    }
-    z = depth_[node];
-    cos_a = xi * speed_[node];
-    s = s_end;
-    const bool at_surface = node == 0 && s < 0.0, at_bottom = node == layers && s > 0.0;
-    if (at_surface || at_bottom) {
-      const int which = at_surface ? 0 : 1;
-      if (loss[which] < 0.0) {
-        const Boundary& wall = at_surface ? environment_->surface : environment_->bottom;
-        coefficient[which] = reflection_coefficient(
-            wall.material, std::asin(std::abs(s)),
-            {.speed = speed_[node], .density = environment_->water_density.at(z)});
-        loss[which] = std::abs(coefficient[which]);
-        turn[which] = std::arg(coefficient[which]);
-      }
-      level *= loss[which];
-      phase += turn[which];
-      mirror = -mirror;
-      p += 2.0 * g * xi2 * q / s;
-      s = -s;
-      if (level == 0.0 || level < faintest_) break;
-      continue;
-    }
-    p -= q * jump[node];  // either way: g's jump and sin θ change sign together
-    layer = s > 0.0 ? node : node - 1;
-  }
-
-  // All crossings at once.
-  const std::size_t n = column;
-  const double *ranges = ranges_.data(), *r_a = work.r.data(), *s_a = work.s.data(),
-               *z_a = work.z.data(), *c_a = work.cosine.data(), *t_a = work.tau.data(),
-               *q_a = work.q.data(), *p_a = work.p.data(), *g_a = work.g.data();
-  double *depth = out.depth.data(), *cos_out = out.cosine.data(), *sine_out = out.sine.data(),
-         *speed = out.speed.data(), *time = out.time.data(), *q_out = out.q.data(),
-         *dq = out.dq_ds.data(), *phase_out = out.phase.data();
-  ASDIC_INDEPENDENT
-  for (std::size_t j = 0; j < n; ++j) {
-    const double d = ranges[j] - r_a[j], bend = xi * g_a[j];
-    const double s_j = s_a[j] - bend * d;
-    const double cos_j = std::sqrt(1.0 - s_j * s_j);
-    const double chord = c_a[j] + cos_j, arc = 1.0 - s_a[j] * s_j, both = d / (chord * arc);
-    depth[j] = z_a[j] + (s_a[j] + s_j) * arc * both;  // Δ(sin θ_a + sin θ)/(cos θ_a + cos θ)
-    const double w_over_g = xi * chord * both, w = w_over_g * g_a[j];
-    time[j] = t_a[j] + w_over_g * atanh_over_w(w * w);
-    q_out[j] = q_a[j] + p_a[j] * d * slow;
-    cos_out[j] = cos_j;
-    sine_out[j] = s_j;
-    speed[j] = cos_j * slow;
-    dq[j] = speed[j] * p_a[j];
-    phase_out[j] += q_a[j] * q_out[j] < 0.0 ? 0.5 * pi : 0.0;
-  }
-  if (!flat_series)
-    for (std::size_t j = 0; j < n; ++j) {
-      const double d = ranges[j] - r_a[j];
-      time[j] = t_a[j] + layer_time(xi * d / (1.0 - s_a[j] * sine_out[j]), g_a[j]);
-    }
-  if (alpha_ != 0.0) absorb(xi, n, work, out);
+  const double xi = cosine / source_speed_;
+  work.flat = pass_layers(xi, work);
+  follow(sine, xi, work);
+  const std::size_t room = ranges_.size() + std::max(lanes, doubles);
+  work.pass_of.resize(room), work.length.resize(room);
+  out.resize(room);
+  const std::size_t n = find_layers(work);
+  alpha_ == 0.0 ? cross<false>(xi, n, work, out) : cross<true>(xi, n, work, out);
+  fill_stretches(n, work, out);
   out.resize(n);
-  std::iota(out.column.begin(), out.column.end(), 0U);
+  out.source_speed = source_speed_;
+  std::copy_n(columns_.begin(), n, out.column.begin());
   return true;
+}
+
+/// In which layer the ray crosses each column. \return how many it crosses
+std::size_t LayeredCrossings::find_layers(Workspace& work) const {
+  std::size_t column = 0;
+  std::int32_t* pass_of = work.pass_of.data();
+  for (std::size_t k = 0; k < work.passes; ++k) {
+    const std::size_t first = column;
+    column = column_at(work.pass[k + 1].r, column);
+    // as many at a time as most layers have; those too many are overwritten by the next
+    for (std::size_t j = first; j < column; j += lanes)
+      WholeLanes(static_cast<std::int32_t>(k))
+          .copy_to(pass_of + j, std::experimental::element_aligned);
+  }
+  for (std::size_t j = column; j < column + doubles; ++j) pass_of[j] = 0;  // read and not used
+  return column;
+}
+
+/// All crossings, several at a time.
+template <bool absorbing>
+void LayeredCrossings::cross(double xi, std::size_t n, Workspace& work, Crossings& out) const {
+  const Doubles slow = 1.0 / xi;
+  const auto put = [](const Doubles& value, double* to) {
+    value.copy_to(to, std::experimental::element_aligned);
+  };
+  double *depth = out.depth.data(), *cosine = out.cosine.data(), *sine = out.sine.data(),
+         *speed = out.speed.data(), *time = out.time.data(), *q = out.q.data(),
+         *dq_ds = out.dq_ds.data(), *length = work.length.data();
+  const double* ranges = padded_ranges_.data();
+  const std::int32_t* pass_of = work.pass_of.data();
+  const Pass* passes = work.pass.data();
+  for (std::size_t j = 0; j < n; j += doubles) {
+    const auto of = [&](double Pass::*what) {
+      return Doubles([&](auto l) { return passes[pass_of[j + l]].*what; });
+    };
+    const Doubles s_a = of(&Pass::s), bend = of(&Pass::bend), rate = of(&Pass::rate);
+    const Doubles d = Doubles(ranges + j, std::experimental::element_aligned) - of(&Pass::r);
+    const Doubles s = s_a - bend * d, c = sqrt(1.0 - s * s);
+    const Doubles chord = of(&Pass::cosine) + c, arc = 1.0 - s_a * s, both = d / (chord * arc);
+    const Doubles dz = (s_a + s) * arc * both;  // Δ(sin θ_a + sin θ)/(cos θ_a + cos θ)
+    const Doubles w_per_bend = chord * both, w = w_per_bend * bend;
+    put(of(&Pass::z) + dz, depth + j);
+    put(of(&Pass::tau) + xi * w_per_bend * atanh_over_w(Doubles(w * w)), time + j);
+    put(of(&Pass::q) + rate * d, q + j);
+    put(c, cosine + j);
+    put(s, sine + j);
+    put(c * slow, speed + j);
+    put(c * rate, dq_ds + j);
+    if constexpr (absorbing) {
+      const Doubles straight = sqrt(d * d + dz * dz), y = 0.5 * straight * bend;
+      put(of(&Pass::length) + straight * asin_over_y(Doubles(y * y)), length + j);
+    }
+  }
+  if (work.flat) return;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Pass& a = passes[pass_of[j]];
+    time[j] = a.tau + layer_time(xi * (ranges[j] - a.r) / (1.0 - a.s * sine[j]), a.bend / xi);
+  }
+}
+
+/// What changes at boundaries and caustics only, and what absorption leaves: exp(−∫α ds).
+void LayeredCrossings::fill_stretches(std::size_t n, Workspace& work, Crossings& out) const {
+  const double* q = out.q.data();
+  double *level = out.level.data(), *phase = out.phase.data(), *mirror = out.mirror.data();
+  for (std::size_t i = 0, first = 0; i < work.stretch.size(); ++i) {
+    const Stretch& a = work.stretch[i];
+    const bool is_last = i + 1 == work.stretch.size();
+    const std::size_t end = is_last ? n : column_at(work.pass[work.stretch[i + 1].pass].r, first);
+    ASDIC_INDEPENDENT
+    for (std::size_t j = first; j < end; ++j) {
+      level[j] = a.level;
+      mirror[j] = a.mirror;
+      phase[j] = a.phase + (a.sense * q[j] < 0.0 ? 0.5 * pi : 0.0);
+    }
+    first = end;
+  }
+  if (alpha_ == 0.0) return;
+  for (std::size_t j = 0; j < n; j += doubles) {  // beyond n there is room
+    const Rays nepers = min(alpha_ * load(&work.length[j]), Rays(700.0));
+    store(load(&out.level[j]) * exponential(-nepers), &out.level[j]);
+  }
 }
 
 }  // namespace asdic

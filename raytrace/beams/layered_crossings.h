@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,11 +30,27 @@ class LayeredCrossings {
                                               double source_depth, std::span<const double> ranges,
                                               const TraceLimits& limits);
 
+  /// The ray where it enters a layer.
+  struct Pass {
+    double r, s, z, cosine, tau, q;
+    double rate;    // dq/dr = p/ξ
+    double bend;    // ξg
+    double length;  // of the ray, up to here
+  };
+  /// What changes at boundaries and caustics only.
+  struct Stretch {
+    std::size_t pass;                                            // from this one on
+    double level = 1.0, phase = 0.0, mirror = 1.0, sense = 1.0;  // sense: the sign of q
+  };
   /// Memory of one thread.
   struct Workspace {
-    std::vector<double> sine, jump, reach, time;        // [nodes] twice, [layers] twice
-    std::vector<double> r, s, z, cosine, tau, q, p, g;  // [columns] the layer's begin
-    std::vector<double> length;                         // [columns] of the ray, up to it
+    std::vector<double> sine, jump, reach, time;  // [nodes] twice, [layers] twice
+    std::vector<Pass> pass;                       // [passes + 1]: the last is where it ends
+    std::size_t passes = 0;
+    std::vector<Stretch> stretch;
+    std::vector<std::int32_t> pass_of;  // [columns + some]
+    std::vector<double> length;         // [columns + some] of the ray up to each
+    bool flat = true;                   // series will do for every arc
   };
 
   /// \return false: this ray (vertical, backwards, level, …) is one for the RayTracer
@@ -41,12 +58,21 @@ class LayeredCrossings {
 
  private:
   LayeredCrossings() = default;
-  void absorb(double xi, std::size_t n, Workspace& work, Crossings& out) const;
+  bool pass_layers(double xi, Workspace& work) const;
+  void follow(double sine, double xi, Workspace& work) const;
+  std::size_t find_layers(Workspace& work) const;
+  template <bool absorbing>
+  void cross(double xi, std::size_t n, Workspace& work, Crossings& out) const;
+  void fill_stretches(std::size_t n, Workspace& work, Crossings& out) const;
+  [[nodiscard]] std::size_t column_at(double range, std::size_t column) const noexcept;
   [[nodiscard]] std::size_t first_layer(double sine) const noexcept;
 
   const Environment* environment_ = nullptr;
   std::vector<double> depth_, speed_, gradient_;  // [nodes], [nodes], [layers]
   std::span<const double> ranges_;
+  std::vector<double> padded_ranges_;   // [columns + some]
+  std::vector<std::uint32_t> columns_;  // 0, 1, 2, …
+  double columns_per_metre_ = 0.0;
   double source_depth_ = 0.0, source_speed_ = 0.0;
   std::size_t source_layer_ = 0;
   bool source_on_node_ = false;  // the node above source_layer_

@@ -129,9 +129,11 @@ void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sin
 }
 
 /// Where c(z) = 1/ξ: Newton's method inside a shrinking bracket, for the law is monotone in the
-/// layer.
+/// layer; until c is 1/ξ but for its rounding, if that is 1e-12 of the way from the slower edge,
+/// else to the last bit of the bracket, as the plain way does: nodes crowd at the turning depth.
 Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
   const Rays target = 1.0 / rays.slowness;
+  const Rays rounding = 2e-16 * target;
   const bool rises = layer.c_bottom > layer.c_top;
   Rays low = layer.top, high = layer.bottom;
   const Rays share = (target - layer.c_top) / (layer.c_bottom - layer.c_top);
@@ -139,6 +141,8 @@ Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
   Rays::mask_type done(false);
   for (int i = 0; i < 60; ++i) {
     const WaterLanes here(layer, z);
+    const Rays way = rises ? z - layer.top : layer.bottom - z;
+    done = done || (abs(target - here.c) <= rounding && rounding <= 1e-12 * way * abs(here.dc_dz));
     const auto slower = (here.c < target) == Rays::mask_type(rises);
     where(slower, low) = z;
     where(!slower, high) = z;

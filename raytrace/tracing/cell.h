@@ -25,6 +25,8 @@ struct Row {
   std::size_t interval = 0;        ///< of the profile, or depth row of the section
   double alpha_top = 0.0;          ///< attenuation at depth 0 by the row's line [Np/m]
   double alpha_slope = 0.0;        ///< [Np/m²]
+  bool near_surface = false;       ///< whether a shaped boundary reaches into it
+  bool near_bottom = false;
   [[nodiscard]] double alpha(double depth) const noexcept {
     return alpha_top + alpha_slope * depth;
   }

@@ -124,7 +124,7 @@ double Course::to_range(double range, double begin, double end, double last) con
   const Line line{.range = range, .nr = sense, .nz = 0.0};
   if (closed_) return to_line(line);
   return falling_root(0.0, last, (range - begin) / (end - begin) * last, [&](double h) {
-    const auto r = series_.value_and_slope(series_.range, h);
+    const auto r = series_.value_and_slope(series_.place, PowerSeries::range, h);
     return ValueSlope{sense * (y_.range + r.value - range), sense * r.slope};
   });
 }
@@ -150,8 +150,7 @@ Place Course::at(double h) const noexcept {
     case Law::munk:
       break;
   }
-  const auto r = series_.value_and_slope(series_.range, h),
-             z = series_.value_and_slope(series_.depth, h);
+  const auto [r, z] = series_.where(h);
   return {y_.range + r.value, y_.depth + z.value, r.slope, z.slope};
 }
 
@@ -248,19 +247,20 @@ RayState Course::end_of_parabola(double w) const noexcept {
 RayState Course::end_of_series(double time) const noexcept {
   const RayState& y = y_;
   RayState b = y;
-  b.range = y.range + series_.value(series_.range, time);
-  b.depth = y.depth + series_.value(series_.depth, time);
+  const auto [range, depth, q, q_plane] = series_.values(series_.place, time);
+  const auto [tr, tz, growth, growth_plane] = series_.values(series_.motion, time);
+  b.range = y.range + range;
+  b.depth = y.depth + depth;
   const double c = cell_->speed(b.range, b.depth).c;
-  const double tr = series_.value(series_.tr, time), tz = series_.value(series_.tz, time);
   // |slowness| = 1/c, come what may
   const double unit = 1.0 / (c * std::sqrt(tr * tr + tz * tz));
   b.xi = tr * unit;
   b.zeta = tz * unit;
   b.time = y.time + time;
-  b.q = series_.value(series_.q, time);
-  b.p = series_.value(series_.growth, time) / c;
-  b.q_plane = series_.value(series_.q_plane, time);
-  b.p_plane = series_.value(series_.growth_plane, time) / c;
+  b.q = q;
+  b.p = growth / c;
+  b.q_plane = q_plane;
+  b.p_plane = growth_plane / c;
   b.length = y.length + series_.value(series_.length, time);
   b.nepers = y.nepers + series_.value(series_.nepers, time);
   return b;

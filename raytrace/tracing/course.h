@@ -51,10 +51,14 @@ class Course {
   [[nodiscard]] Place at(double h) const noexcept;
   /// Sine and cosine of the angle below the horizon, and their derivatives; power series only.
   [[nodiscard]] ValueSlope rise(double h) const noexcept {
-    return series_.value_and_slope(series_.tz, h);
+    return series_.value_and_slope(series_.motion, PowerSeries::tz, h);
   }
   [[nodiscard]] ValueSlope advance(double h) const noexcept {
-    return series_.value_and_slope(series_.tr, h);
+    return series_.value_and_slope(series_.motion, PowerSeries::tr, h);
+  }
+  /// Depth less that of the begin, likewise.
+  [[nodiscard]] ValueSlope sink(double h) const noexcept {
+    return series_.value_and_slope(series_.place, PowerSeries::depth, h);
   }
   [[nodiscard]] RayState end(double h) const noexcept;
 

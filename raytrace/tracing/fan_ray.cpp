@@ -33,7 +33,7 @@ LegEnd end_of(const RaySegment& s) noexcept {
 
 /// ∂z/∂α at fixed range: the ray moves by q·dα along its normal, which leans by θ.
 ColumnCrossing crossing_of(double depth, double xi, double zeta, double q, double sign, int turns) {
-  const double c = 1.0 / std::hypot(xi, zeta);
+  const double c = 1.0 / std::sqrt(xi * xi + zeta * zeta);
   return {.depth = depth, .slope = sign * q / (c * xi), .cosine = std::abs(c * xi), .turns = turns};
 }
 
@@ -183,22 +183,33 @@ void digest(const RayTrajectory& ray, const Environment& environment,
     leg.turns_begin = head.history.upper_turns + head.history.lower_turns;
     leg.turns_end = tail.history.upper_turns + tail.history.lower_turns;
     leg.first_crossing = static_cast<std::uint32_t>(out.crossings.size());
-    const auto cross = [&](const RaySegment& s, std::uint32_t column) {
-      const RayState y = state_at(s, arc_at_range(s, columns[column].range));
+    const auto cross = [&](const RaySegment& s, const SegmentCurve& curve, std::uint32_t column) {
+      const auto y = curve.at_range(columns[column].range);
       out.crossings.push_back(crossing_of(y.depth, y.xi, y.zeta, y.q, leg.sign,
                                           s.history.upper_turns + s.history.lower_turns));
     };
     if (forward(head)) {  // [begin, end)
       leg.first_column = leg.last_column = columns_below(columns, leg.begin.range);
-      for (std::size_t i = first; i < last; ++i)
-        while (leg.last_column < columns.size() &&
-               columns[leg.last_column].range < segments[i].end.range)
-          cross(segments[i], leg.last_column++);
+      for (std::size_t i = first; i < last; ++i) {
+        const RaySegment& s = segments[i];
+        const auto passed = [&] {
+          return leg.last_column < columns.size() && columns[leg.last_column].range < s.end.range;
+        };
+        if (!passed()) continue;
+        const SegmentCurve curve(s);
+        while (passed()) cross(s, curve, leg.last_column++);
+      }
     } else {  // (end, begin], stored by increasing range
       leg.first_column = leg.last_column = columns_up_to(columns, leg.begin.range);
-      for (std::size_t i = first; i < last; ++i)
-        while (leg.first_column > 0 && columns[leg.first_column - 1].range > segments[i].end.range)
-          cross(segments[i], --leg.first_column);
+      for (std::size_t i = first; i < last; ++i) {
+        const RaySegment& s = segments[i];
+        const auto passed = [&] {
+          return leg.first_column > 0 && columns[leg.first_column - 1].range > s.end.range;
+        };
+        if (!passed()) continue;
+        const SegmentCurve curve(s);
+        while (passed()) cross(s, curve, --leg.first_column);
+      }
       std::reverse(out.crossings.begin() + leg.first_crossing, out.crossings.end());
     }
     out.legs.push_back(leg);
@@ -210,8 +221,12 @@ std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const RayTra
   thread_local std::vector<LegOfRay> parts;
   split_into_legs(ray, tracer.environment(), parts);
   if (leg >= parts.size() || parts[leg].history != history) return {};
-  const std::span<const RaySegment> segments(ray.segments.data() + parts[leg].first,
-                                             parts[leg].last - parts[leg].first);
+  return cross_leg(ray, tracer, parts[leg], range);
+}
+
+ExactCrossing cross_leg(const RayTrajectory& ray, const RayTracer& tracer, const LegOfRay& leg,
+                        double range) {
+  const std::span<const RaySegment> segments(ray.segments.data() + leg.first, leg.last - leg.first);
   const RaySegment &head = segments.front(), &tail = segments.back();
   const double sign = -mirror_sign(head.history);
   const bool onward = forward(head);
@@ -238,7 +253,8 @@ std::optional<ExactCrossing> cross_column(const RayTrajectory& ray, const RayTra
     const RayState y = tracer.state_at_range(s, range);
     found.state = y;
     found.history = s.history;
-    found.c = 1.0 / std::hypot(y.xi, y.zeta);
+    found.row = s.row;
+    found.c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
     found.real = true;
     if (sense_of(s) * y.q < 0.0) ++found.history.caustics;
     found.crossing = crossing_of(y.depth, y.xi, y.zeta, y.q, sign, 0);

@@ -111,9 +111,14 @@ struct ExactCrossing {
   RayState state;
   RayHistory history;
   double c = 0.0;
-  bool real = false;  ///< the leg passes the column, or ends within a millimetre of it
+  std::uint32_t row = 0;  ///< of the water
+  bool real = false;      ///< the leg passes the column, or ends within a millimetre of it
   ColumnCrossing crossing;
 };
+
+/// \param tracer  of the ray
+[[nodiscard]] ExactCrossing cross_leg(const RayTrajectory& ray, const RayTracer& tracer,
+                                      const LegOfRay& leg, double range);
 
 /// \param tracer  of the ray   \param leg  index of the leg   \param history  which it must have;
 /// none if the ray has another

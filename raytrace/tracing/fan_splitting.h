@@ -36,25 +36,26 @@ class FanSplitting {
                                         SearchWatch* watch = nullptr) const {
     struct Memory {
       Work work;
-      std::deque<Ray> rays;  // two ends, then the middle of each depth of splitting
+      std::deque<Ray> rays;  // the middle of each depth of splitting
     };
     std::vector<std::unique_ptr<Memory>> memories(tracing::most_workers());
+    const auto memory_of = [&](std::size_t worker) -> Memory& {
+      if (!memories[worker]) memories[worker] = std::make_unique<Memory>(Memory{make_work(), {}});
+      return *memories[worker];
+    };
+    std::vector<Ray> ends(first_intervals + 1);  // each serves the intervals on both sides
+    tracing::parallel(first_intervals + 1, [&](std::size_t worker, int i) {
+      memory_of(worker).work.trace(first_angle(i), ends[static_cast<std::size_t>(i)]);
+    });
     std::vector<std::vector<Result>> results(first_intervals);
     std::vector<int> left(first_intervals, most_rays);
     std::atomic<int> done = 0;
     std::atomic<bool> stopped = false;
     tracing::parallel(first_intervals, [&](std::size_t worker, int i) {
       if (stopped) return;
-      if (!memories[worker]) {
-        memories[worker] = std::make_unique<Memory>(Memory{make_work(), {}});
-        memories[worker]->rays.resize(2);
-      }
-      Memory& memory = *memories[worker];
-      Ray &a = memory.rays[0], &b = memory.rays[1];
-      memory.work.trace(first_angle(i), a);
-      memory.work.trace(first_angle(i + 1), b);
+      Memory& memory = memory_of(worker);
       const auto slot = static_cast<std::size_t>(i);
-      split(memory.work, memory.rays, a, b, 2, left[slot], results[slot]);
+      split(memory.work, memory.rays, ends[slot], ends[slot + 1], 0, left[slot], results[slot]);
       if (watch != nullptr && watch->progress && !watch->progress(double(++done) / first_intervals))
         stopped = true;
     });
@@ -71,7 +72,7 @@ class FanSplitting {
   }
 
  private:
-  static constexpr std::size_t deepest = 60;
+  static constexpr std::size_t deepest = 58;
   static constexpr int most_rays = 1 << 14;  // in one of the first intervals
 
   /// Twice denser about the middle of the fan, mostly the horizontal, where rays are bent most.
@@ -84,7 +85,7 @@ class FanSplitting {
   /// \param left  rays that may still be traced
   static void split(Work& work, std::deque<Ray>& rays, const Ray& a, const Ray& b, std::size_t slot,
                     int& left, std::vector<Result>& out) {
-    double middle = slot % 4 == 0 ? 0.5 * (a.angle + b.angle) : work.middle(a, b);
+    double middle = slot % 4 == 2 ? 0.5 * (a.angle + b.angle) : work.middle(a, b);
     if (!(middle > a.angle && middle < b.angle)) middle = 0.5 * (a.angle + b.angle);
     if (!(middle > a.angle && middle < b.angle)) return work.search(a, b, out);
     if (rays.size() <= slot) rays.emplace_back();  // a deque: references stay

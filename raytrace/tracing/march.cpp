@@ -17,7 +17,7 @@ void March::run(double source_range, double source_depth, double launch_elevatio
   source_range_ = source_range;
   y_ = {.range = source_range, .depth = source_depth};
   enter_cell(ocean_.row(source_depth), ocean_.column(source_range));
-  const double c = cell_.speed(y_.range, y_.depth).c;
+  const double c = cell_->speed(y_.range, y_.depth).c;
   out_.source_speed = c;
   double cosine = std::cos(launch_elevation), sine = std::sin(launch_elevation);
   if (std::abs(cosine) < 1e-15) cosine = 0.0;  // straight up or down: π/2 has no exact number
@@ -27,7 +27,7 @@ void March::run(double source_range, double source_depth, double launch_elevatio
   y_.p = 1.0 / c;
   if (y_.xi < 0.0 && source_range == ocean_.column_begin(column_)) enter_cell(row_, column_ - 1);
   enter(source_depth);
-  while (begin_step()) {
+  while (cross_rows() && begin_step()) {
     if (creeping_) {
       creep();
     } else {
@@ -43,9 +43,9 @@ void March::run(double source_range, double source_depth, double launch_elevatio
 void March::enter_cell(std::size_t row, std::size_t column) {
   row_ = row;
   column_ = column;
-  cell_ = ocean_.cell(row, column);
-  near_surface_ = ocean_.near_surface(row);
-  near_bottom_ = ocean_.near_bottom(row);
+  cell_ = &ocean_.cell(row, column);
+  near_surface_ = cell_->row->near_surface;
+  near_bottom_ = cell_->row->near_bottom;
 }
 
 /// The row for a ray at a depth: on a line, the one it is heading for.
@@ -91,7 +91,7 @@ bool March::meets(BoundaryKind kind, double heading) const {
 bool March::begin_step() {
   for (;;) {
     if (segments_ >= limits_.max_segments) return end(RayEnd::trapped);
-    here_ = local(cell_, y_);
+    here_ = local(*cell_, y_);
     if (near_surface_) surface_facet_ = facet_ahead(BoundaryKind::surface);
     if (near_bottom_) bottom_facet_ = facet_ahead(BoundaryKind::bottom);
     const double heading = y_.zeta != 0.0 ? y_.zeta : -here_.c_z;  // dζ/ds = −c_z/c²
@@ -102,8 +102,8 @@ bool March::begin_step() {
     if (!reflect_at(kind)) return false;
     if (on_flat(kind)) enter(y_.depth);
   }
-  creeping_ = y_.zeta == 0.0 && ((y_.depth == cell_.row->bottom && here_.c_z < 0.0) ||
-                                 (y_.depth == cell_.row->top && here_.c_z > 0.0));
+  creeping_ = y_.zeta == 0.0 && ((y_.depth == cell_->row->bottom && here_.c_z < 0.0) ||
+                                 (y_.depth == cell_->row->top && here_.c_z > 0.0));
   return true;
 }
 
@@ -130,7 +130,7 @@ RayState March::crept(double way) const {
   y.time += way / here_.c;
   y.q += y_.p * here_.c * way;
   y.q_plane += y_.p_plane * here_.c * way;
-  y.nepers += cell_.row->alpha(y_.depth) * way;
+  y.nepers += cell_->row->alpha(y_.depth) * way;
   y.length += way;
   return y;
 }
@@ -140,10 +140,10 @@ void March::snap() {
   const Environment& sea = ocean_.environment;
   switch (event_) {
     case Event::row_top:
-      next_.depth = cell_.row->top;
+      next_.depth = cell_->row->top;
       break;
     case Event::row_bottom:
-      next_.depth = cell_.row->bottom;
+      next_.depth = cell_->row->bottom;
       break;
     case Event::column_begin:
       next_.range = ocean_.column_begin(column_);
@@ -171,13 +171,17 @@ void March::snap() {
       break;
   }
   if (event_ == Event::turn) {  // |slowness| = 1/c, come what may
-    const double c = cell_.speed(next_.range, next_.depth).c;
+    const double c = cell_->speed(next_.range, next_.depth).c;
     next_.xi = std::copysign(1.0 / c, next_.xi);
   }
 }
 
 void March::record() {
-  there_ = creeping_ ? here_ : local(cell_, next_);
+  there_ = creeping_ ? here_ : local(*cell_, next_);
+  keep();
+}
+
+void March::keep() {
   ++segments_;
   if (visitor_ == nullptr)
     store();
@@ -191,10 +195,7 @@ void March::record() {
 }
 
 void March::store() {
-  RaySegment& s = out_.segments.emplace_back();
-  s.begin = y_;
-  s.end = next_;
-  s.history = history_;
+  RaySegment& s = out_.segments.emplace_back(y_, next_, history_);
   s.c_begin = here_.c;
   s.c_end = there_.c;
   s.c_r_begin = here_.c_r;
@@ -203,14 +204,17 @@ void March::store() {
   s.c_z_end = there_.c_z;
   s.c_nn_begin = here_.c_nn;
   s.c_nn_end = there_.c_nn;
-  s.alpha_begin = cell_.row->alpha(y_.depth);
-  s.alpha_end = cell_.row->alpha(next_.depth);
+  s.alpha_begin = cell_->row->alpha(y_.depth);
+  s.alpha_end = cell_->row->alpha(next_.depth);
+  s.row = static_cast<std::uint32_t>(row_);
+  s.column = static_cast<std::uint32_t>(column_);
 }
 
 /// A segment owns its begin, not its end.
 void March::tell_ranges() {
   const double from = y_.range, to = next_.range;
   if (from == to) return;
+  if (crossed_row_) course_.begin(*cell_, y_, here_);
   const auto tell = [&](std::size_t i) {
     const RayState y = passing(ranges_[i]);
     RayHistory history = history_;
@@ -229,6 +233,13 @@ void March::tell_ranges() {
   }
 }
 
+bool March::tells_between(double from, double to) const {
+  if (visitor_ == nullptr) return false;
+  const double low = std::min(from, to), high = std::max(from, to);
+  const auto i = std::lower_bound(ranges_.begin(), ranges_.end(), low);
+  return i != ranges_.end() && *i <= high;
+}
+
 RayState March::passing(double range) const {
   RayState y =
       creeping_
@@ -242,9 +253,9 @@ RayState March::passing(double range) const {
 bool March::answer() {
   constexpr Tangent level{.r = 1.0, .z = 0.0}, upright{.r = 0.0, .z = 1.0};
   const auto into = [&](std::size_t row, std::size_t column, const Tangent& line) {
-    const Local before = creeping_ ? local(cell_, y_) : there_;
+    const Local before = creeping_ ? local(*cell_, y_) : there_;
     enter_cell(row, column);
-    cross(y_, before, local(cell_, y_), line);
+    cross(y_, before, local(*cell_, y_), line);
     return true;
   };
   switch (event_) {

@@ -38,6 +38,10 @@ class March {
     greatest_depth,
   };
 
+  [[nodiscard]] bool cross_rows();
+  [[nodiscard]] double cross_by_invariant(double line);
+  [[nodiscard]] double cross_by_series(double line);
+  [[nodiscard]] bool clear_of(BoundaryKind kind, double sine, double turn) const;
   void enter(double depth);
   void enter_cell(std::size_t row, std::size_t column);
   [[nodiscard]] bool begin_step();
@@ -56,9 +60,11 @@ class March {
   [[nodiscard]] bool meets(BoundaryKind kind, double heading) const;
   void snap();
   void record();
+  void keep();
   void store();
   void tell_ranges();
   [[nodiscard]] RayState passing(double range) const;
+  [[nodiscard]] bool tells_between(double from, double to) const;
   [[nodiscard]] bool answer();
   [[nodiscard]] bool reflect_at(BoundaryKind kind);
   [[nodiscard]] bool displace_along(BoundaryKind kind, const RayState& in, const Local& water,
@@ -88,12 +94,13 @@ class March {
 
   RayState y_, next_;
   Local here_{}, there_{};  // of cell_, at y_ and next_
-  Cell cell_{};
+  const Cell* cell_ = nullptr;
   Course course_;
   std::size_t row_ = 0, column_ = 0, surface_facet_ = 0, bottom_facet_ = 0;
   bool near_surface_ = false, near_bottom_ = false;
-  bool rising_ = false;    // ζ < 0 where the step begins
-  bool creeping_ = false;  // along a line of the water that bends the ray back to it
+  bool rising_ = false;       // ζ < 0 where the step begins
+  bool crossed_row_ = false;  // the segment is one of cross_rows
+  bool creeping_ = false;     // along a line of the water that bends the ray back to it
   RayHistory history_;
   double source_range_ = 0.0;
   double sense_ = 1.0;  // sign of q since the last caustic

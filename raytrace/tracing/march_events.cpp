@@ -13,7 +13,7 @@ constexpr double landed = 1e-9;  // an event is hit within this [m]
 
 /// Chooses the step and takes it: next_, step_ and event_, what ends it.
 void March::plan() {
-  course_.begin(cell_, y_, here_);
+  course_.begin(*cell_, y_, here_);
   event_ = Event::none;
   rising_ = y_.zeta < 0.0;
   const bool down = y_.zeta > 0.0 || (y_.zeta == 0.0 && here_.c_z < 0.0);
@@ -32,7 +32,7 @@ void March::plan() {
 
 /// Arcs and parabolas tell where they meet a line.
 void March::plan_closed(bool down, double longest) {
-  const Row& row = *cell_.row;
+  const Row& row = *cell_->row;
   step_ = longest;
   const auto take = [&](Event event, double step) {
     if (step > step_) return;
@@ -64,7 +64,7 @@ void March::plan_closed(bool down, double longest) {
 double March::guess(bool down) const {
   const double c = here_.c, tr = c * y_.xi, tz = c * y_.zeta;
   const double bend = (here_.c_r * tz - here_.c_z * tr) / c * tr;  // z″ = −(c_n/c)·t_r
-  const double dz = (down ? cell_.row->bottom : cell_.row->top) - y_.depth;
+  const double dz = (down ? cell_->row->bottom : cell_->row->top) - y_.depth;
   const double square = tz * tz + 2.0 * bend * dz;
   double way = square < 0.0 ? -tz / bend : 2.0 * dz / (tz + std::copysign(std::sqrt(square), dz));
   if (!(way >= 0.0)) way = longest_segment;
@@ -76,7 +76,7 @@ double March::guess(bool down) const {
 
 /// A power series tells where it is: what it has passed at the end of the step, it met before.
 void March::plan_series(bool down, double longest) {
-  const Row& row = *cell_.row;
+  const Row& row = *cell_->row;
   course_.expand(std::min(longest, 1.2 * guess(down)));
   step_ = course_.reach();
   const double sense = y_.zeta > 0.0 ? 1.0 : -1.0;
@@ -87,7 +87,7 @@ void March::plan_series(bool down, double longest) {
       return ValueSlope{sense * rise.value, sense * rise.slope};
     });
   }
-  if (cell_.law == Law::bilinear) {  // range is to grow or to fall all along
+  if (cell_->law == Law::bilinear) {  // range is to grow or to fall all along
     const double dr = course_.at(0.0).dr, sign = std::copysign(1.0, dr);
     if (std::abs(dr) > 1e-9 * here_.c && sign * course_.at(step_).dr < 0.0) {
       event_ = Event::none;
@@ -99,24 +99,27 @@ void March::plan_series(bool down, double longest) {
   }
   Place end = course_.at(step_);
   const auto take = [&](Event event, const Line& line) {
-    if (line.distance(end.range, end.depth) >= 0.0) return;
+    const double beyond = -line.distance(end.range, end.depth);
+    if (beyond <= 0.0) return;
     event_ = event;
-    step_ = falling_root(0.0, step_, step_, [&](double h) {
+    const double before = std::max(line.distance(y_.range, y_.depth), 0.0);
+    const double guess = step_ * before / (before + beyond);  // where the chord meets it
+    step_ = falling_root(0.0, step_, guess > 0.0 ? guess : step_, [&](double h) {
       const Place p = course_.at(h);
       return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
     });
     end = course_.at(step_);
   };
-  const auto before = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
+  const auto in_front = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
   const auto behind = [](double range) { return Line{.range = range, .nr = 1.0, .nz = 0.0}; };
   take(Event::row_top, {.depth = row.top, .nz = 1.0});
   take(Event::row_bottom, {.depth = row.bottom, .nz = -1.0});
-  if (cell_.law == Law::bilinear) {
+  if (cell_->law == Law::bilinear) {
     take(Event::column_begin, behind(ocean_.column_begin(column_)));
-    take(Event::column_end, before(ocean_.column_end(column_)));
+    take(Event::column_end, in_front(ocean_.column_end(column_)));
   }
   take(Event::least_range, behind(limits_.min_range));
-  take(Event::greatest_range, before(limits_.max_range));
+  take(Event::greatest_range, in_front(limits_.max_range));
   take(Event::greatest_depth, {.depth = limits_.max_depth, .nz = -1.0});
 }
 

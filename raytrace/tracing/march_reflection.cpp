@@ -5,13 +5,22 @@
 #include <cmath>
 
 namespace asdic::tracing {
+namespace {
+
+/// As std::arg, which takes a real number the long way.
+double phase_of(const std::complex<double>& coefficient) noexcept {
+  if (coefficient.imag() != 0.0) return std::arg(coefficient);
+  return std::signbit(coefficient.real()) ? std::copysign(pi, coefficient.imag()) : 0.0;
+}
+
+}  // namespace
 
 Tangent March::tangent_at(BoundaryKind kind) const noexcept {
   const Boundary& wall = boundary(kind);
   if (!wall.shape) return {};
   const std::size_t facet = kind == BoundaryKind::surface ? surface_facet_ : bottom_facet_;
   const BoundaryPoint point = wall.shape->at(y_.range, facet);
-  const double length = std::hypot(1.0, point.slope);
+  const double length = std::sqrt(1.0 + point.slope * point.slope);
   return {.r = 1.0 / length, .z = point.slope / length, .curvature = point.curvature};
 }
 
@@ -21,7 +30,7 @@ bool March::reflect_at(BoundaryKind kind) {
   int& bounces = surface ? history_.surface_bounces : history_.bottom_bounces;
   if (bounces >= (surface ? limits_.max_surface_bounces : limits_.max_bottom_bounces))
     return end(RayEnd::bounces);
-  const Local water = local(cell_, y_);
+  const Local water = local(*cell_, y_);
   Tangent tangent = tangent_at(kind);
   const RayState in = y_;
   RayState out = y_;
@@ -55,8 +64,8 @@ bool March::reflect_at(BoundaryKind kind) {
         coherent_reflection(rough, std::sin(grazing), 2.0 * pi * ocean_.frequency / water.c);
   out_.bounces.push_back({.boundary = kind, .grazing = grazing, .range = y_.range - source_range_});
   history_.reflection *= coefficient;
-  history_.reflection_phase += std::arg(coefficient);
-  const double left = std::abs(history_.reflection);
+  history_.reflection_phase += phase_of(coefficient);
+  const double left = std::sqrt(std::norm(history_.reflection));
   if (left == 0.0) return end(RayEnd::absorbed);
   if (left < limits_.faintest) return end(RayEnd::faint);
   if (ocean_.reflection == Reflection::on_the_spot) return true;

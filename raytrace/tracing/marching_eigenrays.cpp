@@ -18,14 +18,30 @@ constexpr double least_range = 0.1;
 /// Roots closer than this are one [rad, s].
 constexpr double same_root = 1e-9;
 
+/// The range up to which a boundary closes in on the water anywhere. A ray that runs away from the
+/// source is made shallower where it opens, so only before this can slopes send it back.
+double closes_up_to(const BoundaryShape& shape, BoundaryKind kind) {
+  const double closing = kind == BoundaryKind::bottom ? -1.0 : 1.0;  // sign of the slope
+  for (std::size_t i = shape.facets() - 1; i-- > 1;) {
+    const double begin = shape.facet_begin(i), end = shape.facet_end(i);
+    const double rise = shape.depth_at(end, i) - shape.depth_at(begin, i);
+    if (closing * rise > 0.0) return end;
+    for (const double share : {0.0, 0.5, 1.0})
+      if (closing * shape.at(std::lerp(begin, end, share), i).slope > 0.0) return end;
+  }
+  return -1e300;
+}
+
 /// Tracing goes on behind the last column until the next boundary is met, mostly; and as far as
 /// there are slopes that can send a ray back.
 double beyond_last_column(const Environment& ocean, double last) {
   const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
   const double top = ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
   double end = last + 2.0 * (bottom - top);
-  for (const Boundary* boundary : {&ocean.surface, &ocean.bottom})
-    if (boundary->shape) end = std::max(end, boundary->shape->ranges().back());
+  if (ocean.surface.shape)
+    end = std::max(end, closes_up_to(*ocean.surface.shape, BoundaryKind::surface));
+  if (ocean.bottom.shape)
+    end = std::max(end, closes_up_to(*ocean.bottom.shape, BoundaryKind::bottom));
   return end;
 }
 

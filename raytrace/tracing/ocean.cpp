@@ -56,10 +56,14 @@ Wall::Wall(const Boundary& boundary, BoundaryKind kind) {
       const double b = z1 - third * shape.at(end, i).slope;
       high = std::min({high, a, b});
       low = std::max({low, a, b});
+      for (const double rise : {a - z0, b - a, z1 - b})  // and its slope among theirs
+        steepest = std::max(steepest, std::abs(rise) / third);
     }
+    steepest = std::max(steepest, std::abs(slope));
     facets.push_back({.begin = shape.facet_begin(i),
                       .end = shape.facet_end(i),
                       .extreme = above ? low : high,
+                      .slope = slope,
                       .line = {.range = begin, .depth = z0, .nr = -slope * unit, .nz = unit}});
   }
 }
@@ -94,11 +98,18 @@ RayTracer::Ocean::Ocean(const Environment& given, double at_frequency, Reflectio
       row.alpha_slope = (alpha.at(inside + d) - alpha.at(inside - d)) / (2.0 * d);
       row.alpha_top = alpha.at(inside) - row.alpha_slope * inside;
     }
+    if (environment.surface.shape)
+      row.near_surface = row.top < environment.surface.shape->deepest();
+    if (environment.bottom.shape)
+      row.near_bottom = row.bottom > environment.bottom.shape->shallowest();
     rows.push_back(row);
   }
+  if (environment.section) columns = environment.section->ranges().size() + 1;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < columns; ++j) cells.push_back(make_cell(i, j));
 }
 
-tracing::Cell RayTracer::Ocean::cell(std::size_t row, std::size_t column) const noexcept {
+tracing::Cell RayTracer::Ocean::make_cell(std::size_t row, std::size_t column) const noexcept {
   using tracing::Law;
   tracing::Cell cell{.row = &rows[row]};
   const std::size_t j = cell.row->interval;

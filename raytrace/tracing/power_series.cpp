@@ -2,61 +2,107 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
+#include <experimental/simd>
 #include <tuple>
+#include <utility>
 
 namespace asdic::tracing {
 namespace {
 
-/// Coefficient k of a product.
-double product(const Series& x, const Series& y, std::size_t k) noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 0; i <= k; ++i) sum += x[i] * y[k - i];
-  return sum;
+using Four = std::experimental::fixed_size_simd<double, 4>;
+
+Four load(const std::array<double, 4>& from) noexcept {
+  return Four(from.data(), std::experimental::element_aligned);
+}
+void store(const Four& value, std::array<double, 4>& to) noexcept {
+  value.copy_to(to.data(), std::experimental::element_aligned);
 }
 
-/// The water along the ray as series: c, its gradient, and ∂²c/∂n² made of its second derivatives.
+constexpr std::size_t most = std::tuple_size_v<Series> - 1;
+
+/// Coefficient k of a product. The terms with the latest coefficients come last: all others wait
+/// for nothing.
+template <std::size_t k>
+[[gnu::always_inline]] inline double product(const Series& x, const Series& y) noexcept {
+  double even = 0.0, odd = 0.0;
+  for (std::size_t i = 1; i + 1 < k; i += 2) {
+    even += x[i] * y[k - i];
+    odd += x[i + 1] * y[k - i - 1];
+  }
+  if constexpr (k > 0 && k % 2 == 0) even += x[k - 1] * y[1];
+  if constexpr (k > 0) odd += x[k] * y[0];
+  return (even + odd) + x[0] * y[k];
+}
+
+/// The same of four products with one factor, and added to others.
+template <std::size_t k>
+[[gnu::always_inline]] inline Four product(const Series& x, const FourSeries& y) noexcept {
+  Four even = 0.0, odd = 0.0;
+  for (std::size_t i = 1; i + 1 < k; i += 2) {
+    even += x[i] * load(y[k - i]);
+    odd += x[i + 1] * load(y[k - i - 1]);
+  }
+  if constexpr (k > 0 && k % 2 == 0) even += x[k - 1] * load(y[1]);
+  if constexpr (k > 0) odd += x[k] * load(y[0]);
+  return (even + odd) + x[0] * load(y[k]);
+}
+
+template <std::size_t k>
+[[gnu::always_inline]] inline Four product(const FourSeries& x, const FourSeries& y) noexcept {
+  Four even = 0.0, odd = 0.0;
+  for (std::size_t i = 1; i + 1 < k; i += 2) {
+    even += load(x[i]) * load(y[k - i]);
+    odd += load(x[i + 1]) * load(y[k - i - 1]);
+  }
+  if constexpr (k > 0 && k % 2 == 0) even += load(x[k - 1]) * load(y[1]);
+  if constexpr (k > 0) odd += load(x[k]) * load(y[0]);
+  return (even + odd) + load(x[0]) * load(y[k]);
+}
+
+/// The ray's place and direction, and the water along it, as series: c, its gradient, and ∂²c/∂n²
+/// made of its second derivatives.
 struct Water {
-  Series c{}, c_r{}, c_z{}, c_nn{};
+  Series r, z, tr, tz;
+  Series c, c_r, c_z, c_nn;
 };
 
 /// c, c_r, c_z to order k, from the place to order k.
 struct CubicWater {
   const Cell& cell;
   SoundSpeed2D s;
-  Series square{}, c_zz{}, across{};
+  Series square, c_zz, across;
 
-  void next(std::size_t k, const PowerSeries& y, Water& w) noexcept {
-    const Series& z = y.depth;
+  template <std::size_t k>
+  void next(Water& w) noexcept {
     const double a3 = cell.a[3];
-    square[k] = product(z, z, k);
-    w.c[k] = s.c_z * z[k] + 0.5 * s.c_zz * square[k] + a3 * product(z, square, k);
-    w.c_z[k] = s.c_zz * z[k] + 3.0 * a3 * square[k];
-    c_zz[k] = 6.0 * a3 * z[k];
-    if (k == 0) {
+    square[k] = product<k>(w.z, w.z);
+    w.c[k] = s.c_z * w.z[k] + 0.5 * s.c_zz * square[k] + a3 * product<k>(w.z, square);
+    w.c_z[k] = s.c_zz * w.z[k] + 3.0 * a3 * square[k];
+    c_zz[k] = 6.0 * a3 * w.z[k];
+    if constexpr (k == 0) {
       w.c[0] = s.c;
       w.c_z[0] = s.c_z;
       c_zz[0] = s.c_zz;
     }
-    across[k] = product(y.tr, y.tr, k);
-    w.c_nn[k] = product(c_zz, across, k);
+    across[k] = product<k>(w.tr, w.tr);
+    w.c_nn[k] = product<k>(c_zz, across);
   }
 };
 
 struct BilinearWater {
   SoundSpeed2D s;
 
-  void next(std::size_t k, const PowerSeries& y, Water& w) noexcept {
-    const Series &r = y.range, &z = y.depth;
-    w.c[k] = s.c_r * r[k] + s.c_z * z[k] + s.c_rz * product(r, z, k);
-    w.c_r[k] = s.c_rz * z[k];
-    w.c_z[k] = s.c_rz * r[k];
-    if (k == 0) {
+  template <std::size_t k>
+  void next(Water& w) noexcept {
+    w.c[k] = s.c_r * w.r[k] + s.c_z * w.z[k] + s.c_rz * product<k>(w.r, w.z);
+    w.c_r[k] = s.c_rz * w.z[k];
+    w.c_z[k] = s.c_rz * w.r[k];
+    if constexpr (k == 0) {
       w.c[0] = s.c;
       w.c_r[0] = s.c_r;
       w.c_z[0] = s.c_z;
     }
-    w.c_nn[k] = -2.0 * s.c_rz * product(y.tr, y.tz, k);
+    w.c_nn[k] = -2.0 * s.c_rz * product<k>(w.tr, w.tz);
   }
 };
 
@@ -64,116 +110,164 @@ struct BilinearWater {
 struct MunkWater {
   const MunkParameters& munk;
   double depth;
-  Series decay{}, c_zz{}, across{}, rise{};
+  Series decay, c_zz, across, rise;
 
-  void next(std::size_t k, const PowerSeries& y, Water& w) noexcept {
+  template <std::size_t k>
+  void next(Water& w) noexcept {
     const double per_metre = 2.0 / munk.scale_depth;
     const double strength = munk.axis_speed * munk.perturbation;
     const double eta = per_metre * (depth - munk.axis_depth);
-    if (k == 0) {
+    if constexpr (k == 0) {
       decay[0] = std::exp(-eta);
     } else {
-      rise[k - 1] = static_cast<double>(k) * y.depth[k];  // ż
-      decay[k] = -per_metre * product(rise, decay, k - 1) / static_cast<double>(k);
+      rise[k - 1] = static_cast<double>(k) * w.z[k];  // ż
+      decay[k] = -per_metre * product<k - 1>(rise, decay) / static_cast<double>(k);
     }
-    w.c[k] = strength * (per_metre * y.depth[k] + decay[k]);
+    w.c[k] = strength * (per_metre * w.z[k] + decay[k]);
     w.c_z[k] = -strength * per_metre * decay[k];
     c_zz[k] = strength * per_metre * per_metre * decay[k];
-    if (k == 0) {
+    if constexpr (k == 0) {
       w.c[0] += munk.axis_speed + strength * (eta - 1.0);
       w.c_z[0] += strength * per_metre;
     }
-    across[k] = product(y.tr, y.tr, k);
-    w.c_nn[k] = product(c_zz, across, k);
+    across[k] = product<k>(w.tr, w.tr);
+    w.c_nn[k] = product<k>(c_zz, across);
   }
 };
-
-double largest(std::initializer_list<double> terms) noexcept {
-  double most = 0.0;
-  for (const double x : terms) most = std::max(most, std::abs(x));
-  return most;
-}
 
 /// h at which |a|·hⁿ = tolerance.
 double within(double a, int n, double tolerance) noexcept {
   return a == 0.0 ? 1e300 : std::pow(tolerance / std::abs(a), 1.0 / n);
 }
 
-/// Term k + 1 of everything from the terms up to k, until the last two are small enough where the
-/// series is wanted: what is left out is smaller. Flat: the water knows no range.
+/// Terms of everything one by one, until the last two are small enough where the series is wanted:
+/// what is left out is smaller. Flat: the water knows no range.
 template <bool flat, class Law>
-void expand_in(Law law, const Row& row, double wanted, PowerSeries& y) noexcept {
-  constexpr std::size_t most = std::tuple_size_v<Series> - 1;
-  Water w;
-  Series c_n{}, c_s{};
-  const bool lossy = row.alpha_slope != 0.0;
-  const double q_weight = 10.0 / (1.0 + std::abs(y.q[0]));
-  const double plane_weight = 10.0 / (1.0 + std::abs(y.q_plane[0]));
-  double power = 1.0, last = 0.0, before = 0.0;  // the last two terms, weighted, without powers
-  for (std::size_t k = 0; k < most; ++k) {
-    law.next(k, y, w);
-    c_n[k] = product(w.c_z, y.tr, k);
-    c_s[k] = product(w.c_z, y.tz, k);
-    if constexpr (!flat) {
-      c_n[k] -= product(w.c_r, y.tz, k);
-      c_s[k] += product(w.c_r, y.tr, k);
-    }
-    const double share = 1.0 / static_cast<double>(k + 1);
-    y.range[k + 1] = share * product(w.c, y.tr, k);
-    y.depth[k + 1] = share * product(w.c, y.tz, k);
-    y.tr[k + 1] = share * product(c_n, y.tz, k);
-    y.tz[k + 1] = -share * product(c_n, y.tr, k);
-    y.q[k + 1] = share * product(w.c, y.growth, k);
-    y.growth[k + 1] = share * (product(c_s, y.growth, k) - product(w.c_nn, y.q, k));
-    y.q_plane[k + 1] = share * product(w.c, y.growth_plane, k);
-    y.growth_plane[k + 1] =
-        share * (product(c_s, y.growth_plane, k) - product(w.c_nn, y.q_plane, k));
-    y.length[k + 1] = share * w.c[k];
-    y.nepers[k + 1] = share * (row.alpha_top * w.c[k] +
-                               (lossy ? row.alpha_slope * product(w.c, y.depth, k) : 0.0));
-    before = last;
-    last = largest({y.range[k + 1], y.depth[k + 1], 1e3 * y.tr[k + 1], 1e3 * y.tz[k + 1],
-                    q_weight * y.q[k + 1], plane_weight * y.q_plane[k + 1]});
-    const double before_it = before * power;
-    power *= wanted;
-    y.order = k + 1;
-    if (k >= 3 && last * power + 0.1 * before_it <= position_tolerance) {
-      y.reach = wanted;
-      break;
-    }
-    if (k + 1 == most)
-      y.reach = std::min(within(last, most, position_tolerance),
-                         within(0.1 * before, most - 1, position_tolerance));
+class Expansion {
+ public:
+  Expansion(const Law& law, const Row& row, double wanted, PowerSeries& y) noexcept
+      : law_(law), row_(row), wanted_(wanted), y_(y) {
+    q_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q]));
+    plane_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q_plane]));
+    take(0);
   }
-  if (y.order < 6) return;
-  // The quintic of a segment leaves out a₆·t³(t − h)³ and more: a₆·h⁶/64 at most.
-  const double sixth = largest({y.range[6], y.depth[6], 0.1 * q_weight * y.q[6],
-                                0.1 * plane_weight * y.q_plane[6]}) /
-                       64.0;
-  const double h3 = y.reach * y.reach * y.reach;
-  if (sixth * h3 * h3 > quintic_tolerance) y.reach = within(sixth, 6, quintic_tolerance);
-}
+
+  void run() noexcept {
+    run(std::make_index_sequence<most>{});
+    if (y_.order < 6) return;
+    // The quintic of a segment leaves out a₆·t³(t − h)³ and more: a₆·h⁶/64 at most.
+    const auto& a = y_.place[6];
+    const double sixth = std::max({std::abs(a[0]), std::abs(a[1]), 0.1 * q_weight_ * std::abs(a[2]),
+                                   0.1 * plane_weight_ * std::abs(a[3])}) /
+                         64.0;
+    const double h3 = y_.reach * y_.reach * y_.reach;
+    if (sixth * h3 * h3 > quintic_tolerance) y_.reach = within(sixth, 6, quintic_tolerance);
+  }
+
+ private:
+  template <std::size_t... k>
+  void run(std::index_sequence<k...>) noexcept {
+    (void)(next<k>() && ...);
+  }
+
+  /// Coefficient i, laid out as the sums take it.
+  void take(std::size_t i) noexcept {
+    const auto &place = y_.place[i], &motion = y_.motion[i];
+    w_.r[i] = place[PowerSeries::range];
+    w_.z[i] = place[PowerSeries::depth];
+    w_.tr[i] = motion[PowerSeries::tr];
+    w_.tz[i] = motion[PowerSeries::tz];
+    turned_[i] = {motion[1], -motion[0], motion[2], motion[3]};
+  }
+
+  /// Term k + 1 from the terms up to k; false when it was the last.
+  template <std::size_t k>
+  [[gnu::always_inline]] bool next() noexcept {
+    law_.template next<k>(w_);
+    double c_n = product<k>(w_.c_z, w_.tr), c_s = product<k>(w_.c_z, w_.tz);
+    if constexpr (!flat) {
+      c_n -= product<k>(w_.c_r, w_.tz);
+      c_s += product<k>(w_.c_r, w_.tr);
+    }
+    rates_[k] = {c_n, c_n, c_s, c_s};
+    bends_[k] = {0.0, 0.0, -w_.c_nn[k], -w_.c_nn[k]};
+    constexpr double share = 1.0 / static_cast<double>(k + 1);
+    const Four place = share * product<k>(w_.c, y_.motion);
+    const Four motion = share * (product<k>(rates_, turned_) + product<k>(bends_, y_.place));
+    store(place, y_.place[k + 1]);
+    store(motion, y_.motion[k + 1]);
+    take(k + 1);
+    y_.length[k + 1] = share * w_.c[k];
+    y_.nepers[k + 1] = share * row_.alpha_top * w_.c[k];
+    if (row_.alpha_slope != 0.0)
+      y_.nepers[k + 1] += share * row_.alpha_slope * product<k>(w_.c, w_.z);
+    before_ = last_;
+    const auto &a = y_.place[k + 1], &d = y_.motion[k + 1];
+    last_ = std::max(std::max({std::abs(a[0]), std::abs(a[1]), q_weight_ * std::abs(a[2]),
+                               plane_weight_ * std::abs(a[3])}),
+                     1e3 * std::max(std::abs(d[0]), std::abs(d[1])));
+    const double before_it = before_ * power_;
+    power_ *= wanted_;
+    y_.order = k + 1;
+    if (k >= 3 && last_ * power_ + 0.1 * before_it <= position_tolerance) {
+      y_.reach = wanted_;
+      return false;
+    }
+    if constexpr (k + 1 == most)
+      y_.reach = std::min(within(last_, most, position_tolerance),
+                          within(0.1 * before_, most - 1, position_tolerance));
+    return true;
+  }
+
+  Law law_;
+  const Row& row_;
+  double wanted_;
+  PowerSeries& y_;
+  Water w_;
+  alignas(32) FourSeries turned_;  // (t_z, −t_r, P, P)
+  alignas(32) FourSeries rates_;   // (c_n, c_n, c_s, c_s)
+  alignas(32) FourSeries bends_;   // (0, 0, −c_nn, −c_nn)
+  double q_weight_ = 1.0, plane_weight_ = 1.0;
+  double power_ = 1.0, last_ = 0.0, before_ = 0.0;  // the last two terms, weighted, without powers
+};
 
 }  // namespace
 
 void PowerSeries::expand(const Cell& cell, const RayState& y, const Local& here,
                          double wanted) noexcept {
   const SoundSpeed2D s = cell.speed(y.range, y.depth);
-  range[0] = depth[0] = length[0] = nepers[0] = 0.0;
-  tr[0] = here.c * y.xi;
-  tz[0] = here.c * y.zeta;
-  q[0] = y.q;
-  growth[0] = here.c * y.p;
-  q_plane[0] = y.q_plane;
-  growth_plane[0] = here.c * y.p_plane;
+  place[0] = {0.0, 0.0, y.q, y.q_plane};
+  motion[0] = {here.c * y.xi, here.c * y.zeta, here.c * y.p, here.c * y.p_plane};
+  length[0] = nepers[0] = 0.0;
   Row row = *cell.row;  // α over the depth from here
   row.alpha_top = row.alpha(y.depth);
   if (cell.law == Law::bilinear)
-    expand_in<false>(BilinearWater{s}, row, wanted, *this);
+    Expansion<false, BilinearWater>({s}, row, wanted, *this).run();
   else if (cell.law == Law::munk)
-    expand_in<true>(MunkWater{*cell.munk, y.depth}, row, wanted, *this);
+    Expansion<true, MunkWater>({*cell.munk, y.depth, {}, {}, {}, {}}, row, wanted, *this).run();
   else
-    expand_in<true>(CubicWater{cell, s}, row, wanted, *this);
+    Expansion<true, CubicWater>({cell, s, {}, {}, {}}, row, wanted, *this).run();
+}
+
+std::array<double, 4> PowerSeries::values(const FourSeries& a, double h) const noexcept {
+  Four v = load(a[order]);
+  for (std::size_t i = order; i-- > 0;) v = load(a[i]) + h * v;
+  std::array<double, 4> result;
+  store(v, result);
+  return result;
+}
+
+std::array<ValueSlope, 2> PowerSeries::where(double h) const noexcept {
+  using Two = std::experimental::fixed_size_simd<double, 2>;
+  const auto two = [&](std::size_t i) {
+    return Two(place[i].data(), std::experimental::element_aligned);
+  };
+  Two v = two(order), d = 0.0;
+  for (std::size_t i = order; i-- > 0;) {
+    d = v + h * d;
+    v = two(i) + h * v;
+  }
+  return {ValueSlope{v[0], d[0]}, ValueSlope{v[1], d[1]}};
 }
 
 }  // namespace asdic::tracing

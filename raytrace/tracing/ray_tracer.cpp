@@ -32,12 +32,27 @@ RayState RayTracer::state_at_range(const RaySegment& segment, double range) cons
   const RayState &y = segment.begin, &end = segment.end;
   const bool along_a_line = y.depth == end.depth && y.zeta == 0.0 && end.zeta == 0.0;
   if (along_a_line) return state_at(segment, arc_at_range(segment, range));
-  const tracing::Cell cell = ocean_->cell(ocean_->row(0.5 * (y.depth + end.depth)),
-                                          ocean_->column(0.5 * (y.range + end.range)));
+  const tracing::Cell& cell = ocean_->cell(ocean_->row(0.5 * (y.depth + end.depth)),
+                                           ocean_->column(0.5 * (y.range + end.range)));
   tracing::Course course;
-  course.begin(cell, y, tracing::local(cell, y));
-  if (!course.closed()) course.expand(end.time - y.time);
-  const double h = course.to_range(range, y.range, end.range, end.time - y.time);
+  RayState from = y;
+  course.begin(cell, from, tracing::local(cell, from));
+  double last = end.time - from.time, last_range = end.range;
+  while (!course.closed()) {  // a series may end before a segment that crossed a row at once
+    course.expand(end.time - from.time);
+    if (course.reach() >= end.time - from.time) {
+      last = end.time - from.time;
+      last_range = end.range;
+      break;
+    }
+    last = course.reach();
+    const RayState next = course.end(last);
+    last_range = next.range;
+    if ((range <= next.range) == (next.range >= y.range)) break;
+    from = next;
+    course.begin(cell, from, tracing::local(cell, from));
+  }
+  const double h = course.to_range(range, from.range, last_range, last);
   // straight up and down rounding may have it miss the range
   if (!(h < tracing::never)) return state_at(segment, arc_at_range(segment, range));
   RayState there = course.end(h);

@@ -29,6 +29,28 @@ ValueSlope quintic(const Jet& a, const Jet& b, double h, double u) noexcept {
           (a1 + u * (2.0 * a2 + u * (3.0 * a3 + u * (4.0 * a4 + u * 5.0 * a5)))) / h};
 }
 
+std::array<double, 6> quintic_terms(const Jet& a, const Jet& b, double h) noexcept {
+  const double a1 = a.d * h, a2 = 0.5 * a.dd * h * h;
+  const double rise = b.f - a.f - a1 - a2;
+  const double slope = b.d * h - a1 - 2.0 * a2;
+  const double bend = b.dd * h * h - 2.0 * a2;
+  return {a.f,
+          a1,
+          a2,
+          10.0 * rise - 4.0 * slope + 0.5 * bend,
+          -15.0 * rise + 7.0 * slope - bend,
+          6.0 * rise - 3.0 * slope + 0.5 * bend};
+}
+
+ValueSlope evaluate(const std::array<double, 6>& a, double u) noexcept {
+  double v = a[5], d = 0.0;
+  for (std::size_t i = 5; i-- > 0;) {
+    d = v + u * d;
+    v = a[i] + u * v;
+  }
+  return {v, d};
+}
+
 double cubic(double f0, double d0, double f1, double d1, double h, double u) noexcept {
   const double rise = f1 - f0;
   const double a1 = d0 * h, b1 = d1 * h;
@@ -69,7 +91,7 @@ RayState state_at(const RaySegment& segment, double s) noexcept {
   const double c = cubic(segment.c_begin, a.c_s, segment.c_end, b.c_s, h, u);
   y.range = range.value;
   y.depth = depth.value;
-  const double unit = 1.0 / (c * std::hypot(range.slope, depth.slope));
+  const double unit = 1.0 / (c * std::sqrt(range.slope * range.slope + depth.slope * depth.slope));
   y.xi = range.slope * unit;
   y.zeta = depth.slope * unit;
   y.time = time.value;
@@ -81,6 +103,43 @@ RayState state_at(const RaySegment& segment, double s) noexcept {
       cubic(segment.begin.nepers, segment.alpha_begin, segment.end.nepers, segment.alpha_end, h, u);
   y.length = segment.begin.length + s;
   return y;
+}
+
+SegmentCurve::SegmentCurve(const RaySegment& segment) noexcept
+    : segment_(segment), h_(segment.end.length - segment.begin.length) {
+  if (h_ <= 0.0) return;
+  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
+                     segment.c_nn_begin);
+  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
+                     segment.c_nn_end);
+  range_ = quintic_terms(a.range, b.range, h_);
+  depth_ = quintic_terms(a.depth, b.depth, h_);
+  q_ = quintic_terms(a.q, b.q, h_);
+  const double rise = segment.c_end - segment.c_begin, a1 = a.c_s * h_, b1 = b.c_s * h_;
+  c_ = {segment.c_begin, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise};
+}
+
+SegmentCurve::Crossing SegmentCurve::at_range(double range) const noexcept {
+  const double begin = segment_.begin.range, end = segment_.end.range;
+  if (h_ <= 0.0)
+    return {segment_.begin.depth, segment_.begin.xi, segment_.begin.zeta, segment_.begin.q};
+  const double sense = end > begin ? 1.0 : -1.0;
+  double low = 0.0, high = 1.0, u = begin == end ? 0.0 : (range - begin) / (end - begin);
+  ValueSlope r = evaluate(range_, u);
+  for (int i = 0; i < 60 && begin != end; ++i) {  // Newton's method, bracketed
+    const double miss = sense * (r.value - range);
+    (miss > 0.0 ? high : low) = u;
+    double next = u - miss / (sense * r.slope);
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const double step = std::abs(next - u) * h_;
+    u = next;
+    r = evaluate(range_, u);
+    if (step < 1e-5) break;  // the next would be of the order of its square over the bend's radius
+  }
+  const ValueSlope z = evaluate(depth_, u);
+  const double c = c_[0] + u * (c_[1] + u * (c_[2] + u * c_[3]));
+  const double unit = 1.0 / (c * std::sqrt(r.slope * r.slope + z.slope * z.slope));
+  return {z.value, r.slope * unit, z.slope * unit, evaluate(q_, u).value};
 }
 
 double arc_at_range(const RaySegment& segment, double range) noexcept {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -35,12 +36,16 @@ struct RayHistory {
 /// A piece of a ray within one cell of the ocean, where everything is smooth. `end` is the state
 /// before, the next segment's `begin` the state after the jump of p (and direction) between them.
 struct RaySegment {
+  RaySegment() = default;
+  RaySegment(const RayState& from, const RayState& to, const RayHistory& before)
+      : begin(from), end(to), history(before) {}
   RayState begin, end;
   RayHistory history;                 ///< up to `begin`
   double c_begin = 0.0, c_end = 0.0;  ///< speed by the cell's law [m/s]
   double c_r_begin = 0.0, c_z_begin = 0.0, c_r_end = 0.0, c_z_end = 0.0;  ///< its gradient [1/s]
   double c_nn_begin = 0.0, c_nn_end = 0.0;    ///< ∂²c/∂n² across the ray [1/(m·s)]
   double alpha_begin = 0.0, alpha_end = 0.0;  ///< attenuation [Np/m]
+  std::uint32_t row = 0, column = 0;          ///< of the cell
 };
 
 enum class RayEnd : std::uint8_t {
@@ -65,6 +70,24 @@ struct RayTrajectory {
 /// sixth order in the segment's length. `caustics` of a receiver there: history.caustics plus one
 /// if q has changed sign on the way.
 [[nodiscard]] RayState state_at(const RaySegment& segment, double s) noexcept;
+
+/// The same for one segment at many ranges, and only where it is and how wide the tube.
+class SegmentCurve {
+ public:
+  explicit SegmentCurve(const RaySegment& segment) noexcept;
+
+  struct Crossing {
+    double depth = 0.0, xi = 0.0, zeta = 0.0, q = 0.0;
+  };
+  [[nodiscard]] Crossing at_range(double range) const noexcept;
+
+ private:
+  using Quintic = std::array<double, 6>;  // in u = s/h
+  const RaySegment& segment_;
+  double h_;
+  Quintic range_{}, depth_{}, q_{};
+  std::array<double, 4> c_{};
+};
 
 /// Arc length from the segment's begin at which the ray is at a range between the ranges of its
 /// ends.

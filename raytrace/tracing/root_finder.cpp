@@ -30,13 +30,23 @@ double spread_of(const RayLeg& a, const RayLeg& b) {
 void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const Found& found) {
   found_ = &found;
   max_turns_ = max_turns;
+  if (receivers_ < worth_a_family || expected(a, b, 0) < worth_a_family)
+    return search_legs(a, b, 0);
+  const double middle = 0.5 * (a.angle + b.angle);
+  if (!(middle > a.angle && middle < b.angle)) return search_legs(a, b, 0);
+  const WholeRay &first = whole_ray(0, a.angle), &last = whole_ray(2, b.angle);
+  search_families(first, whole_ray(1, middle), last, 0, 3);
+}
+
+void RootFinder::search_legs(const FanRay& a, const FanRay& b, std::size_t first_leg) {
   farthest_ = source_range_;
   const std::size_t legs = std::min(a.legs.size(), b.legs.size());
   for (std::size_t i = 0; i < legs && a.legs[i].history == b.legs[i].history; ++i) {
-    const auto [first, last] = columns_between(a, b, i, columns_);
     for (const RayLeg* leg : {&a.legs[i], &b.legs[i]})
       farthest_ =
           std::max({farthest_, leg->begin.range, std::min(leg->begin.range, leg->end.range)});
+    if (i < first_leg) continue;
+    const auto [first, last] = columns_between(a, b, i, columns_);
     for (std::uint32_t k = first; k < last; ++k) search_column(a, b, i, k);
   }
 }
@@ -86,6 +96,7 @@ void RootFinder::search_stretch(const HermiteNode& a, const HermiteNode& b, cons
 }
 
 std::optional<ExactCrossing> RootFinder::exact(double angle) {
+  if (family_ != nullptr) return family_->at(angle);
   TraceLimits limits = limits_;
   limits.max_range = std::min(limits.max_range, reach_);
   tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
@@ -135,7 +146,7 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
     x = next;
   }
   std::optional<ExactCrossing> there;
-  double miss = 1e300;
+  double miss = 1e300, off_before = 1e300, x_before = x;
   for (int i = 0; i < 80; ++i) {
     there = exact(x);
     if (!there) {  // a ray of another history in between: towards the nearer end
@@ -148,13 +159,23 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
     miss = std::abs(off) * there->crossing.cosine;
     if (miss < miss_wanted) break;
     ((off < 0.0) == rising ? low : high) = x;
-    const double slope = there->crossing.slope;
+    double slope = there->crossing.slope;
+    // a slope that did not bring it near is not the curve's: over curvilinear facets q is another's
+    if (std::abs(off) > 0.01 * std::abs(off_before) && x != x_before)
+      slope = (off - off_before) / (x - x_before);
+    off_before = off;
+    x_before = x;
     double next = slope != 0.0 ? x - off / slope : low;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     if (next == x || high - low < 2e-16 * (1.0 + std::abs(x))) break;
     x = next;
   }
   if (!there || !there->real || miss > miss_accepted) return;
+  if (family_ != nullptr) {
+    family_->complete(x, *there);
+    ray_.launch_elevation = x;
+    family_->bounces(x, family_rays_, ray_.bounces);
+  }
   const RayHistory& h = there->history;
   if (h.upper_turns + h.lower_turns > max_turns_) return;
   Arrival path = arrival(*there, depth);

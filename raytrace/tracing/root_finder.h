@@ -1,16 +1,21 @@
 #pragma once
+#include <deque>
 #include <functional>
 
 #include "raytrace/arrivals.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/tracing/fan_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
+#include "raytrace/tracing/ray_family.h"
 
 namespace asdic {
 
-/// Finds the eigenrays between two neighbours of a fan by re-tracing single rays.
+/// Finds the eigenrays between two neighbours of a fan: by re-tracing single rays, or where there
+/// are many, by families of five rays that tell all between (ray_family.h).
 class RootFinder {
  public:
+  /// Receivers between two rays for which families are made: each root re-traces two or three rays.
+  static constexpr std::size_t worth_a_family = 6;
   using Found = std::function<void(std::uint32_t receiver, Arrival&&)>;
 
   RootFinder(const RayTracer& tracer, double source_range, double source_depth,
@@ -19,12 +24,20 @@ class RootFinder {
         source_range_(source_range),
         source_depth_(source_depth),
         limits_(limits),
-        columns_(columns) {}
+        columns_(columns) {
+    for (const ReceiverColumn& column : columns) receivers_ += column.depths.size();
+  }
 
   /// Every path between two neighbours to every receiver, on the legs whose history they share.
   void search(const FanRay& a, const FanRay& b, int max_turns, const Found& found);
 
  private:
+  void search_legs(const FanRay& a, const FanRay& b, std::size_t first_leg);
+  [[nodiscard]] std::size_t expected(const FanRay& a, const FanRay& b, std::size_t first_leg) const;
+  WholeRay& whole_ray(std::size_t slot, double angle);
+  void search_families(const WholeRay& a, const WholeRay& m, const WholeRay& b,
+                       std::size_t first_leg, std::size_t slot);
+  [[nodiscard]] bool search_family(const FamilyRays& rays, std::size_t leg);
   void search_column(const FanRay& a, const FanRay& b, std::size_t leg, std::uint32_t column);
   void search_stretch(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic);
   void refine(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic, double depth,
@@ -37,7 +50,13 @@ class RootFinder {
   double source_range_, source_depth_;
   TraceLimits limits_;
   std::span<const ReceiverColumn> columns_;
+  std::size_t receivers_ = 0;
   RayTrajectory ray_;
+  std::deque<WholeRay> whole_rays_;  // three, and two for each depth of splitting
+  std::vector<RayFamily> families_;
+  std::vector<std::uint32_t> family_columns_, edge_columns_;
+  FamilyRays family_rays_{};
+  const RayFamily* family_ = nullptr;  // that stands for re-traced rays
   // of the search under way
   const ReceiverColumn* column_ = nullptr;
   const Found* found_ = nullptr;

@@ -12,11 +12,13 @@
 #include "raytrace/beams/field_run.h"
 #include "raytrace/eigenrays.h"
 #include "raytrace/ray_fan.h"
+#include "raytrace/tracing/marching_eigenrays.h"
 #include "sonar/array.h"
 #include "sonar/block_noise.h"
 #include "sonar/noise_spectrum.h"
 #include "sonar/synthesis.h"
 #include "support/deep_ocean.h"
+#include "support/oceans.h"
 #include "support/random_returns.h"
 
 // One kernel, run once to warm up and then so often as told inside a function that callgrind can
@@ -68,6 +70,39 @@ Kernel fan() {
   return [ocean, rays, elevations, out = std::vector<FanRay>(1000)]() mutable {
     rays->trace(elevations, 100e3, out);
     keep(out);
+  };
+}
+
+support::CurvedOcean curved_ocean(const char* name) {
+  for (const support::CurvedOcean& ocean : support::curved_oceans())
+    if (ocean.name == name) return ocean;
+  std::abort();
+}
+
+/// 100 rays within ±1 rad to 12 km over slopes, ridges and through fronts, step by step.
+Kernel marched_rays(const char* name) {
+  const support::CurvedOcean ocean = curved_ocean(name);
+  const auto tracer = std::make_shared<const RayTracer>(ocean.environment, 500.0);
+  return [tracer, depth = ocean.source_depth, ray = RayTrajectory{}]() mutable {
+    for (int i = 0; i < 100; ++i)
+      tracer->trace(0.0, depth, -1.0 + 0.02 * (i + 0.3), {.min_range = -1e3, .max_range = 12e3},
+                    ray);
+    keep(ray);
+  };
+}
+
+/// Eigenrays to receivers in so many columns and rows.
+Kernel marching_eigenrays_to(const char* name, int columns, int rows) {
+  const support::CurvedOcean ocean = curved_ocean(name);
+  const auto tracer = std::make_shared<const RayTracer>(ocean.environment, 500.0);
+  std::vector<ReceiverPoint> receivers;
+  for (int i = 1; i <= columns; ++i)
+    for (int k = 1; k <= rows; ++k)
+      receivers.push_back({ocean.range * i / columns, 400.0 * k / (rows + 1)});
+  return [tracer, depth = ocean.source_depth, receivers] {
+    keep(marching_eigenrays(
+        *tracer, 0.0, depth, receivers,
+        {.lowest = -1.2, .highest = 1.2, .max_surface_bounces = 6, .max_bottom_bounces = 6}));
   };
 }
 
@@ -126,6 +161,11 @@ const std::vector<Named> kernels = {
     {"1000-receivers-pchip", [] { return many_receivers("pchip"); }},
     {"field-hat", [] { return field(BeamKind::hat); }},
     {"field-gaussian", [] { return field(BeamKind::gaussian); }},
+    {"marched-rays-wedge", [] { return marched_rays("wedge"); }},
+    {"marched-rays-front", [] { return marched_rays("front"); }},
+    {"marched-rays-pchip", [] { return marched_rays("ridge under pchip"); }},
+    {"marching-one-receiver", [] { return marching_eigenrays_to("faceted ridge", 1, 1); }},
+    {"marching-grid", [] { return marching_eigenrays_to("wedge", 20, 40); }},
     {"scatterers-at-rest", [] { return scatterers(0.0); }},
     {"scatterers-doppler", [] { return scatterers(5e-4); }},
     {"noise-independent", [] { return noise(NoiseCoherence::independent); }},

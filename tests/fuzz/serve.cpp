@@ -61,7 +61,9 @@ bool refused(Work work) {
     return false;
   } catch (const Refusal& refusal) {
     const std::string said = refusal.what();
-    fuzz::insist(said.find("expected") != std::string::npos, "a refusal says what was expected");
+    fuzz::insist(said.find(": found ") != std::string::npos,
+                 "a refusal says where, and what it found");
+    fuzz::insist(said.find(", expected ") != std::string::npos, "and what was expected");
     return true;
   }
 }

@@ -45,15 +45,53 @@ sample_rate = 8000.0
 TOML
 }
 
-# Waits until FILE holds a whole ping: it has grown past the first (8.4 MB with the tables), which was flushed before.
+# A program in the background; its id in $run. (A job of a script ignores SIGINT unless told otherwise.) start WORDS
+start() {
+  /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "$@" &
+  run=$!
+}
+
+# Waits for a state of the program $run, not for a time: for ever, but for a minute. wait_until WHAT CONDITION…
+wait_until() {
+  local what=$1 end=$((SECONDS + 60))
+  shift
+  until "$@"; do
+    kill -0 "$run" 2>/dev/null || fail "the program ended before $what"
+    [ $SECONDS -lt $end ] || fail "not after a minute: $what"
+    sleep 0.002
+  done
+}
+
+# Waits until FILE counts a ping, as a reader finds it while the program $run writes: for ever, but for a minute.
 # wait_for_ping FILE
 wait_for_ping() {
-  local i
-  for ((i = 0; i < 600; ++i)); do
-    [ "$(stat -c %s "$1" 2>/dev/null || echo 0)" -gt 9000000 ] && return 0
-    sleep 0.02
-  done
-  fail "no ping in $1 after 12 s"
+  HDF5_USE_FILE_LOCKING=FALSE /usr/bin/python3 - "$1" "$run" <<'PY' || fail "no ping in $1: the program ended, or a minute is over"
+import os
+import sys
+import time
+import h5py
+end = time.monotonic() + 60.0
+while time.monotonic() < end:
+    os.kill(int(sys.argv[2]), 0)  # fails when it is gone
+    try:
+        with h5py.File(sys.argv[1], "r") as f:
+            if f["ping"].shape[0] > 0:
+                sys.exit(0)
+    except (OSError, KeyError, RuntimeError):
+        pass  # not there yet, or in the middle of a change
+    time.sleep(0.002)
+sys.exit(1)
+PY
+}
+
+# The program $run has taken the SIGINT that it was sent: its handler is gone, or it is gone itself. A second one sent
+# before that would be one with the first.
+sigint_was_taken() {
+  local caught
+  caught=$(sed -n 's/^SigCgt:\t//p' "/proc/$run/status" 2>/dev/null) || return 0
+  [ -z "$caught" ] || [ $((16#$caught & 2)) = 0 ]
 }
 
 # The file opens elsewhere too, and every ping that it counts is whole. h5py_reads FILE

@@ -55,11 +55,10 @@ struct SyntheticStudy {
       double sum = 0.0;
       for (std::size_t i = 0; i < table.index.size(); ++i)
         if (table.valid[i] != 0) sum += table.values[1][i];
-      return std::vector<study::SummaryTable>{
-          {.name = "sum",
-           .title = "of y",
-           .columns = {{.name = "sum", .unit = "m", .meaning = "sum"}},
-           .values = {{sum}}}};
+      return study::Summary{.tables = {{.name = "sum",
+                                        .title = "of y",
+                                        .columns = {{.name = "sum", .unit = "m", .meaning = "sum"}},
+                                        .values = {{sum}}}}};
     };
     work.estimate = [] { return estimate(); };
     return work;

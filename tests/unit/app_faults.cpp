@@ -59,6 +59,11 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"arrivals small.toml --target 1", 2, {"--target", "found 1", "from 0 to 0"}},
         Fault{"arrivals small.toml --leg both", 2, {"--leg"}},
         Fault{"export small.h5", 2, {"--wav"}},
+        Fault{"serve small.toml --tcp 99999",
+              2,
+              {"--tcp: found 99999, expected a port from 0 to 65535", "asdic serve --help"}},
+        Fault{"serve small.toml --tcp http", 2, {"--tcp: found http, expected a port"}},
+        Fault{"ping small.toml --threads 2.5", 2, {"--threads: found 2.5, expected a number"}},
         Fault{"ocean --latitude 91 --longitude 0", 2, {"--latitude"}},
         Fault{"ocean --latitude 30 --longitude 0 --bearing 10", 2, {"--range", "go together"}}));
 
@@ -71,6 +76,10 @@ INSTANTIATE_TEST_SUITE_P(
               2,
               {"pulse.frequency", "found", "expected"}},
         Fault{"validate small.toml --set pulse.colour=3", 2, {"pulse.colour", "found", "expected"}},
+        Fault{"validate small.toml --set target.0.rnage=3",
+              2,
+              {"--set target.0.rnage: found an unknown key", "(did you mean \"range\"?)"}},
+        Fault{"validate small.toml --set target.0.velcoity=3", 2, {"did you mean \"velocity\"?"}},
         Fault{
             "arrivals small.toml --set array.phones=0", 2, {"array.phones", "found", "expected"}}));
 
@@ -89,6 +98,30 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"rays small.toml > /dev/full", 1, {"standard output"}},
                       Fault{"arrivals small.toml --json > /dev/full", 1, {"standard output"}},
                       Fault{"--help > /dev/full", 1, {"standard output"}}));
+
+// Whatever a command reads: a file that is not there is told so, with what it should have been.
+INSTANTIATE_TEST_SUITE_P(
+    MissingFiles, Faults,
+    ::testing::Values(
+        Fault{"plot none.h5", 2, {"none.h5: found no such file, expected a file to draw: HDF5"}},
+        Fault{"plot none.shd", 2, {"none.shd: found no such file, expected a file to draw"}},
+        Fault{"rays none.toml", 2, {"none.toml: found no such file, expected a scenario file"}},
+        Fault{"arrivals none.toml", 2, {"none.toml: found no such file, expected a scenario file"}},
+        Fault{"field none.toml", 2, {"none.toml: found no such file, expected a scenario file"}},
+        Fault{"serve none.toml", 2, {"none.toml: found no such file, expected a scenario file"}},
+        Fault{"study none.toml", 2, {"none.toml: found no such file, expected a study file"}},
+        Fault{"merge none.h5 -o all.h5", 2, {"none.h5: found no such file, expected an HDF5 file"}},
+        Fault{"process none.h5", 2, {"none.h5: found no such file, expected an HDF5 file"}},
+        Fault{"export none.h5 --wav", 2, {"none.h5: found no such file, expected an HDF5 file"}},
+        Fault{"explain none", 2, {"none.env: found no such file, expected the input of a BELLHOP"}},
+        Fault{"convert none.env a.toml", 2, {"none.env: found no such file, expected the input"}},
+        Fault{"convert none.toml a.env", 2, {"none.toml: found no such file, expected a scenario"}},
+        Fault{"convert none.shd a.h5", 2, {"none.shd: found no such file, expected a result"}},
+        Fault{"compare a.shd b.shd", 2, {"a.shd: found no such file, expected a result"}},
+        Fault{"ocean --latitude 30 --longitude 0 --data none",
+              2,
+              {"none/", "found no such file, expected a netCDF file"}},
+        Fault{"ping small.toml --set include='\"none.toml\"'", 2, {"no such file", "expected"}}));
 
 // A file that was cut at any place is refused by whoever reads it, never crashed on.
 TEST(TruncatedFile, IsRefusedByEveryReader) {

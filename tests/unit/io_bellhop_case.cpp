@@ -492,8 +492,7 @@ TEST(BellhopCase, AMissingFileIsTold) {
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "nowhere/case.env: found No such file or directory, expected the input of a "
-                 "BELLHOP case");
+                 "nowhere/case.env: found no such file, expected the input of a BELLHOP case");
   }
 }
 

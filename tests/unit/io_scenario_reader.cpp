@@ -416,7 +416,7 @@ TEST(ScenarioReader, WrongOverridesAreReportedAsSuch) {
       {"pulse", "--set: found \"pulse\", expected key=value"},
       {"=3", "--set: found \"=3\", expected key=value"},
       {"target.0.depth=6000",
-       "--set target.0.depth: target[0].depth: found depth 6000 m at 0 s, expected a depth "
+       "--set target.0.depth: found depth 6000 m at 0 s, expected a depth "
        "between the surface (0 m) and the bottom (5000 m)"},
       {"pulse={kind=",
        "--set pulse: found a fault (Error while parsing key-value pair: encountered end-of-file), "

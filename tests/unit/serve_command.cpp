@@ -37,7 +37,7 @@ TEST(Command, KeepsItsIdAndItsValues) {
 
 TEST(Command, IsRefusedInOneMessage) {
   const std::string no_json =
-      "json: found text that is no JSON in UTF-8, expected one JSON object a line";
+      "json: line: found text that is no JSON in UTF-8, expected one JSON object a line";
   const struct {
     std::string line, message;
   } cases[] = {
@@ -51,27 +51,31 @@ TEST(Command, IsRefusedInOneMessage) {
       {R"({"command": "ping", "time": NaN})", no_json},
       {R"({"command": "ping", "time": Infinity})", no_json},
       {R"({"command": "ping", "time": 1e999})",
-       "json: found a number that is not finite, expected finite numbers"},
+       "json: time: found a number that is not finite, expected finite numbers"},
       {R"({"command": "ping", "time": -1e999})",
-       "json: found a number that is not finite, expected finite numbers"},
-      {R"([1])", "json: expected one JSON object a line"},
-      {R"(1)", "json: expected one JSON object a line"},
+       "json: time: found a number that is not finite, expected finite numbers"},
+      {R"([1])", "json: line: found array, expected one JSON object a line"},
+      {R"(1)", "json: line: found number, expected one JSON object a line"},
       {R"({"command": "ping", "time": 1, "time": 2})",
        "json: time: found the key twice, expected every key once"},
       {R"({"command": "ping", "waveform": {"kind": 1, "kind": 2}})",
        "json: kind: found the key twice, expected every key once"},
-      {R"({})", R"(command: command: expected "ping", "update", "state", "limits" or "quit")"},
+      {R"({})",
+       R"(command: command: found nothing, expected "ping", "update", "state", "limits" or "quit")"},
       {R"({"command": 5})",
-       R"(command: command: expected "ping", "update", "state", "limits" or "quit")"},
+       R"(command: command: found number, expected "ping", "update", "state", "limits" or "quit")"},
       {R"({"command": "fire"})",
        R"(command: command: found an unknown one, expected "ping", "update", "state", "limits" or "quit")"},
-      {R"({"id": [1], "command": "ping"})", "command: id: expected a number or a string"},
+      {R"({"id": [1], "command": "ping"})",
+       "command: id: found array, expected a number or a string"},
       {"{\"id\": \"" + std::string(200, 'x') + "\", \"command\": \"ping\"}",
-       "command: id: expected at most 128 bytes"},
+       "command: id: found 202 bytes, expected at most 128"},
       {"{\"" + std::string(65, 'k') + "\": 1}",
-       R"(json: expected keys of 1 to 64 letters, digits and "_")"},
-      {R"({"": 1})", R"(json: expected keys of 1 to 64 letters, digits and "_")"},
-      {R"({"a\u0000b": 1})", R"(json: expected keys of 1 to 64 letters, digits and "_")"},
+       R"(json: line: found another key, expected keys of 1 to 64 letters, digits and "_")"},
+      {R"({"": 1})",
+       R"(json: line: found another key, expected keys of 1 to 64 letters, digits and "_")"},
+      {R"({"a\u0000b": 1})",
+       R"(json: line: found another key, expected keys of 1 to 64 letters, digits and "_")"},
   };
   for (const auto& one : cases) EXPECT_EQ(refusal(one.line), one.message) << one.line;
 }
@@ -83,11 +87,11 @@ TEST(Command, NestingIsCountedWhileItIsRead) {
            std::string(levels - 1, ']') + "}";
   };
   EXPECT_EQ(refusal(nested(16)), "taken");
-  EXPECT_EQ(refusal(nested(17)), "limit: found deeper nesting, expected at most 16 levels");
+  EXPECT_EQ(refusal(nested(17)), "limit: x: found deeper nesting, expected at most 16 levels");
   SessionLimits large;
   large.line_bytes = 4'000'000;
   EXPECT_EQ(refusal(R"({"x": )" + std::string(1'000'000, '['), large),
-            "limit: found deeper nesting, expected at most 16 levels");
+            "limit: x: found deeper nesting, expected at most 16 levels");
 }
 
 TEST(Command, ALongLineIsRefused) {
@@ -95,7 +99,7 @@ TEST(Command, ALongLineIsRefused) {
   limits.line_bytes = 30;
   EXPECT_EQ(refusal(R"({"command": "ping", "id": 12 })", limits), "taken");  // 30 bytes
   EXPECT_EQ(refusal(R"({"command": "ping", "id": 123 })", limits),
-            "limit: found a longer line, expected at most 30 bytes a line");
+            "limit: line: found a longer one, expected at most 30 bytes a line");
 }
 
 TEST(Command, ARefusedLineStillHasItsId) {
@@ -121,7 +125,7 @@ TEST(Handshake, AnythingElseIsNotQuoted) {
       ADD_FAILURE() << "taken: " << line;
     } catch (const Refusal& refused) {
       EXPECT_EQ(refused.code(), "handshake");
-      EXPECT_STREQ(refused.what(), R"(expected a first line {"asdic": 1})") << line;
+      EXPECT_STREQ(refused.what(), R"(first line: found another, expected {"asdic": 1})") << line;
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
+#include "serve/client_key.h"
 #include "serve/command_queue.h"
 #include "serve/data_folder.h"
 #include "serve/latency.h"
@@ -61,7 +62,8 @@ TEST_F(DataFolderRule, NothingElseIs) {
         "/etc/passwd", "link.csv", "up/secret.csv", "up/data2/secret.csv", "../data2/secret.csv",
         "missing.csv", "loop.csv", "casts/may.csv/x"})
     EXPECT_EQ(refusal(name),
-              "file: sound_speed.file: expected the name of a file inside the server's data "
+              "file: sound_speed.file: found no such file, expected the name of a file inside the "
+              "server's data "
               "directory")
         << name;
   EXPECT_EQ(refusal((outside / "data/casts/may.csv").string()).substr(0, 5), "file:");
@@ -249,27 +251,71 @@ TEST(UnixSocket, RemovesItsOwnNameAlone) {
   EXPECT_TRUE(fs::exists(folder / "name"));
 }
 
-// What a file says does not reach a client; which key is at fault, and what it should be, does.
+// What a file says does not reach a client; which key is at fault, and what it should be, does; and
+// what the client itself said.
 TEST(RefusalOf, SaysTheKeyAndWhatIsExpected) {
-  const std::string file = "a file that holds what docs/formats/scenario.md says";
+  const std::string own = "found what the scenario has, expected X";
+  const std::string file =
+      "found other contents, expected a file that holds what docs/formats/scenario.md says";
   const struct {
     std::string where, message;
   } cases[] = {
-      {"secret/deep.toml:12: target.0.position", "target.0.position: expected X"},
-      {"--set platform: platform.waypoints[1].time", "platform.waypoints[1].time: expected X"},
-      {"--set noise", "noise: expected X"},
-      {"pings.sample_rate", "pings.sample_rate: expected X"},
-      {"/secret/cast.csv:3", "a file: expected " + file},
-      {"/secret/cast.csv", "a file: expected " + file},
-      {"cast.csv", "a file: expected " + file},
-      {"cast.csv:3: speed", "a file: expected " + file},
-      {"secret/other.toml:3: environment.depth", "a file: expected " + file},
+      {"secret/deep.toml:12: target.0.position", "targets.0.position: " + own},
+      {"--set platform: platform.waypoints[1].time",
+       "platform.waypoints[1].time: found 3, expected X"},
+      {"--set noise", "noise: " + own},
+      {"pings.sample_rate", "pings.sample_rate: " + own},
+      {"/secret/cast.csv:3", "a file: " + file},
+      {"/secret/cast.csv", "a file: " + file},
+      {"cast.csv", "a file: " + file},
+      {"cast.csv:3: speed", "a file: " + file},
+      {"secret/other.toml:3: environment.depth", "a file: " + file},
   };
+  const TomlValue fields = parse_toml("platform = { waypoints = [{}, { time = 3 }] }", "command");
   for (const auto& one : cases) {
-    const Refusal refusal = refusal_of(
-        InputError({.where = one.where, .got = "SECRET", .expected = "X"}), "secret/deep.toml");
+    const bool said = one.message.find("found 3") != std::string::npos;
+    const Refusal refusal =
+        refusal_of(InputError({.where = one.where, .got = said ? "3" : "SECRET", .expected = "X"}),
+                   "secret/deep.toml", fields, {});
     EXPECT_EQ(refusal.what(), one.message);
     EXPECT_EQ(refusal.code(), "scenario");
+  }
+}
+
+// Keys of a scenario as commands have them.
+TEST(ClientKeys, AreThoseOfTheCommand) {
+  const TomlValue fields = parse_toml(R"(
+      waveform = { kind = "cw" }
+      sound_speed = { depth = [0, 10] }
+      recording = { duration = 3 }
+      targets = [{ name = "a", strength_db = 3 }, { name = "c", position = [1, 2, 3] }]
+      )",
+                                      "command");
+  const TomlValue document = parse_toml(
+      "target = [{ name = 'a' }, { name = 'b' }, { name = 'c' }]\n[platform]\n", "scenario");
+  const struct {
+    std::string scenario, command;
+    bool given, under;
+  } cases[] = {
+      {"pulse.kind", "waveform.kind", true, true},
+      {"transmitter[0].pulse.frequency", "waveform.frequency", false, true},
+      {"environment.sound_speed.depth[1]", "sound_speed.depth[1]", true, true},
+      {"pings.recording_duration", "recording.duration", true, true},
+      {"pings.recording_start", "recording.start", false, false},
+      {"target[0].strength_db", "targets[0].strength_db", true, true},
+      {"target[1].strength_db", "targets.strength_db", false, false},
+      {"target[2].position[2]", "targets[1].position[2]", true, true},
+      {"platform.velocity", "platform.velocity", false, false},
+      {"pings.baseband_rate", "pings.baseband_rate", false, false},
+      {"seeds", "seeds", false, false},
+      {"", "", false, false},
+      {"target[", "targets[", true, true},
+  };
+  for (const auto& one : cases) {
+    const ClientKey key = client_key(one.scenario, fields, document);
+    EXPECT_EQ(key.name, one.command);
+    EXPECT_EQ(key.given, one.given) << one.scenario;
+    EXPECT_EQ(key.under, one.under) << one.scenario;
   }
 }
 

@@ -261,9 +261,11 @@ TEST(Session, RefusesInOneMessage) {
        "value: transmitter: found \"x\", expected the name of a transmitter"},
       {ping + R"("waveform": 5})", "value: waveform: found 5, expected a table"},
       {ping + R"("waveform": {"kind": "cw"}})",
-       "scenario: pulse.frequency: expected a frequency above 0 and at most 1000000 Hz"},
+       "scenario: waveform.frequency: found nothing, expected a frequency above 0 and at most "
+       "1000000 Hz"},
       {ping + R"("waveform": {"kind": "file", "file": "/etc/passwd"}})",
-       "file: waveform.file: expected no file: the server was started without --data-dir"},
+       "file: waveform.file: found a file, expected none: the server was started without "
+       "--data-dir"},
       {ping + R"("output": "/tmp/x.h5"})",
        R"(value: output: found an unknown key, expected one of "beamwidth_deg", "deliver", "elevation_deg", "source_level_db", "time", "transmitter" or "waveform")"},
       {R"({"command": "update"})",
@@ -276,16 +278,41 @@ TEST(Session, RefusesInOneMessage) {
       {update + R"("platform": {"speed": 1, "velocity": [1, 0, 0]}})",
        "value: platform.speed: found 1, expected none of it beside velocity"},
       {update + R"("platform": {"position": [0, 0, 2000]}})",
-       "scenario: platform.position: expected a depth between the surface (0 m) and the bottom "
+       "scenario: platform.position: found depth 2000 m at 0 s, expected a depth between the "
+       "surface (0 m) and the bottom "
        "(1000 m)"},
+      {update + R"("time": 30, "platform": {"position": [0, 0, 2000], "speed": 2,
+                    "heading_deg": 10}})",
+       "scenario: platform.position: found depth 2000 m at 0 s, expected a depth between the "
+       "surface (0 m) and the bottom (1000 m)"},
+      {update + R"("platform": {"heading": 3}})",
+       "value: platform.heading: found an unknown key, expected a known key (did you mean "
+       "\"heading_deg\"?)"},
+      {update + R"("targets": {"name": "new", "postion": [0, 900, 100]}})",
+       "value: targets.postion: found an unknown key, expected a known key (did you mean "
+       "\"position\"?)"},
       {update + R"("targets": {"name": "new", "position": [0, 900, 100]}})",
-       "scenario: target[1].strength_db: expected a target strength from -200 to 200 dB"},
+       "scenario: targets.strength_db: found nothing, expected a target strength from -200 to 200 "
+       "dB"},
       {update + R"("targets": {"name": "new"}})",
        "value: targets.position: found nothing, expected the position of a new target"},
       {update + R"("wind_speed": 61})",
        "value: wind_speed: found 61 m/s, expected a wind speed from 0 to 60 m/s"},
       {update + R"("sound_speed": {"depth": [0, 1000], "speed": [1500]}})",
-       "scenario: environment.sound_speed.speed: expected as many values as depths, 2"},
+       "scenario: sound_speed.speed: found an array of 1, expected as many values as depths, 2"},
+      {update + R"("targets": [{"name": "rock", "strength_db": 5}, {"name": "b",
+                                "position": [0, 9, 9], "strength_db": 999}]})",
+       "scenario: targets[1].strength_db: found 999 dB, expected a target strength from -200 to "
+       "200 dB"},
+      {ping + R"("source_level_db": 200, "waveform": {"kind": "cw", "frequency": 1000.0,
+                 "duration": 0.1, "colour": "red"}})",
+       R"(scenario: waveform.colour: found an unknown key, expected one of "duration", "frequency", "kind" or "window")"},
+      {ping + R"("waveform": {"kind": "cw", "frequency": 1000.0, "duration": 9.0}})",
+       "scenario: waveform.duration: found 9 s, expected a pulse no longer than the record, 5 s"},
+      {ping + R"("waveform": {"kind": "lfm", "start_frequency": 500.0, "end_frequency": 1500.0,
+                 "duration": 0.1}})",
+       "scenario: pings.baseband_rate: found what the scenario has, expected a baseband rate of at "
+       "least 2000 Hz: the pulse's band with its Doppler shift about a carrier of 1000 Hz"},
       {update + R"("seed": 1.5})", "value: seed: found 1.5, expected a whole number of at least 0"},
       {update + R"("pings": {"count": 9}})",
        R"(value: pings: found an unknown key, expected one of "array", "noise", "platform", "recording", "seed", "sound_speed", "targets", "time" or "wind_speed")"},
@@ -335,13 +362,13 @@ TEST(Session, LooksWhereThingsAreWhenAPingIsSent) {
   ASSERT_EQ(served(R"({"command": "update", "targets": {"velocity": [0, 0, 10]}})")["ok"], true);
   EXPECT_EQ(served(R"({"command": "ping", "time": 70})")["ok"], true);  // 900 m; 950 m at the end
   EXPECT_EQ(served.refusal(R"({"command": "ping", "time": 78})"),
-            "scenario: target: found depth 1030 m at 83 s, expected a depth between the surface "
+            "scenario: targets: found depth 1030 m at 83 s, expected a depth between the surface "
             "(0 m) and the bottom (1000 m)");
   ASSERT_EQ(served(R"({"command": "update", "time": 0, "targets":
                      {"position": [3000, 0, 200], "velocity": [-10, 0, 0]}})")["ok"],
             true);
   EXPECT_EQ(served.refusal(R"({"command": "ping", "time": 300})"),
-            "scenario: target: found 0 m, expected at least 1 m from the platform");
+            "scenario: targets: found 0 m, expected at least 1 m from the platform");
 }
 
 TEST(Session, ContinuousRecordsAreNotServed) {
@@ -364,7 +391,7 @@ TEST(Session, KeepsTimeByTheClock) {
   EXPECT_EQ(wait(R"({"command": "state"})"), 0.0);
   EXPECT_EQ(served(R"({"command": "ping", "time": 4})")["behind"], 3.0);
   EXPECT_EQ(served.refusal(R"({"command": "ping", "time": 2000})"),
-            "limit: time: expected a ping at most idle_seconds ahead of the clock");
+            "limit: time: found 2000 s, expected a ping at most idle_seconds ahead of the clock");
 }
 
 TEST(Session, QuitEndsItWithItsLatencies) {

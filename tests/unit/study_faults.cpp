@@ -72,6 +72,13 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {vary + "\"environment.wind_speed\" = { law = \"uniform\", low = 5, high = 6, min = 7 }\n",
        "study.toml:4: vary.\"environment.wind_speed\".min: found 7, expected limits within which "
        "the law has values"},
+      {study +
+           "design = \"sobol\"\n[vary]\n\"environment.wind_speed\" = { law = \"list\", values = "
+           "[1, 2] }\n" +
+           measure,
+       "study.toml:5: vary.\"environment.wind_speed\".law: found \"list\", expected "
+       "\"categorical\" "
+       "or \"grid\" for an even number of values in a Sobol' design"},
       {vary + "\"environment.wind_speed\" = { law = \"rayleigh\" }\n",
        "study.toml:4: vary.\"environment.wind_speed\".mean: found nothing, expected a number above "
        "0, or \"scale\""},
@@ -225,6 +232,29 @@ TEST_F(Drawn, TheStudySetsKeysOfItsScenarioForGood) {
       InputError);
 }
 
+// A law is reached by its key in quotes.
+TEST_F(Drawn, AnOverrideReachesALaw) {
+  const std::string text =
+      "[study]\nrealisations = 4\n[vary]\n\"target.0.range\" = { law = \"uniform\", low = 1000, "
+      "high = 2000 }\n[measure]\necho_level = true\n";
+  static_cast<void>(read(text));
+  const std::string path = (folder_.path() / "study.toml").string();
+  const std::vector<std::string> higher{R"(vary."target.0.range".low=1999)"};
+  for (std::uint64_t i = 0; i < 4; ++i)
+    EXPECT_GE(Realiser(read_study(path, higher)).realise(i).values[0], 1999.0);
+  const std::vector<std::string> wrong{R"(vary."target.0.range".low=2001)"};
+  try {
+    static_cast<void>(read_study(path, wrong));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("vary.\"target.0.range\".high: found 2000, expected a "
+                        "number above 2001"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(Drawn, GridWalksThroughAllCombinationsTheLastFastest) {
   const Study study = read(
       "[study]\ndesign = \"grid\"\n[vary]\n"
@@ -270,6 +300,17 @@ TEST_F(Drawn, TracksAndProfilesReachTheScenario) {
   }
 }
 
+TEST_F(Drawn, ColumnsHaveTheUnitsOfTheirKeys) {
+  const std::string law = " = { law = \"uniform\", low = 40, high = 50 }\n";
+  const Study study = read("[study]\nrealisations = 4\n[vary]\n\"noise.spectral_level_db\"" + law +
+                           "\"transmitter.source_level_db\"" + law + "\"target.0.strength_db\"" +
+                           law + "[measure]\necho_level = true\n");
+  std::vector<std::string> units;
+  for (const Column& column : columns(study)) units.push_back(column.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"dB re 1 µPa²/Hz", "dB re 1 µPa at 1 m", "dB",
+                                             "dB re 1 µPa"}));
+}
+
 TEST_F(Drawn, CastsAndWaypointsAreDrawnWhole) {
   std::ofstream(folder_.path() / "slow.csv") << "depth,speed\n0,1450\n1000,1450\n";
   const Study study = read(
@@ -306,6 +347,7 @@ TEST_F(Drawn, IdentityIsOfWhatDecidesTheRows) {
                                "[vary]\n\"target.0.range\" = { law = \"uniform\", low = "
                                "1e3, high = 3e3 }\n" +
                                measure)));
+  EXPECT_EQ(one, identity(read(head + "on_error = \"skip\"\n" + vary + measure)));
   const std::string latin = "[study]\ndesign = \"latin_hypercube\"\nrealisations = ";
   EXPECT_NE(identity(read(latin + "4\n" + vary + measure)),
             identity(read(latin + "5\n" + vary + measure)));

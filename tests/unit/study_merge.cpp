@@ -27,8 +27,8 @@ class Merge : public testing::Test {
                    const MergeOptions& options = {}) {
     try {
       report = merge(
-          parts, folder / "merged.h5",
-          [](const Imprint&, const Table&) { return std::vector<SummaryTable>{}; }, options);
+          parts, folder / "merged.h5", [](const Imprint&, const Table&) { return Summary{}; },
+          options);
     } catch (const InputError& error) {
       EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5"));
       EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5.part"));
@@ -117,12 +117,46 @@ TEST_F(Merge, WarnsOfAMixOfProcessors) {
 TEST_F(Merge, ACatalogueCanBeMovedWithItsParts) {
   std::filesystem::create_directory(folder / "here");
   const auto a = part("here/a.h5", {0, 60}), b = part("here/b.h5", {60, 90});
-  merge({a, b}, folder / "here/all.h5",
-        [](const Imprint&, const Table&) { return std::vector<SummaryTable>{}; });
+  merge({a, b}, folder / "here/all.h5", [](const Imprint&, const Table&) { return Summary{}; });
   std::filesystem::rename(folder / "here", folder / "there");
   EXPECT_NO_THROW(StudyFile(folder / "there/all.h5").verify());
-  std::filesystem::remove(folder / "there/b.h5");  // and without a part it does not pass for whole
-  EXPECT_THROW(StudyFile(folder / "there/all.h5").verify(), InputError);
+}
+
+TEST_F(Merge, TheFileTellsItsConfidence) {
+  const auto a = part("a.h5", {0, 90});
+  const Hdf5File file = Hdf5File::open(a);
+  EXPECT_EQ(file.attribute_number("summary", "confidence"), 0.95);
+  EXPECT_EQ(file.attribute_text("summary", "proportion_interval"), "wilson");
+  EXPECT_TRUE(file.has_attribute("summary", "intervals"));
+}
+
+// A catalogue whose parts are not what they were says which of them.
+TEST_F(Merge, ACatalogueNamesThePartAtFault) {
+  const auto a = part("a.h5", {0, 60}), b = part("b.h5", {60, 90});
+  EXPECT_EQ(said({a, b}), "good");
+  EXPECT_EQ(StudyFile(folder / "merged.h5").parts(), (std::vector{a, b}));
+  const auto found = [&] {
+    try {
+      StudyFile(folder / "merged.h5").verify();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("good");
+  };
+  EXPECT_EQ(found(), "good");
+  std::filesystem::rename(b, folder / "kept.h5");
+  EXPECT_SAYS(found(), "merged.h5: found no " + b.string() + ", in which some of its rows lie");
+  part("b.h5", {60, 90}, {.realisations = 90, .skips = true, .identity = "other"});
+  EXPECT_SAYS(found(), b.string() + ": found a part of another study (identity other)");
+  std::string bytes = support::content(folder / "kept.h5");
+  const double value = SyntheticStudy{.realisations = 90, .series_every = 9}.row(77).values[0];
+  const auto at = bytes.find(std::string_view(reinterpret_cast<const char*>(&value), sizeof value));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 4);
+  static_cast<void>(folder.write("b.h5", bytes));
+  EXPECT_SAYS(found(), b.string() + ": table/x: found data that have changed");
+  std::filesystem::rename(folder / "kept.h5", b);
+  EXPECT_EQ(found(), "good");
 }
 
 }  // namespace

@@ -216,5 +216,20 @@ TEST(Summary, OfNoRowsIsEmptyNotAFault) {
   EXPECT_NO_THROW(static_cast<void>(summarise(asking({{{.column = "x"}}}), skipped)));
 }
 
+// What a reader of the file needs to know of its intervals.
+TEST(Summary, SaysWhatItsIntervalsAre) {
+  Study study = asking({});
+  study.summary.confidence = 0.9;
+  EXPECT_EQ(summary_of(study, made_up(100)).confidence, 0.9);
+  EXPECT_EQ(summary_of(study, made_up(100)).proportion_interval, "wilson");
+  EXPECT_EQ(summary_of(study, made_up(100)).intervals, "as of independent draws");
+  study.design = Design::sobol;
+  study.summary.interval = ProportionInterval::clopper_pearson;
+  EXPECT_EQ(summary_of(study, made_up(100)).proportion_interval, "clopper_pearson");
+  EXPECT_EQ(summary_of(study, made_up(100)).intervals,
+            "as of independent draws: of this design, sobol, rather too wide than too narrow "
+            "(docs/theory/studies.md)");
+}
+
 }  // namespace
 }  // namespace asdic::study

@@ -9,17 +9,12 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 interrupt_scenario run.toml
 
-# start NAME: a run in the background; its id in $run. (A job of a script ignores SIGINT unless told otherwise.)
-start() {
-  /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$ASDIC" ping run.toml -o "$1.h5" >"$1.out" 2>"$1.err" &
-  run=$!
-}
+# ping NAME: a run in the background; its id in $run.
+ping() { start "$ASDIC" ping run.toml -o "$1.h5" >"$1.out" 2>"$1.err"; }
 
 # Ctrl-C, and SIGTERM: the pings in hand are finished, the file gets its name, the status is 1.
 for signal in INT TERM; do
-  start "$signal"
+  ping "$signal"
   wait_for_ping "$signal.h5.part"
   kill -"$signal" "$run"
   status=0
@@ -34,19 +29,21 @@ for signal in INT TERM; do
   echo "SIG$signal: $pings pings kept, and said so"
 done
 
-# A second Ctrl-C ends the program at once; what was done stays in NAME.part.
-start twice
+# A second Ctrl-C ends the program at once; what was done stays in NAME.part, unless that had just got its name.
+ping twice
 wait_for_ping twice.h5.part
 kill -INT "$run"
-sleep 0.04
+until sigint_was_taken; do :; done
 kill -INT "$run" 2>/dev/null || true
 status=0
 wait "$run" || status=$?
+left=$(ls twice.h5 twice.h5.part 2>/dev/null || true)
+[ "$left" = twice.h5 ] || [ "$left" = twice.h5.part ] || fail "two signals left \"$left\""
 if [ "$status" = 130 ]; then
-  [ ! -e twice.h5 ] || fail "the second Ctrl-C left twice.h5"
-  echo "second SIGINT: ended at once, $(h5py_reads twice.h5.part) pings in twice.h5.part"
-else # the pings in hand were done within those 0.04 s
+  echo "second SIGINT: ended at once, $(h5py_reads "$left") pings in $left"
+else # the pings in hand were done before it came
   [ "$status" = 1 ] || fail "two signals: exit status $status"
+  [ "$left" = twice.h5 ] || fail "two signals left $left"
   h5py_reads twice.h5 >/dev/null
   echo "second SIGINT: came after the end"
 fi
@@ -54,7 +51,7 @@ fi
 # kill -9: nothing under the final name; NAME.part can be read.
 for delay in 0.0 0.13 0.29; do
   rm -f killed.h5.part
-  start killed
+  ping killed
   wait_for_ping killed.h5.part
   sleep "$delay"
   kill -KILL "$run"
@@ -69,11 +66,8 @@ done
 # Ctrl-C as soon as the file is there: the pings in hand, or no file at all.
 sed -e 's/phones = 8/phones = 64/' run.toml >slow.toml
 mv slow.toml run.toml
-start early
-for ((i = 0; i < 200; ++i)); do
-  [ -e early.h5.part ] && break
-  sleep 0.005
-done
+ping early
+wait_until "its file was there" test -e early.h5.part
 kill -INT "$run"
 status=0
 wait "$run" || status=$?

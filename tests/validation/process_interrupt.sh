@@ -3,7 +3,7 @@
 #   ASDIC=path/to/asdic tests/validation/process_interrupt.sh
 set -euo pipefail
 : "${ASDIC:?the program to test}"
-fail() { echo "FAILED: $*"; exit 1; }
+source "$(dirname "$0")/../support/interrupt.sh"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cp scenarios/two_targets.toml "$folder"
@@ -25,16 +25,11 @@ PY
 }
 before=$(digest a.h5)
 
-# start: a run in the background; its id in $run. (A job of a script ignores SIGINT unless told otherwise.)
-start() {
-  /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$ASDIC" process a.h5 --target-depth 125m >out 2>err &
-  run=$!
-}
+# process: a run in the background; its id in $run.
+process() { start "$ASDIC" process a.h5 --target-depth 125m >out 2>err; }
 
 # Ctrl-C: one line, status 1, the file as it was.
-start
+process
 sleep 0.15
 kill -INT "$run" 2>/dev/null || true
 status=0
@@ -47,7 +42,7 @@ fi
 
 # Killed at any moment: the data are the same, and what is there of results is whole.
 for delay in 0.05 0.15 0.25 0.35 0.45 0.6; do
-  start
+  process
   sleep "$delay"
   kill -KILL "$run" 2>/dev/null || true
   wait "$run" 2>/dev/null || true

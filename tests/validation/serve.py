@@ -185,7 +185,9 @@ def by_standard_streams(pings):
     for first in ("GET / HTTP/1.1", '{"command": "quit"}', "", "x" * 100000):
         done = subprocess.run([ASDIC, "serve", "sea.toml"], input=f"{first}\n" + lines[1],
                               capture_output=True, text=True)
-        check(done.returncode == 0 and done.stdout.count("\n") == 1, done)
+        check(done.returncode == 2 and done.stdout.count("\n") == 1, done)
+        check(done.stderr == 'asdic: standard input: first line: found another, expected {"asdic": 1},'
+              ' the handshake (docs/formats/serve.md)\n', done)
         check(json.loads(done.stdout)["error"]["code"] == "handshake", done.stdout)
         check(len(done.stdout) < 200, "the input is not quoted")
 

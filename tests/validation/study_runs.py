@@ -6,6 +6,7 @@ and again; what a kill leaves is never a file that is not whole, and nothing com
 """
 import os
 import random
+import re
 import signal
 import sqlite3
 import subprocess
@@ -32,6 +33,7 @@ seed = 7
 "target.0.range" = { law = "uniform", low = 20e3, high = 40e3 }
 [measure]
 echo_level = true
+series_level = true     # all samples of all phones, milliseconds a realisation: time to interrupt them
 [environment.sound_speed]
 kind = "isovelocity"
 speed = 1500.0
@@ -63,6 +65,7 @@ max_surface_bounces = 0
 max_bottom_bounces = 0
 [pings]
 samples = "baseband"
+baseband_rate = 4000.0
 recording_start = 20.0
 recording_duration = 40.0
 """ % COUNT
@@ -172,9 +175,9 @@ def by_mpi():
         return
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
-    def mpirun(ranks):
+    def mpirun(ranks, *more):
         words = ["mpirun", "--oversubscribe", "-n", str(ranks),
-                 *command("study", "study.toml", "-o", "m.h5", "-q", program=ASDIC_MPI)]
+                 *command("study", "study.toml", "-o", "m.h5", "-q", *more, program=ASDIC_MPI)]
         return subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                 env=environment)
     for ranks in (2, 4):
@@ -183,11 +186,13 @@ def by_mpi():
         check(job.returncode == 0, f"mpirun -n {ranks}: {said}")
         same("m.h5", f"mpirun -n {ranks}")
         Path("m.h5").unlink()
+    stopped_by_mpi(mpirun)
+    silent_rank(mpirun)
     job = mpirun(3)
     wait_for_journal("m.h5.rank1.journal", job)
-    ranks = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True).stdout.split()
+    ranks = ranks_of(job)
     check(len(ranks) == 3, f"ranks of mpirun: {ranks}")
-    os.kill(int(ranks[-1]), signal.SIGKILL)
+    os.kill(ranks[-1], signal.SIGKILL)
     said = job.communicate()
     check(job.returncode != 0, "a dead rank: status 0")
     check("exited on signal 9" in said[1] + said[0], f"a dead rank: said {said}")
@@ -197,6 +202,44 @@ def by_mpi():
     job = mpirun(2)
     check(job.wait() == 0, f"after a dead rank: {job.communicate()}")
     same("m.h5", f"mpirun -n 3, a rank killed, {kept} rows kept, then -n 2")
+
+
+def stopped_by_mpi(mpirun):
+    """All ranks are told to end: the message names the journals that are there."""
+    job = mpirun(3)
+    wait_for_journal("m.h5.rank1.journal", job)
+    for rank in ranks_of(job):
+        os.kill(rank, signal.SIGTERM)
+    said = job.communicate()[1]
+    check(job.returncode != 0, "ranks told to end: status 0")
+    check("; m.h5.rank*.journal hold what was made, and the same command goes on" in said,
+          f"ranks told to end: said {said}")
+    check("m.h5.journal" not in said, f"ranks told to end: a journal that is not there: {said}")
+    check(rows_in("m.h5.rank*.journal") > 0, "ranks told to end: nothing was kept")
+    for journal in Path(".").glob("m.h5.rank*.journal*"):
+        journal.unlink()
+
+
+def silent_rank(mpirun):
+    """A rank that hangs: the others do not wait for it for ever."""
+    job = mpirun(3, "--silence", 2)
+    wait_for_journal("m.h5.rank2.journal", job)
+    os.kill(ranks_of(job)[-1], signal.SIGSTOP)
+    said = job.communicate(timeout=120)[1]
+    check(job.returncode != 0, "a silent rank: status 0")
+    check(re.search(r"rank \d has not been heard of for 2 s: it is taken for dead", said),
+          f"a silent rank: said {said}")
+    check(rows_in("m.h5.rank*.journal") > 0, "a silent rank: nothing was kept")
+    job = mpirun(2)
+    check(job.wait() == 0, f"after a silent rank: {job.communicate()}")
+    same("m.h5", "mpirun -n 3, a rank stopped, then -n 2")
+    Path("m.h5").unlink()
+
+
+def ranks_of(job):
+    """The processes of mpirun, the highest last."""
+    pids = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True).stdout
+    return [int(pid) for pid in pids.split()]
 
 
 if __name__ == "__main__":

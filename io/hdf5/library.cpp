@@ -1,0 +1,74 @@
+// The HDF5 library: its quirks, its types, its words.
+#include <hdf5.h>
+
+#include "core/error.h"
+#include "io/hdf5/elements.h"
+#include "io/hdf5/handles.h"
+
+namespace asdic::hdf5 {
+
+namespace {
+// Once a write has failed (disk full), HDF5 1.10 crashes when it closes the file, at exit too if
+// left to itself. Files are closed by Hdf5File, so nothing is left to do at exit. It must be said
+// before anybody (netCDF) uses the library: hence before main().
+[[maybe_unused]] const herr_t nothing_at_exit = H5dont_atexit();
+}  // namespace
+
+void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string last_message() {
+  std::vector<std::string> messages;  // innermost first
+  const auto collect = [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
+    if (error->desc != nullptr && *error->desc != '\0')
+      static_cast<std::vector<std::string>*>(into)->emplace_back(error->desc);
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &messages);
+  if (messages.empty()) return "HDF5 gives no reason";
+  // "file write failed: time = …, errno = 28, error message = 'No space left on device', buf = …"
+  const std::string& inner = messages.front();
+  constexpr std::string_view mark = "error message = '";
+  if (const auto at = inner.find(mark); at != std::string::npos) {
+    const auto begin = at + mark.size();
+    const std::string system = inner.substr(begin, inner.find('\'', begin) - begin);
+    const std::string full = system.starts_with("No space left") ? "the disk is full: " : "";
+    return full + system + " (HDF5: " + inner.substr(0, inner.find(':')) + ")";
+  }
+  return inner == messages.back() ? inner : inner + "; " + messages.back();
+}
+
+template <>
+std::int64_t native_type<std::int8_t>() {
+  return H5T_NATIVE_INT8;
+}
+template <>
+std::int64_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+std::int64_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+std::int64_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+std::int64_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+
+Handle make_parents() {
+  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(list, 1);
+  H5Pset_char_encoding(list, H5T_CSET_UTF8);
+  return list;
+}
+
+void fail(const std::filesystem::path& file, const std::string& object, const std::string& action) {
+  std::string text = file.string() + ": ";
+  if (!object.empty()) text += object + ": ";
+  throw RunError(text + action + " failed: " + last_message());
+}
+
+}  // namespace asdic::hdf5

@@ -1,0 +1,60 @@
+#pragma once
+#include <optional>
+
+#include "io/arrival_table.h"
+#include "io/hdf5/scale.h"
+#include "io/ping/growing_table.h"
+#include "io/ping/sections.h"
+#include "io/ping/tables.h"
+#include "io/ping_file.h"
+
+// Inside of PingFileWriter, for its own .cpp files.
+namespace asdic {
+
+struct PingFileWriter::Impl {
+  std::filesystem::path path, part;
+  Hdf5File file;
+  Scenario scenario;
+  std::size_t pings = 0;
+  bool finished = false;
+  ArrivalTable arrivals;
+  GrowingTable echoes, patches;
+  std::optional<GrowingTable> interference;  // where there are interferers
+  std::size_t every = 1;
+  std::size_t samples = 0, level_bins = 0;  // of the first record
+
+  Impl(const std::filesystem::path& final_path, const Scenario& s)
+      : path(final_path),
+        part(final_path.string() + ".part"),
+        file(Hdf5File::create(part)),
+        scenario(s),
+        arrivals(file),
+        echoes(file, "echoes", "echo", ping_file::echo_columns()),
+        patches(file, "patches", "patch", ping_file::patch_columns()) {
+    if (scenario.interferers.empty()) return;
+    interference.emplace(file, "interference", "heard_path", ping_file::interference_columns());
+    std::string names;
+    for (const Interferer& ship : scenario.interferers)
+      names += (names.empty() ? "" : ",") + ship.name;
+    file.set_attribute("interference", "names", names);
+  }
+
+  template <class T>
+  void growing(const std::string& dataset, const std::string& long_name, const std::string& units,
+               const std::vector<std::string>& scales = {}, const Shape& row = {}) {
+    file.create_growing<T>(dataset, row, std::size_t{64});
+    describe(file, dataset, long_name, units);
+    std::vector<std::string> all{"ping"};
+    all.insert(all.end(), scales.begin(), scales.end());
+    file.attach_scales(dataset, all);
+  }
+
+  void create_ping_datasets();
+  void create_sampled_datasets(const PingRecord& record);
+  void append_pressure(const PingRecord& record);
+  void append_geometry(const PingRecord& record);
+  void append_tables(const PingRecord& record);
+  void append_summary(const PingRecord& record);
+};
+
+}  // namespace asdic
