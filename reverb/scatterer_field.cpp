@@ -67,7 +67,8 @@ ScattererWeights::ScattererWeights(const ScattererStatistics& statistics, Draw p
   const double step = 0.53 * coherence;
   const double now = time / step;
   nodes_ = most_nodes;
-  const double first = std::round(now) - (most_nodes - 1) / 2;
+  constexpr int before = (most_nodes - 1) / 2;
+  const double first = std::round(now) - before;
   // Nodes before the start of the scenario have keys of their own: the upper half of 32 bits.
   first_ = static_cast<std::uint32_t>(static_cast<std::int64_t>(first));
   double power = 0.0;

@@ -3,6 +3,7 @@
 #   scripts/bench.sh [FILTER] [-o DIR]      FILTER: a regular expression of benchmark names; DIR: out/bench
 #   scripts/bench.sh --check [FILTER]       fails when a kernel takes 5 % more instructions than tests/bench/counts.json says
 #   scripts/bench.sh --update [FILTER]      writes them there
+#   scripts/bench.sh --linear               prints instructions of the synthesis against scatterers and phones
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/setup.sh
@@ -12,7 +13,8 @@ while [ $# -gt 0 ]; do
     -o) directory=$2; shift ;;
     --check) counts=check ;;
     --update) counts=update ;;
-    -h | --help) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --linear) counts=linear ;;
+    -h | --help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
     -*) echo "bench.sh: unknown option $1; see --help" >&2; exit 2 ;;
     *) filter=$1 ;;
   esac
@@ -22,6 +24,14 @@ asdic_setup
 if [ -n "$counts" ]; then
   cmake --preset portable -DASDIC_TESTS=OFF -DASDIC_BENCHMARKS=ON >/dev/null
   cmake --build --preset portable --target count_kernels >/dev/null
+  if [ "$counts" = linear ]; then
+    for sizes in 10000:4 20000:4 40000:4 80000:4 10000:8 10000:16 10000:32; do
+      said=$(valgrind --tool=callgrind --toggle-collect=asdic_counted --callgrind-out-file=/dev/null \
+        build/portable/tests/bench/count_kernels "scatterers:$sizes" 2>&1)
+      echo "scatterers:phones $sizes  instructions $(sed -n 's/.*Collected : //p' <<<"$said")"
+    done
+    exit 0
+  fi
   options=(--only "$filter")
   [ "$counts" = check ] || options+=(--update)
   exec /usr/bin/python3 tests/bench/check_counts.py build/portable/tests/bench/count_kernels "${options[@]}"

@@ -63,7 +63,7 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
   for (std::ptrdiff_t j = -reach; j <= reach; ++j)
     samples.push_back(x[static_cast<std::size_t>(j < 0 ? j + n : j)]);
   const double first = -static_cast<double>(reach) / rate;
-  signal_ = SampledSignal(std::move(samples), first, rate);
+  signal_ = SampledSignal(samples, first, rate);
   half_duration_ = -first + 12.0 / rate;  // SampledSignal's own reach
 }
 

@@ -21,10 +21,12 @@ double BandNodes::basis(std::size_t k, double frequency) const noexcept {
 std::size_t nodes_for(double nepers, double radians, double error) {
   for (std::size_t count = 1; count < most_nodes; ++count) {
     double least = infinity;
-    for (double rho = 1.05; rho < 1e6; rho *= 1.1) {
+    double rho = 1.05;
+    while (rho < 1e6) {
       const double growth = 0.5 * nepers * (rho + 1.0 / rho) + 0.5 * radians * (rho - 1.0 / rho);
       least = std::min(least, std::log(4.0 / (rho - 1.0)) + growth +
                                   (1.0 - static_cast<double>(count)) * std::log(rho));
+      rho *= 1.1;
     }
     if (least <= std::log(error)) return count;
   }

@@ -101,7 +101,8 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
         }
       };
       steer(0, (n + 1) / 2, 0.0);
-      steer((n + 1) / 2, n, -bin * static_cast<double>(n / 2));
+      const auto half = n / 2;
+      steer((n + 1) / 2, n, -bin * static_cast<double>(half));
     }
     fft.inverse(beam.data());
     for (std::size_t i = 0; i < result.samples; ++i)

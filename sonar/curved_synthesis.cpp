@@ -131,8 +131,11 @@ class CurvedSynthesis {
     // e^{izx} through N Chebyshev points errs by about 4(z/2)^N/N! (doppler_expansion.h).
     const double z = pi * half_band_ * (w.highest - w.lowest);
     std::size_t nodes = 1;
-    for (double error = 2.0 * z; error > left_out; error *= 0.5 * z / static_cast<double>(nodes))
+    double error = 2.0 * z;
+    while (error > left_out) {
       if (2 * ++nodes > phones_.size()) return w;
+      error *= 0.5 * z / static_cast<double>(nodes);
+    }
     for (std::size_t k = 0; k < nodes; ++k) {
       const double theta = pi * (static_cast<double>(k) + 0.5) / static_cast<double>(nodes);
       w.lags.push_back(0.5 * (w.lowest + w.highest) -

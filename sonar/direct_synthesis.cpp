@@ -17,11 +17,11 @@ std::vector<double> direct_synthesis(const Pulse& pulse, const Recording& record
       const double delay = r.delay + r.slowness.dot(phones[n]);
       const double first = (delay - recording.start) * recording.sample_rate;
       const double last = first + pulse.duration() / r.doppler * recording.sample_rate;
-      for (double i = std::max(0.0, std::floor(first)); i <= std::min(last + 1.0, count - 1.0);
+      const double end = std::min(last + 1.0, count - 1.0);
+      for (auto i = static_cast<std::size_t>(std::max(0.0, first)); static_cast<double>(i) <= end;
            ++i) {
-        const double t = recording.start + i / recording.sample_rate;
-        row[static_cast<std::size_t>(i)] +=
-            (r.amplitude * pulse.analytic(r.doppler * (t - delay))).real();
+        const double t = recording.start + static_cast<double>(i) / recording.sample_rate;
+        row[i] += (r.amplitude * pulse.analytic(r.doppler * (t - delay))).real();
       }
     }
   }

@@ -11,11 +11,12 @@ namespace asdic {
 FractionalDelay::FractionalDelay() : weights_((places + 1) * taps) {
   constexpr double beta = 10.0;  // 0.1102(A − 8.7) for A = 100 dB
   constexpr double half = 0.5 * taps;
+  constexpr int before = taps / 2 - 1;
   for (int place = 0; place <= places; ++place) {
     for (int tap = 0; tap < taps; ++tap) {
-      const double x = tap - (taps / 2 - 1) - static_cast<double>(place) / places;
+      const double x = tap - before - static_cast<double>(place) / places;
       const double sinc = x == 0.0 ? 1.0 : std::sin(pi * x) / (pi * x);
-      weights_[static_cast<std::size_t>(place * taps + tap)] =
+      weights_[static_cast<std::size_t>(place) * taps + static_cast<std::size_t>(tap)] =
           static_cast<float>(sinc * kaiser_window(x / half, beta));
     }
   }

@@ -59,7 +59,7 @@ double sea_state_of_wind(double wind_speed) noexcept {
   return interpolated(knots, sea_states, wind_speed / knot);
 }
 
-double noise_level_db(const NoiseSettings& noise, double frequency) noexcept {
+double noise_level_db(const NoiseSettings& noise, double frequency) {
   if (!noise.any()) return -infinity;
   const double level =
       noise.law ? std::visit([&](const auto& law) { return level_db(law, frequency); }, *noise.law)
@@ -68,7 +68,7 @@ double noise_level_db(const NoiseSettings& noise, double frequency) noexcept {
   return db_from_power(power_from_db(level) + power_from_db(thermal_level_db(frequency)));
 }
 
-double noise_density(const NoiseSettings& noise, double frequency) noexcept {
+double noise_density(const NoiseSettings& noise, double frequency) {
   return power_from_db(noise_level_db(noise, frequency)) * micropascal * micropascal;
 }
 

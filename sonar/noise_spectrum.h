@@ -25,10 +25,10 @@ namespace asdic {
 [[nodiscard]] double sea_state_of_wind(double wind_speed) noexcept;
 
 /// Spectral level of a scenario's noise [dB re 1 µPa²/Hz], −∞ without any.
-[[nodiscard]] double noise_level_db(const NoiseSettings& noise, double frequency) noexcept;
+[[nodiscard]] double noise_level_db(const NoiseSettings& noise, double frequency);
 
 /// One-sided spectral density of a scenario's noise [Pa²/Hz].
-[[nodiscard]] double noise_density(const NoiseSettings& noise, double frequency) noexcept;
+[[nodiscard]] double noise_density(const NoiseSettings& noise, double frequency);
 
 /// Its integral over a band [Pa²]. White noise alone is exact; otherwise Simpson's rule over equal
 /// steps of lg f, 64 a decade: within 0.001 dB of the sum of powers. \param low  ≥ 0 [Hz]

@@ -36,7 +36,7 @@ double end_of(const Recording& recording) {
 
 }  // namespace
 
-PingSimulator::PingSimulator(Scenario scenario, std::shared_ptr<SharedPropagation> shared)
+PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedPropagation>& shared)
     : scenario_(std::move(scenario)),
       transmissions_(asdic::transmissions(scenario_)),
       paths_(paths_of(scenario_, shared.get(), known_ocean_)),

@@ -26,7 +26,8 @@ class PingSimulator {
   /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
   /// what comes out \throws InputError naming the key at fault ("pings.sample_rate",
   /// "pulse.duration", …)
-  explicit PingSimulator(Scenario scenario, std::shared_ptr<SharedPropagation> shared = nullptr);
+  explicit PingSimulator(Scenario scenario,
+                         const std::shared_ptr<SharedPropagation>& shared = nullptr);
 
   /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
   /// counted from 1

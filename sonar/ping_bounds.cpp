@@ -20,7 +20,8 @@ double fastest_water(const Environment& ocean) {
     return fastest;
   }
   const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  for (double z = 0.0; z <= bottom; z += 50.0) fastest = std::max(fastest, ocean.water.at(z).c);
+  constexpr double step = 50.0;
+  for (int i = 0; i * step <= bottom; ++i) fastest = std::max(fastest, ocean.water.at(i * step).c);
   return fastest;
 }
 

@@ -161,13 +161,17 @@ Vec3 refine_direction(std::span<const std::complex<double>> snapshot, std::span<
                std::polar(1.0, -wavenumber * c * shape.axis.dot(phones[n] - shape.centre));
       return std::norm(sum);
     };
-    for (double h = 0.5 * step; h > 1e-6; h *= 0.6)
+    double h = 0.5 * step;
+    while (h > 1e-6) {
       cosine += h * top_of(at(cosine - h), at(cosine), at(cosine + h));
+      h *= 0.6;
+    }
     return on_cone(shape.axis, cosine);
   }
   double bearing = std::atan2(look.x(), look.y()),
          elevation = std::asin(std::clamp(-look.z(), -1.0, 1.0));
-  for (double h = 0.5 * step; h > 1e-6; h *= 0.7) {
+  double h = 0.5 * step;
+  while (h > 1e-6) {
     const double here = power(look_direction(bearing, elevation));
     const double turn = h / std::max(std::cos(elevation), 0.1);
     bearing += turn * top_of(power(look_direction(bearing - turn, elevation)), here,
@@ -176,6 +180,7 @@ Vec3 refine_direction(std::span<const std::complex<double>> snapshot, std::span<
     elevation += h * top_of(power(look_direction(bearing, elevation - h)), again,
                             power(look_direction(bearing, elevation + h)));
     elevation = std::clamp(elevation, -0.5 * pi, 0.5 * pi);
+    h *= 0.7;
   }
   return look_direction(bearing, elevation);
 }

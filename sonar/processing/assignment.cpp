@@ -14,11 +14,12 @@ std::vector<int> assign(std::span<const double> cost, int rows, int columns) {
     if (std::isfinite(c)) sum += std::abs(c);
   const auto price = [&](int i, int j) {
     if (i >= rows || j >= columns) return sum;
-    const double c = cost[static_cast<std::size_t>(i * columns + j)];
+    const double c = cost[static_cast<std::size_t>(i) * static_cast<std::size_t>(columns) +
+                          static_cast<std::size_t>(j)];
     return std::isfinite(c) ? c : sum;
   };
   // Potentials u, v and the row that holds each column; index 0 is a dummy.
-  const auto size = static_cast<std::size_t>(n + 1);
+  const auto size = static_cast<std::size_t>(n) + 1;
   std::vector<double> u(size, 0.0), v(size, 0.0);
   std::vector<int> holder(size, 0), way(size, 0);
   for (int i = 1; i <= n; ++i) {

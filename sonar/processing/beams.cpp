@@ -65,7 +65,8 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
         }
       };
       steer(0, (n + 1) / 2, 0.0);
-      steer((n + 1) / 2, n, -spacing * static_cast<double>(n / 2));
+      const auto half = n / 2;
+      steer((n + 1) / 2, n, -spacing * static_cast<double>(half));
     }
   });
   return result;

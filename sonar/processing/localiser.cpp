@@ -175,7 +175,7 @@ std::optional<Location> Localiser::along_ray(const Query& query) const {
   // Out and back by the same ray from where the echo was heard: the point at half the delay, and
   // then, at that depth, as at_depth() does it with both ends where they are.
   const Environment& ocean = paths_.along_transect().environment();
-  double depth = settings_.shallow;
+  double depth = 0.0;
   if (settings_.speed) {
     depth = query.heard_at.z() -
             0.5 * *settings_.speed * query.detection.time * std::sin(*query.elevation);

@@ -52,7 +52,7 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
                              ProcessingSettings settings)
     : scenario_(std::move(scenario)),
       replicas_(std::move(replicas)),
-      settings_(std::move(settings)),
+      settings_(settings),
       paths_(scenario_.environment, scenario_.transect) {
   if (replicas_.empty())
     throw InputError({.where = "replica", .got = "none", .expected = "at least one"});

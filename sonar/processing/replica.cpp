@@ -83,7 +83,7 @@ void Replica::measure(std::vector<std::complex<double>> bins, double first, doub
     const double f = first + static_cast<double>(k) * spacing;
     bins[k] *= std::polar(1.0, std::remainder(pi * f * duration_, 2.0 * pi));
   }
-  spectrum_ = SampledSignal(std::move(bins), first, 1.0 / spacing);
+  spectrum_ = SampledSignal(bins, first, 1.0 / spacing);
 }
 
 std::complex<double> Replica::spectrum(double frequency, double doppler) const noexcept {

@@ -25,6 +25,8 @@
 // count the instructions of (tests/bench/check_counts.py): one thread, fixed input.
 //   count_kernels                 names, one a line
 //   count_kernels NAME [TIMES]
+//   count_kernels scatterers:N:PHONES     how the synthesis grows; not among the names, printed by
+//                                         scripts/bench.sh --linear
 extern "C" [[gnu::noinline]] void asdic_counted(const std::function<void()>& kernel, int times) {
   for (int i = 0; i < times; ++i) kernel();
   asm volatile("" ::: "memory");
@@ -118,16 +120,16 @@ Kernel field(BeamKind kind) {
   };
 }
 
-/// 10 000 scatterers at 4 phones in 10 s of baseband. \param spread  of Doppler factors
-Kernel scatterers(double spread) {
+/// Scatterers at phones in 10 s of baseband. \param spread  of Doppler factors
+Kernel scatterers(double spread, std::size_t count = 10'000, int phones = 4) {
   constexpr double rate = 16000.0, seconds = 10.0;
   const Recording recording{
       .sample_rate = rate, .start = 0.0, .samples = static_cast<std::size_t>(rate * seconds)};
   const Returns returns =
-      support::RandomReturns{.count = 10'000, .last = seconds, .spread = spread}.make();
+      support::RandomReturns{.count = count, .last = seconds, .spread = spread}.make();
   const auto synthesizer = std::make_shared<const Synthesizer>(
       Pulse({.kind = PulseKind::cw, .duration = 1.0}), recording, spread);
-  return [returns, synthesizer, array = line_array(4, 0.1875, 0.0, 0.0)] {
+  return [returns, synthesizer, array = line_array(phones, 0.1875, 0.0, 0.0)] {
     keep(synthesizer->baseband(returns, array.phones));
   };
 }
@@ -178,9 +180,17 @@ int main(int count, char** argument) {
     for (const auto& kernel : asdic::kernels) std::puts(kernel.name);
     return 0;
   }
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  std::size_t scatterers = 0;
+  int phones = 0;
+  if (std::sscanf(argument[1], "scatterers:%zu:%d", &scatterers, &phones) == 2) {
+    const asdic::Kernel run = asdic::scatterers(5e-4, scatterers, phones);
+    run();
+    asdic_counted(run, 1);
+    return 0;
+  }
   for (const auto& kernel : asdic::kernels) {
     if (std::strcmp(kernel.name, argument[1]) != 0) continue;
-    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     const asdic::Kernel run = kernel.make();
     run();
     asdic_counted(run, count > 2 ? std::atoi(argument[2]) : 1);

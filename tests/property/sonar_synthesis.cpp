@@ -306,6 +306,7 @@ class CountingSource final : public ReturnSource {
         RandomReturns{.count = each, .last = 4.0, .spread = spread_, .seed = 1 + block}.make();
     const std::scoped_lock lock(lock_);
     lent_.insert(&into);
+    ++made_;
   }
   [[nodiscard]] std::vector<DopplerSpan> dopplers() const override {
     return {{1.0 - spread_, 1.0 + spread_}};
@@ -320,6 +321,7 @@ class CountingSource final : public ReturnSource {
     return returns;
   }
   [[nodiscard]] std::size_t lent() const { return lent_.size(); }
+  [[nodiscard]] std::size_t made() const { return made_; }  ///< blocks
 
   static constexpr std::size_t each = 4000;
 
@@ -328,6 +330,7 @@ class CountingSource final : public ReturnSource {
   double spread_;
   mutable std::mutex lock_;
   mutable std::set<const ReturnBlock*> lent_;
+  mutable std::size_t made_ = 0;
 };
 
 // Batches of 8 MB are at most 8·2²⁰/144 = 58 000 returns, 15 blocks, however many there are.
@@ -341,6 +344,18 @@ TEST(Synthesis, MemoryDoesNotGrowWithTheReturns) {
   }
   EXPECT_LE(lent[0], 15U);
   EXPECT_EQ(lent[1], lent[0]);
+}
+
+// What is made grows with the scatterers, not with the phones: every block once, however many
+// listen.
+TEST(Synthesis, MakesEveryReturnOnceForAllPhones) {
+  const Synthesizer synthesizer(Pulse(tone(0.3)), four_seconds, 0.001);
+  for (const int phones : {1, 3, 40})
+    for (const std::size_t blocks : {5U, 10U, 40U}) {
+      const CountingSource source(blocks, 0.001);
+      static_cast<void>(synthesizer.baseband(source, line_array(phones, 0.1875, 0.0, 0.0).phones));
+      EXPECT_EQ(source.made(), blocks) << phones;
+    }
 }
 
 // A source in batches, its Doppler factors cut into bands, laid by 1, 2 and 7 threads: the same
