@@ -107,6 +107,8 @@ void ColumnSum::add_hats(const Crossings& x) {
       }
       transpose(square);
       for (std::size_t l = 0; l < used; ++l) {
+        // a column's padding has room for one group that begins at its last row
+        if (row > 0 && row >= static_cast<std::size_t>(rows_[i + l])) continue;
         const std::size_t at = static_cast<std::size_t>(place_[i + l]) + row;
         float* to = sum + at * (coherent ? 2 : 1);
         store(load(to) + load(square + l * lanes), to);
