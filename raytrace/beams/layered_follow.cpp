@@ -30,9 +30,10 @@ bool LayeredCrossings::pass_layers(double xi, Workspace& work) const {
     layer_reach[i] = reach;
     layer_time_at[i] = w_over_g * atanh_over_w(w * w);
     const bool passed = a * b > 0.0;
-    steep += passed & (w * w >= series_limit) ? 1 : 0;
+    steep += (passed & (w * w >= series_limit)) ? 1 : 0;
     // (1 − s·s_a)² ≥ (1 − s²)(1 − s_a²) all along the arc
-    bent += passed & ((a - b) * (a - b) >= series_limit * (1.0 - a * a) * (1.0 - b * b)) ? 1 : 0;
+    const bool far = (a - b) * (a - b) >= series_limit * (1.0 - a * a) * (1.0 - b * b);
+    bent += (passed & far) ? 1 : 0;
   }
   ASDIC_INDEPENDENT
   for (std::size_t i = 1; i < layers; ++i) jump[i] = (g_at[i] - g_at[i - 1]) * xi / s_at[i];
