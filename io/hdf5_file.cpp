@@ -4,8 +4,6 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 
 #include "core/error.h"
 #include "io/hdf5/elements.h"
@@ -19,10 +17,7 @@ using hdf5::dims;
 using hdf5::Handle;
 using hdf5::make_parents;
 using hdf5::native_type;
-
-std::size_t product(const Shape& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
+using hdf5::product;
 
 }  // namespace
 
@@ -192,11 +187,7 @@ std::vector<T> Hdf5File::read(const std::string& dataset, const Shape& start,
   template void Hdf5File::write<T>(const std::string&, std::span<const T>, const Shape&); \
   template std::vector<T> Hdf5File::read<T>(const std::string&) const;                    \
   template std::vector<T> Hdf5File::read<T>(const std::string&, const Shape&, const Shape&) const;
-ASDIC_HDF5_ELEMENT(std::int8_t)
-ASDIC_HDF5_ELEMENT(std::int32_t)
-ASDIC_HDF5_ELEMENT(std::int64_t)
-ASDIC_HDF5_ELEMENT(float)
-ASDIC_HDF5_ELEMENT(double)
+ASDIC_HDF5_ELEMENTS(ASDIC_HDF5_ELEMENT)
 #undef ASDIC_HDF5_ELEMENT
 
 }  // namespace asdic

@@ -27,20 +27,22 @@ Answer queue_full(const std::string& id, const SessionLimits& limits) {
                    "fewer: wait for an answer"));
 }
 
-Answer handshake_too_late(const SessionLimits& limits) {
+namespace {
+
+Answer too_late(const char* code, const char* what, std::size_t seconds) {
   return refusal_answer(
-      "null", "handshake",
-      refusal_text("first line", "none within " + std::to_string(limits.handshake_seconds) + " s",
-                   "one sooner"),
-      true);
+      "null", code,
+      refusal_text(what, "none within " + std::to_string(seconds) + " s", "one sooner"), true);
+}
+
+}  // namespace
+
+Answer handshake_too_late(const SessionLimits& limits) {
+  return too_late("handshake", "first line", limits.handshake_seconds);
 }
 
 Answer idle_too_long(const SessionLimits& limits) {
-  return refusal_answer(
-      "null", "idle",
-      refusal_text("command", "none within " + std::to_string(limits.idle_seconds) + " s",
-                   "one sooner"),
-      true);
+  return too_late("idle", "command", limits.idle_seconds);
 }
 
 }  // namespace asdic::serve

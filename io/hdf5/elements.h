@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <vector>
 
 #include "io/hdf5/handles.h"
@@ -16,7 +18,20 @@ template <class T>
   return {shape.begin(), shape.end()};
 }
 
+/// Elements of a shape.
+[[nodiscard]] inline std::size_t product(const Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
 /// Link creation that makes the groups on the way.
 [[nodiscard]] Handle make_parents();
 
 }  // namespace asdic::hdf5
+
+/// Instantiates a template for every type of element: INSTANTIATE(type) for each.
+#define ASDIC_HDF5_ELEMENTS(INSTANTIATE) \
+  INSTANTIATE(std::int8_t)               \
+  INSTANTIATE(std::int32_t)              \
+  INSTANTIATE(std::int64_t)              \
+  INSTANTIATE(float)                     \
+  INSTANTIATE(double)

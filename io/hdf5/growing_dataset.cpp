@@ -2,8 +2,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 #include <stdexcept>
 
 #include "io/hdf5/elements.h"
@@ -15,10 +13,7 @@ using hdf5::dims;
 using hdf5::Handle;
 using hdf5::make_parents;
 using hdf5::native_type;
-
-std::size_t product(const Shape& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
+using hdf5::product;
 
 }  // namespace
 
@@ -98,11 +93,7 @@ void Hdf5File::append_padded(const std::string& dataset, std::span<const T> valu
   template void Hdf5File::create_growing<T>(const std::string&, const Shape&, const Shape&, int); \
   template void Hdf5File::append<T>(const std::string&, std::span<const T>);                      \
   template void Hdf5File::append_padded<T>(const std::string&, std::span<const T>, std::size_t);
-ASDIC_HDF5_ELEMENT(std::int8_t)
-ASDIC_HDF5_ELEMENT(std::int32_t)
-ASDIC_HDF5_ELEMENT(std::int64_t)
-ASDIC_HDF5_ELEMENT(float)
-ASDIC_HDF5_ELEMENT(double)
+ASDIC_HDF5_ELEMENTS(ASDIC_HDF5_ELEMENT)
 #undef ASDIC_HDF5_ELEMENT
 
 }  // namespace asdic

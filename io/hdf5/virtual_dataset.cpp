@@ -74,11 +74,7 @@ std::vector<std::filesystem::path> Hdf5File::virtual_files(const std::string& da
 #define ASDIC_HDF5_ELEMENT(T)                                                \
   template void Hdf5File::write_virtual<T>(const std::string&, const Shape&, \
                                            std::span<const VirtualRows>, T);
-ASDIC_HDF5_ELEMENT(std::int8_t)
-ASDIC_HDF5_ELEMENT(std::int32_t)
-ASDIC_HDF5_ELEMENT(std::int64_t)
-ASDIC_HDF5_ELEMENT(float)
-ASDIC_HDF5_ELEMENT(double)
+ASDIC_HDF5_ELEMENTS(ASDIC_HDF5_ELEMENT)
 #undef ASDIC_HDF5_ELEMENT
 
 }  // namespace asdic

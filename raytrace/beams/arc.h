@@ -1,10 +1,12 @@
 #pragma once
 #include <cmath>
 
+#include "raytrace/layered/arc_series.h"
+
 // Of a ray within a layer whose sound speed is linear in depth: an arc of a circle.
 namespace asdic {
 
-/// atanh(w)/w as a function of w²: a series to 5e-11 where w² < 0.1.
+/// atanh(w)/w as a function of w²: to 5e-11 where w² < 0.1, further than atanh_series goes.
 template <class Real>
 inline Real atanh_over_w(const Real& w2) noexcept {
   return 1.0 +
@@ -21,12 +23,6 @@ inline constexpr double series_limit = 0.1;
 inline double layer_time(double w_over_g, double g) noexcept {
   const double w = w_over_g * g;
   return w * w < series_limit ? w_over_g * atanh_over_w(w * w) : std::atanh(w) / g;
-}
-
-/// asin(y)/y for |y| < 0.3 or so, y half the angle by which the ray turns.
-template <class Real>
-inline Real asin_over_y(const Real& y2) noexcept {
-  return 1.0 + y2 * (1.0 / 6 + y2 * (3.0 / 40 + y2 * (15.0 / 336 + y2 * (105.0 / 3456))));
 }
 
 }  // namespace asdic

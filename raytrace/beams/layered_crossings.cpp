@@ -151,7 +151,7 @@ void LayeredCrossings::cross(double xi, std::size_t n, Workspace& work, Crossing
     put(c * rate, dq_ds + j);
     if constexpr (absorbing) {
       const Doubles straight = sqrt(d * d + dz * dz), y = 0.5 * straight * bend;
-      put(of(&Pass::length) + straight * asin_over_y(Doubles(y * y)), length + j);
+      put(of(&Pass::length) + straight * asin_series(y), length + j);
     }
   }
   if (work.flat) return;

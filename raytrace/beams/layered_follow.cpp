@@ -88,7 +88,7 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
     if (alpha_ != 0.0) {
       const double dz = depth[node] - at.z, chord = std::sqrt(reach * reach + dz * dz);
       const double y = 0.5 * chord * at.bend;
-      at.length += chord * (y * y < 0.05 ? asin_over_y(y * y) : std::asin(y) / y);
+      at.length += chord * (y * y < 0.05 ? asin_series(y) : std::asin(y) / y);
     }
     // The layer's end, and what happens there.
     at.r += reach;
