@@ -112,13 +112,18 @@ FanLimits fan_of(const PathLimits& limits) {
 
 }  // namespace
 
-/// The layers of a layered ocean, and its fan where it is worth keeping.
+/// The layers of a layered ocean, and what of them is worth keeping.
 struct EigenraySolver::LayeredOcean {
   std::vector<Layer> layers;
   std::optional<OceanFan> fan;
+  std::optional<OceanSeries> series;
 
   explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
     if (layers.size() <= OceanFan::most_layers) fan.emplace(layers);
+    if (OceanSeries::worth_keeping(layers)) series.emplace(layers);
+  }
+  [[nodiscard]] KeptOcean kept() const noexcept {
+    return {.layers = layers, .fan = fan ? &*fan : nullptr, .series = series ? &*series : nullptr};
   }
 };
 
@@ -190,7 +195,7 @@ BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
   return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
-          water_->fan ? &*water_->fan : nullptr, water_->layers};
+          water_->kept()};
 }
 
 std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
@@ -264,7 +269,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
     const FanInterval& interval = *begin->interval;
     const auto end = std::find_if(begin, tasks.end(),
                                   [&](const RootTask& t) { return t.interval != &interval; });
-    RootGroups(fan.column(), interval, std::span(begin, end))
+    RootGroups(fan, interval, std::span(begin, end))
         .solve([&](const TaskLanes& batch, const FoundRays& roots) {
           builder.build(interval, batch, roots, limits.faintest, found);
         });

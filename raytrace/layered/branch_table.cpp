@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "raytrace/layered/column_lanes.h"
@@ -66,14 +65,15 @@ class BranchTable::Parts {
 };
 
 BranchTable::BranchTable(Column column, const PathLimits& limits, const Environment* boundaries,
-                         const OceanFan* fan, std::span<const Layer> uncut)
+                         const KeptOcean& kept)
     : column_(std::move(column)), limits_(limits), boundaries_(boundaries) {
   const double slowest = column_.barrier_speed();
   const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * 3.14159265358979));
   const double fastest = column_.source_speed() / std::max(steepest, 1e-9);
   if (fastest <= slowest) return;
   std::optional<Parts> parts;
-  if (fan != nullptr) parts.emplace(column_, *fan, uncut);
+  if (kept.fan != nullptr) parts.emplace(column_, *kept.fan, kept.layers);
+  if (kept.series != nullptr) legs_.emplace(column_, *kept.series, kept.layers);
   const auto critical = critical_speeds(column_.layers(), slowest, fastest);
   intervals_.reserve(critical.size());
   for (std::size_t i = 0; i + 1 < critical.size(); ++i)
@@ -175,7 +175,10 @@ BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const
                                               double sigma) const noexcept {
   // Lanes are as fast for one ray as for many, and know shorter ways through smooth laws.
   const RayLanes rays(interval.reference_speed, Rays(sigma));
-  const ColumnLanes sums = walk_sums(column_, rays);
+  const OceanSeries::Found known =
+      legs_ ? legs_->find(interval.reference_speed, sigma) : OceanSeries::Found{};
+  const ColumnLanes sums =
+      known.piece != nullptr ? legs_->sums(column_, known, rays) : walk_sums(column_, rays);
   const BranchWeights w = weights(branch, column_.source_is_upper());
   const double xi = rays.slowness[0];
   return {

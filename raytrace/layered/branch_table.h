@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "raytrace/layered/column.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/ocean_fan.h"
+#include "raytrace/layered/ocean_series.h"
 
 namespace asdic {
 
@@ -65,14 +67,23 @@ struct MonotoneStretch {
   bool caustic_begin = false, caustic_end = false;  ///< the end is an extremum of r
 };
 
+/// What is kept of an ocean, if anything: of its uncut layers.
+struct KeptOcean {
+  std::span<const Layer> layers = {};
+  const OceanFan* fan = nullptr;
+  const OceanSeries* series = nullptr;
+};
+
 class BranchTable {
  public:
   /// \param boundaries  whose losses make paths too faint; needed if limits.faintest > 0
-  /// \param fan  of the ocean, if it is kept; of its layers `uncut`
+  /// \param kept  of the ocean, if it is
   BranchTable(Column column, const PathLimits& limits, const Environment* boundaries = nullptr,
-              const OceanFan* fan = nullptr, std::span<const Layer> uncut = {});
+              const KeptOcean& kept = {});
 
   [[nodiscard]] const Column& column() const noexcept { return column_; }
+  /// The column's legs out of the ocean's series, or nullptr.
+  [[nodiscard]] const OceanLegs* kept() const noexcept { return legs_ ? &*legs_ : nullptr; }
   [[nodiscard]] const PathLimits& limits() const noexcept { return limits_; }
 
   /// Exact r and dr/dσ of a branch.
@@ -103,6 +114,7 @@ class BranchTable {
   Column column_;
   PathLimits limits_;
   const Environment* boundaries_;
+  std::optional<OceanLegs> legs_;
   std::vector<FanInterval> intervals_;
 };
 

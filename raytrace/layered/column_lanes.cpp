@@ -19,6 +19,8 @@ Rays parabola_length(const Rays& h, double g, double n_a, const Slowness& n_b, c
   return h * (n_b / sum_w + w_a / sum_n) + 2.0 * xi2 * x_over_g * atanh_over(g * x_over_g);
 }
 
+}  // namespace
+
 /// Formulae: docs/theory/layered-rays.md, and of times and lengths arc and parabola of
 /// layer_pass.cpp.
 template <bool detailed>
@@ -84,6 +86,15 @@ void turn_in_layer(const Layer& layer, const RayLanes& rays, const Rays& sine,
   turn_smooth<detailed>(layer, rays, sine, leg);
 }
 
+template void cross_layer<true>(const Layer&, const RayLanes&, const Rays&, const Rays&,
+                                LegLanes&) noexcept;
+template void cross_layer<false>(const Layer&, const RayLanes&, const Rays&, const Rays&,
+                                 LegLanes&) noexcept;
+template void turn_in_layer<true>(const Layer&, const RayLanes&, const Rays&, LegLanes&) noexcept;
+template void turn_in_layer<false>(const Layer&, const RayLanes&, const Rays&, LegLanes&) noexcept;
+
+namespace {
+
 /// Those of the rays that a mask names, one of them in the place of every other.
 RayLanes only(const RayLanes& rays, const Rays::mask_type& these) noexcept {
   RayLanes some = rays;
@@ -140,14 +151,7 @@ template <bool detailed>
 ColumnLanes walk(const Column& column, const RayLanes& rays) noexcept {
   ColumnLanes sums;
   const auto& layers = column.layers();
-  if (column.upper() < column.lower()) {
-    Rays top = rays.sine(layers[column.upper()].c_top);
-    for (std::size_t i = column.upper(); i < column.lower(); ++i) {
-      const Rays bottom = rays.sine(layers[i].c_bottom);
-      cross_layer<detailed>(layers[i], rays, top, bottom, sums.middle);
-      top = bottom;
-    }
-  }
+  sums.middle = cross_layers<detailed>(column, column.upper(), column.lower(), rays);
   sums.turns_above = to_vertex<detailed, false>(layers, column.upper(), rays, sums.up);
   sums.turns_below = to_vertex<detailed, true>(layers, column.lower(), rays, sums.down);
   return sums;
@@ -179,6 +183,26 @@ LayerVisit visit_layer(const Layer& layer, const RayLanes& rays, double between,
   }
   return visit;
 }
+
+template <bool detailed>
+LegLanes cross_layers(const Column& column, std::size_t first, std::size_t last,
+                      const RayLanes& rays) noexcept {
+  LegLanes sum;
+  if (first == last) return sum;
+  const std::vector<Layer>& layers = column.layers();
+  Rays top = rays.sine(layers[first].c_top);
+  for (std::size_t i = first; i < last; ++i) {
+    const Rays bottom = rays.sine(layers[i].c_bottom);
+    cross_layer<detailed>(layers[i], rays, top, bottom, sum);
+    top = bottom;
+  }
+  return sum;
+}
+
+template LegLanes cross_layers<true>(const Column&, std::size_t, std::size_t,
+                                     const RayLanes&) noexcept;
+template LegLanes cross_layers<false>(const Column&, std::size_t, std::size_t,
+                                      const RayLanes&) noexcept;
 
 ColumnLanes walk_sums(const Column& column, const RayLanes& rays) noexcept {
   return walk<false>(column, rays);

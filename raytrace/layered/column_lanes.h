@@ -52,6 +52,20 @@ struct LayerVisit {
 LayerVisit visit_layer(const Layer& layer, const RayLanes& rays, double between,
                        LegLanes& leg) noexcept;
 
+/// Adds what a layer that all rays cross adds to each, one way. \tparam detailed  with τ − ξr and
+/// length \param sine_top, sine_bottom  sin θ at its edges
+template <bool detailed>
+void cross_layer(const Layer& layer, const RayLanes& rays, const Rays& sine_top,
+                 const Rays& sine_bottom, LegLanes& leg) noexcept;
+/// The same of a layer that they all turn in. \param sine  at its slower edge
+template <bool detailed>
+void turn_in_layer(const Layer& layer, const RayLanes& rays, const Rays& sine,
+                   LegLanes& leg) noexcept;
+/// What layers [first, last) of a column, which all rays cross, add up to.
+template <bool detailed>
+[[nodiscard]] LegLanes cross_layers(const Column& column, std::size_t first, std::size_t last,
+                                    const RayLanes& rays) noexcept;
+
 /// Column::sums for several rays at once: the same sums, to rounding and the quadrature's 1e-10.
 /// Intercepts and lengths are left out.
 [[nodiscard]] ColumnLanes walk_sums(const Column& column, const RayLanes& rays) noexcept;

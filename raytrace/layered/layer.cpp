@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/layered/water_lanes.h"
 
 namespace asdic {
 namespace {
@@ -16,10 +17,11 @@ std::vector<double> inner_cuts(const Layer& layer) {
     const double margin = 1e-9 * (layer.bottom - layer.top);
     if (z > layer.top + margin && z < layer.bottom - margin) found.push_back(z);
   };
-  if (layer.law ==
-      Layer::Law::munk) {  // the axis, and cuts between which dc/dz ∝ 1 − e^−η at most doubles
+  // The axis, cuts between which dc/dz ∝ 1 − e^−η at most doubles, and below them such that eight
+  // nodes see d²c/dz² ∝ e^−η fall.
+  if (layer.law == Layer::Law::munk) {
     for (const double eta : {-4.0, -3.4, -2.8, -2.2, -1.75, -1.35, -1.0, -0.7, -0.5, -0.35, -0.2,
-                             -0.1, 0.0, 0.1, 0.2, 0.4, 0.9})
+                             -0.1, 0.0,  0.1,  0.2,  0.4,   0.9,   1.7,  2.8,  4.2,  6.5})
       keep(layer.coefficient[1] + 0.5 * eta * layer.coefficient[2]);
   }
   if (layer.law ==
@@ -37,25 +39,32 @@ std::vector<double> inner_cuts(const Layer& layer) {
   return found;
 }
 
-template <std::size_t n>
-void set_node_speeds(Layer& layer) {
-  double* speed = layer.node_speed.data() + Layer::first_node<n>;
-  gauss_legendre<n>(layer.top, layer.bottom,
-                    [&](double depth, double) { *speed++ = layer.at(depth).c; });
-}
-
 /// What quadratures of a smooth law want to know of a layer.
 void prepare_quadrature(Layer& layer) {
   if (layer.closed_form()) return;
-  set_node_speeds<4>(layer);
-  set_node_speeds<6>(layer);
-  set_node_speeds<8>(layer);
+  constexpr std::size_t nodes = std::tuple_size_v<decltype(layer.node_speed)>, edges = nodes;
+  std::array<double, nodes + 2 + rays_at_once> depth, speed,
+      slope;  // nodes, edges, what fills lanes
+  depth.fill(layer.top);
+  double* z = depth.data();
+  const auto put = [&](double node, double) { *z++ = node; };
+  gauss_legendre<4>(layer.top, layer.bottom, put);
+  gauss_legendre<6>(layer.top, layer.bottom, put);
+  gauss_legendre<8>(layer.top, layer.bottom, put);
+  depth[edges + 1] = layer.bottom;
+  for (std::size_t i = 0; i < nodes + 2; i += rays_at_once) {
+    const WaterLanes water(layer, load(&depth[i]));
+    store(water.c, &speed[i]);
+    store(water.dc_dz, &slope[i]);
+  }
+  std::copy_n(speed.begin(), nodes, layer.node_speed.begin());
+  layer.slope_top = slope[edges];
+  layer.slope_bottom = slope[edges + 1];
   // A monotone cubic is nowhere three times steeper than its secant; Munk's law is steepest at an
   // end.
   const double secant = std::abs(layer.c_bottom - layer.c_top) / layer.thickness();
   layer.gentle = layer.law == Layer::Law::cubic ||
-                 std::max(std::abs(layer.at(layer.top).dc_dz),
-                          std::abs(layer.at(layer.bottom).dc_dz)) <= 3.0 * secant;
+                 std::max(std::abs(layer.slope_top), std::abs(layer.slope_bottom)) <= 3.0 * secant;
 }
 
 /// The part of a layer between two depths inside it. The speeds at kept ends stay the same to the

@@ -20,6 +20,7 @@ struct Layer {
 
   bool evenly_bent = false;  ///< dc/dz varies by less than a factor of two
   bool gentle = true;        ///< dc/dz is nowhere three times that of the whole layer
+  double slope_top = 0.0, slope_bottom = 0.0;  ///< smooth laws: dc/dz at the edges [1/s]
   /// Smooth laws: c at the Gauss–Legendre nodes in depth of 4, 6 and 8 points, one after the other.
   std::array<double, 18> node_speed{};
   template <std::size_t n>

@@ -20,10 +20,12 @@ double asin_over(double x) {
 }
 
 /// Whether a turning piece is to be a TurnedArc.
-bool is_straight(const Layer& layer, double turn, double edge) {
+bool is_straight(const Layer& layer, const RayParameter& ray, double turn, double edge,
+                 double sine) {
   const SoundSpeed there = layer.at(edge);
-  return std::abs(turn - edge) * std::abs(there.d2c_dz2) <
-         TurnedArc<double>::straightest * std::abs(there.dc_dz);
+  const double gradient = std::abs(there.dc_dz), way = std::abs(turn - edge);
+  return way * std::abs(there.d2c_dz2) < TurnedArc<double>::straightest * gradient &&
+         TurnedArc<double>::reaches(sine, ray.slowness, gradient, way);
 }
 
 TurnedArc<double> turned_arc(const Layer& layer, const RayParameter& ray, double edge,
@@ -178,7 +180,7 @@ Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
     return {.range = xi * two_over_b * w, .d_range = two_over_b * (w - xi * xi / w)};
   }
   const double turn_z = turning_depth(layer, ray);
-  if (is_straight(layer, turn_z, edge)) {
+  if (is_straight(layer, ray, turn_z, edge, sine)) {
     const auto arc = turned_arc(layer, ray, edge, sine);
     return {.range = xi * arc.per_slowness, .d_range = arc.d_range};
   }
@@ -219,7 +221,7 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
     return parabola(1.0 / c_edge, ray.slowness, w, 0.0, w * w / b, -b, ray.slowness);
   }
   const double turn_z = turning_depth(layer, ray);
-  if (is_straight(layer, turn_z, edge)) {
+  if (is_straight(layer, ray, turn_z, edge, sine)) {
     const auto arc = turned_arc(layer, ray, edge, sine);
     return {.time = arc.intercept + ray.slowness * ray.slowness * arc.per_slowness,
             .length = arc.length};

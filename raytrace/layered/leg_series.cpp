@@ -3,89 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
-
 namespace asdic {
-namespace {
-
-constexpr double range_error = 1e-7, time_error = 1e-13, slope_error = 1e-8;
-
-}  // namespace
 
 LegSeries::LegSeries(const Column& column, double c_ref, double low, double high)
-    : middle_(0.5 * (low + high)), per_half_(2.0 / (high - low)) {
-  static const auto cosines = [] {  // cos(πk(j + ½)/n)
-    std::array<std::array<double, terms>, terms> t{};
-    for (std::size_t k = 0; k < terms; ++k)
-      for (std::size_t j = 0; j < terms; ++j)
-        t[k][j] = std::cos(pi * double(k) * (double(j) + 0.5) / double(terms));
-    return t;
-  }();
-  for (std::size_t j = 0; j < terms; j += rays_at_once) {
-    const RayLanes rays(c_ref, middle_ + load(&cosines[1][j]) / per_half_);
+    : stretch_(low, high) {
+  for (std::size_t j = 0; j < LegFit<3>::terms; j += rays_at_once) {
+    const RayLanes rays(c_ref, LegFit<3>::sigmas(stretch_, j));
     const ColumnLanes sums = walk_all(column, rays);
     turns_above_ = sums.turns_above;
     turns_below_ = sums.turns_below;
-    const LegLanes* legs[3] = {&sums.up, &sums.middle, &sums.down};
-    for (std::size_t leg = 0; leg < 3; ++leg) {
-      const Rays values[quantities] = {legs[leg]->per_slowness, rays.sigma * legs[leg]->d_range,
-                                       legs[leg]->intercept, legs[leg]->length};
-      for (std::size_t k = 0; k < terms; ++k) {
-        const Rays weight = (k == 0 ? 1.0 : 2.0) / double(terms) * load(&cosines[k][j]);
-        for (std::size_t q = 0; q < quantities; ++q)
-          series_[q][k][leg] += reduce(weight * values[q]);
-      }
-    }
+    legs_.put(0, j, sums.up, rays);
+    legs_.put(1, j, sums.middle, rays);
+    legs_.put(2, j, sums.down, rays);
   }
-  good_ = holds(per_slowness, 1e-15, range_error * c_ref) && holds(d_range, slope_error, 0.0) &&
-          holds(intercept, 1e-15, time_error) && holds(length, 1e-15, range_error);
-  if (good_) to_polynomials();
-}
-
-/// Σ c_k·T_k(x) as Σ a_j·xʲ, with T_{k+1} = 2x·T_k − T_{k−1}.
-void LegSeries::to_polynomials() noexcept {
-  static const auto chebyshev = [] {  // [k][j]
-    std::array<std::array<double, terms>, terms> t{};
-    t[0][0] = t[1][1] = 1.0;
-    for (std::size_t k = 2; k < terms; ++k)
-      for (std::size_t j = 0; j <= k; ++j)
-        t[k][j] = (j > 0 ? 2.0 * t[k - 1][j - 1] : 0.0) - t[k - 2][j];
-    return t;
-  }();
-  for (Series& series : series_) {
-    Series a{};
-    for (std::size_t k = terms; k-- > 0;)  // small terms first
-      for (std::size_t j = k % 2; j <= k; j += 2)
-        for (std::size_t leg = 0; leg < 3; ++leg) a[j][leg] += chebyshev[k][j] * series[k][leg];
-    series = a;
-  }
-}
-
-bool LegSeries::holds(Quantity of, double relative, double absolute) const noexcept {
-  const Series& s = series_[of];
-  for (std::size_t leg = 0; leg < 3; ++leg) {
-    const double tail = std::abs(s[terms - 1][leg]) + std::abs(s[terms - 2][leg]);
-    if (!(tail <= absolute + relative * std::abs(s[0][leg]))) return false;  // or is not finite
-  }
-  return true;
-}
-
-/// Horner's rule.
-std::array<std::array<Rays, 3>, 2> LegSeries::values(Quantity first, Quantity second,
-                                                     const RayLanes& rays) const noexcept {
-  const Series *const a = &series_[first], *const b = &series_[second];
-  const Rays x = (rays.sigma - middle_) * per_half_;
-  Rays a0 = (*a)[terms - 1][0], a1 = (*a)[terms - 1][1], a2 = (*a)[terms - 1][2];
-  Rays b0 = (*b)[terms - 1][0], b1 = (*b)[terms - 1][1], b2 = (*b)[terms - 1][2];
-  for (std::size_t j = terms - 1; j-- > 0;) {
-    a0 = a0 * x + (*a)[j][0], a1 = a1 * x + (*a)[j][1], a2 = a2 * x + (*a)[j][2];
-    b0 = b0 * x + (*b)[j][0], b1 = b1 * x + (*b)[j][1], b2 = b2 * x + (*b)[j][2];
-  }
-  return {{{a0, a1, a2}, {b0, b1, b2}}};
+  legs_.fit();
+  good_ = true;
+  for (std::size_t leg = 0; leg < 3; ++leg)
+    good_ = good_ && legs_.good(leg, c_ref, {.range = 1e-7, .time = 1e-13, .slope = 1e-8});
 }
 
 ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
-  const auto [range, slope] = values(per_slowness, d_range, rays);
+  const auto [range, slope] = legs_.at(stretch_.x(rays.sigma), per_slowness, d_range);
   const Rays per_sigma = 1.0 / rays.sigma;
   return {.up = {.per_slowness = range[0], .d_range = slope[0] * per_sigma},
           .middle = {.per_slowness = range[1], .d_range = slope[1] * per_sigma},
@@ -96,7 +34,7 @@ ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
 
 ColumnLanes LegSeries::all(const RayLanes& rays) const noexcept {
   ColumnLanes all = sums(rays);
-  const auto [times, lengths] = values(intercept, length, rays);
+  const auto [times, lengths] = legs_.at(stretch_.x(rays.sigma), intercept, length);
   LegLanes* legs[3] = {&all.up, &all.middle, &all.down};
   for (std::size_t leg = 0; leg < 3; ++leg) {
     legs[leg]->intercept = times[leg];
@@ -108,16 +46,13 @@ ColumnLanes LegSeries::all(const RayLanes& rays) const noexcept {
 IntervalSeries::IntervalSeries(const Column& column, double c_ref, std::span<const double> nodes)
     : column_(column), c_ref_(c_ref), nodes_(nodes) {
   if (nodes.empty()) return;
-  // Seen from σ, the nearest singularity is where s vanishes at the next slower knot, at ±ia. On a
-  // stretch of 1.5 times its distance n terms leave about 4^(−n).
   double slower = 0.0;
   for (const Layer& layer : column.layers())
     for (const double c : {layer.c_top, layer.c_bottom})
       if (c < c_ref * (1.0 - 1e-12)) slower = std::max(slower, c);
-  const double ratio = slower > 0.0 ? c_ref / slower : 2.0, a2 = ratio * ratio - 1.0;
   for (std::size_t cell = 0; cell + 1 < nodes.size(); ++cell) {
     const double from = pieces_.empty() ? 0.0 : nodes[pieces_.back().first];
-    if (!pieces_.empty() && nodes[cell + 1] - from <= 0.7 * std::sqrt(a2 + from * from))
+    if (!pieces_.empty() && nodes[cell + 1] - from <= series_reach(from, c_ref, slower))
       pieces_.back().last = cell + 1;
     else
       pieces_.push_back({cell, cell + 1});

@@ -95,8 +95,7 @@ TaskLanes::TaskLanes(const RootTask* const* tasks, std::size_t n, bool source_is
   down = Rays([&](auto i) { return w[i].down; });
 }
 
-FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series,
-                     const TaskLanes& tasks) noexcept {
+FoundRays find_roots(const LegSource& source, double c_ref, const TaskLanes& tasks) noexcept {
   const CubicLanes cubic(tasks);
   const Rays bend = cubic.bend();
   const auto rises = cubic.rises();
@@ -104,7 +103,7 @@ FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series
   Rays::mask_type done(false);
   for (int i = 0; i < 100; ++i) {
     const RayLanes rays(c_ref, sigma);
-    const ColumnLanes legs = series != nullptr ? series->sums(rays) : walk_sums(column, rays);
+    const ColumnLanes legs = source.sums(rays);
     const Rays d_range = tasks.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
     const Rays miss = rays.slowness * tasks.of(legs.up.per_slowness, legs.middle.per_slowness,
                                                legs.down.per_slowness) -
@@ -121,14 +120,15 @@ FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series
     if (all_of(done)) break;
   }
   const RayLanes rays(c_ref, sigma);
-  return {rays, series != nullptr ? series->all(rays) : walk_all(column, rays)};
+  return {rays, source.all(rays)};
 }
 
-RootGroups::RootGroups(const Column& column, const FanInterval& interval,
+RootGroups::RootGroups(const BranchTable& fan, const FanInterval& interval,
                        std::span<const RootTask> tasks)
-    : column_(column),
+    : column_(fan.column()),
+      kept_(fan.kept()),
       interval_(interval),
-      series_(column, interval.reference_speed,
+      series_(fan.column(), interval.reference_speed,
               tasks.size() < worth_a_series ? std::span<const double>() : interval.sigma),
       order_(tasks.size()) {
   std::vector<std::size_t> next(interval.sigma.size() + 1, 0);  // place of each cell's first task
@@ -143,16 +143,30 @@ std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noex
   return i;
 }
 
+/// Too few for a series of their own: with walks, or as many as the ocean's piece of the first one
+/// holds for.
+RootGroups::Group RootGroups::few(std::size_t begin, std::size_t end) const {
+  if (kept_ == nullptr) return {{.column = column_}, end};
+  const auto piece = [&](const RootTask& task) {
+    const double x = Hermite(task.begin, task.end).near(task.range);
+    return kept_->find(interval_.reference_speed, task.steep ? sine_of_cosine(x) : x);
+  };
+  const OceanSeries::Found first = piece(*order_[begin]);
+  std::size_t i = begin + 1;
+  while (i < end && piece(*order_[i]) == first) ++i;
+  return {{.column = column_, .kept = kept_, .found = first}, i};
+}
+
 RootGroups::Group RootGroups::next(std::size_t begin) {
-  if (order_.size() < worth_a_series) return {nullptr, order_.size()};
+  if (order_.size() < worth_a_series) return few(begin, order_.size());
   const std::size_t cell = order_[begin]->cell;
   for (;;) {
     const IntervalSeries::Cells cells = series_.around(cell);
     const std::size_t end = first_at(begin, cells.last);
-    if (end - begin < worth_a_series) return {nullptr, end};
+    if (end - begin < worth_a_series) return few(begin, end);
     const LegSeries* series = series_.at(cell);
     const IntervalSeries::Cells now = series_.around(cell);
-    if (now.last == cells.last) return {series, end};
+    if (now.last == cells.last) return {{.column = column_, .series = series}, end};
   }
 }
 

@@ -8,6 +8,7 @@
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/leg_series.h"
+#include "raytrace/layered/ocean_series.h"
 
 namespace asdic {
 
@@ -42,17 +43,34 @@ struct FoundRays {
   ColumnLanes legs;
 };
 
+/// Where the legs of a batch of rays come from: a series of the column that holds between the
+/// tasks' ends, or series of the ocean, or neither: the column is walked.
+struct LegSource {
+  const Column& column;
+  const LegSeries* series = nullptr;
+  const OceanLegs* kept = nullptr;
+  OceanSeries::Found found;  ///< of `kept`
+
+  [[nodiscard]] ColumnLanes sums(const RayLanes& rays) const noexcept {
+    if (series != nullptr) return series->sums(rays);
+    return found.piece != nullptr ? kept->sums(column, found, rays) : walk_sums(column, rays);
+  }
+  [[nodiscard]] ColumnLanes all(const RayLanes& rays) const noexcept {
+    if (series != nullptr) return series->all(rays);
+    return found.piece != nullptr ? kept->all(column, found, rays) : walk_all(column, rays);
+  }
+};
+
 /// The roots: from the cubic through the stretch's ends by Newton's method, kept inside a shrinking
 /// bracket, until what is missed is below 0.01 mm, or what the next step would leave is below 0.1
-/// mm and 1e-8 of the slope; path_builder.cpp sees to the rest. \param series  that holds between
-/// the tasks' ends, or nullptr: the column itself is walked
-[[nodiscard]] FoundRays find_roots(const Column& column, double c_ref, const LegSeries* series,
+/// mm and 1e-8 of the slope; path_builder.cpp sees to the rest.
+[[nodiscard]] FoundRays find_roots(const LegSource& source, double c_ref,
                                    const TaskLanes& tasks) noexcept;
 
 /// Of the tasks of one interval, those that are solved alike: with one series, or with walks.
 class RootGroups {
  public:
-  RootGroups(const Column& column, const FanInterval& interval, std::span<const RootTask> tasks);
+  RootGroups(const BranchTable& fan, const FanInterval& interval, std::span<const RootTask> tasks);
 
   /// Calls found(TaskLanes, FoundRays) with every batch.
   template <class Found>
@@ -63,7 +81,7 @@ class RootGroups {
       for (std::size_t i = begin; i < group.end; i += rays_at_once) {
         const TaskLanes lanes(&order_[i], std::min(rays_at_once, group.end - i),
                               column_.source_is_upper());
-        found(lanes, find_roots(column_, interval_.reference_speed, group.series, lanes));
+        found(lanes, find_roots(group.source, interval_.reference_speed, lanes));
       }
       begin = group.end;
     }
@@ -71,7 +89,7 @@ class RootGroups {
 
  private:
   struct Group {
-    const LegSeries* series;
+    LegSource source;
     std::size_t end;
   };
   /// As many walks as a series takes: 16 rays with times against two or three, one of them with
@@ -79,9 +97,11 @@ class RootGroups {
   static constexpr std::size_t worth_a_series = 9;
 
   [[nodiscard]] Group next(std::size_t begin);
+  [[nodiscard]] Group few(std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::size_t first_at(std::size_t begin, std::size_t cell) const noexcept;
 
   const Column& column_;
+  const OceanLegs* kept_;
   const FanInterval& interval_;
   IntervalSeries series_;               ///< of no cells where no series can be worth while
   std::vector<const RootTask*> order_;  ///< by cell

@@ -6,6 +6,7 @@
 #include "raytrace/layered/layer_pass.h"
 #include "raytrace/layered/smooth_quadrature.h"
 #include "raytrace/layered/turned_arc.h"
+#include "raytrace/layered/water_lanes.h"
 
 namespace asdic {
 namespace {
@@ -30,27 +31,6 @@ void one_by_one(const RayLanes& rays, LegLanes& leg, const PassOf& pass_of,
     }
   }
 }
-
-/// Layer::at for lanes of depths.
-struct WaterLanes {
-  Rays c, dc_dz, d2c_dz2;
-
-  WaterLanes(const Layer& layer, const Rays& depth) noexcept {
-    const auto& a = layer.coefficient;
-    if (layer.law == Layer::Law::cubic) {
-      const Rays t = depth - layer.origin;
-      c = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
-      dc_dz = a[1] + t * (2.0 * a[2] + t * (3.0 * a[3]));
-      d2c_dz2 = 2.0 * a[2] + t * (6.0 * a[3]);
-    } else {  // c = c₁[1 + ε(η − 1 + e^−η)], η = 2(z − z₁)/B
-      const double k = 2.0 / a[2], slope = a[0] * a[3] * k;
-      const Rays eta = k * (depth - a[1]), decay = exponential(-eta);
-      c = a[0] * (1.0 + a[3] * (eta - 1.0 + decay));
-      dc_dz = slope * (1.0 - decay);
-      d2c_dz2 = slope * k * decay;
-    }
-  }
-};
 
 /// Gauss–Legendre nodes in depth, shared by all rays.
 template <std::size_t n, bool detailed>
@@ -121,7 +101,7 @@ void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sin
   const Rays xi2 = rays.slowness * rays.slowness;
   const Rays before = s2 / (2.0 * flat.c * std::abs(flat.dc_dz) * xi2);
   LegLanes sum;
-  Rays by_parts = 1.0 / (sine_bottom * bottom.dc_dz) - 1.0 / (sine_top * top.dc_dz);
+  Rays by_parts = 1.0 / (sine_bottom * layer.slope_bottom) - 1.0 / (sine_top * layer.slope_top);
   add_in_root<detailed>(layer, rays, edge - sign * before, sign, before, before + layer.thickness(),
                         sum, by_parts);
   where(s2 < 0.2 * far2, sum.d_range) = by_parts / xi2;
@@ -198,7 +178,8 @@ void turn_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine,
   const WaterLanes there(layer, turn_z);
   using Arc = TurnedArc<Rays>;
   const double gradient = std::abs(at_edge.dc_dz);
-  const auto straight = total * std::abs(at_edge.d2c_dz2) < Arc::straightest * gradient;
+  const auto straight = total * std::abs(at_edge.d2c_dz2) < Arc::straightest * gradient &&
+                        Arc::reaches(sine, rays.slowness, gradient, total);
   const Rays half_slope = 0.5 * abs(there.dc_dz);
   const auto one_piece = abs(there.d2c_dz2) * total <= half_slope && half_slope <= gradient;
   if (!all_of(straight || one_piece))

@@ -20,6 +20,13 @@ struct TurnedArc {
   /// The largest κT: the next order, 0.8(κT)², leaves 2e-11.
   static constexpr double straightest = 5e-6;
 
+  /// Whether the gradient at the edge leads to the turn: not where the law is flat there to the
+  /// third order, as PCHIP's can be. s²/(2ξ), the rise of c to the turn, is g times the way to it,
+  /// but for c's rounding of 2e-13 m/s. \param way  from the edge to the turn [m]
+  static auto reaches(const T& sine, const T& slowness, double gradient, const T& way) noexcept {
+    return sine * sine / (2.0 * slowness) <= 2.0 * gradient * way + 1e-11;
+  }
+
   /// \param sine  at the edge, some 1e-3 at most \param gradient  |dc/dz| there \param bend d²c/dz²
   TurnedArc(const T& sine, const T& slowness, double gradient, double bend) noexcept {
     const T s2 = sine * sine;
