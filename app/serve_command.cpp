@@ -38,7 +38,7 @@ std::string token_for(const Options& options) {
     serve::check_token(given, "ASDIC_TOKEN");
     return given;
   }
-  const std::string token = serve::new_token();
+  std::string token = serve::new_token();
   report("token " + token);
   return token;
 }

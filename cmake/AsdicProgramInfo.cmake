@@ -1,9 +1,9 @@
 # What the program says about itself: its version, how it was built, the libraries it was built with, where its pictures' script is.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
-get_target_property(build_options asdic_build_options INTERFACE_COMPILE_OPTIONS)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" flags)
 set(build "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}, ")
-string(APPEND build "$<IF:$<BOOL:${ASDIC_NATIVE}>,native,portable>, $<JOIN:${build_options}, > ${flags}")
+string(APPEND build "$<IF:$<BOOL:${ASDIC_NATIVE}>,native,portable>, "
+  "$<JOIN:$<TARGET_PROPERTY:asdic_build_options,INTERFACE_COMPILE_OPTIONS>, > ${flags}")  # by name: options may hold commas
 foreach(program asdic_app asdic_full asdic_mpi)
   if(NOT TARGET ${program})
     continue()

@@ -30,6 +30,7 @@ std::vector<double> speeds_of(const Column& column, const std::vector<double>& d
   while (z.back() < depths.back()) add(z.back() + 250.0, column.depth.size() - 1);
   const auto profile = SoundSpeedProfile::table(z, c, Interpolation::pchip);
   std::vector<double> speed;
+  speed.reserve(depths.size());
   for (const double depth : depths) speed.push_back(profile.at(depth).c);
   return speed;
 }
@@ -42,8 +43,8 @@ std::vector<double> levels_down_to(double deepest, const std::vector<double>& me
   std::vector<double> levels = {0.0};
   const auto go_to = [&](double end) {
     const double begin = levels.back(), width = end - begin;
-    const double pieces = std::ceil(width / std::max(5.0, begin / 30.0));
-    for (double i = 1.0; i <= pieces; ++i) levels.push_back(std::round(begin + width * i / pieces));
+    const int pieces = static_cast<int>(std::ceil(width / std::max(5.0, begin / 30.0)));
+    for (int i = 1; i <= pieces; ++i) levels.push_back(std::round(begin + width * i / pieces));
   };
   deepest = std::ceil(deepest);
   for (const double depth : measured)

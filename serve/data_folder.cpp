@@ -31,7 +31,7 @@ std::filesystem::path DataFolder::file(const std::string& name, const std::strin
   if (name.empty() || name.find('\0') != std::string::npos || asked.is_absolute() || climbs)
     throw refuse(inside);
   std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(folder_ / asked, error);
+  std::filesystem::path real = std::filesystem::canonical(folder_ / asked, error);
   // Missing, not to be read, or elsewhere: one message, so that nothing is learnt of other places.
   if (error) throw refuse(inside);
   const auto [end, rest] = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());

@@ -40,7 +40,8 @@ LiveScenario::State LiveScenario::read(const Changes& changes) const {
   std::vector<std::string> overrides = source_.overrides;
   State state;
   for (const auto& [section, value] : changes) {
-    overrides.push_back(section + "=" + value);
+    overrides.push_back(section);
+    overrides.back().append("=").append(value);
     state.key += overrides.back() + '\n';
   }
   // What is checked over the file's schedule is so over one ping: served ones go on for ever, and

@@ -16,12 +16,13 @@ namespace {
 using scenario::coordinate;
 
 /// The tables of a section that stands once, [x], or several times, [[x]].
-std::vector<TomlValue*> tables_of(TomlValue& document, const std::string& section) {
-  std::vector<TomlValue*> tables;
-  TomlValue* found = document.find(section);
+template <class Value>
+std::vector<Value*> tables_of(Value& document, const std::string& section) {
+  std::vector<Value*> tables;
+  Value* found = document.find(section);
   if (found == nullptr) return tables;
   if (auto* array = std::get_if<TomlValue::Array>(&found->data))
-    for (TomlValue& table : *array) tables.push_back(&table);
+    for (Value& table : *array) tables.push_back(&table);
   else
     tables.push_back(found);
   return tables;
@@ -84,11 +85,10 @@ void update_platforms(TomlTable& reader, const UpdateContext& context, double ti
 void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlValue& fields,
                    TomlValue& document) {
   const std::vector<TomlValue*> tables = tables_of(document, "array");
-  const TomlValue* given = fields.find("array");
+  const std::vector<const TomlValue*> given = tables_of(fields, "array");
   std::size_t place = 0;
   for (TomlTable& wanted : reader.one_or_more("array")) {
-    const auto* several = std::get_if<TomlValue::Array>(&given->data);
-    const TomlValue& values = several != nullptr ? (*several)[place++] : *given;
+    const TomlValue& values = *given[place++];
     TomlValue& table = *tables[index_of(wanted, context.scenario.arrays, "arrays")];
     if (wanted.has("positions")) {
       static_cast<void>(wanted.vectors("positions", coordinate));
@@ -150,13 +150,10 @@ void update_targets(TomlTable& reader, const UpdateContext& context, const TomlV
     set_key(*table, "name", {.data = context.scenario.targets[targets.size()].name, .origin = ""});
     targets.push_back(*table);
   }
-  const TomlValue* given = fields.find("targets");
+  const std::vector<const TomlValue*> given = tables_of(fields, "targets");
   std::size_t place = 0;
-  for (TomlTable& wanted : reader.one_or_more("targets")) {
-    const auto* several = std::get_if<TomlValue::Array>(&given->data);
-    update_target(wanted, several != nullptr ? (*several)[place++] : *given, context, time,
-                  targets);
-  }
+  for (TomlTable& wanted : reader.one_or_more("targets"))
+    update_target(wanted, *given[place++], context, time, targets);
   if (targets.size() > context.limits.targets)
     throw Refusal("limit", refusal_text("targets", std::to_string(targets.size()),
                                         "at most " + std::to_string(context.limits.targets)));

@@ -162,6 +162,7 @@ PingReverberation PingSimulator::reverberation(const Emission& emission, int arr
 
 PingRecord PingSimulator::levels(int ping) const {
   Stopwatch watch;
+  paths_->memory().next_ping();
   const Emission emission = emit(transmission(ping));
   PingRecord record = blank_record(ping, emission.sent);
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
@@ -180,6 +181,7 @@ PingRecord PingSimulator::levels(int ping) const {
 
 PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   Stopwatch watch;
+  paths_->memory().next_ping();
   const Emission emission = emit(sent);
   PingRecord record = blank_record(ping, sent);
   record.pressure.assign(

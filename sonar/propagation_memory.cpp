@@ -16,6 +16,7 @@ PropagationMemory::Value PropagationMemory::recall(const ExactKey& key) {
   const auto place = places_.find(key);
   if (place == places_.end()) return nullptr;
   used_.splice(used_.begin(), used_, place->second);
+  place->second->ping = ping_;
   return place->second->value;
 }
 
@@ -25,7 +26,7 @@ PropagationMemory::Value PropagationMemory::store(const ExactKey& key, Value val
   const std::size_t all = bytes + 2 * key.bytes() + sizeof(Entry) + 64;
   const std::scoped_lock lock(lock_);
   if (const auto place = places_.find(key); place != places_.end()) return place->second->value;
-  used_.push_front({key, value, all});
+  used_.push_front({key, value, all, ping_});
   places_.emplace(key, used_.begin());
   bytes_ += all;
   forget();
@@ -46,9 +47,15 @@ std::size_t PropagationMemory::bytes() const {
   return bytes_;
 }
 
+void PropagationMemory::next_ping() {
+  const std::scoped_lock lock(lock_);
+  ++ping_;
+  forget();
+}
+
 /// Those in use stay alive with those who use them.
 void PropagationMemory::forget() {
-  while (bytes_ > most_bytes_ && !used_.empty()) {
+  while (!used_.empty() && (bytes_ > most_bytes_ || ping_ - used_.back().ping > most_pings_)) {
     bytes_ -= used_.back().bytes;
     places_.erase(used_.back().key);
     used_.pop_back();

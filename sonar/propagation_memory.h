@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -64,7 +65,14 @@ class ExactKey {
 /// forgotten first. Shared by threads.
 class PropagationMemory {
  public:
-  explicit PropagationMemory(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  static constexpr std::uint64_t for_ever = std::numeric_limits<std::uint64_t>::max();
+
+  /// \param most_pings  that something is kept without being used. In a sequence in which something
+  /// moves each ping finds paths and waveforms that none asks for again
+  explicit PropagationMemory(std::size_t most_bytes, std::uint64_t most_pings = for_ever)
+      : most_bytes_(most_bytes), most_pings_(most_pings) {}
+
+  void next_ping();
 
   /// Null if it is not there, or no more. \param key  whose kind says the type
   template <class T>
@@ -88,6 +96,7 @@ class PropagationMemory {
     ExactKey key;
     Value value;
     std::size_t bytes;
+    std::uint64_t ping;  // that used it last
   };
   struct Hash {
     std::size_t operator()(const ExactKey& key) const noexcept { return key.hash(); }
@@ -97,10 +106,12 @@ class PropagationMemory {
   void forget();
 
   const std::size_t most_bytes_;
+  const std::uint64_t most_pings_;
   mutable std::mutex lock_;
   std::list<Entry> used_;  // the latest first
   std::unordered_map<ExactKey, std::list<Entry>::iterator, Hash> places_;
   std::size_t bytes_ = 0;
+  std::uint64_t ping_ = 0;
 };
 
 }  // namespace asdic

@@ -13,7 +13,9 @@
 namespace asdic {
 namespace {
 
-constexpr std::size_t own_memory = std::size_t{256} << 20;
+// Of a sequence by itself. Schedules that come back to a place or a waveform do so sooner.
+constexpr std::size_t own_bytes = std::size_t{256} << 20;
+constexpr std::uint64_t own_pings = 64;
 
 std::uint64_t next_identity() {
   static std::atomic<std::uint64_t> next{0};
@@ -68,7 +70,8 @@ PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& tra
       transect_(transect),
       layered_(is_layered(ocean)),
       identity_(next_identity()),
-      memory_(memory ? std::move(memory) : std::make_shared<PropagationMemory>(own_memory)) {}
+      memory_(memory ? std::move(memory)
+                     : std::make_shared<PropagationMemory>(own_bytes, own_pings)) {}
 
 Plane PropagationPaths::plane(const Vec3& from, double bearing) const noexcept {
   return {.origin = along(from), .cos_beta = std::cos(bearing - transect_.bearing)};

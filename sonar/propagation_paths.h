@@ -24,7 +24,8 @@ struct Plane {
 /// threads; what comes out does not depend on what is kept. docs/theory/transect.md
 class PropagationPaths {
  public:
-  /// \param memory  of what was found; none: one of its own
+  /// \param memory  of what was found; none: one of its own, which forgets what 64 pings did not
+  /// use
   PropagationPaths(const Environment& ocean, const Transect& transect,
                    std::shared_ptr<PropagationMemory> memory = nullptr);
   PropagationPaths(const PropagationPaths&) = delete;

@@ -160,7 +160,7 @@ Pulse::Pulse(PulseSettings settings) : settings_(std::move(settings)) {
         throw InputError({.where = "samples", .got = "silence", .expected = "a sound"});
       for (auto& s : fine) s /= peak;
       centre_frequency_ = spectral_centre(fine, 2.0 * settings_.sample_rate);
-      file_signal_ = SampledSignal(std::move(fine), 0.0, 2.0 * settings_.sample_rate);
+      file_signal_ = SampledSignal(fine, 0.0, 2.0 * settings_.sample_rate);
       break;
     }
   }

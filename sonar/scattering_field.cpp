@@ -37,6 +37,7 @@ std::vector<int> ScatteringField::sample_sectors() const {
   const auto rings = static_cast<int>(std::max(1U, grid.rings));
   const int n = std::min(std::clamp(400'000 / rings, 12, 36), grid.azimuths);
   std::vector<int> sectors;
+  sectors.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) sectors.push_back(i * grid.azimuths / n);
   return sectors;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cassert>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -70,7 +71,11 @@ class Journals {
   /// \param work  of which study; unless it skips, skipped rows are thrown away, to be made again
   Journals(const std::filesystem::path& output, const Work& work, const std::filesystem::path& own);
 
-  [[nodiscard]] Journal& own() noexcept { return *own_; }
+  /// Only where a path for it was given.
+  [[nodiscard]] Journal& own() noexcept {
+    assert(own_ != nullptr);
+    return *own_;
+  }
   [[nodiscard]] IndexSet done() const;
   [[nodiscard]] std::uint64_t damaged() const noexcept;
   [[nodiscard]] std::vector<const Journal*> all() const;

@@ -52,7 +52,8 @@ InputError TomlTable::fault_at(const TomlValue& value, const std::string& key,
   const std::string& origin = value.origin.empty() ? fallback_origin_ : value.origin;
   // "--set pulse.duration", or "--set target.0.depth" of target[0].depth, already names the key.
   const std::string where = origin == "--set " + dotted(path) ? origin : origin + ": " + path;
-  return InputError({.where = where, .got = got.value_or(value.describe()), .expected = expected});
+  return InputError(
+      {.where = where, .got = got ? std::move(*got) : value.describe(), .expected = expected});
 }
 
 InputError TomlTable::fault(const std::string& key, const std::string& expected,

@@ -151,6 +151,25 @@ void merge_defaults(TomlValue& base, const TomlValue& fragment) {
   }
 }
 
+namespace {
+
+InputError no_such_index(const std::string& origin, const std::string& index,
+                         const std::string& array, std::size_t size) {
+  return InputError({.where = origin,
+                     .got = "index \"" + index + "\" of " + array,
+                     .expected = size == 0 ? "no index, the array is empty"
+                                           : "an index from 0 to " + std::to_string(size - 1)});
+}
+
+InputError nothing_below(const std::string& origin, const std::string& part,
+                         const std::string& path, const TomlValue& there) {
+  return InputError({.where = origin,
+                     .got = '"' + part + "\" below " + path + ", which is " + there.describe(),
+                     .expected = "a path through tables and arrays"});
+}
+
+}  // namespace
+
 TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& origin) {
   TomlValue* at = &root;
   std::string walked;
@@ -159,11 +178,7 @@ TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& o
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
       if (error != std::errc{} || end != part.data() + part.size() || index >= array->size())
-        throw InputError({.where = origin,
-                          .got = "index \"" + part + "\" of " + walked,
-                          .expected = array->empty() ? "no index, the array is empty"
-                                                     : "an index from 0 to " +
-                                                           std::to_string(array->size() - 1)});
+        throw no_such_index(origin, part, walked, array->size());
       at = &(*array)[index];
     } else if (auto* table = std::get_if<TomlValue::Table>(&at->data)) {
       if (part.empty())
@@ -175,9 +190,7 @@ TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& o
       }
       at = next;
     } else {
-      throw InputError({.where = origin,
-                        .got = '"' + part + "\" below " + walked + ", which is " + at->describe(),
-                        .expected = "a path through tables and arrays"});
+      throw nothing_below(origin, part, walked, *at);
     }
     walked += (walked.empty() ? "" : ".") + part;
   }

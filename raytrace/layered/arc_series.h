@@ -7,14 +7,14 @@ namespace asdic {
 inline constexpr double short_series = 0.06;
 
 template <class T>
-T atanh_series(const T& x) {  // next term x¹⁴/15 = 1e-18
+inline T atanh_series(const T& x) {  // next term x¹⁴/15 = 1e-18
   const T y = x * x;
   return 1.0 +
          y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7 + y * (1.0 / 9 + y * (1.0 / 11 + y / 13.0)))));
 }
 
 template <class T>
-T asin_series(const T& x) {
+inline T asin_series(const T& x) {
   const T y = x * x;
   return 1.0 + y * (1.0 / 6 +
                     y * (3.0 / 40 +

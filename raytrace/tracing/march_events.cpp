@@ -202,12 +202,15 @@ double March::hit(BoundaryKind kind, std::size_t facet, double in, double out) c
 /// at the second.
 double March::hit_between(BoundaryKind kind, std::size_t facet, double in, double out) const {
   double low = in;
-  if (clearance(kind, facet, in).value <= 0.0)
-    for (double clear = 0.5 * (out - in); clear > 1e-12 * out; clear *= 0.5) {
+  if (clearance(kind, facet, in).value <= 0.0) {
+    double clear = 0.5 * (out - in);
+    while (clear > 1e-12 * out) {
       low = in + clear;
       if (clearance(kind, facet, low).value > 0.0) break;
       out = low;
+      clear *= 0.5;
     }
+  }
   return falling_root(low, out, out, [&](double h) { return clearance(kind, facet, h); });
 }
 
