@@ -41,6 +41,17 @@ class Hermite {
     return x0_ + (next > 0.0 && next < 1.0 ? next : t) * h_;
   }
 
+  /// Where it has a value, by a few of Newton's steps from a guess; anywhere if they do not
+  /// converge.
+  [[nodiscard]] double root_near(double x, double wanted) const noexcept {
+    for (int i = 0; i < 6; ++i) {
+      const double step = (value(x) - wanted) / slope(x);
+      x -= step;
+      if (std::abs(step) < 1e-12 * std::abs(h_)) break;
+    }
+    return x;
+  }
+
   /// At most two places strictly inside, in order.
   struct Places {
     std::array<double, 2> x{};

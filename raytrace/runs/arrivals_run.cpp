@@ -77,7 +77,8 @@ class ArrivalSearch {
       if (watch.unfinished > 0)
         notes.push_back("source at " + std::to_string(source_depth) +
                         " m: rays part without end in " + std::to_string(watch.unfinished) +
-                        " of 256 parts of the fan; faint paths are missing there");
+                        " of " + std::to_string(watch.intervals) +
+                        " parts of the fan; faint paths are missing there");
     }
     for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
     return found;

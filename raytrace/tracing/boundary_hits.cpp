@@ -102,6 +102,7 @@ class CellSearch {
  public:
   using Ray = StrikingRay;
   using Result = CellHit;
+  static constexpr std::size_t coarse_levels = 0;
 
   CellSearch(const RayTracer& tracer, double source_depth, const GroundLevel& level, double spacing,
              double max_range, double frequency, const TraceLimits& limits)

@@ -47,6 +47,8 @@ bool displaced(const RaySegment& before, const RaySegment& after) noexcept {
   return before.end.range != after.begin.range;
 }
 
+int turns(const RaySegment& s) noexcept { return s.history.upper_turns + s.history.lower_turns; }
+
 int bounces(const RaySegment& s) noexcept {
   return s.history.surface_bounces + s.history.bottom_bounces;
 }
@@ -155,6 +157,7 @@ void digest(const RayTrajectory& ray, const Environment& environment,
   split_into_legs(ray, environment, out.parts);
   const auto& segments = ray.segments;
   const bool at_boundary = ray.ended != RayEnd::box && ray.ended != RayEnd::trapped;
+  std::uint64_t turned_in = 0;
   for (const auto& [history, first, last] : out.parts) {
     const RaySegment &head = segments[first], &tail = segments[last - 1];
     RayLeg leg{.history = history, .begin = begin_of(head), .end = end_of(tail)};
@@ -177,11 +180,16 @@ void digest(const RayTrajectory& ray, const Environment& environment,
       const bool surface = bounce < ray.bounces.size()
                                ? ray.bounces[bounce].boundary == BoundaryKind::surface
                                : tail.end.zeta < 0.0;
+      leg.ends_at = surface ? BoundaryKind::surface : BoundaryKind::bottom;
       leg.d_end =
           range_per_angle(leg.end, surface ? environment.surface : environment.bottom, leg.sign);
     }
     leg.turns_begin = head.history.upper_turns + head.history.lower_turns;
     leg.turns_end = tail.history.upper_turns + tail.history.lower_turns;
+    for (std::size_t i = first; leg.turns_end > leg.turns_begin && i + 1 < last; ++i)
+      if (turns(segments[i + 1]) != turns(segments[i]))
+        turned_in = mixed(turned_in, segments[i].row);
+    leg.turned_in = turned_in;
     leg.first_crossing = static_cast<std::uint32_t>(out.crossings.size());
     const auto cross = [&](const RaySegment& s, const SegmentCurve& curve, std::uint32_t column) {
       const auto y = curve.at_range(columns[column].range);

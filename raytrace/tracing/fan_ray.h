@@ -59,8 +59,10 @@ struct RayLeg {
   double strength = 1.0;       ///< product of the reflections' magnitudes before it
   bool from_boundary = false;  ///< begins there, rather than at the source
   BoundaryKind begins_at = BoundaryKind::surface;  ///< which boundary
-  bool to_boundary = false;            ///< ends there, rather than at the limits of the trace
+  bool to_boundary = false;  ///< ends there, rather than at the limits of the trace
+  BoundaryKind ends_at = BoundaryKind::surface;
   int turns_begin = 0, turns_end = 0;  ///< turning points passed before and within
+  std::uint64_t turned_in = 0;         ///< tells the rows of the water they lie in
   std::uint32_t first_column = 0;  ///< crossings of columns first … last − 1, by increasing range
   std::uint32_t last_column = 0;
   std::uint32_t first_crossing = 0;  ///< of them in FanRay::crossings

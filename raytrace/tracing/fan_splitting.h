@@ -20,12 +20,15 @@ namespace asdic {
 ///   bool holds(const Ray& a, const Ray& m, const Ray& b);  m between a and b: is a–b known well?
 ///   double middle(const Ray& a, const Ray& b);  where to split a–b
 ///   void search(const Ray& a, const Ray& b, std::vector<Result>& out);  a–b is known: take it
+///   std::size_t coarse_levels;  the fan begins with 256/2ⁿ intervals; if that is not none, as well
+///   bool regular(const Ray& a, const Ray& m, const Ray& b);  may a–b be wider than 1/256?
+///   bool pair_tells(const Ray& a, const Ray& b);  is a–b known without a ray between?
 template <class Work>
 class FanSplitting {
  public:
   using Ray = typename Work::Ray;
   using Result = typename Work::Result;
-  static constexpr int first_intervals = 256;
+  static constexpr int first_intervals = 256 >> Work::coarse_levels;
 
   FanSplitting(double lowest, double highest) : lowest_(lowest), highest_(highest) {}
 
@@ -61,6 +64,7 @@ class FanSplitting {
     });
     if (watch != nullptr) {
       watch->stopped = stopped;
+      watch->intervals = first_intervals;
       watch->unfinished = static_cast<int>(
           std::count_if(left.begin(), left.end(), [](int rays) { return rays <= 0; }));
     }
@@ -73,7 +77,7 @@ class FanSplitting {
 
  private:
   static constexpr std::size_t deepest = 58;
-  static constexpr int most_rays = 1 << 14;  // in one of the first intervals
+  static constexpr int most_rays = (1 << 22) / first_intervals;  // in one of the first intervals
 
   /// Twice denser about the middle of the fan, mostly the horizontal, where rays are bent most.
   [[nodiscard]] double first_angle(int i) const {
@@ -82,16 +86,26 @@ class FanSplitting {
     return lowest_ + 0.5 * (highest_ - lowest_) * (1.0 + v * (0.5 + 0.5 * v * v));
   }
 
+  [[nodiscard]] static bool known(const Work& work, const Ray& a, const Ray& m, const Ray& b,
+                                  std::size_t slot) {
+    if (!work.holds(a, m, b)) return false;
+    if constexpr (Work::coarse_levels > 0)
+      if (slot < Work::coarse_levels) return work.regular(a, m, b);
+    return true;
+  }
+
   /// \param left  rays that may still be traced
   static void split(Work& work, std::deque<Ray>& rays, const Ray& a, const Ray& b, std::size_t slot,
                     int& left, std::vector<Result>& out) {
+    if constexpr (Work::coarse_levels > 0)
+      if (slot >= Work::coarse_levels && work.pair_tells(a, b)) return work.search(a, b, out);
     double middle = slot % 4 == 2 ? 0.5 * (a.angle + b.angle) : work.middle(a, b);
     if (!(middle > a.angle && middle < b.angle)) middle = 0.5 * (a.angle + b.angle);
     if (!(middle > a.angle && middle < b.angle)) return work.search(a, b, out);
     if (rays.size() <= slot) rays.emplace_back();  // a deque: references stay
     Ray& m = rays[slot];
     work.trace(middle, m);
-    if (--left > 0 && slot < deepest && !work.holds(a, m, b)) {
+    if (--left > 0 && slot < deepest && !known(work, a, m, b, slot)) {
       split(work, rays, a, m, slot + 1, left, out);
       split(work, rays, m, b, slot + 1, left, out);
     } else {

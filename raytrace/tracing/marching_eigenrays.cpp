@@ -37,7 +37,7 @@ double closes_up_to(const BoundaryShape& shape, BoundaryKind kind) {
 double beyond_last_column(const Environment& ocean, double last) {
   const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
   const double top = ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;
-  double end = last + 2.0 * (bottom - top);
+  double end = last + (bottom - top);
   if (ocean.surface.shape)
     end = std::max(end, closes_up_to(*ocean.surface.shape, BoundaryKind::surface));
   if (ocean.bottom.shape)
@@ -76,6 +76,7 @@ TraceLimits trace_limits(const Environment& ocean, double source_range,
 struct ColumnSearch {
   using Ray = FanRay;
   using Result = Hit;
+  static constexpr std::size_t coarse_levels = 3;
 
   ColumnSearch(const RayTracer& tracer, double source_range, double source_depth,
                const TraceLimits& limits, std::span<const ReceiverColumn> columns, int max_turns)
@@ -85,7 +86,7 @@ struct ColumnSearch {
         limits_(limits),
         columns_(columns),
         max_turns_(max_turns),
-        test_(columns),
+        test_(tracer.environment(), columns),
         roots_(tracer, source_range, source_depth, limits, columns) {}
 
   void trace(double angle, FanRay& out) {
@@ -94,6 +95,12 @@ struct ColumnSearch {
   }
   [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
     return test_.holds(a, m, b);
+  }
+  [[nodiscard]] bool pair_tells(const FanRay& a, const FanRay& b) const {
+    return test_.pair_tells(a, b);
+  }
+  [[nodiscard]] bool regular(const FanRay& a, const FanRay& m, const FanRay& b) const {
+    return test_.regular(a, m, b);
   }
   [[nodiscard]] double middle(const FanRay& a, const FanRay& b) const {
     return splitting_angle(a, b, tracer_.environment());

@@ -139,14 +139,10 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
       b.value != a.value
           ? low + (high - low) * std::clamp((depth - a.value) / (b.value - a.value), 0.0, 1.0)
           : low;
-  for (int i = 0; i < 4; ++i) {  // the cubic costs nothing: start from its root
-    const double slope = cubic.slope(x);
-    const double next = slope != 0.0 ? x - (cubic.value(x) - depth) / slope : x;
-    if (!(next >= low && next <= high)) break;
-    x = next;
-  }
+  if (const double root = cubic.root_near(x, depth); root >= low && root <= high) x = root;
   std::optional<ExactCrossing> there;
-  double miss = 1e300, off_before = 1e300, x_before = x;
+  double miss = 1e300, off_before = 1e300;
+  HermiteNode before = std::abs(a.value - depth) < std::abs(b.value - depth) ? a : b;  // last known
   for (int i = 0; i < 80; ++i) {
     there = exact(x);
     if (!there) {  // a ray of another history in between: towards the nearer end
@@ -159,13 +155,16 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
     miss = std::abs(off) * there->crossing.cosine;
     if (miss < miss_wanted) break;
     ((off < 0.0) == rising ? low : high) = x;
-    double slope = there->crossing.slope;
+    const HermiteNode here{x, there->crossing.depth, there->crossing.slope};
+    double next = here.slope != 0.0 ? x - off / here.slope : low;
     // a slope that did not bring it near is not the curve's: over curvilinear facets q is another's
-    if (std::abs(off) > 0.01 * std::abs(off_before) && x != x_before)
-      slope = (off - off_before) / (x - x_before);
+    if (std::abs(off) > 0.1 * std::abs(off_before) && x != before.x)
+      next = x - off * (x - before.x) / (here.value - before.value);
+    else if (const double root = Hermite(before, here).root_near(next, depth);
+             root > low && root < high)
+      next = root;
     off_before = off;
-    x_before = x;
-    double next = slope != 0.0 ? x - off / slope : low;
+    before = here;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     if (next == x || high - low < 2e-16 * (1.0 + std::abs(x))) break;
     x = next;
