@@ -15,6 +15,7 @@ enum class Draw : std::uint32_t {
   scatterer_velocity = 11,
   scatterer_texture = 12,
   sector_weight = 13,
+  covariance_weight = 14,
   target_fluctuation = 20,
   element_gain = 21,
   element_phase = 22,

@@ -162,12 +162,13 @@ void ExpectedReverberation::cut_into_blocks(std::size_t field, const std::vector
 }
 
 std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringField> fields,
-                                                   double pulse_duration) {
-  ExactKey key(Kept::expected_reverberation, 0);
+                                                   double pulse_duration, Kept kind) {
+  ExactKey key(kind, 0);
   key.add_all(pulse_duration, fields.size());
   for (const ScatteringField& f : fields) {
     // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
-    const auto& [sheet, grid, field, weights, boundary, depth, thickness, divided_below] = f;
+    const auto& [sheet, grid, field, weights, boundary, depth, thickness, by_covariance,
+                 divided_below] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
     key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, divided_below);
@@ -178,6 +179,13 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
 std::size_t ExpectedReverberation::bytes() const noexcept {
   return sizeof *this + limits.least.capacity() * sizeof(double) +
          samples.capacity() * sizeof(Sample) + blocks.capacity() * sizeof(Block);
+}
+
+double ExpectedReverberation::returns_of(std::size_t field) const noexcept {
+  double sum = 0.0;
+  for (const Block& block : blocks)
+    if (block.field == field) sum += static_cast<double>(block.expected);
+  return sum;
 }
 
 double ExpectedReverberation::power(const Pulse& pulse, double t) const {

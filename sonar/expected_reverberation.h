@@ -30,15 +30,20 @@ struct ExpectedReverberation {
 
   /// \param pulse_duration  [s]
   ExpectedReverberation(std::span<const ScatteringField> fields, double pulse_duration);
-  /// Of all that it depends on; none where a pattern has no key.
+  /// Of all that it depends on; none where a pattern has no key. \param kind  of what else depends
+  /// on the same
   [[nodiscard]] static std::optional<ExactKey> key(std::span<const ScatteringField> fields,
-                                                   double pulse_duration);
+                                                   double pulse_duration,
+                                                   Kept kind = Kept::expected_reverberation);
   [[nodiscard]] std::size_t bytes() const noexcept;
 
   AudibleLimits limits;
   std::vector<Sample> samples;
   std::vector<Block> blocks;  ///< all rings, some thousand returns each
   double returns = 0.0;       ///< if every scatterer is heard
+
+  /// Those of one field.
+  [[nodiscard]] double returns_of(std::size_t field) const noexcept;
 
   /// Mean over weights of the peak envelope's square over that of the source at 1 m, at a time
   /// since the ping [s]: Σ_cells |Σ_pairs A·D·s(t − τ)|².

@@ -14,6 +14,7 @@
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_band.h"
+#include "sonar/reverberation_covariance.h"
 #include "sonar/sampling.h"
 #include "sonar/sparse_sound.h"
 #include "sonar/stopwatch.h"
@@ -47,7 +48,7 @@ PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedProp
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
     pulses_.emplace_back(pulse_of(scenario_, static_cast<int>(t)));
   const auto wider = [](const Pulse& a, const Pulse& b) {
-    return a.bandwidth_40db() < b.bandwidth_40db();
+    return a.bandwidth_99() < b.bandwidth_99();
   };
   reverberation_ = std::make_unique<ReverberationModel>(
       scenario_, *paths_, *std::max_element(pulses_.begin(), pulses_.end(), wider));
@@ -147,7 +148,7 @@ EchoContext PingSimulator::echo_context(const Emission& emission, int array,
 
 /// Reverberation: source → scatterer → array.
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
-                                               PingRecord& record,
+                                               PingRecord& record, std::span<const Vec3> phones,
                                                std::span<const BandPoint> band) const {
   return reverberation_->ping({.pattern = emission.pattern,
                                .pulse = emission.pulse,
@@ -157,6 +158,7 @@ PingReverberation PingSimulator::reverberation(const Emission& emission, int arr
                                .ping = static_cast<std::uint32_t>(record.ping),
                                .latest = end_of(record.recording),
                                .reuse = &record.reuse,
+                               .phones = phones,
                                .band = band});
 }
 
@@ -172,7 +174,7 @@ PingRecord PingSimulator::levels(int ping) const {
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
     auto at = heard.find(array);
     if (at == heard.end())
-      at = heard.emplace(array, reverberation(emission, array, record, {})).first;
+      at = heard.emplace(array, reverberation(emission, array, record, {}, {})).first;
     return at->second.expected_db(time);
   });
   record.timings.rays = watch.lap();
@@ -202,6 +204,10 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   }
   record.timings.synthesis = watch.lap();
 
+  // The reverberation's samples of the last ping of this thread, if few: memory that the system
+  // takes back and gives again costs more than what a ping of a study puts into it.
+  thread_local std::vector<std::complex<float>> used_before;
+  constexpr std::size_t few = std::size_t{1} << 19;
   LevelMeter levels(record.recording);
   Baseband heard, reverberated;              // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
@@ -216,20 +222,27 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                             : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();
-    scattered.push_back(reverberation(emission, static_cast<int>(a), record,
+    scattered.push_back(reverberation(emission, static_cast<int>(a), record, phones,
                                       band ? band->points() : std::span<const BandPoint>()));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
-    if (scenario_.reverberation.enabled)
-      append_channels(reverberated,
-                      (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones));
+    if (scenario_.reverberation.enabled) {
+      Baseband sea = scattered.back().blocks() == 0
+                         ? synthesizer.silence(phones.size(), std::move(used_before))
+                         : (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones);
+      if (const ReverberationCovariance* dense = scattered.back().covariance())
+        synthesizer.add_gaussian(
+            *dense, {.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)}, sea);
+      append_channels(reverberated, std::move(sea));
+    }
     record.timings.synthesis += watch.lap();
   }
   levels.add_echo(heard, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
   std::transform(reverberated.values.begin(), reverberated.values.end(), heard.values.begin(),
                  heard.values.begin(), std::plus<>{});
+  if (reverberated.values.size() <= few) used_before = std::move(reverberated.values);
   receivers_.respond(heard);
   synthesizer.add_samples(heard, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();

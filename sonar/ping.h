@@ -74,7 +74,7 @@ class PingSimulator {
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
   [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
-                                                PingRecord& record,
+                                                PingRecord& record, std::span<const Vec3> phones,
                                                 std::span<const BandPoint> band) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
                                                 std::int64_t samples) const;

@@ -27,7 +27,7 @@ double fastest_water(const Environment& ocean) {
 
 double ground_spacing(const Scenario& scenario, const Pulse& pulse, const PropagationPaths& paths) {
   if (scenario.reverberation.ground_spacing) return *scenario.reverberation.ground_spacing;
-  const double by_pulse = ground_spacing(pulse.bandwidth_40db(), speed_at_surface(scenario, paths));
+  const double by_pulse = ground_spacing(pulse.bandwidth_99(), speed_at_surface(scenario, paths));
   const auto& shape = scenario.environment.surface.shape;
   if (!shape || shape->ranges().size() < 2) return by_pulse;
   const double facet = (shape->ranges().back() - shape->ranges().front()) /

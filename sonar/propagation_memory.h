@@ -24,6 +24,8 @@ enum class Kept : std::uint64_t {
   synthesis,
   waveform,
   expected_reverberation,
+  reverberation_covariance,
+  covariance_spectra,
   noise_factors
 };
 

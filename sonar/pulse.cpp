@@ -104,24 +104,32 @@ double spectral_centre(const std::vector<std::complex<double>>& samples, double 
   return std::arg(lag) / (2.0 * pi) * rate;
 }
 
-/// Full width outside which the spectrum stays 40 dB below its peak [Hz]. A scenario's pulse is
-/// made a dozen times while it is read and simulated, and its spectrum takes a millisecond: each
-/// thread remembers the last few widths that it found, by the numbers that they depend on.
-double width_of(const Pulse& pulse) {
+struct Widths {
+  double down_40db = 0.0;  // outside which the spectrum stays 40 dB below its peak [Hz]
+  double energy_99 = 0.0;  // that hold 99 % of the energy [Hz]
+};
+
+/// A scenario's pulse is made a dozen times while it is read and simulated, and its spectrum takes
+/// a millisecond: each thread remembers the last few widths that it found, by the numbers that they
+/// depend on.
+Widths widths_of(const Pulse& pulse) {
   const PulseSettings& s = pulse.settings();
-  if (s.kind == PulseKind::file)
-    return bandwidth(pulse_spectrum(pulse, pulse.centre_frequency()), 40.0);
+  const auto found = [&]() -> Widths {
+    const PulseSpectrum spectrum = pulse_spectrum(pulse, pulse.centre_frequency());
+    return {bandwidth(spectrum, 40.0), bandwidth_of_energy(spectrum, 0.99)};
+  };
+  if (s.kind == PulseKind::file) return found();
   struct Known {
     PulseSettings settings;
-    double width = 0.0;
+    Widths widths;
   };
   thread_local std::array<Known, 4> known;
   thread_local std::size_t next = 0;
   for (const Known& k : known)
-    if (k.width > 0.0 && k.settings == s) return k.width;
-  const double width = bandwidth(pulse_spectrum(pulse, pulse.centre_frequency()), 40.0);
-  known[next++ % known.size()] = {s, width};
-  return width;
+    if (k.widths.down_40db > 0.0 && k.settings == s) return k.widths;
+  const Widths widths = found();
+  known[next++ % known.size()] = {s, widths};
+  return widths;
 }
 
 /// ∫|s₊|²dt [s]: in closed form, or by Parseval's theorem, Σ|C|²Δν.
@@ -164,7 +172,9 @@ Pulse::Pulse(PulseSettings settings) : settings_(std::move(settings)) {
       break;
     }
   }
-  bandwidth_40db_ = std::min(width_of(*this), 2.0 * centre_frequency_);
+  const Widths widths = widths_of(*this);
+  bandwidth_40db_ = std::min(widths.down_40db, 2.0 * centre_frequency_);
+  bandwidth_99_ = std::min(widths.energy_99, bandwidth_40db_);
   energy_ = energy_of(*this);
 }
 

@@ -44,13 +44,17 @@ class Pulse {
   /// 63/T for an unwindowed tone with its slow side lobes, 5.75/T under a Hann window. At most
   /// twice the centre frequency.
   [[nodiscard]] double bandwidth_40db() const noexcept { return bandwidth_40db_; }
+  /// Full width around the centre that holds 99 % of the energy [Hz]: 21/T for an unwindowed tone,
+  /// 3.3/T under a Hann window, the sweep for one that is long and not windowed. At most the −40 dB
+  /// bandwidth.
+  [[nodiscard]] double bandwidth_99() const noexcept { return bandwidth_99_; }
   /// ∫|s₊|²dt [s]: the duration for an unwindowed pulse, 3/8 of it under a Hann window.
   [[nodiscard]] double energy() const noexcept { return energy_; }
   [[nodiscard]] const PulseSettings& settings() const noexcept { return settings_; }
 
  private:
   PulseSettings settings_;
-  double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, energy_ = 0.0;
+  double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, bandwidth_99_ = 0.0, energy_ = 0.0;
   SampledSignal file_signal_;  // analytic, twice oversampled, unit peak
 };
 

@@ -89,6 +89,18 @@ double bandwidth(const PulseSpectrum& spectrum, double down_db) {
   return 2.0 * (widest + 0.5 * spectrum.bin_width);
 }
 
+double bandwidth_of_energy(const PulseSpectrum& spectrum, double share) {
+  const std::size_t n = spectrum.bins.size();
+  double all = 0.0;
+  for (const auto& c : spectrum.bins) all += std::norm(c);
+  double outside = 0.0;
+  for (std::size_t k = n / 2; k > 0; --k) {  // from the far ends inwards, both signs at once
+    outside += std::norm(spectrum.bins[k]) + std::norm(spectrum.bins[n - k]);
+    if (outside > (1.0 - share) * all) return 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
+  }
+  return 2.0 * spectrum.bin_width;
+}
+
 double bandwidth_for_error(const PulseSpectrum& spectrum, double error) {
   const std::size_t n = spectrum.bins.size();
   double outside = 0.0;

@@ -25,6 +25,9 @@ struct PulseSpectrum {
 /// Full width around zero outside which |C| stays `down_db` below its peak [Hz].
 [[nodiscard]] double bandwidth(const PulseSpectrum& spectrum, double down_db);
 
+/// The narrowest full width around zero that holds a share of the energy Σ|C|²Δν [Hz].
+[[nodiscard]] double bandwidth_of_energy(const PulseSpectrum& spectrum, double share);
+
 /// The narrowest full width outside which Σ|C|Δν, a bound of the error of leaving the rest out, is
 /// below `error` [Hz]; infinite if that is not reached within half of the analysed band.
 [[nodiscard]] double bandwidth_for_error(const PulseSpectrum& spectrum, double error);

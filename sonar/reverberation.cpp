@@ -22,13 +22,20 @@ Vec3 own_velocity(double rms, std::uint64_t entity, std::uint64_t seed) {
 
 PingReverberation::PingReverberation(const Scenario& scenario, const ReverberationContext& context,
                                      std::vector<ScatteringField> fields,
-                                     std::shared_ptr<const ExpectedReverberation> expected)
+                                     std::shared_ptr<const ExpectedReverberation> expected,
+                                     std::shared_ptr<const ReverberationCovariance> covariance)
     : scenario_(scenario),
       context_(context),
       fields_(std::move(fields)),
       expected_(std::move(expected)),
-      by_sectors_(expected_->returns > static_cast<double>(scenario_.reverberation.most_returns)) {
+      covariance_(std::move(covariance)) {
+  context_.phones = {};  // of the caller's, who needs not keep them
+  double one_by_one = 0.0;
+  for (std::size_t i = 0; i < fields_.size(); ++i)
+    if (!fields_[i].by_covariance) one_by_one += expected_->returns_of(i);
+  by_sectors_ = one_by_one > static_cast<double>(scenario_.reverberation.most_returns);
   blocks_ = by_sectors_ ? sector_blocks() : expected_->blocks;
+  std::erase_if(blocks_, [&](const Block& b) { return fields_[b.field].by_covariance; });
 }
 
 PingReverberation::Met PingReverberation::meet(const ScatteringField& field,

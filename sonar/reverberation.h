@@ -14,15 +14,19 @@
 
 namespace asdic {
 
+struct ReverberationCovariance;
+
 /// One ping as one array hears it.
 struct ReverberationContext {
   const TransmitPattern& pattern;
   const Pulse& pulse;
-  int transmitter = 0, array = 0;        ///< indices in the scenario
-  double time = 0.0;                     ///< of the ping, since the start of the scenario [s]
-  std::uint32_t ping = 1;                ///< counted from 1: the key of weights that last one ping
-  double latest = 0.0;                   ///< end of the record, since the ping [s]
-  Reuse* reuse = nullptr;                ///< is told what had to be traced or worked out
+  int transmitter = 0, array = 0;  ///< indices in the scenario
+  double time = 0.0;               ///< of the ping, since the start of the scenario [s]
+  std::uint32_t ping = 1;          ///< counted from 1: the key of weights that last one ping
+  double latest = 0.0;             ///< end of the record, since the ping [s]
+  Reuse* reuse = nullptr;          ///< is told what had to be traced or worked out
+  /// Of the array [m]; none: nothing is heard by its covariance, all of it one by one.
+  std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
 };
 
@@ -40,7 +44,8 @@ class PingReverberation final : public ReturnSource {
  public:
   PingReverberation(const Scenario& scenario, const ReverberationContext& context,
                     std::vector<ScatteringField> fields,
-                    std::shared_ptr<const ExpectedReverberation> expected);
+                    std::shared_ptr<const ExpectedReverberation> expected,
+                    std::shared_ptr<const ReverberationCovariance> covariance = nullptr);
 
   /// What the array's reference point hears. The weakest pairs are left out as long as all that is
   /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
@@ -60,6 +65,10 @@ class PingReverberation final : public ReturnSource {
   }
   void make(std::size_t block, ReturnBlock& into) const override;
   [[nodiscard]] std::vector<DopplerSpan> dopplers() const override;
+  /// Of the fields that are heard by it, and are not among the blocks; null: none is.
+  [[nodiscard]] const ReverberationCovariance* covariance() const noexcept {
+    return covariance_.get();
+  }
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
 
@@ -113,6 +122,7 @@ class PingReverberation final : public ReturnSource {
   ReverberationContext context_;
   std::vector<ScatteringField> fields_;
   std::shared_ptr<const ExpectedReverberation> expected_;
+  std::shared_ptr<const ReverberationCovariance> covariance_;
   bool by_sectors_;
   std::vector<Block> blocks_;  // those of returns()
 };
@@ -142,6 +152,9 @@ class ReverberationModel {
   [[nodiscard]] std::vector<Part> parts() const;
   [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
       std::span<const ScatteringField> fields, const ReverberationContext& context) const;
+  [[nodiscard]] std::shared_ptr<const ReverberationCovariance> covariance(
+      std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+      const ReverberationContext& context) const;
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;

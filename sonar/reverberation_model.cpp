@@ -3,6 +3,7 @@
 
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/reverberation_covariance.h"
 
 namespace asdic {
 namespace {
@@ -172,11 +173,56 @@ std::shared_ptr<const ExpectedReverberation> ReverberationModel::expected(
   return key ? memory.keep(*key, std::move(made), bytes) : made;
 }
 
+/// Marks the fields that are heard by their covariance: those that it serves, if they have many
+/// returns. Two arrays that hear the same scatterers would have one covariance: not if there are
+/// several. Out of the paths' memory if it is there.
+std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
+    std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+    const ReverberationContext& context) const {
+  constexpr double many = 20'000.0;  // returns: fewer are laid down as soon
+  // Its work grows with their square, a second at so many.
+  constexpr std::size_t most_components = 128;
+  const ScattererSynthesis how = scenario_.reverberation.synthesis;
+  if (how == ScattererSynthesis::scatterers || context.phones.empty() ||
+      scenario_.arrays.size() > 1)
+    return nullptr;
+  const BandNodes band = ReverberationCovariance::frequencies_for(
+      context.phones, context.pulse.centre_frequency(), context.pulse.bandwidth_99());
+  if (how == ScattererSynthesis::automatic &&
+      band.frequencies.size() * context.phones.size() > most_components)
+    return nullptr;
+  std::vector<const ScatteringField*> served;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    fields[i].by_covariance =
+        ReverberationCovariance::serves(fields[i]) &&
+        (how == ScattererSynthesis::covariance || expected.returns_of(i) > many);
+    if (fields[i].by_covariance) served.push_back(&fields[i]);
+  }
+  if (served.empty()) return nullptr;
+  const ReverberationCovariance::Listener listener = {.phones = context.phones,
+                                                      .band = band,
+                                                      .pulse_duration = context.pulse.duration(),
+                                                      .latest = context.latest};
+  auto key =
+      ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_covariance);
+  PropagationMemory& memory = paths_.memory();
+  if (key) {
+    key->add(listener.band.frequencies);
+    for (const ScatteringField& field : fields) key->add_all(field.by_covariance, field.thickness);
+    for (const Vec3& phone : context.phones) key->add(phone);
+    if (auto known = memory.find<ReverberationCovariance>(*key)) return known;
+  }
+  auto made = std::make_shared<ReverberationCovariance>(served, expected.limits, listener);
+  const std::size_t bytes = made->bytes();
+  return key ? memory.keep(*key, std::move(made), bytes) : made;
+}
+
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
   std::vector<ScatteringField> fields;
   for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
   auto known = expected(fields, context);
-  return {scenario_, context, std::move(fields), std::move(known)};
+  auto by_covariance = covariance(fields, *known, context);
+  return {scenario_, context, std::move(fields), std::move(known), std::move(by_covariance)};
 }
 
 }  // namespace asdic

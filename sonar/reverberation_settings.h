@@ -23,6 +23,13 @@ struct VolumeLayer {
   ScattererField field;
 };
 
+/// How the sound of scatterers is made.
+enum class ScattererSynthesis {
+  automatic,   ///< by their covariance where that serves and there are many; else one by one
+  scatterers,  ///< one by one, or by sectors beyond `most_returns`
+  covariance,  ///< by their covariance wherever that serves, one by one elsewhere
+};
+
 /// Reverberation of surface, bottom and volume as scatterers on polar grids.
 struct ReverberationSettings {
   bool enabled = true;
@@ -37,6 +44,7 @@ struct ReverberationSettings {
   std::optional<AnyBottomScattering> bottom;  ///< none: the bottom does not scatter
   ScattererField bottom_field = {.motion = {}, .statistics = {.coherence_time = infinity}};
   std::vector<VolumeLayer> volume;
+  ScattererSynthesis synthesis = ScattererSynthesis::automatic;
   std::size_t most_returns =
       4'000'000;  ///< of a ping at one array; beyond, sectors are synthesised
 };

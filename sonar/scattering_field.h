@@ -17,6 +17,7 @@ struct ScatteringField {
   std::uint64_t boundary = 0;
   double depth = 0.0;               ///< near the ends [m]
   double thickness = 0.0;           ///< of a sheet of the volume [m]
+  bool by_covariance = false;       ///< heard by it, not one scatterer after the other
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]

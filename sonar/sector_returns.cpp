@@ -33,7 +33,7 @@ double uniform(std::uint64_t a, std::uint64_t b) noexcept {
 double PingReverberation::sector_bin(const ScatteringField& field) const {
   const double bins_allowed = static_cast<double>(scenario_.reverberation.most_returns) /
                               (2.0 * field.grid.azimuths * static_cast<double>(fields_.size()));
-  return std::max(0.5 / context_.pulse.bandwidth_40db(), context_.latest / bins_allowed);
+  return std::max(0.5 / context_.pulse.bandwidth_99(), context_.latest / bins_allowed);
 }
 
 void PingReverberation::add_sector(const ScatteringField& field, int sector,

@@ -28,6 +28,22 @@ double Synthesizer::half_band() const noexcept { return plan_->pulses.front().ha
 Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
+Baseband Synthesizer::silence(std::size_t phones, std::vector<std::complex<float>> memory) const {
+  const Plan& plan = *plan_;
+  const double record =
+      static_cast<double>(plan.recording.samples) / plan.recording.sample_rate;  // [s]
+  Baseband result{
+      .carrier = plan.carrier,
+      .sample_rate = plan.rate,
+      .start = plan.recording.start,
+      .channels = phones,
+      .samples = plan.length,
+      .recorded = std::min(plan.length, static_cast<std::size_t>(record * plan.rate) + 1),
+      .values = std::move(memory)};
+  result.values.assign(phones * plan.length, 0.0F);
+  return result;
+}
+
 void append_channels(Baseband& all, Baseband&& more) {
   if (all.channels == 0) {
     all = std::move(more);

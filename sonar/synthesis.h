@@ -13,6 +13,10 @@
 
 namespace asdic {
 
+struct BandNodes;
+struct CovarianceDraw;
+struct ReverberationCovariance;
+
 /// When, how finely and about which carrier the phones record. t = 0 is the leading edge of the
 /// pulse at the projector.
 struct Recording {
@@ -87,6 +91,15 @@ class Synthesizer {
   void add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
                   Baseband& baseband) const;
 
+  /// Nothing heard at some phones. \param memory  used for the samples, if it is large enough
+  [[nodiscard]] Baseband silence(std::size_t phones,
+                                 std::vector<std::complex<float>> memory = {}) const;
+
+  /// Adds reverberation of a known covariance: at every sample of the baseband a Gaussian impulse
+  /// at all phones, through the pulse. \param baseband  of as many phones as the covariance has
+  void add_gaussian(const ReverberationCovariance& covariance, const CovarianceDraw& draw,
+                    Baseband& baseband) const;
+
   /// The pulse has nothing further than this from its centre frequency [Hz].
   [[nodiscard]] double half_band() const noexcept;
 
@@ -100,6 +113,8 @@ class Synthesizer {
   void add_complex(const Baseband& baseband, double scale, std::span<float> samples) const;
   void add_by_fft(const Baseband& baseband, double scale, std::span<float> samples) const;
   void add_by_interpolation(const Baseband& baseband, double scale, std::span<float> samples) const;
+  [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
+      const BandNodes& band) const;
 
   friend class BlockSynthesis;
   friend class CurvedSynthesis;

@@ -7,6 +7,7 @@
 
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
+#include "sonar/reverberation_covariance.h"
 #include "sonar/synthesis.h"
 #include "support/thesis.h"
 
@@ -54,13 +55,22 @@ class ReverberantSea {
          .pulse = pulse_,
          .time = time,
          .ping = ping,
-         .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration});
+         .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration,
+         .phones = scenario_.reverberation.synthesis == ScattererSynthesis::covariance
+                       ? std::span<const Vec3>(scenario_.arrays[0].phones)
+                       : std::span<const Vec3>()});
   }
   [[nodiscard]] Baseband hear(std::span<const Return> returns) const {
     return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
   }
+  /// One scatterer after the other, unless the scenario asks for the covariance.
   [[nodiscard]] Baseband hear(std::uint32_t number, double time = 0.0) const {
-    return synthesizer_.baseband(ping(number, time), scenario_.arrays[0].phones);
+    const PingReverberation scattered = ping(number, time);
+    Baseband heard = synthesizer_.baseband(scattered, scenario_.arrays[0].phones);
+    if (scattered.covariance() != nullptr)
+      synthesizer_.add_gaussian(*scattered.covariance(), {.seed = scenario_.seed, .ping = number},
+                                heard);
+    return heard;
   }
 
  private:

@@ -120,7 +120,7 @@ TEST(ScenarioReader, ReverberationIsReadKeyByKey) {
 
   const ReverberationSettings all = read(
       {"reverberation.resolve_azimuth=true", "reverberation.scatterers_per_cell=3",
-       "reverberation.most_returns=50000",
+       "reverberation.most_returns=50000", "reverberation.synthesis=covariance",
        R"(reverberation.surface={kind="table", grazing_deg=[5, 40], strength_db=[-50, -30], )"
        R"(motion="bragg", receding_share=0.25, current=[1, -2], coherence_time=4})",
        R"(reverberation.bottom={kind="ellis-crowe", nu_db=-18, k_shape=0.8, correlation_length=80})",
@@ -129,6 +129,8 @@ TEST(ScenarioReader, ReverberationIsReadKeyByKey) {
   EXPECT_TRUE(all.resolve_azimuth);
   EXPECT_EQ(all.scatterers_per_cell, 3);
   EXPECT_EQ(all.most_returns, 50'000U);
+  EXPECT_EQ(plain.synthesis, ScattererSynthesis::automatic);
+  EXPECT_EQ(all.synthesis, ScattererSynthesis::covariance);
   const auto& table = std::get<ScatteringTable>(all.surface);
   EXPECT_NEAR(table.strength(radians(22.5)), -40.0, 1e-9);
   EXPECT_EQ(table.strength(0.0), -50.0);
@@ -163,6 +165,7 @@ TEST(ScenarioReader, FaultsOfReverberationNameTheKey) {
       {"reverberation.azimuths=0", "reverberation.azimuths"},
       {"reverberation.scatterers_per_cell=0", "reverberation.scatterers_per_cell"},
       {"reverberation.most_returns=5", "reverberation.most_returns"},
+      {"reverberation.synthesis=magic", "reverberation.synthesis"},
       {"reverberation.surface.kind=marsh", "reverberation.surface.kind"},
       {"reverberation.surface.motion=waltz", "reverberation.surface.motion"},
       {R"(reverberation.surface={motion="bragg", receding_share=2})", "receding_share"},

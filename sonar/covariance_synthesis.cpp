@@ -1,0 +1,167 @@
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <span>
+
+#include "core/normal.h"
+#include "sonar/reverberation_covariance.h"
+#include "sonar/spectrum_product.h"
+#include "sonar/synthesis.h"
+#include "sonar/synthesis_plan.h"
+
+namespace asdic {
+namespace {
+
+using Scratch = FftBuffer<std::complex<float>>;
+using Normals = Eigen::Map<const Eigen::MatrixXcf>;
+using Factor = Eigen::Map<const Eigen::MatrixXcf>;
+using Rows = Eigen::Matrix<std::complex<float>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Of a pulse whose energy outside is below −80 dB: bins on either side. At most the plan's.
+std::size_t bins_of(std::span<const std::complex<float>> spectrum) {
+  constexpr double left_out = 1e-8;
+  double all = 0.0, outside = 0.0;
+  for (const auto& c : spectrum) all += static_cast<double>(std::norm(c));
+  const std::size_t middle = spectrum.size() / 2;
+  for (std::size_t k = middle; k > 0; --k) {
+    outside +=
+        static_cast<double>(std::norm(spectrum[middle - k]) + std::norm(spectrum[middle + k]));
+    if (outside > left_out * all) return k;
+  }
+  return 1;
+}
+
+/// Where delays lie on a grid of impulses.
+struct DelayGrid {
+  double first = 0.0;  // delay of sample 0 [s]
+  double rate = 1.0;   // [Hz]
+  std::size_t begin = 0, end = 0;
+
+  [[nodiscard]] double delay(std::size_t i) const noexcept {
+    return first + static_cast<double>(i) / rate;
+  }
+  /// The first sample at or after a delay.
+  [[nodiscard]] std::size_t at(double delay) const noexcept {
+    const double sample = std::ceil((delay - first) * rate);
+    return std::clamp(static_cast<std::size_t>(std::max(0.0, sample)), begin, end);
+  }
+};
+
+/// Adds one stretch's impulses x = F·z·√(I/rate) to the grids of all components.
+/// \param grids  [components × stride]
+void draw_stretch(const ReverberationCovariance& of, std::size_t index, const CovarianceDraw& draw,
+                  const DelayGrid& grid, std::complex<float>* grids, std::size_t stride) {
+  constexpr std::size_t block = 64;  // samples: normals, factor and product stay in the cache
+  const ReverberationCovariance::Stretch& stretch = of.stretches[index];
+  const std::size_t rank = stretch.rank, components = of.components;
+  const std::size_t begin = grid.at(static_cast<double>(stretch.begin) * of.bin);
+  const std::size_t end = grid.at(static_cast<double>(stretch.end) * of.bin);
+  if (rank == 0 || begin == end) return;
+  const Factor factor(of.columns.data() + stretch.first * components,
+                      static_cast<Eigen::Index>(components), static_cast<Eigen::Index>(rank));
+  std::vector<float> normals(2 * rank * block);
+  std::vector<float> scale(block);
+  for (std::size_t start = begin; start < end; start += block) {
+    const std::size_t n = std::min(block, end - start);
+    fill_normal(std::span(normals).first(2 * rank * n), draw.seed, Draw::covariance_weight,
+                draw.ping, index, 2 * rank * (start - begin));
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto bin = static_cast<std::size_t>(grid.delay(start + i) / of.bin);
+      // E|z|² = 1: half of it real.
+      scale[i] = static_cast<float>(
+          std::sqrt(0.5 * of.intensity[std::min(bin, of.intensity.size() - 1)] / grid.rate));
+      for (std::size_t j = 0; j < 2 * rank; ++j) normals[2 * rank * i + j] *= scale[i];
+    }
+    const Normals z(reinterpret_cast<const std::complex<float>*>(normals.data()),
+                    static_cast<Eigen::Index>(rank), static_cast<Eigen::Index>(n));
+    Eigen::Map<Rows, 0, Eigen::OuterStride<>>(
+        grids + start, static_cast<Eigen::Index>(components), static_cast<Eigen::Index>(n),
+        Eigen::OuterStride<>(static_cast<Eigen::Index>(stride)))
+        .noalias() = factor * z;
+  }
+}
+
+}  // namespace
+
+/// [K × bins] the pulse through ℓ_k, over the FFT's length; beyond the band ℓ_k is as at its edge.
+std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_spectra(
+    const BandNodes& band) const {
+  const Plan& plan = *plan_;
+  ExactKey key(Kept::covariance_spectra, plan.identity);
+  key.add_all(band.centre, band.half_width, band.frequencies);
+  if (memory_ != nullptr)
+    if (auto known = memory_->find<std::vector<std::complex<float>>>(key)) return known;
+  std::vector<std::complex<float>> pulse(2 * static_cast<std::size_t>(plan.highest_bin) + 1);
+  Scratch scratch(plan.length);
+  plan.stretched_spectrum(plan.pulses.front(), 1.0, scratch.data(), pulse);
+  // An impulse on a sample needs no spreading, nor what undoes it.
+  for (std::size_t i = 0; i < pulse.size(); ++i)
+    pulse[i] /= plan.deconvolution[i] * static_cast<float>(plan.length);
+  const std::size_t highest = bins_of(pulse), lowest = pulse.size() / 2 - highest;
+  const double period = static_cast<double>(plan.length) / plan.rate;
+  auto spectra = std::make_shared<std::vector<std::complex<float>>>();
+  spectra->reserve(band.frequencies.size() * (2 * highest + 1));
+  for (std::size_t k = 0; k < band.frequencies.size(); ++k)
+    for (std::size_t i = 0; i <= 2 * highest; ++i) {
+      const double beside = (static_cast<double>(i) - static_cast<double>(highest)) / period;
+      const double frequency = std::clamp(plan.carrier + beside, band.centre - band.half_width,
+                                          band.centre + band.half_width);
+      spectra->push_back(pulse[lowest + i] * static_cast<float>(band.basis(k, frequency)));
+    }
+  const std::size_t bytes = spectra->size() * sizeof(std::complex<float>);
+  if (memory_ != nullptr) return memory_->keep(key, std::move(spectra), bytes);
+  return spectra;
+}
+
+void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
+                               const CovarianceDraw& draw, Baseband& baseband) const {
+  const Plan& plan = *plan_;
+  const std::size_t phones = baseband.channels, colours = covariance.band.frequencies.size();
+  assert(covariance.components == phones * colours && baseband.samples == plan.length);
+  const auto spectra = covariance_spectra(covariance.band);
+  const std::size_t bins = spectra->size() / colours, highest = bins / 2;
+  // White noise of any rate above the pulse's band is as good as another: it stands on the coarsest
+  // grid of the period. An impulse stands in the pulse's middle.
+  const std::size_t length = std::min(plan.length, fast_fft_length(bins + 1));
+  const double period = static_cast<double>(plan.length) / plan.rate;
+  const double rate = static_cast<double>(length) / period;
+  const DelayGrid grid{
+      .first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate -
+               0.5 * plan.pulse_duration,
+      .rate = rate,
+      .begin = 0,
+      .end = std::min(length, static_cast<std::size_t>(plan.last_position / plan.rate * rate) + 1)};
+  const std::size_t stride = Scratch::row_stride(length);
+  Scratch grids(covariance.components * stride);
+  tbb::parallel_for(std::size_t{0}, covariance.stretches.size(), [&](std::size_t s) {
+    draw_stretch(covariance, s, draw, grid, grids.data(), stride);
+  });
+  const ComplexFft<float> coarse(length), fft(plan.length);
+  struct Workspace {
+    Scratch sum, values;
+  };
+  tbb::enumerable_thread_specific<Workspace> workspaces;
+  tbb::parallel_for(std::size_t{0}, phones, [&](std::size_t phone) {
+    auto& [sum, values] = workspaces.local();
+    sum.reserve(length);
+    values.reserve(plan.length);
+    std::fill_n(sum.data(), length, 0.0F);
+    for (std::size_t k = 0; k < colours; ++k) {
+      std::complex<float>* row = grids.data() + (k * phones + phone) * stride;
+      coarse.forward(row);
+      multiply_add(row, spectra->data() + k * bins, length, highest, sum.data());
+    }
+    std::fill_n(values.data(), plan.length, 0.0F);
+    std::copy_n(sum.data(), highest + 1, values.data());
+    std::copy_n(sum.data() + (length - highest), highest, values.data() + (plan.length - highest));
+    fft.inverse(values.data());
+    std::complex<float>* of_phone = baseband.values.data() + phone * plan.length;
+    for (std::size_t i = 0; i < plan.length; ++i) of_phone[i] += values[i];
+  });
+}
+
+}  // namespace asdic

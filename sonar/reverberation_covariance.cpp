@@ -1,0 +1,230 @@
+#include "sonar/reverberation_covariance.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/stretch_covariance.h"
+
+namespace asdic {
+namespace {
+
+using Listener = ReverberationCovariance::Listener;
+using Stretch = ReverberationCovariance::Stretch;
+
+constexpr double slowest_sea = 1400.0;  // [m/s]
+constexpr double golden = 0.6180339887498949;
+
+/// The places of a field at which pairs are looked at: on circles half a bin of two-way delay apart
+/// and, further out, a 256th of their radius, four to a stretch of delays.
+struct Circles {
+  const ScatteringField& field;
+  std::vector<double> edges;  // [m]
+  std::size_t sectors;
+
+  Circles(const ScatteringField& f, double bin, std::size_t bearings) : field(f), edges{0.0} {
+    const double reach = field.grid.rings * field.grid.spacing, least = 0.25 * slowest_sea * bin;
+    while (edges.back() < reach)
+      edges.push_back(std::min(reach, edges.back() + std::max(least, edges.back() / 256.0)));
+    const auto n = static_cast<std::size_t>(field.grid.azimuths);
+    sectors = all_round() ? 1 : n * ((bearings + 4 * n - 1) / (4 * n));
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return edges.size() - 1; }
+  [[nodiscard]] bool all_round() const noexcept { return field.sheet.all_round(); }
+};
+
+/// All that is heard of one circle.
+void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits& limits,
+                 PathPairs& pairs, std::vector<Heard>& heard) {
+  const ScatteringField& field = circles.field;
+  const ScatteringSheet& sheet = field.sheet;
+  const double step = circles.edges[circle + 1] - circles.edges[circle];
+  const double range = circles.edges[circle] + 0.5 * step;
+  const double area = 2.0 * pi * range * step / static_cast<double>(circles.sectors);  // a place's
+  const double ring = field.ring_area(static_cast<std::uint32_t>(range / field.grid.spacing));
+  // Circles' first bearings differ, so that no bearing is left out where a stretch has several.
+  const double turned = golden * static_cast<double>(circle);
+  const double offset = circles.all_round() ? 0.5 : turned - std::floor(turned);
+  const Vec2 middle = sheet.ends().source.position.head<2>();
+  for (std::size_t sector = 0; sector < circles.sectors; ++sector) {
+    const double bearing = field.grid.first_bearing + 2.0 * pi *
+                                                          (static_cast<double>(sector) + offset) /
+                                                          static_cast<double>(circles.sectors);
+    const Vec2 outward(std::sin(bearing), std::cos(bearing));
+    sheet.pairs_at(middle + range * outward, pairs, &limits, ring);
+    for (const PathPair& pair : pairs.found) {
+      const PathPair* other = nullptr;
+      if (sheet.one_fan()) {
+        for (const PathPair& p : pairs.found)
+          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair)
+            other = &p;
+        if (other != nullptr && pair.out_index > pair.back_index) continue;
+      }
+      const double root = std::sqrt(area * pair.area);
+      const double along = pair.out->horizontal_slowness * pair.leaving.dot(outward) -
+                           pair.back->horizontal_slowness * pair.coming.dot(outward);
+      const double through = pair.out_ends->down + pair.back_ends->down;
+      Heard h{.delay = pair.delay,
+              .extent = std::abs(along) * step + std::abs(through) * field.thickness,
+              .one = root * pair.amplitude,
+              .one_slowness = sheet.arriving(pair),
+              .all_round = circles.all_round()};
+      if (other != nullptr) {
+        h.other = root * other->amplitude;
+        h.other_slowness = sheet.arriving(*other);
+      }
+      heard.push_back(h);
+    }
+  }
+}
+
+/// All that is heard, field by field, circle by circle.
+std::vector<Heard> hear(std::span<const ScatteringField* const> fields, const AudibleLimits& limits,
+                        double bin, std::size_t bearings) {
+  constexpr std::size_t together = 32;  // circles of a task
+  std::vector<Heard> all;
+  for (const ScatteringField* field : fields) {
+    const Circles circles(*field, bin, bearings);
+    std::vector<std::vector<Heard>> parts((circles.count() + together - 1) / together);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+      PathPairs pairs;
+      const std::size_t end = std::min(circles.count(), (part + 1) * together);
+      for (std::size_t i = part * together; i < end; ++i)
+        hear_circle(circles, i, limits, pairs, parts[part]);
+    });
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+/// Stretches of two bins and, later, of a sixty-fourth of the delay, within which elevations hardly
+/// change.
+std::vector<Stretch> stretches_of(std::size_t bins) {
+  std::vector<Stretch> found;
+  for (std::size_t begin = 0; begin < bins;) {
+    const std::size_t end = std::min(bins, begin + std::max<std::size_t>(2, begin / 64));
+    found.push_back({.begin = begin, .end = end});
+    begin = end;
+  }
+  return found;
+}
+
+/// Bearings all round, as many as the array can tell apart and some more: the mean of
+/// e^{i2πf ξ d cos φ} over N equal steps of φ is J₀ to within 2J_N of its argument. Those of four
+/// circles interleave, and in a stretch that holds a part of a circle more the alias is J_{N/4}.
+std::size_t bearings_for(const Listener& listener) {
+  double furthest = 0.0, highest = 0.0;
+  for (const Vec3& phone : listener.phones)
+    furthest = std::max(furthest, (phone - listener.phones.front()).head<2>().norm());
+  for (const double f : listener.band.frequencies) highest = std::max(highest, f);
+  return static_cast<std::size_t>(2.0 * pi * highest * furthest / slowest_sea) + 64;
+}
+
+/// Adds a power that is heard evenly from `first` to `last` [bins].
+void spread(double power, double first, double last, std::vector<double>& bins) {
+  const double all = static_cast<double>(bins.size());
+  first = std::clamp(first, 0.0, all);
+  last = std::clamp(last, first, all);
+  if (last - first < 1e-9) {
+    if (first < all) bins[static_cast<std::size_t>(first)] += power;
+    return;
+  }
+  const double each = power / (last - first);
+  for (auto i = static_cast<std::size_t>(first); i < bins.size(); ++i) {
+    const auto low = static_cast<double>(i);
+    const double part = std::min(last, low + 1.0) - std::max(first, low);
+    if (part <= 0.0) break;
+    bins[i] += each * part;
+  }
+}
+
+}  // namespace
+
+bool ReverberationCovariance::serves(const ScatteringField& field) noexcept {
+  const SheetEnds& ends = field.sheet.ends();
+  const ScattererField& f = field.field;
+  constexpr double one_place = 0.1;  // [m]
+  return ends.source.velocity.isZero() && ends.receiver.velocity.isZero() &&
+         (ends.source.position - ends.receiver.position).norm() < one_place && ends.band.empty() &&
+         f.motion.kind == ScattererMotion::Kind::still && f.motion.current.isZero() &&
+         f.statistics.coherence_time == 0.0 && !f.statistics.k_shape;
+}
+
+BandNodes ReverberationCovariance::frequencies_for(std::span<const Vec3> phones, double centre,
+                                                   double bandwidth) {
+  constexpr double error = 0.01, alike = 0.02;  // [rad]; at both ends of band and array
+  double furthest = 0.0;
+  for (const Vec3& phone : phones) furthest = std::max(furthest, phone.norm());
+  BandNodes nodes{.centre = centre, .half_width = 0.5 * bandwidth, .frequencies = {}};
+  const double turn = 2.0 * pi * nodes.half_width * furthest / slowest_sea;
+  const std::size_t count = turn < alike ? 1 : nodes_for(0.0, turn, error);
+  for (std::size_t k = 0; k < count; ++k)
+    nodes.frequencies.push_back(
+        centre - nodes.half_width *
+                     std::cos(pi * (static_cast<double>(k) + 0.5) / static_cast<double>(count)));
+  return nodes;
+}
+
+ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField* const> fields,
+                                                 const AudibleLimits& limits,
+                                                 const Listener& listener)
+    : band(listener.band) {
+  constexpr double most_bins = 16'000.0, widest = 0.1;  // [1], [s]
+  bin = std::max(std::min(listener.pulse_duration / 16.0, widest), listener.latest / most_bins);
+  intensity.assign(static_cast<std::size_t>(std::ceil(listener.latest / bin)), 0.0);
+  if (intensity.empty()) return;
+  stretches = stretches_of(intensity.size());
+  const Steering steering(listener.phones, listener.band.frequencies);
+  components = steering.components();
+  const std::size_t bearings = bearings_for(listener);
+  std::vector<Heard> heard = hear(fields, limits, bin, bearings);
+
+  // In the order of stretches, and in each as they came.
+  std::vector<std::size_t> first(stretches.size() + 1, 0), of(heard.size());
+  std::vector<std::size_t> stretch_of_bin(intensity.size());
+  for (std::size_t s = 0; s < stretches.size(); ++s)
+    for (std::size_t b = stretches[s].begin; b < stretches[s].end; ++b) stretch_of_bin[b] = s;
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    const auto b = static_cast<std::size_t>(std::max(0.0, heard[i].delay) / bin);
+    of[i] = stretch_of_bin[std::min(b, intensity.size() - 1)];
+    ++first[of[i] + 1];
+  }
+  for (std::size_t s = 0; s < stretches.size(); ++s) first[s + 1] += first[s];
+  std::vector<std::size_t> order(heard.size()), next(first.begin(), first.end() - 1);
+  for (std::size_t i = 0; i < heard.size(); ++i) order[next[of[i]]++] = i;
+
+  std::vector<std::vector<std::complex<float>>> factors(stretches.size());
+  tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
+    Stretch& stretch = stretches[s];
+    StretchSum sum(steering, static_cast<double>(stretch.begin) * bin,
+                   static_cast<double>(stretch.end) * bin, (bearings + 3) / 4);
+    for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(heard[order[i]]);
+    stretch.rank = sum.factor(factors[s]);
+  });
+  for (std::size_t s = 0; s < stretches.size(); ++s) {
+    stretches[s].first = components == 0 ? 0 : columns.size() / components;
+    columns.insert(columns.end(), factors[s].begin(), factors[s].end());
+  }
+  // What a neighbour's cells put into a silent stretch has the neighbour's directions.
+  for (std::size_t s = 0; s + 1 < stretches.size(); ++s)
+    if (stretches[s + 1].rank == 0) {
+      stretches[s + 1].first = stretches[s].first;
+      stretches[s + 1].rank = stretches[s].rank;
+    }
+  for (std::size_t s = stretches.size() - 1; s > 0; --s)
+    if (stretches[s - 1].rank == 0) {
+      stretches[s - 1].first = stretches[s].first;
+      stretches[s - 1].rank = stretches[s].rank;
+    }
+  for (const Heard& h : heard)
+    spread(h.power / bin, (h.delay - 0.5 * h.extent) / bin, (h.delay + 0.5 * h.extent) / bin,
+           intensity);
+}
+
+std::size_t ReverberationCovariance::bytes() const noexcept {
+  return sizeof *this + intensity.capacity() * sizeof(double) +
+         stretches.capacity() * sizeof(Stretch) + columns.capacity() * sizeof(columns[0]);
+}
+
+}  // namespace asdic

@@ -1,0 +1,61 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/units.h"
+
+namespace asdic {
+
+/// What one place sends back by one pair of paths, or by a pair and its reciprocal, whose delay is
+/// the same.
+struct Heard {
+  double delay = 0.0, extent = 0.0;  // of the cell around the place [s]
+  double power = 0.0;                // mean over components: found with the covariance
+  std::complex<double> one = 0.0, other = 0.0;
+  Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
+  bool all_round = false;  // stands for all bearings
+};
+
+/// Phases of a direction at every component: k·phones + n is phone n at frequency f_k. Private to
+/// the reverberation's covariance, as is all of this file.
+class Steering {
+ public:
+  /// \param phones  [m]   \param frequencies  f_k [Hz]
+  Steering(std::span<const Vec3> phones, std::span<const double> frequencies);
+  [[nodiscard]] std::size_t components() const noexcept { return x_.size(); }
+  /// column += amplitude·e^{−i2πf_k s·x_n}. \param s  slowness [s/m]   \param column  [components]
+  void add(std::complex<double> amplitude, const Vec3& s, std::complex<double>* column) const;
+
+ private:
+  std::vector<double> x_, y_, z_;  // of phones, times the frequency [m/s]
+};
+
+/// The covariance of what is heard in one stretch of delays, and its factor.
+class StretchSum {
+ public:
+  /// \param begin, end  of the stretch [s]   \param turns  bearings of what stands for all of them
+  StretchSum(const Steering& steering, double begin, double end, std::size_t turns);
+
+  /// Adds what one place sends back, and finds its power.
+  void add(Heard& h);
+  /// F with F F^H = C but for a millionth of its trace, C the sum over its mean diagonal:
+  /// Cholesky's factorisation with pivots. \param columns  that F's are appended to \return rank;
+  /// 0: nothing is heard
+  [[nodiscard]] std::size_t factor(std::vector<std::complex<float>>& columns);
+
+ private:
+  using Matrix = Eigen::MatrixXcd;
+  static constexpr Eigen::Index block = 64;  // columns that are added up at one time
+  void take();
+
+  const Steering& steering_;
+  double begin_, length_;
+  std::size_t turns_;
+  Matrix columns_, sum_;
+  Eigen::Index used_ = 0;
+};
+
+}  // namespace asdic
