@@ -147,8 +147,8 @@ void OceanSeries::Piece::make(std::size_t index) {
 OceanSeries::Piece& OceanSeries::Piece::half(double sigma) {
   const double middle = 0.5 * (low_ + high_);
   std::call_once(halved_, [&] {
-    half_ = {std::make_unique<Piece>(layers_, reference_speed_, between_, low_, middle),
-             std::make_unique<Piece>(layers_, reference_speed_, between_, middle, high_)};
+    half_[0] = std::make_unique<Piece>(layers_, reference_speed_, between_, low_, middle);
+    half_[1] = std::make_unique<Piece>(layers_, reference_speed_, between_, middle, high_);
   });
   return *half_[sigma < middle ? 0 : 1];
 }
