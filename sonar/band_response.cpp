@@ -33,13 +33,17 @@ std::size_t nodes_for(double nepers, double radians, double error) {
   return most_nodes;
 }
 
-BandNodes band_nodes(double centre, double half_width, double nepers, double delay) {
-  const std::size_t count = nodes_for(nepers, pi * half_width * delay, response_error);
+BandNodes chebyshev_nodes(double centre, double half_width, std::size_t count) {
   BandNodes nodes{.centre = centre, .half_width = half_width, .frequencies = {}};
   for (std::size_t k = 0; k < count; ++k)
     nodes.frequencies.push_back(centre - half_width * std::cos(pi * (static_cast<double>(k) + 0.5) /
                                                                static_cast<double>(count)));
   return nodes;
+}
+
+BandNodes band_nodes(double centre, double half_width, double nepers, double delay) {
+  return chebyshev_nodes(centre, half_width,
+                         nodes_for(nepers, pi * half_width * delay, response_error));
 }
 
 }  // namespace asdic

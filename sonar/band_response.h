@@ -26,6 +26,9 @@ struct BandNodes {
   [[nodiscard]] double basis(std::size_t k, double frequency) const noexcept;
 };
 
+/// A band with so many Chebyshev points.
+[[nodiscard]] BandNodes chebyshev_nodes(double centre, double half_width, std::size_t count);
+
 /// The least number of nodes that interpolates e^{(−b + iz)x}, |x| ≤ 1, to `error`.
 ///
 /// On the ellipse with half axes (ρ ± 1/ρ)/2 it is at most M = e^{b(ρ + 1/ρ)/2 + z(ρ − 1/ρ)/2}, and

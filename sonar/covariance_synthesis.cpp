@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/normal.h"
+#include "sonar/pulse_spectrum.h"
 #include "sonar/reverberation_covariance.h"
 #include "sonar/spectrum_product.h"
 #include "sonar/synthesis.h"
@@ -24,15 +25,13 @@ using Rows = Eigen::Matrix<std::complex<float>, Eigen::Dynamic, Eigen::Dynamic, 
 /// Of a pulse whose energy outside is below −80 dB: bins on either side. At most the plan's.
 std::size_t bins_of(std::span<const std::complex<float>> spectrum) {
   constexpr double left_out = 1e-8;
-  double all = 0.0, outside = 0.0;
-  for (const auto& c : spectrum) all += static_cast<double>(std::norm(c));
+  const auto power = [&](std::size_t i) { return static_cast<double>(std::norm(spectrum[i])); };
   const std::size_t middle = spectrum.size() / 2;
-  for (std::size_t k = middle; k > 0; --k) {
-    outside +=
-        static_cast<double>(std::norm(spectrum[middle - k]) + std::norm(spectrum[middle + k]));
-    if (outside > left_out * all) return k;
-  }
-  return 1;
+  double all = 0.0;
+  for (std::size_t i = 0; i < spectrum.size(); ++i) all += power(i);
+  const std::size_t k = outermost_pair(
+      middle, left_out * all, [&](std::size_t i) { return power(middle - i) + power(middle + i); });
+  return std::max<std::size_t>(k, 1);
 }
 
 /// Where delays lie on a grid of impulses.

@@ -93,23 +93,18 @@ double bandwidth_of_energy(const PulseSpectrum& spectrum, double share) {
   const std::size_t n = spectrum.bins.size();
   double all = 0.0;
   for (const auto& c : spectrum.bins) all += std::norm(c);
-  double outside = 0.0;
-  for (std::size_t k = n / 2; k > 0; --k) {  // from the far ends inwards, both signs at once
-    outside += std::norm(spectrum.bins[k]) + std::norm(spectrum.bins[n - k]);
-    if (outside > (1.0 - share) * all) return 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
-  }
-  return 2.0 * spectrum.bin_width;
+  const std::size_t k = outermost_pair(n / 2, (1.0 - share) * all, [&](std::size_t i) {
+    return std::norm(spectrum.bins[i]) + std::norm(spectrum.bins[n - i]);
+  });
+  return 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
 }
 
 double bandwidth_for_error(const PulseSpectrum& spectrum, double error) {
   const std::size_t n = spectrum.bins.size();
-  double outside = 0.0;
-  for (std::size_t k = n / 2; k > 0; --k) {  // from the far ends inwards, both signs at once
-    outside += (std::abs(spectrum.bins[k]) + std::abs(spectrum.bins[n - k])) * spectrum.bin_width;
-    if (outside > error)
-      return 2 * k > n / 2 ? infinity : 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
-  }
-  return 2.0 * spectrum.bin_width;
+  const std::size_t k = outermost_pair(n / 2, error, [&](std::size_t i) {
+    return (std::abs(spectrum.bins[i]) + std::abs(spectrum.bins[n - i])) * spectrum.bin_width;
+  });
+  return 2 * k > n / 2 ? infinity : 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
 }
 
 }  // namespace asdic

@@ -25,6 +25,16 @@ struct PulseSpectrum {
 /// Full width around zero outside which |C| stays `down_db` below its peak [Hz].
 [[nodiscard]] double bandwidth(const PulseSpectrum& spectrum, double down_db);
 
+/// The outermost of n pairs of bins, k = n..1 from the far ends inwards, with which what lies
+/// outside exceeds `most`; 0 if none does. \param of_pair  what pair k adds
+template <class OfPair>
+[[nodiscard]] std::size_t outermost_pair(std::size_t n, double most, OfPair&& of_pair) {
+  double outside = 0.0;
+  for (std::size_t k = n; k > 0; --k)
+    if ((outside += of_pair(k)) > most) return k;
+  return 0;
+}
+
 /// The narrowest full width around zero that holds a share of the energy Σ|C|²Δν [Hz].
 [[nodiscard]] double bandwidth_of_energy(const PulseSpectrum& spectrum, double share);
 

@@ -14,20 +14,11 @@ using Response = std::function<double(double frequency)>;
 
 constexpr double lowest = 1.0;  // [Hz]: below, no law of absorption or scattering means anything
 
-/// Chebyshev points of a band.
-BandNodes points_of(double centre, double half_width, std::size_t count) {
-  BandNodes nodes{.centre = centre, .half_width = half_width, .frequencies = {}};
-  for (std::size_t k = 0; k < count; ++k)
-    nodes.frequencies.push_back(centre - half_width * std::cos(pi * (static_cast<double>(k) + 0.5) /
-                                                               static_cast<double>(count)));
-  return nodes;
-}
-
 /// Some number of points, and how well responses are interpolated through them.
 class Trial {
  public:
   Trial(double centre, double half_width, std::size_t count)
-      : nodes_(points_of(centre, half_width, count)) {
+      : nodes_(chebyshev_nodes(centre, half_width, count)) {
     const std::size_t tried = count <= 16 ? 32 : 4 * count;
     for (std::size_t i = 0; i <= tried; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(tried);
@@ -114,7 +105,7 @@ ReverberationBand::ReverberationBand(const Scenario& scenario, const Propagation
   const std::size_t count =
       trial.count() + nodes_for(0.0, pi * half_band * pattern_at(centre).longest_delay(), error) -
       1;
-  nodes_ = points_of(centre, half_band, count);
+  nodes_ = chebyshev_nodes(centre, half_band, count);
   for (const double f : nodes_.frequencies) patterns_.push_back(pattern_at(std::max(lowest, f)));
   for (std::size_t k = 0; k < count; ++k) {
     const double f = std::max(lowest, nodes_.frequencies[k]);

@@ -156,14 +156,9 @@ BandNodes ReverberationCovariance::frequencies_for(std::span<const Vec3> phones,
   constexpr double error = 0.01, alike = 0.02;  // [rad]; at both ends of band and array
   double furthest = 0.0;
   for (const Vec3& phone : phones) furthest = std::max(furthest, phone.norm());
-  BandNodes nodes{.centre = centre, .half_width = 0.5 * bandwidth, .frequencies = {}};
-  const double turn = 2.0 * pi * nodes.half_width * furthest / slowest_sea;
-  const std::size_t count = turn < alike ? 1 : nodes_for(0.0, turn, error);
-  for (std::size_t k = 0; k < count; ++k)
-    nodes.frequencies.push_back(
-        centre - nodes.half_width *
-                     std::cos(pi * (static_cast<double>(k) + 0.5) / static_cast<double>(count)));
-  return nodes;
+  const double half_width = 0.5 * bandwidth;
+  const double turn = 2.0 * pi * half_width * furthest / slowest_sea;
+  return chebyshev_nodes(centre, half_width, turn < alike ? 1 : nodes_for(0.0, turn, error));
 }
 
 ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField* const> fields,
@@ -207,16 +202,13 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
     columns.insert(columns.end(), factors[s].begin(), factors[s].end());
   }
   // What a neighbour's cells put into a silent stretch has the neighbour's directions.
-  for (std::size_t s = 0; s + 1 < stretches.size(); ++s)
-    if (stretches[s + 1].rank == 0) {
-      stretches[s + 1].first = stretches[s].first;
-      stretches[s + 1].rank = stretches[s].rank;
-    }
-  for (std::size_t s = stretches.size() - 1; s > 0; --s)
-    if (stretches[s - 1].rank == 0) {
-      stretches[s - 1].first = stretches[s].first;
-      stretches[s - 1].rank = stretches[s].rank;
-    }
+  const auto take_over = [](Stretch& silent, const Stretch& neighbour) {
+    if (silent.rank > 0) return;
+    silent.first = neighbour.first;
+    silent.rank = neighbour.rank;
+  };
+  for (std::size_t s = 1; s < stretches.size(); ++s) take_over(stretches[s], stretches[s - 1]);
+  for (std::size_t s = stretches.size() - 1; s > 0; --s) take_over(stretches[s - 1], stretches[s]);
   for (const Heard& h : heard)
     spread(h.power / bin, (h.delay - 0.5 * h.extent) / bin, (h.delay + 0.5 * h.extent) / bin,
            intensity);

@@ -1,5 +1,6 @@
 #include "sonar/stretch_covariance.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -68,27 +69,19 @@ std::size_t StretchSum::factor(std::vector<std::complex<float>>& columns) {
   take();
   const double mean = sum_.diagonal().real().mean();
   if (!(mean > 0.0)) return 0;
-  Matrix c = sum_.selfadjointView<Eigen::Lower>();
-  c /= mean;
   constexpr double left = 1e-6;
-  const Eigen::Index n = c.rows();
-  Eigen::VectorXd rest = c.diagonal().real();
-  const double all = rest.sum();
-  Matrix f(n, n);
-  Eigen::Index rank = 0;
-  for (; rank < n && rest.sum() > left * all; ++rank) {
-    Eigen::Index pivot = 0;
-    const double most = rest.maxCoeff(&pivot);
-    if (!(most > 0.0)) break;
-    f.col(rank) = c.col(pivot);
-    f.col(rank).noalias() -= f.leftCols(rank) * f.row(pivot).head(rank).adjoint();
-    f.col(rank) /= std::sqrt(most);
-    rest -= f.col(rank).cwiseAbs2();
-    rest = rest.cwiseMax(0.0);
-    rest[pivot] = 0.0;
-  }
-  for (Eigen::Index j = 0; j < rank; ++j)
-    for (Eigen::Index i = 0; i < n; ++i) columns.emplace_back(f(i, j));
+  const Eigen::LDLT<Matrix> ldlt(sum_ / mean);
+  const Eigen::Index n = sum_.rows();
+  const Eigen::VectorXd root = ldlt.vectorD().real().cwiseMax(0.0).cwiseSqrt();
+  const Matrix l = ldlt.matrixL();
+  Matrix f = ldlt.transpositionsP().transpose() * l;
+  f.array().rowwise() *= root.transpose().array().cast<std::complex<double>>();
+  // A column's share of the trace is its norm; pivots come in falling order.
+  const Eigen::VectorXd share = f.colwise().squaredNorm();
+  Eigen::Index rank = n;
+  for (double rest = 0.0; rank > 0 && (rest += share[rank - 1]) <= left * share.sum();) --rank;
+  for (Eigen::Index k = 0; k < rank; ++k)
+    for (Eigen::Index i = 0; i < n; ++i) columns.emplace_back(f(i, k));
   return static_cast<std::size_t>(rank);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/units.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/stretch_splitter.h"
@@ -68,7 +69,7 @@ BranchTable::BranchTable(Column column, const PathLimits& limits, const Environm
                          const KeptOcean& kept)
     : column_(std::move(column)), limits_(limits), boundaries_(boundaries) {
   const double slowest = column_.barrier_speed();
-  const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * 3.14159265358979));
+  const double steepest = std::cos(std::min(limits_.max_launch_angle, 0.5 * pi));
   const double fastest = column_.source_speed() / std::max(steepest, 1e-9);
   if (fastest <= slowest) return;
   std::optional<Parts> parts;
@@ -175,10 +176,9 @@ BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const
                                               double sigma) const noexcept {
   // Lanes are as fast for one ray as for many, and know shorter ways through smooth laws.
   const RayLanes rays(interval.reference_speed, Rays(sigma));
-  const OceanSeries::Found known =
-      legs_ ? legs_->find(interval.reference_speed, sigma) : OceanSeries::Found{};
   const ColumnLanes sums =
-      known.piece != nullptr ? legs_->sums(column_, known, rays) : walk_sums(column_, rays);
+      legs_ ? legs_->sums(column_, legs_->find(interval.reference_speed, sigma), rays)
+            : walk_sums(column_, rays);
   const BranchWeights w = weights(branch, column_.source_is_upper());
   const double xi = rays.slowness[0];
   return {

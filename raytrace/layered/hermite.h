@@ -32,15 +32,6 @@ class Hermite {
     return (2.0 * a_[2] + 6.0 * t * a_[3]) / (h_ * h_);
   }
 
-  /// About where a monotone cubic has a value that lies between its ends': one step of Newton's
-  /// method from the secant.
-  [[nodiscard]] double near(double wanted) const noexcept {
-    const double t = (wanted - a_[0]) / (a_[1] + a_[2] + a_[3]);
-    const double next = t - (a_[0] - wanted + t * (a_[1] + t * (a_[2] + t * a_[3]))) /
-                                (a_[1] + t * (2.0 * a_[2] + 3.0 * t * a_[3]));
-    return x0_ + (next > 0.0 && next < 1.0 ? next : t) * h_;
-  }
-
   /// Where it has a value, by a few of Newton's steps from a guess; anywhere if they do not
   /// converge.
   [[nodiscard]] double root_near(double x, double wanted) const noexcept {

@@ -44,24 +44,20 @@ bool OceanSeries::worth_keeping(std::span<const Layer> layers) noexcept {
 }
 
 OceanSeries::OceanSeries(std::span<const Layer> layers) {
-  const auto [slowest, fastest] =
-      std::minmax_element(layers.begin(), layers.end(),
-                          [](const Layer& a, const Layer& b) { return a.c_top < b.c_top; });
-  const auto critical = critical_speeds(layers, std::min(slowest->c_top, layers.back().c_bottom),
-                                        std::max(fastest->c_top, layers.back().c_bottom));
-  /// Rays linger beside a smooth maximum, and their quadratures are not right to what is asked
-  /// here.
-  const auto linger = [&](double speed) {
-    return std::any_of(critical.begin(), critical.end(), [&](const CriticalSpeed& c) {
-      return c.logarithmic && std::abs(c.speed - speed) <= 1e-13 * speed;
-    });
-  };
   // Rays between two neighbours of all the speeds at cuts turn in the same layers.
   std::vector<double> speeds = {layers.front().c_top};
   for (const Layer& layer : layers) speeds.push_back(layer.c_bottom);
   std::sort(speeds.begin(), speeds.end());
   const auto same = [](double a, double b) { return b - a <= 1e-13 * b; };
   speeds.erase(std::unique(speeds.begin(), speeds.end(), same), speeds.end());
+  /// Rays linger beside a smooth extremum, or turn in the layers next to it, and their quadratures
+  /// are not right to what is asked here.
+  const auto critical = critical_speeds(layers, speeds.front(), speeds.back());
+  const auto linger = [&](double speed) {
+    return std::any_of(critical.begin(), critical.end(), [&](const CriticalSpeed& c) {
+      return c.logarithmic && std::abs(c.speed - speed) <= 1e-13 * speed;
+    });
+  };
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     const bool last = i + 1 == speeds.size();
     const double slow = speeds[i], ratio = last ? 0.0 : slow / speeds[i + 1],
@@ -74,10 +70,10 @@ OceanSeries::OceanSeries(std::span<const Layer> layers) {
       interval.pieces.push_back(std::make_unique<Piece>(layers, slow, between, from, to));
       from = to;
     }
-    if (linger(slow)) interval.pieces.front()->give_up();
+    if (linger(slow))
+      for (std::size_t k = 0; k < (last ? 1 : interval.pieces.size()); ++k)
+        interval.pieces[k]->give_up();
     if (!last && linger(speeds[i + 1])) interval.pieces.back()->give_up();
-    if (!last && linger(slow))  // they turn in the layers next to it
-      for (const auto& piece : interval.pieces) piece->give_up();
   }
 }
 
@@ -202,12 +198,13 @@ OceanLegs::Anchor OceanLegs::anchor(const Column& column, std::size_t node,
 template <bool detailed>
 ColumnLanes OceanLegs::legs(const Column& column, const OceanSeries::Found& found,
                             const RayLanes& rays) const noexcept {
+  const auto walked = [&] { return detailed ? walk_all(column, rays) : walk_sums(column, rays); };
+  if (found.piece == nullptr) return walked();
   const double c_ref = found.piece->reference_speed();
   const Rays sine2 = c_ref == rays.reference_speed ? rays.sigma * rays.sigma : rays.sine2(c_ref);
   const Rays sigma = c_ref == rays.reference_speed ? rays.sigma : sqrt(sine2);
   const Rays x = found.piece->stretch().x(sigma), per_sigma = 1.0 / sigma;
-  if (!all_of(sine2 > 0.0 && abs(x) < beyond_ends))
-    return detailed ? walk_all(column, rays) : walk_sums(column, rays);
+  if (!all_of(sine2 > 0.0 && abs(x) < beyond_ends)) return walked();
 
   using Piece = OceanSeries::Piece;
   struct Both {

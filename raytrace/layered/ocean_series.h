@@ -89,7 +89,6 @@ class OceanSeries {
     double reference_speed;
     std::vector<std::unique_ptr<Piece>> pieces;  ///< of increasing σ
   };
-  std::span<const Layer> layers_;
   std::vector<Interval> intervals_;  ///< between the cuts' speeds, and from the fastest on
 };
 
@@ -101,7 +100,8 @@ class OceanLegs {
   [[nodiscard]] OceanSeries::Found find(double c_ref, double sigma) const {
     return series_->find(c_ref, sigma, upper_.cut, lower_.cut);
   }
-  /// As walk_sums and walk_all. Rays beyond the piece's ends are walked.
+  /// As walk_sums and walk_all. Where nothing is found, and beyond the piece's ends, rays are
+  /// walked.
   [[nodiscard]] ColumnLanes sums(const Column& column, const OceanSeries::Found& found,
                                  const RayLanes& rays) const noexcept;
   [[nodiscard]] ColumnLanes all(const Column& column, const OceanSeries::Found& found,

@@ -148,7 +148,10 @@ std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noex
 RootGroups::Group RootGroups::few(std::size_t begin, std::size_t end) const {
   if (kept_ == nullptr) return {{.column = column_}, end};
   const auto piece = [&](const RootTask& task) {
-    const double x = Hermite(task.begin, task.end).near(task.range);
+    const HermiteNode &a = task.begin, &b = task.end;
+    double x = a.x + (b.x - a.x) * (task.range - a.value) / (b.value - a.value);
+    if (const double root = Hermite(a, b).root_near(x, task.range); root > a.x && root < b.x)
+      x = root;
     return kept_->find(interval_.reference_speed, task.steep ? sine_of_cosine(x) : x);
   };
   const OceanSeries::Found first = piece(*order_[begin]);

@@ -53,11 +53,11 @@ struct LegSource {
 
   [[nodiscard]] ColumnLanes sums(const RayLanes& rays) const noexcept {
     if (series != nullptr) return series->sums(rays);
-    return found.piece != nullptr ? kept->sums(column, found, rays) : walk_sums(column, rays);
+    return kept != nullptr ? kept->sums(column, found, rays) : walk_sums(column, rays);
   }
   [[nodiscard]] ColumnLanes all(const RayLanes& rays) const noexcept {
     if (series != nullptr) return series->all(rays);
-    return found.piece != nullptr ? kept->all(column, found, rays) : walk_all(column, rays);
+    return kept != nullptr ? kept->all(column, found, rays) : walk_all(column, rays);
   }
 };
 

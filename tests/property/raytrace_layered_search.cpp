@@ -11,6 +11,7 @@
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/leg_series.h"
 #include "raytrace/layered/reflection_lanes.h"
+#include "support/fan_intervals.h"
 
 // The fast search (rays in vector lanes, series of legs, batches of roots) against the plain sums
 // of raytrace/layered/column.h, ray by ray.
@@ -175,13 +176,10 @@ TEST_P(EveryRule, LanesAndSeriesAreThePlainSums) {
     const BranchTable table =
         solver.table(ocean.source, ocean.receiver, {.max_launch_angle = 1.55});
     const Column& column = table.column();
-    const FanInterval* last = nullptr;
-    table.for_each_stretch(0.0, 50e3, [&](const MonotoneStretch& stretch) {
-      if (stretch.interval == last) return;
-      last = stretch.interval;
-      const double c_ref = last->reference_speed;
-      for (std::size_t cell = 0; cell + 1 < last->sigma.size(); ++cell) {
-        const double low = last->sigma[cell], high = last->sigma[cell + 1];
+    for (const FanInterval* const fan : support::fan_intervals(table, 50e3)) {
+      const double c_ref = fan->reference_speed;
+      for (std::size_t cell = 0; cell + 1 < fan->sigma.size(); ++cell) {
+        const double low = fan->sigma[cell], high = fan->sigma[cell + 1];
         const LegSeries series(column, c_ref, low, high);
         const Rays sigma(
             [&](auto i) { return low + (high - low) * (double(i) + 0.3) / double(rays_at_once); });
@@ -220,7 +218,7 @@ TEST_P(EveryRule, LanesAndSeriesAreThePlainSums) {
           ++series_checked;
         }
       }
-    });
+    }
   }
   EXPECT_GT(lanes_checked, 500);
   EXPECT_GT(series_checked, 300);
@@ -243,20 +241,16 @@ TEST_P(EveryRule, KeptSeriesAreThePlainSums) {
     if (series == nullptr) continue;
     ++kept;
     const Column& column = table.column();
-    const FanInterval* last = nullptr;
-    table.for_each_stretch(0.0, 50e3, [&](const MonotoneStretch& stretch) {
-      if (stretch.interval == last) return;
-      last = stretch.interval;
-      const double c_ref = last->reference_speed;
-      for (std::size_t cell = 0; cell + 1 < last->sigma.size(); ++cell)
+    for (const FanInterval* const fan : support::fan_intervals(table, 50e3)) {
+      const double c_ref = fan->reference_speed;
+      for (std::size_t cell = 0; cell + 1 < fan->sigma.size(); ++cell)
         for (const double share : {0.1, 0.5, 0.8}) {
-          const double sigma =
-              last->sigma[cell] + share * (last->sigma[cell + 1] - last->sigma[cell]);
+          const double sigma = fan->sigma[cell] + share * (fan->sigma[cell + 1] - fan->sigma[cell]);
           const OceanSeries::Found found = series->find(c_ref, sigma);
           if (found.piece == nullptr) continue;
           const ColumnLanes legs = series->all(column, found, RayLanes(c_ref, sigma));
-          EXPECT_EQ(legs.turns_above, last->turns_above);
-          EXPECT_EQ(legs.turns_below, last->turns_below);
+          EXPECT_EQ(legs.turns_above, fan->turns_above);
+          EXPECT_EQ(legs.turns_below, fan->turns_below);
           const RayParameter ray(c_ref, sigma);
           const auto [sums, details] = column.all(ray);
           const double range = sums.up.range + sums.middle.range + sums.down.range,
@@ -279,7 +273,7 @@ TEST_P(EveryRule, KeptSeriesAreThePlainSums) {
           expect(legs.middle, sums.middle, details.middle);
           expect(legs.down, sums.down, details.down);
         }
-    });
+    }
   }
   const bool cubic =
       GetParam() == Law(Interpolation::spline) || GetParam() == Law(Interpolation::pchip);

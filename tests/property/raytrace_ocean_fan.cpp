@@ -7,17 +7,10 @@
 #include "raytrace/eigenrays.h"
 #include "raytrace/layered/branch_table.h"
 #include "support/deep_ocean.h"
+#include "support/fan_intervals.h"
 
 namespace asdic {
 namespace {
-
-std::vector<const FanInterval*> intervals(const BranchTable& table) {
-  std::vector<const FanInterval*> all;
-  table.for_each_stretch(0.0, 200e3, [&](const MonotoneStretch& stretch) {
-    if (all.empty() || all.back() != stretch.interval) all.push_back(stretch.interval);
-  });
-  return all;
-}
 
 // The fan made of what the ocean keeps is the fan walked anew: the same layers, added in the same
 // order up to the association of a layer's own nodes. A rounding of 1e-16 of each of 35 terms; of
@@ -32,7 +25,7 @@ TEST(OceanFan, IsTheFanWalkedAnew) {
       for (const double receiver : {125.0, 700.3, 4000.0, source}) {
         const BranchTable kept = solver.table(source, receiver, {});
         const BranchTable anew(kept.column(), {}, &ocean);
-        const auto a = intervals(kept), b = intervals(anew);
+        const auto a = support::fan_intervals(kept, 200e3), b = support::fan_intervals(anew, 200e3);
         ASSERT_EQ(a.size(), b.size()) << law;
         for (std::size_t i = 0; i < a.size(); ++i) {
           ASSERT_EQ(a[i]->sigma.size(), b[i]->sigma.size());

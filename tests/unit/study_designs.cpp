@@ -7,6 +7,7 @@
 
 #include "study/design.h"
 #include "study/sobol.h"
+#include "support/kolmogorov.h"
 
 namespace asdic::study {
 namespace {
@@ -30,14 +31,9 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return ab / std::sqrt(aa * bb);
 }
 
-/// Greatest distance of the sample's distribution from the uniform one.
-double kolmogorov(std::vector<double> u) {
-  std::sort(u.begin(), u.end());
-  double most = 0.0;
-  const double n = double(u.size());
-  for (std::size_t i = 0; i < u.size(); ++i)
-    most = std::max({most, (double(i) + 1.0) / n - u[i], u[i] - double(i) / n});
-  return most;
+/// Kolmogorov's distance from the uniform distribution.
+double kolmogorov(const std::vector<double>& u) {
+  return support::kolmogorov_distance(u, [](double x) { return x; });
 }
 
 TEST(RandomDesign, IsUniformAndItsCoordinatesIndependent) {

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "study/design.h"
 #include "study/law.h"
+#include "support/kolmogorov.h"
 
 namespace asdic::study {
 namespace {
@@ -64,17 +65,14 @@ TEST(Laws, DrawsFollowTheirLawCutOrNot) {
           cut ? CutLaw(law, CutLaw(law).quantile(0.2), CutLaw(law).quantile(0.9)) : CutLaw(law);
       std::vector<double> x;
       for (std::uint64_t i = 0; i < n; ++i) x.push_back(drawn.quantile(uniform_draw(3, i, 0)));
-      std::sort(x.begin(), x.end());
-      double most = 0.0, wrong = 0.0;
-      for (int i = 0; i < n; ++i) {
-        EXPECT_GE(x[std::size_t(i)], drawn.low());
-        EXPECT_LE(x[std::size_t(i)], drawn.high());
-        const double f = drawn.distribution(x[std::size_t(i)]);
-        most = std::max({most, (i + 1.0) / n - f, f - double(i) / n});
-        wrong = std::max(wrong, std::abs(f * f - double(i) / n));
+      for (const double value : x) {
+        EXPECT_GE(value, drawn.low());
+        EXPECT_LE(value, drawn.high());
       }
-      EXPECT_LT(most * std::sqrt(double(n)), 2.69) << name;
-      EXPECT_GT(wrong * std::sqrt(double(n)), 2.69) << name;  // another law must fail
+      const auto own = [&](double value) { return drawn.distribution(value); };
+      const auto squared = [&](double value) { return own(value) * own(value); };
+      EXPECT_LT(support::kolmogorov_distance(x, own) * std::sqrt(double(n)), 2.69) << name;
+      EXPECT_GT(support::kolmogorov_distance(x, squared) * std::sqrt(double(n)), 2.69) << name;
     }
 }
 

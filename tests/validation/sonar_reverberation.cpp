@@ -3,6 +3,7 @@
 #include <array>
 
 #include "support/csv.h"
+#include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
 
 namespace asdic {
@@ -117,24 +118,14 @@ TEST(Reverberation, NeitherGridNorSectorsChangeTheMean) {
   check(sectors, 2, "72 sectors");
 }
 
-/// Largest distance of the samples' distribution from 1 − e^(−x).
-double distance(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double f = 1.0 - std::exp(-x[i]), n = double(x.size());
-    worst = std::max({worst, f - double(i) / n, double(i + 1) / n - f});
-  }
-  return worst;
-}
-
 // A Rayleigh envelope: intensity is exponential. Kolmogorov-Smirnov at a false-alarm rate of 1e-6,
 // D < √(ln(2e6)/2n). A Rice envelope of the same mean with half its power in a constant must fail.
 TEST(Reverberation, EnvelopeIsRayleigh) {
   const auto samples = independent(reference(), 16);
   const double limit = std::sqrt(std::log(2e6) / (2.0 * double(samples.size())));
-  EXPECT_LT(distance(samples), limit);
-  EXPECT_GT(distance(independent(reference(), 16, std::sqrt(0.5))), limit);
+  EXPECT_LT(support::kolmogorov_distance(samples, support::exponential_law), limit);
+  const auto rice = independent(reference(), 16, std::sqrt(0.5));
+  EXPECT_GT(support::kolmogorov_distance(rice, support::exponential_law), limit);
 }
 
 /// How much of the grid is left in the matched filter's output: |⟨(I/Ī) e^{i2πr(t)/Δr}⟩|²·n, an

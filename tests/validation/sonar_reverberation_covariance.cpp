@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "sonar/ping.h"
+#include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
 
 // Reverberation by its covariance against closed forms, and against the plain sum over scatterers
@@ -104,16 +105,22 @@ double expected_power(const ReverberationCovariance& of, const Pulse& pulse, dou
   return sum;
 }
 
+/// A bounce off the surface and off a hard bottom: several pairs of paths.
+Scenario bouncing_sea() {
+  Scenario s = shallow_sea();
+  s.propagation.max_surface_bounces = 1;
+  s.propagation.max_bottom_bounces = 1;
+  s.environment.bottom = {.depth = 1500.0, .material = Rigid{}};
+  return s;
+}
+
 // With bounces and a beam there are several pairs of paths; those with their reciprocal are heard
 // at twice the pressure. At the reference point the power is what summaries tell is expected of
 // scatterers, which adds the pairs of a place coherently at one place a cell: where two are heard
 // together their beat is averaged here and sampled there, up to some tenths of a decibel; in the
 // mean over times nothing.
 TEST(ReverberationCovariance, HasTheExpectedLevelOfAllPairsOfPaths) {
-  Scenario s = shallow_sea();
-  s.propagation.max_surface_bounces = 1;
-  s.propagation.max_bottom_bounces = 1;
-  s.environment.bottom = {.depth = 1500.0, .material = Rigid{}};
+  Scenario s = bouncing_sea();
   s.transmitters[0].taper = Taper::hann;
   s.transmitters[0].beamwidth = radians(30.0);
   s.transmitters[0].elevation = radians(10.0);
@@ -160,10 +167,7 @@ Moments moments(const Sea& sea, int pings, double from, double to, double step) 
 // mean over √count (real and imaginary part 1/√2 of it, or all of it in one), the difference of two
 // √2 of it: 4.9·√2/√1140 = 0.205. The wrong model, phones in another place, must fail.
 TEST(ReverberationCovariance, HasTheMomentsOfThePlainSum) {
-  Scenario s = shallow_sea();
-  s.propagation.max_surface_bounces = 1;
-  s.propagation.max_bottom_bounces = 1;
-  s.environment.bottom = {.depth = 1500.0, .material = Rigid{}};
+  Scenario s = bouncing_sea();
   Scenario plain = s, wrong = s;
   plain.reverberation.synthesis = ScattererSynthesis::scatterers;
   for (Vec3& phone : wrong.arrays[0].phones) phone = Vec3(0.7 * phone.y(), 0.5 * phone.x(), 0.0);
@@ -249,17 +253,6 @@ TEST(ReverberationCovariance, HasTheDopplerSpectrumOfThePlainSum) {
   }
 }
 
-/// Largest distance of the samples' distribution from 1 − e^(−x).
-double distance(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double f = 1.0 - std::exp(-x[i]), n = double(x.size());
-    worst = std::max({worst, f - double(i) / n, double(i + 1) / n - f});
-  }
-  return worst;
-}
-
 // A Rayleigh envelope, its mean the annulus integral through the pulse: 80 pings of 38 times two
 // pulse lengths apart; Kolmogorov–Smirnov at a false-alarm rate of 1e-6, mean 4.9/√3040 = 0.089.
 // A Rice envelope of the same mean, nine tenths of it in a constant, must fail.
@@ -284,8 +277,8 @@ TEST(ReverberationCovariance, EnvelopeIsRayleighOfTheRightMean) {
     }
   }
   const double limit = std::sqrt(std::log(2e6) / (2.0 * double(samples.size())));
-  EXPECT_LT(distance(samples), limit);
-  EXPECT_GT(distance(rice), limit);
+  EXPECT_LT(support::kolmogorov_distance(samples, support::exponential_law), limit);
+  EXPECT_GT(support::kolmogorov_distance(rice, support::exponential_law), limit);
   EXPECT_NEAR(sum / double(samples.size()), 1.0, 4.9 / std::sqrt(double(samples.size())));
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 
+#include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
 
 namespace asdic {
@@ -294,17 +295,6 @@ class Sector final : public TransmitPattern {
   double half_width_;
 };
 
-/// Largest distance of samples of intensity (mean 1) from a distribution.
-double distance(std::vector<double> x, const std::function<double(double)>& distribution) {
-  std::sort(x.begin(), x.end());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double f = distribution(x[i]), n = double(x.size());
-    worst = std::max({worst, f - double(i) / n, double(i + 1) / n - f});
-  }
-  return worst;
-}
-
 // Clutter with a gamma texture of shape ν, constant in squares much larger than what a narrow beam
 // lights up: the intensity is K-distributed, P(I > x) = 2(νx)^{ν/2} K_ν(2√(νx))/Γ(ν). One sample a
 // square, over many seeds; Kolmogorov–Smirnov at 1e-6. An exponential (Rayleigh) must fail, and so
@@ -315,7 +305,6 @@ TEST(ReverberationField, ClutterIsKDistributed) {
     const double y = std::sqrt(shape * x);
     return 1.0 - 2.0 * std::pow(y, shape) * std::cyl_bessel_k(shape, 2.0 * y) / std::tgamma(shape);
   };
-  const auto exponential = [](double x) { return 1.0 - std::exp(-x); };
   const auto samples = [&](std::optional<double> texture) {
     std::vector<double> found;
     for (int seed = 1; seed <= 100; ++seed) {
@@ -339,12 +328,13 @@ TEST(ReverberationField, ClutterIsKDistributed) {
     for (double& x : found) x /= mean;
     return found;
   };
+  using support::exponential_law, support::kolmogorov_distance;
   const auto clutter = samples(shape), plain = samples(std::nullopt);
   const double limit = std::sqrt(std::log(2e6) / (2.0 * double(clutter.size())));
-  EXPECT_LT(distance(clutter, k_law), limit);
-  EXPECT_GT(distance(clutter, exponential), limit);
-  EXPECT_LT(distance(plain, exponential), limit);
-  EXPECT_GT(distance(plain, k_law), limit);
+  EXPECT_LT(kolmogorov_distance(clutter, k_law), limit);
+  EXPECT_GT(kolmogorov_distance(clutter, exponential_law), limit);
+  EXPECT_LT(kolmogorov_distance(plain, exponential_law), limit);
+  EXPECT_GT(kolmogorov_distance(plain, k_law), limit);
 }
 
 /// Everything that scatters, and two platforms.
