@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/path_builder.h"
-#include "raytrace/tracing/boundary_hits.h"
+#include "raytrace/tracing/cell_hits.h"
 
 namespace asdic {
 namespace {

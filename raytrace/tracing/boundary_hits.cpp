@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
-#include "raytrace/layered/hermite.h"
-#include "raytrace/layered/path_builder.h"
-#include "raytrace/tracing/fan_splitting.h"
 
 namespace asdic {
 namespace {
-
-/// Neighbours this close in launch angle are told apart no more [rad].
-constexpr double finest = 1e-12;
 
 /// A ray's state where it meets a line of slope tan(angle).
 BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angle) {
@@ -86,182 +79,6 @@ void passes_of(const RaySegment& s, double depth, std::vector<BoundaryHit>& hits
   pass(turn, h);
 }
 
-/// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
-/// then right to a quarter of it [rad].
-constexpr double grazing_tolerance = 4e-3;
-
-HermiteNode range_node(const StrikingRay& ray, const BoundaryHit& hit) {
-  return {ray.angle, hit.range, hit.d_range};
-}
-HermiteNode time_node(const StrikingRay& ray, const BoundaryHit& hit) {
-  return {ray.angle, hit.time, hit.d_time};
-}
-
-/// What FanSplitting asks for.
-class CellSearch {
- public:
-  using Ray = StrikingRay;
-  using Result = CellHit;
-  static constexpr std::size_t coarse_levels = 0;
-
-  CellSearch(const RayTracer& tracer, double source_depth, const GroundLevel& level, double spacing,
-             double max_range, double frequency, const TraceLimits& limits)
-      : tracer_(tracer),
-        source_depth_(source_depth),
-        level_(level),
-        spacing_(spacing),
-        max_range_(max_range),
-        frequency_(frequency),
-        limits_(limits) {}
-
-  void trace(double angle, StrikingRay& out) {
-    tracer_.trace(0.0, source_depth_, angle, limits_, trajectory_);
-    digest_hits(trajectory_, tracer_.environment(), level_, out);
-  }
-
-  [[nodiscard]] bool holds(const StrikingRay& a, const StrikingRay& m, const StrikingRay& b) const {
-    if (b.angle - a.angle < finest) return true;
-    const std::size_t hits = std::max({a.hits.size(), m.hits.size(), b.hits.size()});
-    for (std::size_t i = 0; i < hits; ++i) {
-      const bool together = i < a.hits.size() && i < m.hits.size() && i < b.hits.size() &&
-                            a.hits[i].history == b.hits[i].history &&
-                            a.hits[i].history == m.hits[i].history;
-      if (!together) return parting_is_fine(a, m, b, i);
-      const BoundaryHit &ha = a.hits[i], &hm = m.hits[i], &hb = b.hits[i];
-      if (std::min({ha.range, hm.range, hb.range}) > max_range_) continue;
-      const Hermite range(range_node(a, ha), range_node(b, hb));
-      const Hermite time(time_node(a, ha), time_node(b, hb));
-      // the slope tells what a lucky value does not
-      const double off = std::abs(range.value(m.angle) - hm.range) +
-                         std::abs(time.value(m.angle) - hm.time) * hm.speed +
-                         std::abs(range.slope(m.angle) - hm.d_range) * (b.angle - a.angle) / 8.0;
-      // halves are right to a sixteenth of that where all is smooth, and to about that elsewhere
-      if (off > 0.02 * spacing_) return false;
-      if (std::abs(0.5 * (ha.grazing + hb.grazing) - hm.grazing) > grazing_tolerance) return false;
-    }
-    return true;
-  }
-
-  [[nodiscard]] double middle(const StrikingRay& a, const StrikingRay& b) const {
-    return 0.5 * (a.angle + b.angle);
-  }
-
-  void search(const StrikingRay& a, const StrikingRay& b, std::vector<CellHit>& out) const {
-    const std::size_t hits = std::min(a.hits.size(), b.hits.size());
-    for (std::size_t i = 0; i < hits && a.hits[i].history == b.hits[i].history; ++i)
-      lay(a, a.hits[i], b, b.hits[i], out);
-  }
-
- private:
-  /// Histories part: at a node of the boundary, or where a ray turns just before it. What is lost
-  /// between two rays is less than a cell's small part.
-  [[nodiscard]] bool parting_is_fine(const StrikingRay& a, const StrikingRay& m,
-                                     const StrikingRay& b, std::size_t i) const {
-    double nearest = 1e300;
-    int stopped = 0;
-    for (const StrikingRay* ray : {&a, &m, &b}) {
-      if (i < ray->hits.size())
-        nearest = std::min(nearest, ray->hits[i].range);
-      else if (ray->ended == RayEnd::faint || ray->ended == RayEnd::absorbed ||
-               ray->ended == RayEnd::bounces)
-        ++stopped;
-    }
-    if (nearest > max_range_ || stopped >= 2) return true;
-    return std::max(a.widest, b.widest) * (b.angle - a.angle) < 0.02 * spacing_;
-  }
-
-  /// Every cell centre between the hits of two rays.
-  void lay(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b, const BoundaryHit& hb,
-           std::vector<CellHit>& out) const {
-    const Hermite range(range_node(a, ha), range_node(b, hb));
-    const Hermite time(time_node(a, ha), time_node(b, hb));
-    const bool caustic = (ha.d_range > 0.0) != (hb.d_range > 0.0);
-    const auto turns = caustic ? range.extrema() : Hermite::Places{};
-    double from = a.angle, from_range = ha.range;
-    for (std::size_t i = 0; i <= turns.size(); ++i) {
-      const double to = i < turns.size() ? turns.x[i] : b.angle;
-      const double to_range = i < turns.size() ? range.value(to) : hb.range;
-      lay_monotone(a, ha, b, hb, range, time, from, from_range, to, to_range, out);
-      from = to;
-      from_range = to_range;
-    }
-  }
-
-  void lay_monotone(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
-                    const BoundaryHit& hb, const Hermite& range, const Hermite& time, double from,
-                    double from_range, double to, double to_range,
-                    std::vector<CellHit>& out) const {
-    const bool rising = to_range > from_range;
-    const double near = rising ? from : to, far = rising ? to : from;
-    const double near_range = std::min(from_range, to_range);
-    const double limit = std::min(std::max(from_range, to_range), max_range_);
-    double alpha = near;
-    const double first = std::max(0.0, std::ceil(near_range / spacing_ - 0.5));
-    for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
-      const double r = (cell + 0.5) * spacing_;
-      if (r >= limit) return;
-      double low = std::min(near, far), high = std::max(near, far);
-      for (int i = 0; i < 40; ++i) {  // the cubic's root, from the neighbour's
-        const double off = range.value(alpha) - r;
-        if (std::abs(off) < 1e-3 * spacing_) break;
-        ((off < 0.0) == rising ? low : high) = alpha;
-        const double slope = range.slope(alpha);
-        double next = slope != 0.0 ? alpha - off / slope : low;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        alpha = next;
-      }
-      out.push_back(path(a, ha, b, hb, range, alpha, time.value(alpha), cell));
-    }
-  }
-
-  CellHit path(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
-               const BoundaryHit& hb, const Hermite& range, double alpha, double delay,
-               std::uint32_t cell) const {
-    const double u = (alpha - a.angle) / (b.angle - a.angle);
-    const auto between = [u](double x, double y) { return x + u * (y - x); };
-    const double slope = range.slope(alpha);
-    // Where two rays coalesce: |∂r/∂ξ| of ground_paths.cpp, with ξ the slowness along the boundary.
-    // The cubic's slope is a parabola; its bend where that is zero, if it is anywhere. At a
-    // limiting ray, where dr/dα goes to infinity and no caustic is, it is nowhere.
-    const double bend_a = range.bend(a.angle), width = b.angle - a.angle;
-    const double third = (range.bend(b.angle) - bend_a) / width;
-    const double bend = std::sqrt(std::max(0.0, bend_a * bend_a - 2.0 * third * ha.d_range));
-    const double turn = (hb.slowness - ha.slowness) / width;
-    constexpr double zeta = 0.307;
-    const double floor = turn != 0.0 ? std::cbrt(2.0 / (2.0 * pi * frequency_)) * std::sqrt(zeta) *
-                                           std::pow(bend, 2.0 / 3.0) / std::cbrt(std::abs(turn))
-                                     : 0.0;
-    const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
-    const double r = (cell + 0.5) * spacing_;
-    const double spreading = std::sqrt(between(ha.speed, hb.speed) * std::abs(std::cos(alpha)) /
-                                       (a.source_speed * r * q));
-    const bool like_a = (slope > 0.0) == (ha.d_range > 0.0);
-    CellHit hit;
-    hit.cell = cell;
-    hit.launch_elevation = alpha;
-    hit.delay = delay;
-    hit.grazing = between(ha.grazing, hb.grazing);
-    hit.slowness = between(ha.slowness, hb.slowness);
-    hit.length = delay * between(ha.length / ha.time, hb.length / hb.time);  // by the mean speed
-    hit.down = ha.down;
-    hit.amplitude = spreading * std::exp(-between(ha.nepers, hb.nepers)) *
-                    (ha.reflection + u * (hb.reflection - ha.reflection)) *
-                    caustic_phase(like_a ? ha.caustics : hb.caustics);
-    return hit;
-  }
-
-  const RayTracer& tracer_;
-  double source_depth_;
-  GroundLevel level_;
-  double spacing_, max_range_, frequency_;
-  TraceLimits limits_;
-  RayTrajectory trajectory_;
-};
-
-}  // namespace
-
-namespace {
-
 /// The passes of a leg through a depth, each with a history of its own.
 void digest_passes(const RayTrajectory& ray, const LegOfRay& leg, double depth, StrikingRay& out) {
   const std::size_t before = out.hits.size();
@@ -312,25 +129,6 @@ void digest_hits(const RayTrajectory& ray, const Environment& environment, const
     out.widest = std::max(out.widest, std::abs(hit.d_range));
     out.hits.push_back(hit);
   }
-}
-
-std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
-                                   const GroundLevel& level, double spacing, double max_range,
-                                   double frequency, const FanLimits& limits) {
-  // As many bounces before the hit as allowed: a hit on a boundary is itself one more.
-  TraceLimits trace{.max_range = max_range + spacing,
-                    .max_depth = limits.max_depth,
-                    .max_surface_bounces = limits.max_surface_bounces,
-                    .max_bottom_bounces = limits.max_bottom_bounces,
-                    .faintest = limits.faintest};
-  if (level.boundary)
-    ++(*level.boundary == BoundaryKind::surface ? trace.max_surface_bounces
-                                                : trace.max_bottom_bounces);
-  trace.min_range = -max_range;
-  const FanSplitting<CellSearch> fan(limits.lowest, limits.highest);
-  return fan.run([&] {
-    return CellSearch(tracer, source_depth, level, spacing, max_range, frequency, trace);
-  });
 }
 
 }  // namespace asdic

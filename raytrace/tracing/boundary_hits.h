@@ -5,7 +5,6 @@
 
 #include "raytrace/ground_paths.h"
 #include "raytrace/tracing/fan_ray.h"
-#include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
 
@@ -40,22 +39,5 @@ struct StrikingRay {
 /// \param out  its memory is reused
 void digest_hits(const RayTrajectory& ray, const Environment& environment, const GroundLevel& level,
                  StrikingRay& out);
-
-/// One path to the middle of a cell of a level, the ring around the source from i·spacing to
-/// (i + 1)·spacing.
-struct CellHit {
-  std::uint32_t cell = 0;
-  double launch_elevation = 0.0, delay = 0.0, grazing = 0.0, slowness = 0.0;
-  double length = 0.0, down = 0.0;  // as of a BoundaryHit
-  std::complex<double> amplitude = 0.0;
-};
-
-/// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck
-/// the same boundaries and passed the level as often; range is right to a hundredth of the spacing.
-/// Near a caustic the amplitude is held as in ground_paths.h. \param spacing, max_range [m]
-[[nodiscard]] std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
-                                                 const GroundLevel& level, double spacing,
-                                                 double max_range, double frequency,
-                                                 const FanLimits& limits);
 
 }  // namespace asdic
