@@ -36,17 +36,29 @@ class BranchTable::Parts {
     ColumnLanes sums;
     for (std::size_t i = column_.upper(); i < column_.lower(); ++i)
       add(interval, rays, first, i, sums.middle);
-    for (std::size_t i = column_.upper(); i-- > 0 && !sums.turns_above;)
-      sums.turns_above = add(interval, rays, first, i, sums.up);
-    for (std::size_t i = column_.lower(); i < of_ocean_.size() && !sums.turns_below; ++i)
-      sums.turns_below = add(interval, rays, first, i, sums.down);
+    for (std::size_t i = column_.upper(); i-- > 0;) {
+      sums.turns_above = sums.turns_above || ends_rays(i, interval);
+      if (add(interval, rays, first, i, sums.up)) break;
+    }
+    for (std::size_t i = column_.lower(); i < of_ocean_.size(); ++i) {
+      sums.turns_below = sums.turns_below || ends_rays(i, interval);
+      if (add(interval, rays, first, i, sums.down)) break;
+    }
     return sums;
   }
 
  private:
   static constexpr std::size_t cut = static_cast<std::size_t>(-1);
 
-  /// \return whether the rays have turned there, or before
+  /// Whether one of the interval's rays turns there: then none comes to the boundary beyond. Inside
+  /// an analytic law others may turn in other layers, up to the last.
+  [[nodiscard]] bool ends_rays(std::size_t layer,
+                               const OceanFan::Interval& interval) const noexcept {
+    const Layer& here = column_.layers()[layer];
+    return std::max(here.c_top, here.c_bottom) > interval.between;
+  }
+
+  /// \return whether all the rays have turned there, or before
   bool add(const OceanFan::Interval& interval, const RayLanes& rays, std::size_t first,
            std::size_t layer, LegLanes& leg) const {
     const std::size_t ocean = of_ocean_[layer];

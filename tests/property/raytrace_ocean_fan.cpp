@@ -52,6 +52,25 @@ TEST(OceanFan, IsTheFanWalkedAnew) {
   }
 }
 
+// In 3000 m of Munk's water the surface is faster than the bottom: between the two speeds rays turn
+// in the topmost layer or in any below it, and are bounced by the bottom alone. Truth: Snell's law,
+// cos θ/c at the turn.
+TEST(OceanFan, TurnsBelowTheSurfaceAreNoBounces) {
+  Environment ocean = support::deep_ocean("munk");
+  ocean.bottom.depth = 3000.0;
+  const double surface = ocean.water.at(0.0).c, bottom = ocean.water.at(3000.0).c;
+  const EigenraySolver solver(ocean);
+  int turned = 0;
+  for (double range = 5e3; range < 50e3; range += 1e3)
+    for (const Arrival& a : solver.find(1000.0, 1400.0, range, 1000.0, {})) {
+      const double turn_speed = 1.0 / a.horizontal_slowness;
+      EXPECT_EQ(turn_speed < surface ? a.surface_bounces : a.upper_turns, 0) << turn_speed;
+      EXPECT_EQ(turn_speed < bottom ? a.bottom_bounces : a.lower_turns, 0) << turn_speed;
+      turned += turn_speed > bottom && turn_speed < surface && a.upper_turns > 0;
+    }
+  EXPECT_GT(turned, 50);
+}
+
 // Whoever asks first: eight threads with their own depths find what one finds alone, to the bit.
 TEST(OceanFan, DoesNotDependOnWhoAsksFirst) {
   const Environment ocean = support::deep_ocean("pchip");
