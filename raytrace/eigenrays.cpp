@@ -119,8 +119,9 @@ struct EigenraySolver::LayeredOcean {
   std::optional<OceanSeries> series;
 
   explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
-    if (layers.size() <= OceanFan::most_layers) fan.emplace(layers);
     if (OceanSeries::worth_keeping(layers)) series.emplace(layers);
+    const bool fan_by_series = series && layers.front().law == Layer::Law::munk;
+    if (layers.size() <= OceanFan::most_layers && !fan_by_series) fan.emplace(layers);
   }
   [[nodiscard]] KeptOcean kept() const noexcept {
     return {.layers = layers, .fan = fan ? &*fan : nullptr, .series = series ? &*series : nullptr};

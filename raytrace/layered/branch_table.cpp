@@ -95,10 +95,11 @@ BranchTable::BranchTable(Column column, const PathLimits& limits, const Environm
 
 void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast,
                                const Parts* parts) {
+  const bool analytic = column_.layers().front().law == Layer::Law::munk,
+             by_series = analytic && legs_;
   const OceanFan::Interval* known = parts != nullptr ? parts->find(slow, fast) : nullptr;
   std::vector<double> own;
-  if (known == nullptr)
-    put_nodes(slow, fast, column_.layers().front().law == Layer::Law::munk, own);
+  if (known == nullptr) put_nodes(slow, fast, analytic, own);
   const std::span<const double> nodes =
       known != nullptr ? std::span(known->sigma).first(known->nodes) : own;
   FanInterval interval{.reference_speed = slow.speed};
@@ -110,7 +111,9 @@ void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& f
     const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
     const RayLanes rays(slow.speed, sigmas);
     const auto& [up, middle, down, turns_above, turns_below] =
-        known != nullptr ? parts->sums(*known, rays, begin) : walk_sums(column_, rays);
+        known != nullptr ? parts->sums(*known, rays, begin)
+        : by_series      ? legs_->sums(column_, rays)
+                         : walk_sums(column_, rays);
     interval.turns_above = turns_above;
     interval.turns_below = turns_below;
     const Rays xi = rays.slowness;
