@@ -216,10 +216,12 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
                                    const std::function<void(const MonotoneStretch&)>& visit) const {
   const bool upper = column_.source_is_upper();
   std::vector<int> most;
+  std::vector<double> r, slope, least, greatest;  // of a branch at the nodes and between them
   for (const FanInterval& interval : intervals_) {
     const std::size_t n = interval.sigma.size();
     // Between two nodes there is nothing to find after so many vertices: too far, or too faint.
     most.resize(n - 1);
+    for (auto* values : {&r, &slope, &least, &greatest}) values->resize(n);
     const auto cycle = [&](std::size_t i) {
       return interval.up[i] + interval.middle[i] + interval.down[i];
     };
@@ -238,26 +240,25 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
         if (!interval.turns_below && branch.bottom_vertices() > limits_.max_bottom_bounces) break;
         if (k == 0 && starts_up == upper) continue;  // the receiver lies the other way
         const BranchWeights w = weights(branch, upper);
+        for (std::size_t i = 0; i < n; ++i) {
+          r[i] = w.of(interval.up[i], interval.middle[i], interval.down[i]);
+          slope[i] = w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i]);
+        }
+        // A cubic stays within its ends widened by a quarter of what its slopes could add.
+        for (std::size_t i = 0; i + 1 < n; ++i) {
+          const double margin = 0.25 * (interval.sigma[i + 1] - interval.sigma[i]) *
+                                    (std::abs(slope[i]) + std::abs(slope[i + 1])) +
+                                1e-3;
+          least[i] = std::min(r[i], r[i + 1]) - margin;
+          greatest[i] = std::max(r[i], r[i + 1]) + margin;
+        }
         const auto node = [&](std::size_t i) {
-          return HermiteNode{interval.sigma[i],
-                             w.of(interval.up[i], interval.middle[i], interval.down[i]),
-                             w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i])};
+          return HermiteNode{interval.sigma[i], r[i], slope[i]};
         };
         StretchSplitter splitter(*this, interval, branch, ranges, visit);
-        HermiteNode a = node(0);
-        for (std::size_t i = 1; i < n; ++i) {
-          if (k > most[i - 1]) {
-            if (i < n - 1 && k <= most[i]) a = node(i);
-            continue;
-          }
-          const HermiteNode b = node(i);
-          // A cubic stays within its ends widened by a quarter of what its slopes could add.
-          const double margin = 0.25 * (b.x - a.x) * (std::abs(a.slope) + std::abs(b.slope)) + 1e-3;
-          if (std::max(a.value, b.value) + margin >= low &&
-              std::min(a.value, b.value) - margin <= high)
-            splitter.split_cell(i - 1, a, b);
-          a = b;
-        }
+        for (std::size_t i = 0; i + 1 < n; ++i)
+          if (k <= most[i] && greatest[i] >= low && least[i] <= high)
+            splitter.split_cell(i, node(i), node(i + 1));
       }
     }
   }
