@@ -80,9 +80,8 @@ void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) 
 /// and its beam obeys d²q/dr² = −(c″/c)·q.
 Arrival horizontal_ray(const Environment& ocean, double depth, double range, double frequency) {
   const SoundSpeed water = ocean.water.at(depth);
-  const double k =
-      std::sqrt(std::abs(water.d2c_dz2) /
-                water.c);  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
+  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
+  const double k = std::sqrt(std::abs(water.d2c_dz2) / water.c);
   Arrival path;
   path.q = k * range < 1e-6
                ? range
