@@ -80,9 +80,8 @@ void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) 
 /// and its beam obeys d²q/dr² = −(c″/c)·q.
 Arrival horizontal_ray(const Environment& ocean, double depth, double range, double frequency) {
   const SoundSpeed water = ocean.water.at(depth);
-  const double k =
-      std::sqrt(std::abs(water.d2c_dz2) /
-                water.c);  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
+  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
+  const double k = std::sqrt(std::abs(water.d2c_dz2) / water.c);
   Arrival path;
   path.q = k * range < 1e-6
                ? range
@@ -119,8 +118,9 @@ struct EigenraySolver::LayeredOcean {
   std::optional<OceanSeries> series;
 
   explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
-    if (layers.size() <= OceanFan::most_layers) fan.emplace(layers);
     if (OceanSeries::worth_keeping(layers)) series.emplace(layers);
+    const bool fan_by_series = series && layers.front().law == Layer::Law::munk;
+    if (layers.size() <= OceanFan::most_layers && !fan_by_series) fan.emplace(layers);
   }
   [[nodiscard]] KeptOcean kept() const noexcept {
     return {.layers = layers, .fan = fan ? &*fan : nullptr, .series = series ? &*series : nullptr};
@@ -240,38 +240,41 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
 
   const BranchTable fan = table(source_depth, receiver_depth, limits);
   const PathBuilder builder(environment_, fan.column(), frequency);
-  std::vector<RootTask> tasks;
-  std::vector<std::size_t> expected(ranges.size(), 0);
+  // Stretches with the receivers between their ends, by range [first, last).
+  struct Held {
+    RootStretch stretch;
+    std::size_t first, last;
+  };
+  std::vector<Held> held;
+  std::size_t roots = 0;
   fan.for_each_stretch(wanted, [&](const MonotoneStretch& stretch) {
     const auto [low, high] = std::minmax(stretch.range_begin, stretch.range_end);
-    const HermiteNode begin{stretch.sigma_begin, stretch.range_begin, stretch.slope_begin},
-        end{stretch.sigma_end, stretch.range_end, stretch.slope_end};
-    const bool steep = stretch.sigma_begin > steep_sigma;
-    // A stretch owns its slow end, so that a root on a common end is found once.
-    const auto first = std::lower_bound(wanted.begin(), wanted.end(), low);
-    for (auto it = first; it != wanted.end() && *it <= high; ++it) {
-      const std::size_t receiver = order[static_cast<std::size_t>(it - wanted.begin())];
-      tasks.push_back({.interval = stretch.interval,
-                       .branch = stretch.branch,
-                       .receiver = receiver,
-                       .range = *it,
-                       .cell = stretch.cell,
-                       .steep = steep,
-                       .begin = steep ? in_cosine(begin) : begin,
-                       .end = steep ? in_cosine(end) : end});
-      ++expected[receiver];
-    }
+    const auto first = std::lower_bound(wanted.begin(), wanted.end(), low),
+               last = std::upper_bound(first, wanted.end(), high);
+    if (first == last) return;
+    held.push_back({.stretch = {stretch, fan.column().source_is_upper()},
+                    .first = static_cast<std::size_t>(first - wanted.begin()),
+                    .last = static_cast<std::size_t>(last - wanted.begin())});
+    roots += held.back().last - held.back().first;
   });
+  std::vector<RootTask> tasks;
+  tasks.reserve(roots);
+  std::vector<std::size_t> expected(ranges.size(), 0);
+  for (const auto& [stretch, first, last] : held)
+    for (std::size_t i = first; i < last; ++i) {
+      tasks.push_back({.stretch = &stretch, .receiver = order[i], .range = wanted[i]});
+      ++expected[order[i]];
+    }
 
   std::vector<Arrivals> found(ranges.size());
   for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(expected[i]);
   for (auto begin = tasks.begin(); begin != tasks.end();) {  // stretches come interval by interval
-    const FanInterval& interval = *begin->interval;
-    const auto end = std::find_if(begin, tasks.end(),
-                                  [&](const RootTask& t) { return t.interval != &interval; });
+    const FanInterval& interval = *begin->stretch->interval;
+    const auto end = std::find_if(
+        begin, tasks.end(), [&](const RootTask& t) { return t.stretch->interval != &interval; });
     RootGroups(fan, interval, std::span(begin, end))
-        .solve([&](const TaskLanes& batch, const FoundRays& roots) {
-          builder.build(interval, batch, roots, limits.faintest, found);
+        .solve([&](const TaskLanes& batch, const FoundRays& rays) {
+          builder.build(interval, batch, rays, limits.faintest, found);
         });
     begin = end;
   }

@@ -36,17 +36,29 @@ class BranchTable::Parts {
     ColumnLanes sums;
     for (std::size_t i = column_.upper(); i < column_.lower(); ++i)
       add(interval, rays, first, i, sums.middle);
-    for (std::size_t i = column_.upper(); i-- > 0 && !sums.turns_above;)
-      sums.turns_above = add(interval, rays, first, i, sums.up);
-    for (std::size_t i = column_.lower(); i < of_ocean_.size() && !sums.turns_below; ++i)
-      sums.turns_below = add(interval, rays, first, i, sums.down);
+    for (std::size_t i = column_.upper(); i-- > 0;) {
+      sums.turns_above = sums.turns_above || ends_rays(i, interval);
+      if (add(interval, rays, first, i, sums.up)) break;
+    }
+    for (std::size_t i = column_.lower(); i < of_ocean_.size(); ++i) {
+      sums.turns_below = sums.turns_below || ends_rays(i, interval);
+      if (add(interval, rays, first, i, sums.down)) break;
+    }
     return sums;
   }
 
  private:
   static constexpr std::size_t cut = static_cast<std::size_t>(-1);
 
-  /// \return whether the rays have turned there, or before
+  /// Whether one of the interval's rays turns there: then none comes to the boundary beyond. Inside
+  /// an analytic law others may turn in other layers, up to the last.
+  [[nodiscard]] bool ends_rays(std::size_t layer,
+                               const OceanFan::Interval& interval) const noexcept {
+    const Layer& here = column_.layers()[layer];
+    return std::max(here.c_top, here.c_bottom) > interval.between;
+  }
+
+  /// \return whether all the rays have turned there, or before
   bool add(const OceanFan::Interval& interval, const RayLanes& rays, std::size_t first,
            std::size_t layer, LegLanes& leg) const {
     const std::size_t ocean = of_ocean_[layer];
@@ -83,10 +95,11 @@ BranchTable::BranchTable(Column column, const PathLimits& limits, const Environm
 
 void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast,
                                const Parts* parts) {
+  const bool analytic = column_.layers().front().law == Layer::Law::munk,
+             by_series = analytic && legs_;
   const OceanFan::Interval* known = parts != nullptr ? parts->find(slow, fast) : nullptr;
   std::vector<double> own;
-  if (known == nullptr)
-    put_nodes(slow, fast, column_.layers().front().law == Layer::Law::munk, own);
+  if (known == nullptr) put_nodes(slow, fast, analytic, own);
   const std::span<const double> nodes =
       known != nullptr ? std::span(known->sigma).first(known->nodes) : own;
   FanInterval interval{.reference_speed = slow.speed};
@@ -98,7 +111,9 @@ void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& f
     const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
     const RayLanes rays(slow.speed, sigmas);
     const auto& [up, middle, down, turns_above, turns_below] =
-        known != nullptr ? parts->sums(*known, rays, begin) : walk_sums(column_, rays);
+        known != nullptr ? parts->sums(*known, rays, begin)
+        : by_series      ? legs_->sums(column_, rays)
+                         : walk_sums(column_, rays);
     interval.turns_above = turns_above;
     interval.turns_below = turns_below;
     const Rays xi = rays.slowness;
@@ -201,10 +216,12 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
                                    const std::function<void(const MonotoneStretch&)>& visit) const {
   const bool upper = column_.source_is_upper();
   std::vector<int> most;
+  std::vector<double> r, slope, least, greatest;  // of a branch at the nodes and between them
   for (const FanInterval& interval : intervals_) {
     const std::size_t n = interval.sigma.size();
     // Between two nodes there is nothing to find after so many vertices: too far, or too faint.
     most.resize(n - 1);
+    for (auto* values : {&r, &slope, &least, &greatest}) values->resize(n);
     const auto cycle = [&](std::size_t i) {
       return interval.up[i] + interval.middle[i] + interval.down[i];
     };
@@ -223,26 +240,25 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
         if (!interval.turns_below && branch.bottom_vertices() > limits_.max_bottom_bounces) break;
         if (k == 0 && starts_up == upper) continue;  // the receiver lies the other way
         const BranchWeights w = weights(branch, upper);
+        for (std::size_t i = 0; i < n; ++i) {
+          r[i] = w.of(interval.up[i], interval.middle[i], interval.down[i]);
+          slope[i] = w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i]);
+        }
+        // A cubic stays within its ends widened by a quarter of what its slopes could add.
+        for (std::size_t i = 0; i + 1 < n; ++i) {
+          const double margin = 0.25 * (interval.sigma[i + 1] - interval.sigma[i]) *
+                                    (std::abs(slope[i]) + std::abs(slope[i + 1])) +
+                                1e-3;
+          least[i] = std::min(r[i], r[i + 1]) - margin;
+          greatest[i] = std::max(r[i], r[i + 1]) + margin;
+        }
         const auto node = [&](std::size_t i) {
-          return HermiteNode{interval.sigma[i],
-                             w.of(interval.up[i], interval.middle[i], interval.down[i]),
-                             w.of(interval.d_up[i], interval.d_middle[i], interval.d_down[i])};
+          return HermiteNode{interval.sigma[i], r[i], slope[i]};
         };
         StretchSplitter splitter(*this, interval, branch, ranges, visit);
-        HermiteNode a = node(0);
-        for (std::size_t i = 1; i < n; ++i) {
-          if (k > most[i - 1]) {
-            if (i < n - 1 && k <= most[i]) a = node(i);
-            continue;
-          }
-          const HermiteNode b = node(i);
-          // A cubic stays within its ends widened by a quarter of what its slopes could add.
-          const double margin = 0.25 * (b.x - a.x) * (std::abs(a.slope) + std::abs(b.slope)) + 1e-3;
-          if (std::max(a.value, b.value) + margin >= low &&
-              std::min(a.value, b.value) - margin <= high)
-            splitter.split_cell(i - 1, a, b);
-          a = b;
-        }
+        for (std::size_t i = 0; i + 1 < n; ++i)
+          if (k <= most[i] && greatest[i] >= low && least[i] <= high)
+            splitter.split_cell(i, node(i), node(i + 1));
       }
     }
   }

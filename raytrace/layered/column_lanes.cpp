@@ -95,15 +95,6 @@ template void turn_in_layer<false>(const Layer&, const RayLanes&, const Rays&, L
 
 namespace {
 
-/// Those of the rays that a mask names, one of them in the place of every other.
-RayLanes only(const RayLanes& rays, const Rays::mask_type& these) noexcept {
-  RayLanes some = rays;
-  const auto one = static_cast<std::size_t>(find_first_set(these));
-  where(!these, some.sigma) = rays.sigma[one];
-  where(!these, some.slowness) = rays.slowness[one];
-  return some;
-}
-
 template <bool detailed>
 void add_to(const Rays::mask_type& these, const LegLanes& part, LegLanes& leg) noexcept {
   where(these, leg.per_slowness) += part.per_slowness;

@@ -26,6 +26,15 @@ struct RayLanes {
   [[nodiscard]] Rays sine(double c) const noexcept { return sqrt(max(sine2(c), Rays(1e-300))); }
 };
 
+/// Those of the rays that a mask names, one of them in the place of every other.
+[[nodiscard]] inline RayLanes only(const RayLanes& rays, const Rays::mask_type& these) noexcept {
+  RayLanes some = rays;
+  const auto one = static_cast<std::size_t>(find_first_set(these));
+  where(!these, some.sigma) = rays.sigma[one];
+  where(!these, some.slowness) = rays.slowness[one];
+  return some;
+}
+
 /// One piece of ColumnSums and ColumnDetails for several rays, as functions of σ that are smooth up
 /// to the vertical ray (σ = 1).
 struct LegLanes {

@@ -62,9 +62,9 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const std::vect
                       .vertices = known.surface_bounces + known.upper_turns + known.bottom_bounces +
                                   known.lower_turns};
   if (branch.vertices == 0 && branch.starts_up == column.source_is_upper()) return std::nullopt;
-  RootTask task{.branch = branch, .range = ends.range};
-  const RootTask* const one = &task;
-  const TaskLanes lanes(&one, 1, column.source_is_upper());
+  const RootStretch stretch(branch, column.source_is_upper());
+  const RootTask task{.stretch = &stretch, .range = ends.range}, *const one = &task;
+  const TaskLanes lanes(&one, 1);
 
   const double k0 = known.horizontal_slowness * c_ref;
   const double first = std::sqrt(std::max(0.0, (1.0 - k0) * (1.0 + k0)));
@@ -94,7 +94,6 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const std::vect
       const FanInterval interval{.reference_speed = c_ref,
                                  .turns_above = legs.turns_above,
                                  .turns_below = legs.turns_below};
-      task.interval = &interval;
       std::vector<Arrivals> found(1);
       PathBuilder(ocean, column, ends.frequency)
           .build(interval, lanes, {rays, legs}, limits.faintest, found);

@@ -17,10 +17,10 @@ std::vector<double> inner_cuts(const Layer& layer) {
     const double margin = 1e-9 * (layer.bottom - layer.top);
     if (z > layer.top + margin && z < layer.bottom - margin) found.push_back(z);
   };
-  // The axis, cuts between which dc/dz ∝ 1 − e^−η at most doubles, and below them such that eight
+  // The axis, cuts between which dc/dz ∝ 1 − e^−η hardly doubles, and below them such that eight
   // nodes see d²c/dz² ∝ e^−η fall.
   if (layer.law == Layer::Law::munk) {
-    for (const double eta : {-4.0, -3.4, -2.8, -2.2, -1.75, -1.35, -1.0, -0.7, -0.5, -0.35, -0.2,
+    for (const double eta : {-4.0, -3.4, -2.8, -2.2, -1.75, -1.35, -1.0, -0.7, -0.5, -0.34, -0.19,
                              -0.1, 0.0,  0.1,  0.2,  0.4,   0.9,   1.7,  2.8,  4.2,  6.5})
       keep(layer.coefficient[1] + 0.5 * eta * layer.coefficient[2]);
   }

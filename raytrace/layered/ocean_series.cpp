@@ -35,12 +35,17 @@ LegLanes plus(const LegLanes& a, double sign, const LegLanes& b) noexcept {
   return sum;
 }
 
+/// Ranges and slopes of those that a mask names.
+void put(const Rays::mask_type& these, const LegLanes& part, LegLanes& leg) noexcept {
+  where(these, leg.per_slowness) = part.per_slowness;
+  where(these, leg.d_range) = part.d_range;
+}
+
 }  // namespace
 
 bool OceanSeries::worth_keeping(std::span<const Layer> layers) noexcept {
   return layers.size() >= fewest_layers && layers.size() <= most_layers &&
-         std::all_of(layers.begin(), layers.end(),
-                     [](const Layer& l) { return l.law == Layer::Law::cubic; });
+         std::all_of(layers.begin(), layers.end(), [](const Layer& l) { return !l.closed_form(); });
 }
 
 OceanSeries::OceanSeries(std::span<const Layer> layers) {
@@ -241,6 +246,26 @@ ColumnLanes OceanLegs::legs(const Column& column, const OceanSeries::Found& foun
 ColumnLanes OceanLegs::sums(const Column& column, const OceanSeries::Found& found,
                             const RayLanes& rays) const noexcept {
   return legs<false>(column, found, rays);
+}
+
+ColumnLanes OceanLegs::sums(const Column& column, const RayLanes& rays) const noexcept {
+  std::array<OceanSeries::Found, rays_at_once> found;
+  for (std::size_t i = 0; i < rays_at_once; ++i)
+    found[i] = find(rays.reference_speed, rays.sigma[i]);
+  ColumnLanes legs;
+  Rays::mask_type todo(true);
+  while (any_of(todo)) {
+    const auto& piece = found[static_cast<std::size_t>(find_first_set(todo))];
+    const auto these = Rays([&](auto i) { return found[i] == piece ? 1.0 : 0.0; }) > 0.5;
+    const ColumnLanes part = sums(column, piece, only(rays, these));
+    put(these, part.up, legs.up);
+    put(these, part.middle, legs.middle);
+    put(these, part.down, legs.down);
+    legs.turns_above = part.turns_above;
+    legs.turns_below = part.turns_below;
+    todo = todo && !these;
+  }
+  return legs;
 }
 
 ColumnLanes OceanLegs::all(const Column& column, const OceanSeries::Found& found,

@@ -12,8 +12,8 @@ namespace asdic {
 
 /// What rays add up from every cut of an ocean to their vertices above and below, as series in σ:
 /// wherever source and receiver lie, their legs are two of these and the way from a cut to the
-/// depth itself (OceanLegs). For cubics, where walking through the layers takes several times as
-/// long; Munk's law has layers too thick for a part of one to be told from the whole to 0.1 mm.
+/// depth itself (OceanLegs). For cubics and Munk's law, where walking through the layers takes
+/// several times as long.
 ///
 /// A piece is computed when it is first asked for; the numbers do not depend on who asks.
 class OceanSeries {
@@ -104,6 +104,8 @@ class OceanLegs {
   /// walked.
   [[nodiscard]] ColumnLanes sums(const Column& column, const OceanSeries::Found& found,
                                  const RayLanes& rays) const noexcept;
+  /// As walk_sums, of rays that may have a piece each.
+  [[nodiscard]] ColumnLanes sums(const Column& column, const RayLanes& rays) const noexcept;
   [[nodiscard]] ColumnLanes all(const Column& column, const OceanSeries::Found& found,
                                 const RayLanes& rays) const noexcept;
 

@@ -96,8 +96,8 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   p.bottom_grazing = interval.turns_below ? Rays(0.0) : angle_at(c_bottom);
   std::array<int, rays_at_once> tops{}, bottoms{};
   for (std::size_t i = 0; i < rays_at_once; ++i) {
-    if (!interval.turns_above) tops[i] = tasks.task[i]->branch.top_vertices();
-    if (!interval.turns_below) bottoms[i] = tasks.task[i]->branch.bottom_vertices();
+    if (!interval.turns_above) tops[i] = tasks.task[i]->stretch->branch.top_vertices();
+    if (!interval.turns_below) bottoms[i] = tasks.task[i]->stretch->branch.bottom_vertices();
   }
   p.reflection =
       reflections_of(environment_.surface.material, water_at_surface_, rays.sine(c_surface),
@@ -141,10 +141,17 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
 
 void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
                         double faintest, std::span<Arrivals> found) const {
+  // Where the paths will stand is memory not touched for long: it comes while they are computed.
+  for (std::size_t i = 0; i < tasks.count; ++i) {
+    const Arrivals& here = found[tasks.task[i]->receiver];
+    const auto* const line = reinterpret_cast<const std::byte*>(here.data() + here.size());
+    for (std::size_t k = 0; k < sizeof(Arrival); k += 64) __builtin_prefetch(line + k, 1);
+  }
   const PathLanes lanes = path_lanes(interval, tasks, roots);
   const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * lanes.length;
+  const Rays gain = lanes.spreading * exponential(max(-nepers, Rays(-700.0)));
   for (std::size_t i = 0; i < tasks.count; ++i) {
-    const Branch& branch = tasks.task[i]->branch;
+    const Branch& branch = tasks.task[i]->stretch->branch;
     if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
     if (!(std::abs(lanes.miss[i]) < furthest_miss)) continue;
     const std::complex<double> reflection(lanes.reflection.real[i], lanes.reflection.imag[i]);
@@ -165,8 +172,7 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     path.q = path.caustics % 2 == 0 ? lanes.q[i] : -lanes.q[i];
     path.path_length = lanes.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
-    path.amplitude =
-        path.spreading * std::exp(-nepers[i]) * reflection * caustic_phase(path.caustics);
+    path.amplitude = static_cast<double>(gain[i]) * reflection * caustic_phase(path.caustics);
 
     // Vertices that are bounces are recorded.
     const double first = branch.starts_up ? lanes.first_up[i] : lanes.first_down[i];

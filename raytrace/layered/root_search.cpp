@@ -15,14 +15,14 @@ Rays gather(const TaskLanes& tasks, const Field& field) noexcept {
 class CubicLanes {
  public:
   explicit CubicLanes(const TaskLanes& tasks) noexcept
-      : steep_(gather(tasks, [](const RootTask& t) { return t.steep ? 1.0 : 0.0; }) > 0.5),
-        low_(gather(tasks, [](const RootTask& t) { return t.begin.x; })),
-        high_(gather(tasks, [](const RootTask& t) { return t.end.x; })),
-        a0_(gather(tasks, [](const RootTask& t) { return t.begin.value; })) {
+      : steep_(gather(tasks, [](const RootTask& t) { return t.stretch->steep ? 1.0 : 0.0; }) > 0.5),
+        low_(gather(tasks, [](const RootTask& t) { return t.stretch->begin.x; })),
+        high_(gather(tasks, [](const RootTask& t) { return t.stretch->end.x; })),
+        a0_(gather(tasks, [](const RootTask& t) { return t.stretch->begin.value; })) {
     const Rays h = high_ - low_;
-    const Rays from = h * gather(tasks, [](const RootTask&t) { return t.begin.slope; }),
-               to = h * gather(tasks, [](const RootTask&t) { return t.end.slope; });
-    rise_ = gather(tasks, [](const RootTask& t) { return t.end.value; }) - a0_;
+    const Rays from = h * gather(tasks, [](const RootTask&t) { return t.stretch->begin.slope; }),
+               to = h * gather(tasks, [](const RootTask&t) { return t.stretch->end.slope; });
+    rise_ = gather(tasks, [](const RootTask& t) { return t.stretch->end.value; }) - a0_;
     a1_ = from;
     a2_ = 3.0 * rise_ - 2.0 * from - to;
     a3_ = from + to - 2.0 * rise_;
@@ -82,17 +82,25 @@ struct Step {
 
 }  // namespace
 
-TaskLanes::TaskLanes(const RootTask* const* tasks, std::size_t n, bool source_is_upper) noexcept
-    : count(n) {
-  std::array<BranchWeights, rays_at_once> w;
-  for (std::size_t i = 0; i < rays_at_once; ++i) {
-    task[i] = tasks[std::min(i, n - 1)];
-    w[i] = weights(task[i]->branch, source_is_upper);
-  }
+RootStretch::RootStretch(const MonotoneStretch& stretch, bool source_is_upper) noexcept
+    : interval(stretch.interval),
+      cell(stretch.cell),
+      branch(stretch.branch),
+      weights(asdic::weights(stretch.branch, source_is_upper)),
+      steep(stretch.sigma_begin > steep_sigma),
+      begin{stretch.sigma_begin, stretch.range_begin, stretch.slope_begin},
+      end{stretch.sigma_end, stretch.range_end, stretch.slope_end} {
+  if (!steep) return;
+  begin = in_cosine(begin);
+  end = in_cosine(end);
+}
+
+TaskLanes::TaskLanes(const RootTask* const* tasks, std::size_t n) noexcept : count(n) {
+  for (std::size_t i = 0; i < rays_at_once; ++i) task[i] = tasks[std::min(i, n - 1)];
   range = Rays([&](auto i) { return task[i]->range; });
-  up = Rays([&](auto i) { return w[i].up; });
-  middle = Rays([&](auto i) { return w[i].middle; });
-  down = Rays([&](auto i) { return w[i].down; });
+  up = Rays([&](auto i) { return task[i]->stretch->weights.up; });
+  middle = Rays([&](auto i) { return task[i]->stretch->weights.middle; });
+  down = Rays([&](auto i) { return task[i]->stretch->weights.down; });
 }
 
 FoundRays find_roots(const LegSource& source, double c_ref, const TaskLanes& tasks) noexcept {
@@ -132,14 +140,14 @@ RootGroups::RootGroups(const BranchTable& fan, const FanInterval& interval,
               tasks.size() < worth_a_series ? std::span<const double>() : interval.sigma),
       order_(tasks.size()) {
   std::vector<std::size_t> next(interval.sigma.size() + 1, 0);  // place of each cell's first task
-  for (const RootTask& task : tasks) ++next[task.cell + 1];
+  for (const RootTask& task : tasks) ++next[task.stretch->cell + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (const RootTask& task : tasks) order_[next[task.cell]++] = &task;
+  for (const RootTask& task : tasks) order_[next[task.stretch->cell]++] = &task;
 }
 
 std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noexcept {
   std::size_t i = begin;
-  while (i < order_.size() && order_[i]->cell < cell) ++i;
+  while (i < order_.size() && order_[i]->stretch->cell < cell) ++i;
   return i;
 }
 
@@ -148,11 +156,11 @@ std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noex
 RootGroups::Group RootGroups::few(std::size_t begin, std::size_t end) const {
   if (kept_ == nullptr) return {{.column = column_}, end};
   const auto piece = [&](const RootTask& task) {
-    const HermiteNode &a = task.begin, &b = task.end;
+    const HermiteNode &a = task.stretch->begin, &b = task.stretch->end;
     double x = a.x + (b.x - a.x) * (task.range - a.value) / (b.value - a.value);
     if (const double root = Hermite(a, b).root_near(x, task.range); root > a.x && root < b.x)
       x = root;
-    return kept_->find(interval_.reference_speed, task.steep ? sine_of_cosine(x) : x);
+    return kept_->find(interval_.reference_speed, task.stretch->steep ? sine_of_cosine(x) : x);
   };
   const OceanSeries::Found first = piece(*order_[begin]);
   std::size_t i = begin + 1;
@@ -162,7 +170,7 @@ RootGroups::Group RootGroups::few(std::size_t begin, std::size_t end) const {
 
 RootGroups::Group RootGroups::next(std::size_t begin) {
   if (order_.size() < worth_a_series) return few(begin, order_.size());
-  const std::size_t cell = order_[begin]->cell;
+  const std::size_t cell = order_[begin]->stretch->cell;
   for (;;) {
     const IntervalSeries::Cells cells = series_.around(cell);
     const std::size_t end = first_at(begin, cells.last);

@@ -12,15 +12,26 @@
 
 namespace asdic {
 
-/// A root of r(σ) = range, known to lie between the ends of a monotone stretch.
-struct RootTask {
+/// A monotone stretch that has roots, told by its ends.
+struct RootStretch {
   const FanInterval* interval = nullptr;
+  std::size_t cell = 0;  ///< of the interval
   Branch branch;
+  BranchWeights weights;   ///< of the branch
+  bool steep = false;      ///< −cos θ is the variable x of the next two, else σ
+  HermiteNode begin, end;  ///< x, r, dr/dx at the ends of the stretch
+
+  RootStretch(const MonotoneStretch& stretch, bool source_is_upper) noexcept;
+  /// Of a root found by other means.
+  RootStretch(const Branch& history, bool source_is_upper) noexcept
+      : branch(history), weights(asdic::weights(history, source_is_upper)) {}
+};
+
+/// A root of r(σ) = range, known to lie between the ends of a stretch.
+struct RootTask {
+  const RootStretch* stretch = nullptr;
   std::size_t receiver = 0;  ///< whose it is
   double range = 0.0;        ///< [m]
-  std::size_t cell = 0;      ///< of the interval
-  bool steep = false;        ///< −cos θ is the variable x of the next two, else σ
-  HermiteNode begin, end;    ///< x, r, dr/dx at the ends of the stretch
 };
 
 /// As many tasks as lanes, side by side; the last one fills what is left.
@@ -30,7 +41,7 @@ struct TaskLanes {
   Rays range;             ///< [m]
   Rays up, middle, down;  ///< BranchWeights
 
-  TaskLanes(const RootTask* const* tasks, std::size_t n, bool source_is_upper) noexcept;
+  TaskLanes(const RootTask* const* tasks, std::size_t n) noexcept;
 
   [[nodiscard]] Rays of(const Rays& u, const Rays& m, const Rays& d) const noexcept {
     return up * u + middle * m + down * d;
@@ -79,8 +90,7 @@ class RootGroups {
     while (begin < order_.size()) {
       const Group group = next(begin);
       for (std::size_t i = begin; i < group.end; i += rays_at_once) {
-        const TaskLanes lanes(&order_[i], std::min(rays_at_once, group.end - i),
-                              column_.source_is_upper());
+        const TaskLanes lanes(&order_[i], std::min(rays_at_once, group.end - i));
         found(lanes, find_roots(group.source, interval_.reference_speed, lanes));
       }
       begin = group.end;

@@ -99,7 +99,7 @@ void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sin
   const SoundSpeed top = layer.at(layer.top), bottom = layer.at(layer.bottom);
   const SoundSpeed& flat = flat_at_top ? top : bottom;
   const Rays xi2 = rays.slowness * rays.slowness;
-  const Rays before = s2 / (2.0 * flat.c * std::abs(flat.dc_dz) * xi2);
+  const Rays before = before_edge(s2, xi2, flat);
   LegLanes sum;
   Rays by_parts = 1.0 / (sine_bottom * layer.slope_bottom) - 1.0 / (sine_top * layer.slope_top);
   add_in_root<detailed>(layer, rays, edge - sign * before, sign, before, before + layer.thickness(),

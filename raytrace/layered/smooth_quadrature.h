@@ -67,8 +67,20 @@ void at_nodes_in_root(const Layer& layer, const RayParameter& ray, double vertex
   for (std::size_t i = 0; i < 8; ++i) f(SoundSpeed{c[i], slope[i], bend[i]}, per_sine[i], dz[i]);
 }
 
-/// Over a layer whose dc/dz hardly varies, from the flatter edge's virtual vertex at distance
-/// s₀²/|ds²/dz|.
+/// How far before a layer's flatter edge s² would be zero: that of the parabola s² = s₀² + A(x −
+/// κx²), A = 2ξ²cg, κ = (g/c + c″/g)/2, x the way from the edge, g = |dc/dz| there. A straight
+/// line's own, δ = s₀²/A, would leave κδ² of s²/A at a distance δ from the edge, which few nodes
+/// cannot see.
+template <class Real>
+Real before_edge(const Real& sine2, const Real& slowness2, const SoundSpeed& edge) {
+  using std::max, std::sqrt;
+  const double g = std::abs(edge.dc_dz);
+  const Real line = sine2 / (2.0 * edge.c * g * slowness2);
+  const Real root2 = 1.0 + line * (2.0 * (g / edge.c + edge.d2c_dz2 / g));
+  return 2.0 * line / (1.0 + sqrt(max(root2, Real(0.25))));
+}
+
+/// Over a layer whose dc/dz hardly varies, from the flatter edge's virtual vertex.
 template <class F>
 void integrate_evenly_bent(const Layer& layer, const RayParameter& ray, double sine_top,
                            double sine_bottom, F&& f) {
@@ -76,7 +88,7 @@ void integrate_evenly_bent(const Layer& layer, const RayParameter& ray, double s
   const double flat = flat_at_top ? layer.top : layer.bottom, sign = flat_at_top ? 1.0 : -1.0;
   const double s2 = flat_at_top ? sine_top * sine_top : sine_bottom * sine_bottom;
   const SoundSpeed edge = layer.at(flat);
-  const double before = s2 / (2.0 * ray.slowness * ray.slowness * edge.c * std::abs(edge.dc_dz));
+  const double before = before_edge(s2, ray.slowness * ray.slowness, edge);
   at_nodes_in_root(layer, ray, flat - sign * before, sign, before, before + layer.thickness(), f);
 }
 
