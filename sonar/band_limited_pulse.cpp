@@ -15,10 +15,6 @@ constexpr double tail_error = 3e-5;      // of the peak, −90 dB
 constexpr double slope_share = 0.075;    // half the filter's slope over the width of its flat part
 constexpr double slope_steepness = 2.7;  // ½ erfc(2.7) = 7e-5 is left where the slope is cut off
 
-bool jumps_at_its_edges(const Pulse& pulse) {
-  return std::abs(pulse.analytic(0.0)) > 1e-3 || std::abs(pulse.analytic(pulse.duration())) > 1e-3;
-}
-
 }  // namespace
 
 BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
@@ -26,11 +22,12 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
     : centre_frequency_(pulse.centre_frequency()) {
   const PulseSpectrum spectrum = pulse_spectrum(pulse, centre_frequency_);
   const double analysed = spectrum.bin_width * static_cast<double>(spectrum.bins.size());
-  const bool jumps = jumps_at_its_edges(pulse);
+  constexpr double all_over_flat = 1.0 + 4.0 * slope_share;
+  const double lossless = bandwidth_for_error(spectrum, tail_error);
   const double widest =
-      jumps ? std::min(4.0 * pulse.bandwidth_40db(), recorded) : 2.0 * sample_rate;
-  const double flat = std::min(
-      {bandwidth_for_error(spectrum, tail_error), widest, analysed / (2.0 + 8.0 * slope_share)});
+      pulse.jumps_at_its_edges() ? 4.0 * pulse.bandwidth_40db() : 2.0 * sample_rate;
+  const double flat =
+      std::min({lossless, widest, recorded / all_over_flat, analysed / (2.0 + 8.0 * slope_share)});
   const double slope = slope_share * flat;
   half_band_ = 0.5 * flat + 2.0 * slope;
 
@@ -54,7 +51,7 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
   ComplexFft<double>(length).inverse(x.data());
 
   // The filter's response is a sinc under exp(−(πt·slope/2.7)²): 1e-5 at t = 2.9/slope.
-  const double ringing = jumps ? 2.9 / slope : 1.0 / flat;
+  const double ringing = flat < lossless ? 2.9 / slope : 1.0 / flat;
   const double rate = spectrum.bin_width * static_cast<double>(length);
   const auto reach =
       std::min((n - 1) / 2,

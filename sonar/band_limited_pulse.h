@@ -12,13 +12,14 @@ namespace asdic {
 ///
 /// The filter is flat over a width so chosen that a pulse with soft edges loses less than −90 dB of
 /// its peak. A pulse whose edges jump (no window) has no such width; it keeps four times its −40 dB
-/// bandwidth, but no more than is recorded, and its edges rise in about 1/width. Source:
+/// bandwidth, and its edges rise in about 1/width. Of no pulse is more let through than is
+/// recorded: what is cut off there rings for 39 over the flat width at most. Source:
 /// docs/theory/synthesis.md, "Band".
 class BandLimitedPulse {
  public:
   /// \param filter  a further, real response over the frequency from the centre [Hz], smooth over
-  /// the band; none: 1   \param recorded  width around the centre beyond which nothing is recorded
-  /// [Hz]: a pulse whose edges jump is flat over no more than that
+  /// the band; none: 1   \param recorded  full width around the centre that may be let through
+  /// [Hz]; the filter is flat over 1/1.3 of it
   BandLimitedPulse(const Pulse& pulse, double sample_rate,
                    const std::function<double(double)>& filter = {}, double recorded = infinity);
 

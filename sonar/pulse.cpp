@@ -107,6 +107,7 @@ double spectral_centre(const std::vector<std::complex<double>>& samples, double 
 struct Widths {
   double down_40db = 0.0;  // outside which the spectrum stays 40 dB below its peak [Hz]
   double energy_99 = 0.0;  // that hold 99 % of the energy [Hz]
+  double sampled = 0.0;    // outside which less than 2e-4 of the peak is lost at any time [Hz]
 };
 
 /// A scenario's pulse is made a dozen times while it is read and simulated, and its spectrum takes
@@ -116,7 +117,8 @@ Widths widths_of(const Pulse& pulse) {
   const PulseSettings& s = pulse.settings();
   const auto found = [&]() -> Widths {
     const PulseSpectrum spectrum = pulse_spectrum(pulse, pulse.centre_frequency());
-    return {bandwidth(spectrum, 40.0), bandwidth_of_energy(spectrum, 0.99)};
+    return {bandwidth(spectrum, 40.0), bandwidth_of_energy(spectrum, 0.99),
+            bandwidth_for_error(spectrum, 2e-4)};
   };
   if (s.kind == PulseKind::file) return found();
   struct Known {
@@ -175,7 +177,15 @@ Pulse::Pulse(PulseSettings settings) : settings_(std::move(settings)) {
   const Widths widths = widths_of(*this);
   bandwidth_40db_ = std::min(widths.down_40db, 2.0 * centre_frequency_);
   bandwidth_99_ = std::min(widths.energy_99, bandwidth_40db_);
+  const bool has_none = jumps_at_its_edges() || std::isinf(widths.sampled);
+  sampled_bandwidth_ = has_none
+                           ? bandwidth_40db_
+                           : std::clamp(widths.sampled, bandwidth_40db_, 2.0 * centre_frequency_);
   energy_ = energy_of(*this);
+}
+
+bool Pulse::jumps_at_its_edges() const noexcept {
+  return std::abs(analytic(0.0)) > 1e-3 || std::abs(analytic(duration())) > 1e-3;
 }
 
 std::complex<double> Pulse::analytic(double t) const noexcept {

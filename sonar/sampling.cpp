@@ -40,10 +40,17 @@ double recorded_rate(const Scenario& scenario) {
   const PingSchedule& schedule = scenario.pings;
   if (schedule.samples == Samples::pressure) return schedule.sample_rate;
   if (schedule.baseband_rate) return *schedule.baseband_rate;
-  const Band band = band_of_all(scenario);
-  const double carrier = recorded_carrier(scenario);
-  constexpr double margin = 1.25;  // a quarter more than the band, for filters
-  return std::ceil(margin * 2.0 * std::max(band.highest - carrier, carrier - band.lowest));
+  const double carrier = recorded_carrier(scenario), doppler = doppler_bound(scenario);
+  double furthest = 0.0;
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const Pulse pulse(pulse_of(scenario, static_cast<int>(t)));
+    constexpr double for_filter =
+        1.35;  // BandLimitedPulse: flat over 1/1.3 of what it lets through
+    const double f = pulse.centre_frequency(), half = 0.5 * for_filter * pulse.sampled_bandwidth();
+    furthest = std::max(
+        {furthest, (f + half) * (1.0 + doppler) - carrier, carrier - (f - half) * (1.0 - doppler)});
+  }
+  return std::ceil(2.0 * furthest);
 }
 
 Recording recording_of(const Scenario& scenario) {

@@ -45,13 +45,15 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
     throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
 }
 
-/// Of the pulse's frequencies around its centre, those that a complex recording may keep under any
-/// Doppler factor: |η(f + ν) − f_rec| ≤ rate/2 [Hz].
+/// Of the pulse's frequencies f + ν those that a complex recording holds under every Doppler
+/// factor, |η(f + ν) − f_rec| ≤ rate/2: the full width in ν [Hz]. Two bins of the period are left
+/// for rounding the carrier and the band to bins.
 double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
   if (!record.is_complex()) return infinity;
   const double f = sent.centre_frequency();
-  return 2.0 * (0.5 * record.sample_rate + std::abs(f - record.carrier) + f * max_doppler) /
-         (1.0 - max_doppler);
+  const double bin = record.sample_rate / static_cast<double>(record.samples);
+  const double half = 0.5 * record.sample_rate - 2.0 * bin - std::abs(f - record.carrier);
+  return std::max(2.0 * (half - f * max_doppler) / (1.0 + max_doppler), sent.bandwidth_40db());
 }
 
 /// The pulse through every filter.
