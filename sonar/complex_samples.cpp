@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <experimental/simd>
+#include <cstring>
 
 #include "core/units.h"
 #include "sonar/interpolation_taps.h"
@@ -34,48 +34,84 @@ struct Places {
   std::array<std::complex<float>, block> turn;
 };
 
+/// Complex samples of four phones, and the same moved about whole.
+using Four [[gnu::vector_size(32)]] = float;
+using Whole [[gnu::vector_size(32)]] = double;
+
+template <class Lanes>
+void load(const float* from, Lanes& lanes) noexcept {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+
+/// Adds four samples of four phones to their rows. \param sums  [samples × stride]
+void add_transposed(const float* sums, std::size_t stride, std::size_t phones, float* out,
+                    std::size_t row) noexcept {
+  std::array<Whole, 4> x;
+  for (std::size_t i = 0; i < 4; ++i) load(sums + i * stride, x[i]);
+  const Whole even = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
+  const Whole odd = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+  const Whole later_even = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
+  const Whole later_odd = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+  x = {__builtin_shufflevector(even, later_even, 0, 1, 4, 5),
+       __builtin_shufflevector(odd, later_odd, 0, 1, 4, 5),
+       __builtin_shufflevector(even, later_even, 2, 3, 6, 7),
+       __builtin_shufflevector(odd, later_odd, 2, 3, 6, 7)};
+  for (std::size_t n = 0; n < phones; ++n) {
+    Four sum, more;
+    load(out + n * row, sum);
+    std::memcpy(&more, &x[n], sizeof more);
+    sum += more;
+    std::memcpy(out + n * row, &sum, sizeof sum);
+  }
+}
+
 /// Adds a block's samples of some phones, side by side in lanes: Σ w_k·x_k, turned.
-/// \param width  phones side by side, of which `phones` from `channel` on are there
+/// \param fours  of phones side by side, of which `phones` from `channel` on are there
 /// \param samples  of the record, from the block's first on   \param row  from phone to phone
-template <int width>
+template <std::size_t fours>
 void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phones,
                  const Places& at, float* samples, std::size_t row) {
-  using Lanes = std::experimental::fixed_size_simd<float, width>;
-  using std::experimental::element_aligned;
-  constexpr std::size_t re = 0, im = width, stride = 2 * width;
-  // [samples × (real parts, imaginary parts)], wrapped around the period
+  constexpr std::size_t stride = 8 * fours;
   const auto period = static_cast<std::ptrdiff_t>(baseband.samples);
-  std::vector<float> under(static_cast<std::size_t>(at.highest - at.lowest + 1) * stride, 0.0F);
+  // [samples × phones], wrapped around the period
+  std::vector<std::complex<float>> under(
+      static_cast<std::size_t>(at.highest - at.lowest + 1) * 4 * fours, 0.0F);
   for (std::size_t n = 0; n < phones; ++n) {
     const auto x = baseband.channel(channel + n);
     std::ptrdiff_t k = (at.lowest % period + period) % period;
-    for (std::size_t to = n; to < under.size(); to += stride) {
-      under[to + re] = x[static_cast<std::size_t>(k)].real();
-      under[to + im] = x[static_cast<std::size_t>(k)].imag();
+    for (std::size_t to = n; to < under.size(); to += 4 * fours) {
+      under[to] = x[static_cast<std::size_t>(k)];
       if (++k == period) k = 0;
     }
   }
   std::array<float, block * stride> sums;
   for (std::size_t i = 0; i < at.count; ++i) {
-    Lanes x = 0.0F, y = 0.0F;
-    const float* from = under.data() + at.first[i] * stride;
+    std::array<Four, fours> sum{};
+    const float* from = reinterpret_cast<const float*>(under.data()) + at.first[i] * stride;
 #pragma GCC unroll 24
-    for (std::size_t k = 0; k < Taps::taps; ++k) {
-      const float weight = at.weights[i][static_cast<Eigen::Index>(k)];
-      x += weight * Lanes(from + k * stride + re, element_aligned);
-      y += weight * Lanes(from + k * stride + im, element_aligned);
-    }
+    for (std::size_t k = 0; k < Taps::taps; ++k)
+      for (std::size_t q = 0; q < fours; ++q) {
+        Four x;
+        load(from + k * stride + 8 * q, x);
+        sum[q] += at.weights[i][static_cast<Eigen::Index>(k)] * x;
+      }
     const float c = at.turn[i].real(), s = at.turn[i].imag();
-    (x * c - y * s).copy_to(&sums[i * stride + re], element_aligned);
-    (x * s + y * c).copy_to(&sums[i * stride + im], element_aligned);
-  }
-  for (std::size_t n = 0; n < phones; ++n) {
-    float* out = samples + n * row;
-    const float* sum = sums.data() + n;
-    for (std::size_t i = 0; i < at.count; ++i, out += 2, sum += stride) {
-      out[0] += sum[re];
-      out[1] += sum[im];
+    const Four across = {-s, s, -s, s, -s, s, -s, s};
+    for (std::size_t q = 0; q < fours; ++q) {
+      const Four swapped = __builtin_shufflevector(sum[q], sum[q], 1, 0, 3, 2, 5, 4, 7, 6);
+      const Four turned = sum[q] * c + swapped * across;
+      std::memcpy(&sums[i * stride + 8 * q], &turned, sizeof turned);
     }
+  }
+  for (std::size_t n = 0; n < phones; n += 4) {
+    const std::size_t there = std::min<std::size_t>(4, phones - n);
+    float* const out = samples + n * row;
+    std::size_t i = 0;
+    for (; i + 4 <= at.count; i += 4)
+      add_transposed(&sums[i * stride + 2 * n], stride, there, out + 2 * i, row);
+    for (; i < at.count; ++i)
+      for (std::size_t k = 0; k < 2 * there; ++k)
+        out[k / 2 * row + 2 * i + k % 2] += sums[i * stride + 2 * n + k];
   }
 }
 
@@ -193,7 +229,7 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
     const std::size_t row = 2 * recording.samples;
     for (std::size_t n = 0; n < baseband.channels;) {
       const std::size_t left = baseband.channels - n, phones = std::min<std::size_t>(left, 16);
-      const auto part = phones > 8 ? interpolate<16> : phones > 4 ? interpolate<8> : interpolate<4>;
+      const auto part = phones > 8 ? interpolate<4> : phones > 4 ? interpolate<2> : interpolate<1>;
       part(baseband, n, phones, at, samples.data() + n * row + 2 * begin, row);
       n += phones;
     }
