@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "core/units.h"
 #include "sonar/interpolation_taps.h"
@@ -21,29 +22,98 @@ using Taps = InterpolationTaps<float, 24>;
 constexpr double kaiser_beta = 9.73;
 static_assert(DelayKernel::oversampling >= 1.35);
 
-/// Real taps, each twice: as they multiply interleaved complex samples.
-using TwiceEach = Eigen::Array<float, 2 * Taps::taps, 1>;
-
-/// Σ w_k·x_k in lanes of four samples. \param samples  [taps] real and imaginary part in turn
-std::complex<float> weighted(const float* samples, const TwiceEach& weights) {
-  using Lanes = Eigen::Array<float, 8, 1>;
-  static_assert(2 * Taps::taps % 8 == 0);
-  Lanes sum = Lanes::Zero();
-  for (int k = 0; k < 2 * Taps::taps; k += 8)
-    sum += Eigen::Map<const Lanes>(samples + k) * weights.segment<8>(k);
-  const Eigen::Array4f half = sum.head<4>() + sum.tail<4>();
-  return {half[0] + half[2], half[1] + half[3]};
-}
-
 /// Samples of the record that are interpolated at one time: their taps stay in the cache.
-constexpr std::size_t block = 64;
+constexpr std::size_t block = 128;
 
 /// Where the samples of a block lie between those of the baseband, and what turns them.
 struct Places {
-  std::array<std::ptrdiff_t, block> first;  // of the samples under the taps
-  std::array<TwiceEach, block> weights;
+  std::size_t count = 0;
+  std::ptrdiff_t lowest = 0, highest = 0;  // of the baseband's samples under all taps
+  std::array<std::size_t, block> first;    // of those under a sample's taps, after the lowest
+  std::array<Taps::Weights, block> weights;
   std::array<std::complex<float>, block> turn;
 };
+
+/// Complex samples of four phones, and the same moved about whole.
+using Four [[gnu::vector_size(32)]] = float;
+using Whole [[gnu::vector_size(32)]] = double;
+
+template <class Lanes>
+void load(const float* from, Lanes& lanes) noexcept {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+
+/// Adds four samples of four phones to their rows. \param sums  [samples × stride]
+void add_transposed(const float* sums, std::size_t stride, std::size_t phones, float* out,
+                    std::size_t row) noexcept {
+  std::array<Whole, 4> x;
+  for (std::size_t i = 0; i < 4; ++i) load(sums + i * stride, x[i]);
+  const Whole even = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
+  const Whole odd = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+  const Whole later_even = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
+  const Whole later_odd = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+  x = {__builtin_shufflevector(even, later_even, 0, 1, 4, 5),
+       __builtin_shufflevector(odd, later_odd, 0, 1, 4, 5),
+       __builtin_shufflevector(even, later_even, 2, 3, 6, 7),
+       __builtin_shufflevector(odd, later_odd, 2, 3, 6, 7)};
+  for (std::size_t n = 0; n < phones; ++n) {
+    Four sum, more;
+    load(out + n * row, sum);
+    std::memcpy(&more, &x[n], sizeof more);
+    sum += more;
+    std::memcpy(out + n * row, &sum, sizeof sum);
+  }
+}
+
+/// Adds a block's samples of some phones, side by side in lanes: Σ w_k·x_k, turned.
+/// \param fours  of phones side by side, of which `phones` from `channel` on are there
+/// \param samples  of the record, from the block's first on   \param row  from phone to phone
+template <std::size_t fours>
+void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phones,
+                 const Places& at, float* samples, std::size_t row) {
+  constexpr std::size_t stride = 8 * fours;
+  const auto period = static_cast<std::ptrdiff_t>(baseband.samples);
+  // [samples × phones], wrapped around the period
+  std::vector<std::complex<float>> under(
+      static_cast<std::size_t>(at.highest - at.lowest + 1) * 4 * fours, 0.0F);
+  for (std::size_t n = 0; n < phones; ++n) {
+    const auto x = baseband.channel(channel + n);
+    std::ptrdiff_t k = (at.lowest % period + period) % period;
+    for (std::size_t to = n; to < under.size(); to += 4 * fours) {
+      under[to] = x[static_cast<std::size_t>(k)];
+      if (++k == period) k = 0;
+    }
+  }
+  std::array<float, block * stride> sums;
+  for (std::size_t i = 0; i < at.count; ++i) {
+    std::array<Four, fours> sum{};
+    const float* from = reinterpret_cast<const float*>(under.data()) + at.first[i] * stride;
+#pragma GCC unroll 24
+    for (std::size_t k = 0; k < Taps::taps; ++k)
+      for (std::size_t q = 0; q < fours; ++q) {
+        Four x;
+        load(from + k * stride + 8 * q, x);
+        sum[q] += at.weights[i][static_cast<Eigen::Index>(k)] * x;
+      }
+    const float c = at.turn[i].real(), s = at.turn[i].imag();
+    const Four across = {-s, s, -s, s, -s, s, -s, s};
+    for (std::size_t q = 0; q < fours; ++q) {
+      const Four swapped = __builtin_shufflevector(sum[q], sum[q], 1, 0, 3, 2, 5, 4, 7, 6);
+      const Four turned = sum[q] * c + swapped * across;
+      std::memcpy(&sums[i * stride + 8 * q], &turned, sizeof turned);
+    }
+  }
+  for (std::size_t n = 0; n < phones; n += 4) {
+    const std::size_t there = std::min<std::size_t>(4, phones - n);
+    float* const out = samples + n * row;
+    std::size_t i = 0;
+    for (; i + 4 <= at.count; i += 4)
+      add_transposed(&sums[i * stride + 2 * n], stride, there, out + 2 * i, row);
+    for (; i < at.count; ++i)
+      for (std::size_t k = 0; k < 2 * there; ++k)
+        out[k / 2 * row + 2 * i + k % 2] += sums[i * stride + 2 * n + k];
+  }
+}
 
 /// Whether a row has anything in its samples from `first` to `last`, which go on periodically.
 class Silence {
@@ -130,65 +200,57 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
 /// The same out of the baseband's samples, where its whole band lies within the recorded one.
 void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
                                        std::span<float> samples) const {
-  const Plan& plan = *plan_;
   static const Taps taps(kaiser_beta);
-  const Recording& recording = plan.recording;
-  const auto period = static_cast<std::ptrdiff_t>(plan.length);
-  const double beside = plan.carrier - recording.carrier;
+  const Recording& recording = plan_->recording;
+  const double beside = baseband.carrier - recording.carrier;
   const double from_start = beside * recording.start - recording.carrier * epoch_;
-  const double step = plan.rate / recording.sample_rate;
+  const double step = baseband.sample_rate / recording.sample_rate;
   const std::complex<double> turn_step = std::polar(1.0, 2.0 * pi * beside / recording.sample_rate);
   const Silence silence(baseband);
   const auto add = [&](std::size_t begin) {
-    const std::size_t count = std::min(block, recording.samples - begin);
-    const double low = static_cast<double>(begin) * step;
-    const auto lowest = static_cast<std::ptrdiff_t>(low) - Taps::before;
-    const auto highest =
-        static_cast<std::ptrdiff_t>(static_cast<double>(begin + count - 1) * step) - Taps::before +
-        Taps::taps - 1;
-    if (silence.between(lowest, highest, plan.length)) return;
+    const auto below = [&](std::size_t i) {  // of the baseband's samples the one before a place
+      return static_cast<std::ptrdiff_t>(static_cast<double>(begin + i) * step);
+    };
     Places at;
+    at.count = std::min(block, recording.samples - begin);
+    at.lowest = below(0) - Taps::before;
+    at.highest = below(at.count - 1) - Taps::before + Taps::taps - 1;
+    if (silence.between(at.lowest, at.highest, baseband.samples)) return;
     const double cycles = from_start + beside * static_cast<double>(begin) / recording.sample_rate;
     std::complex<double> turn = std::polar(scale, 2.0 * pi * (cycles - std::round(cycles)));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double position = static_cast<double>(begin + i) * step;
-      const double below = std::floor(position);
-      at.first[i] = static_cast<std::ptrdiff_t>(below) - Taps::before;
-      const Taps::Weights once = taps.at(static_cast<float>(position - below));
-      for (int k = 0; k < Taps::taps; ++k)
-        at.weights[i][2 * k] = at.weights[i][2 * k + 1] = once[k];
+    for (std::size_t i = 0; i < at.count; ++i) {
+      const std::ptrdiff_t before = below(i);
+      at.first[i] = static_cast<std::size_t>(before - Taps::before - at.lowest);
+      at.weights[i] = taps.at(
+          static_cast<float>(static_cast<double>(begin + i) * step - static_cast<double>(before)));
       at.turn[i] = std::complex<float>(turn);
       turn *= turn_step;
     }
-    // The samples under the block's taps, wrapped around the period.
-    std::vector<std::complex<float>> under(static_cast<std::size_t>(highest - lowest + 1));
-    for (std::size_t n = 0; n < baseband.channels; ++n) {
-      const auto row = baseband.channel(n);
-      for (std::ptrdiff_t i = lowest, k = (lowest % period + period) % period; i <= highest; ++i) {
-        under[static_cast<std::size_t>(i - lowest)] = row[static_cast<std::size_t>(k)];
-        if (++k == period) k = 0;
-      }
-      float* out = samples.data() + (n * recording.samples + begin) * 2;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::complex<float> sum = weighted(
-            reinterpret_cast<const float*>(under.data() + (at.first[i] - lowest)), at.weights[i]);
-        const std::complex<float> by = at.turn[i];
-        out[2 * i] += sum.real() * by.real() - sum.imag() * by.imag();
-        out[2 * i + 1] += sum.real() * by.imag() + sum.imag() * by.real();
-      }
+    const std::size_t row = 2 * recording.samples;
+    for (std::size_t n = 0; n < baseband.channels;) {
+      const std::size_t left = baseband.channels - n, phones = std::min<std::size_t>(left, 16);
+      const auto part = phones > 8 ? interpolate<4> : phones > 4 ? interpolate<2> : interpolate<1>;
+      part(baseband, n, phones, at, samples.data() + n * row + 2 * begin, row);
+      n += phones;
     }
   };
   oneapi::tbb::parallel_for(std::size_t{0}, (recording.samples + block - 1) / block,
                             [&](std::size_t b) { add(b * block); });
 }
 
-void Synthesizer::add_complex(const Baseband& baseband, double scale,
-                              std::span<float> samples) const {
+/// Whether the whole band of the synthesis lies within the recorded one.
+bool Synthesizer::interpolates() const noexcept {
   const Plan& plan = *plan_;
+  if (!plan.recording.is_complex()) return false;
   const double period = static_cast<double>(plan.passband_length) / plan.recording.sample_rate;
   const double furthest = std::abs(plan.carrier - plan.recording.carrier) +
                           static_cast<double>(plan.highest_bin) / period;
-  if (furthest <= 0.5 * plan.recording.sample_rate)
+  return furthest <= 0.5 * plan.recording.sample_rate;
+}
+
+void Synthesizer::add_complex(const Baseband& baseband, double scale,
+                              std::span<float> samples) const {
+  if (interpolates())
     add_by_interpolation(baseband, scale, samples);
   else
     add_by_fft(baseband, scale, samples);

@@ -116,16 +116,32 @@ std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_
   return spectra;
 }
 
+Baseband Synthesizer::silence(const ReverberationCovariance& covariance,
+                              std::vector<std::complex<float>> memory) const {
+  constexpr double least_rate = 50.0;  // [Hz]; a level's step holds two samples or more
+  const Plan& plan = *plan_;
+  const std::size_t colours = covariance.band.frequencies.size();
+  const std::size_t phones = covariance.components / colours;
+  if (!interpolates()) return silence(phones, std::move(memory));
+  const double bins = static_cast<double>(covariance_spectra(covariance.band)->size()) /
+                      static_cast<double>(colours);
+  const double period = static_cast<double>(plan.length) / plan.rate;
+  const std::size_t length = fast_fft_length(static_cast<std::size_t>(
+      std::ceil(std::max(bins * DelayKernel::oversampling, least_rate * period))));
+  return silence_of(phones, std::min(length, plan.length), std::move(memory));
+}
+
 void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
                                const CovarianceDraw& draw, Baseband& baseband) const {
   const Plan& plan = *plan_;
   const std::size_t phones = baseband.channels, colours = covariance.band.frequencies.size();
-  assert(covariance.components == phones * colours && baseband.samples == plan.length);
+  assert(covariance.components == phones * colours && baseband.samples <= plan.length);
   const auto spectra = covariance_spectra(covariance.band);
   const std::size_t bins = spectra->size() / colours, highest = bins / 2;
   // White noise of any rate above the pulse's band is as good as another: it stands on the coarsest
   // grid of the period. An impulse stands in the pulse's middle.
-  const std::size_t length = std::min(plan.length, fast_fft_length(bins + 1));
+  const std::size_t fine = baseband.samples;
+  const std::size_t length = std::min(fine, fast_fft_length(bins + 1));
   const double period = static_cast<double>(plan.length) / plan.rate;
   const double rate = static_cast<double>(length) / period;
   const DelayGrid grid{
@@ -139,7 +155,7 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   tbb::parallel_for(std::size_t{0}, covariance.stretches.size(), [&](std::size_t s) {
     draw_stretch(covariance, s, draw, grid, grids.data(), stride);
   });
-  const ComplexFft<float> coarse(length), fft(plan.length);
+  const ComplexFft<float> coarse(length), fft(fine);
   struct Workspace {
     Scratch sum, values;
   };
@@ -147,19 +163,19 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   tbb::parallel_for(std::size_t{0}, phones, [&](std::size_t phone) {
     auto& [sum, values] = workspaces.local();
     sum.reserve(length);
-    values.reserve(plan.length);
+    values.reserve(fine);
     std::fill_n(sum.data(), length, 0.0F);
     for (std::size_t k = 0; k < colours; ++k) {
       std::complex<float>* row = grids.data() + (k * phones + phone) * stride;
       coarse.forward(row);
       multiply_add(row, spectra->data() + k * bins, length, highest, sum.data());
     }
-    std::fill_n(values.data(), plan.length, 0.0F);
+    std::fill_n(values.data(), fine, 0.0F);
     std::copy_n(sum.data(), highest + 1, values.data());
-    std::copy_n(sum.data() + (length - highest), highest, values.data() + (plan.length - highest));
+    std::copy_n(sum.data() + (length - highest), highest, values.data() + (fine - highest));
     fft.inverse(values.data());
-    std::complex<float>* of_phone = baseband.values.data() + phone * plan.length;
-    for (std::size_t i = 0; i < plan.length; ++i) of_phone[i] += values[i];
+    std::complex<float>* of_phone = baseband.values.data() + phone * fine;
+    for (std::size_t i = 0; i < fine; ++i) of_phone[i] += values[i];
   });
 }
 

@@ -228,10 +228,13 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled) {
-      Baseband sea = scattered.back().blocks() == 0
-                         ? synthesizer.silence(phones.size(), std::move(used_before))
-                         : (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones);
-      if (const ReverberationCovariance* dense = scattered.back().covariance())
+      const ReverberationCovariance* dense = scattered.back().covariance();
+      Baseband sea = scattered.back().blocks() > 0
+                         ? (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones)
+                     : dense != nullptr
+                         ? synthesizer.silence(*dense, std::move(used_before))
+                         : synthesizer.silence(phones.size(), std::move(used_before));
+      if (dense != nullptr)
         synthesizer.add_gaussian(
             *dense, {.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)}, sea);
       append_channels(reverberated, std::move(sea));
@@ -240,8 +243,13 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   }
   levels.add_echo(heard, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
-  std::transform(reverberated.values.begin(), reverberated.values.end(), heard.values.begin(),
-                 heard.values.begin(), std::plus<>{});
+  if (reverberated.samples == heard.samples)
+    std::transform(reverberated.values.begin(), reverberated.values.end(), heard.values.begin(),
+                   heard.values.begin(), std::plus<>{});
+  else if (reverberated.channels > 0) {  // on a grid of its own
+    receivers_.respond(reverberated);
+    synthesizer.add_samples(reverberated, peak_pressure, record.pressure);
+  }
   if (reverberated.values.size() <= few) used_before = std::move(reverberated.values);
   receivers_.respond(heard);
   synthesizer.add_samples(heard, peak_pressure, record.pressure);

@@ -110,6 +110,16 @@ std::vector<Stretch> stretches_of(std::size_t bins) {
   return found;
 }
 
+/// The largest level slowness of what is heard of whole circles [s/m].
+double fastest_of(std::span<const Heard> heard) {
+  double fastest = 0.0;
+  for (const Heard& h : heard)
+    if (h.all_round)
+      fastest =
+          std::max({fastest, h.one_slowness.head<2>().norm(), h.other_slowness.head<2>().norm()});
+  return fastest;
+}
+
 /// Bearings all round, as many as the array can tell apart and some more: the mean of
 /// e^{i2πf ξ d cos φ} over N equal steps of φ is J₀ to within 2J_N of its argument. Those of four
 /// circles interleave, and in a stretch that holds a part of a circle more the alias is J_{N/4}.
@@ -172,8 +182,8 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   stretches = stretches_of(intensity.size());
   const Steering steering(listener.phones, listener.band.frequencies);
   components = steering.components();
-  const std::size_t bearings = bearings_for(listener);
-  std::vector<Heard> heard = hear(fields, limits, bin, bearings);
+  std::vector<Heard> heard = hear(fields, limits, bin, bearings_for(listener));
+  const AllRoundArray all_round(listener.phones, listener.band.frequencies, fastest_of(heard));
 
   // In the order of stretches, and in each as they came.
   std::vector<std::size_t> first(stretches.size() + 1, 0), of(heard.size());
@@ -192,8 +202,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   std::vector<std::vector<std::complex<float>>> factors(stretches.size());
   tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
     Stretch& stretch = stretches[s];
-    StretchSum sum(steering, static_cast<double>(stretch.begin) * bin,
-                   static_cast<double>(stretch.end) * bin, (bearings + 3) / 4);
+    StretchSum sum(steering, all_round);
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(heard[order[i]]);
     stretch.rank = sum.factor(factors[s]);
   });

@@ -154,6 +154,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
         sigma[0] = cross_section(geometry, ends_.frequency);
         for (std::size_t k = 0; k < points; ++k)
           sigma[k + 1] = cross_section(geometry, ends_.band[k].frequency);
+        if (one_place_)  // every law is reciprocal: the same the other way round
+          std::copy_n(sigma, 1 + points, &pairs.sigma_[(j * back.paths.size() + i) * (1 + points)]);
       }
       double power = before * sigma[0];
       for (std::size_t k = 0; k < points; ++k) {

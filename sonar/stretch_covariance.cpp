@@ -1,6 +1,5 @@
 #include "sonar/stretch_covariance.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +8,31 @@
 namespace asdic {
 namespace {
 
-Vec3 turned(const Vec3& s, double sine, double cosine) {  // about the vertical
-  return {cosine * s.x() + sine * s.y(), cosine * s.y() - sine * s.x(), s.z()};
+/// Columns of Cholesky's factorisation of a Hermitian matrix with pivots, until no more than a
+/// share of its trace is left. \param scale  of the columns that are appended \return their number
+template <class Matrix>
+std::size_t factorise(const Matrix& a, double left, double scale,
+                      std::vector<std::complex<float>>& columns) {
+  const Eigen::Index n = a.rows();
+  Eigen::VectorXd rest = a.diagonal().real();
+  const double enough = left * rest.sum();
+  Matrix f(n, n);
+  Eigen::Index rank = 0;
+  for (; rank < n && rest.sum() > enough; ++rank) {
+    Eigen::Index pivot = 0;
+    const double largest = rest.maxCoeff(&pivot);
+    auto column = f.col(rank);
+    column = a.col(pivot);
+    column.noalias() -= f.leftCols(rank) * f.row(pivot).head(rank).adjoint();
+    column *= 1.0 / std::sqrt(largest);
+    rest = (rest - column.cwiseAbs2()).cwiseMax(0.0);
+    rest[pivot] = 0.0;
+  }
+  const std::size_t first = columns.size();
+  columns.resize(first + static_cast<std::size_t>(rank * n));
+  Eigen::Map<Eigen::MatrixXcf>(columns.data() + first, n, rank) =
+      (scale * f.leftCols(rank)).template cast<std::complex<float>>();
+  return static_cast<std::size_t>(rank);
 }
 
 }  // namespace
@@ -33,56 +55,48 @@ void Steering::add(std::complex<double> amplitude, const Vec3& s,
   }
 }
 
-StretchSum::StretchSum(const Steering& steering, double begin, double end, std::size_t turns)
-    : steering_(steering),
-      begin_(begin),
-      length_(end - begin),
-      turns_(turns),
-      columns_(static_cast<Eigen::Index>(steering.components()), block),
-      sum_(Matrix::Zero(columns_.rows(), columns_.rows())) {}
+StretchSum::StretchSum(const Steering& steering, const AllRoundArray& all_round)
+    : steering_(steering), array_(all_round), all_round_(all_round) {}
 
 void StretchSum::add(Heard& h) {
-  const std::size_t turns = h.all_round ? turns_ : 1;
-  // The sum's bearings interleave: they turn by one step of the circle in the stretch's length.
-  const double share = std::clamp((h.delay - begin_) / length_, 0.0, 1.0);
-  const double scale = std::sqrt(1.0 / static_cast<double>(turns));
-  for (std::size_t k = 0; k < turns; ++k) {
-    const double angle =
-        h.all_round ? 2.0 * pi * (static_cast<double>(k) + share) / static_cast<double>(turns)
-                    : 0.0;
-    const double s = std::sin(angle), c = std::cos(angle);
-    columns_.col(used_).setZero();
-    std::complex<double>* column = columns_.col(used_).data();
-    steering_.add(scale * h.one, turned(h.one_slowness, s, c), column);
-    if (h.other != 0.0) steering_.add(scale * h.other, turned(h.other_slowness, s, c), column);
-    h.power += columns_.col(used_).squaredNorm() / static_cast<double>(columns_.rows());
-    if (++used_ == block) take();
+  if (h.all_round) {
+    const HeardAllRound circle = h.from_all_round();
+    h.power = array_.power(circle);
+    all_round_.add(circle);
+    return;
   }
+  if (columns_.size() == 0)
+    columns_.resize(static_cast<Eigen::Index>(steering_.components()), block);
+  columns_.col(used_).setZero();
+  std::complex<double>* column = columns_.col(used_).data();
+  steering_.add(h.one, h.one_slowness, column);
+  if (h.other != 0.0) steering_.add(h.other, h.other_slowness, column);
+  h.power = columns_.col(used_).squaredNorm() / static_cast<double>(columns_.rows());
+  if (++used_ == block) take();
 }
 
 void StretchSum::take() {
-  if (used_ > 0) sum_.selfadjointView<Eigen::Lower>().rankUpdate(columns_.leftCols(used_));
+  if (used_ == 0) return;
+  if (sum_.size() == 0) sum_ = Matrix::Zero(columns_.rows(), columns_.rows());
+  sum_.selfadjointView<Eigen::Lower>().rankUpdate(columns_.leftCols(used_));
   used_ = 0;
 }
 
 std::size_t StretchSum::factor(std::vector<std::complex<float>>& columns) {
+  constexpr double left = 1e-6;
   take();
+  const bool real = sum_.size() == 0 && all_round_.real();
+  const auto n = static_cast<Eigen::Index>(steering_.components());
+  if (sum_.size() == 0)
+    sum_ = Matrix::Zero(n, n);
+  else
+    sum_.triangularView<Eigen::StrictlyUpper>() = sum_.adjoint();
+  all_round_.add_to({sum_.data(), static_cast<std::size_t>(sum_.size())});
   const double mean = sum_.diagonal().real().mean();
   if (!(mean > 0.0)) return 0;
-  constexpr double left = 1e-6;
-  const Eigen::LDLT<Matrix> ldlt(sum_ / mean);
-  const Eigen::Index n = sum_.rows();
-  const Eigen::VectorXd root = ldlt.vectorD().real().cwiseMax(0.0).cwiseSqrt();
-  const Matrix l = ldlt.matrixL();
-  Matrix f = ldlt.transpositionsP().transpose() * l;
-  f.array().rowwise() *= root.transpose().array().cast<std::complex<double>>();
-  // A column's share of the trace is its norm; pivots come in falling order.
-  const Eigen::VectorXd share = f.colwise().squaredNorm();
-  Eigen::Index rank = n;
-  for (double rest = 0.0; rank > 0 && (rest += share[rank - 1]) <= left * share.sum();) --rank;
-  for (Eigen::Index k = 0; k < rank; ++k)
-    for (Eigen::Index i = 0; i < n; ++i) columns.emplace_back(f(i, k));
-  return static_cast<std::size_t>(rank);
+  const double scale = 1.0 / std::sqrt(mean);
+  return real ? factorise(Eigen::MatrixXd(sum_.real()), left, scale, columns)
+              : factorise(sum_, left, scale, columns);
 }
 
 }  // namespace asdic

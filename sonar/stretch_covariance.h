@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/units.h"
+#include "sonar/all_round_covariance.h"
 
 namespace asdic {
 
@@ -17,6 +17,17 @@ struct Heard {
   std::complex<double> one = 0.0, other = 0.0;
   Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
   bool all_round = false;  // stands for all bearings
+
+  /// Of a circle. Both slownesses lie in one vertical plane.
+  [[nodiscard]] HeardAllRound from_all_round() const noexcept {
+    return {.one = std::norm(one),
+            .other = std::norm(other),
+            .both = one * std::conj(other),
+            .level_one = one_slowness.head<2>().norm(),
+            .down_one = one_slowness.z(),
+            .level_other = other_slowness.head<2>().norm(),
+            .down_other = other_slowness.z()};
+  }
 };
 
 /// Phases of a direction at every component: k·phones + n is phone n at frequency f_k. Private to
@@ -36,14 +47,13 @@ class Steering {
 /// The covariance of what is heard in one stretch of delays, and its factor.
 class StretchSum {
  public:
-  /// \param begin, end  of the stretch [s]   \param turns  bearings of what stands for all of them
-  StretchSum(const Steering& steering, double begin, double end, std::size_t turns);
+  StretchSum(const Steering& steering, const AllRoundArray& all_round);
 
   /// Adds what one place sends back, and finds its power.
   void add(Heard& h);
-  /// F with F F^H = C but for a millionth of its trace, C the sum over its mean diagonal:
-  /// Cholesky's factorisation with pivots. \param columns  that F's are appended to \return rank;
-  /// 0: nothing is heard
+  /// F with F F^H = C but for a millionth of its trace, C the sum over its mean diagonal: columns
+  /// of Cholesky's factorisation with pivots, until no more than that is left. \param columns  that
+  /// F's are appended to \return rank; 0: nothing is heard
   [[nodiscard]] std::size_t factor(std::vector<std::complex<float>>& columns);
 
  private:
@@ -52,8 +62,8 @@ class StretchSum {
   void take();
 
   const Steering& steering_;
-  double begin_, length_;
-  std::size_t turns_;
+  const AllRoundArray& array_;
+  AllRoundSum all_round_;
   Matrix columns_, sum_;
   Eigen::Index used_ = 0;
 };

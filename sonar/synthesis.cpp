@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/units.h"
 #include "sonar/synthesis_plan.h"
@@ -29,18 +30,24 @@ Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
 Baseband Synthesizer::silence(std::size_t phones, std::vector<std::complex<float>> memory) const {
+  return silence_of(phones, plan_->length, std::move(memory));
+}
+
+/// \param length  samples of the synthesis' period
+Baseband Synthesizer::silence_of(std::size_t phones, std::size_t length,
+                                 std::vector<std::complex<float>> memory) const {
   const Plan& plan = *plan_;
+  const double rate = plan.rate * static_cast<double>(length) / static_cast<double>(plan.length);
   const double record =
       static_cast<double>(plan.recording.samples) / plan.recording.sample_rate;  // [s]
-  Baseband result{
-      .carrier = plan.carrier,
-      .sample_rate = plan.rate,
-      .start = plan.recording.start,
-      .channels = phones,
-      .samples = plan.length,
-      .recorded = std::min(plan.length, static_cast<std::size_t>(record * plan.rate) + 1),
-      .values = std::move(memory)};
-  result.values.assign(phones * plan.length, 0.0F);
+  Baseband result{.carrier = plan.carrier,
+                  .sample_rate = rate,
+                  .start = plan.recording.start,
+                  .channels = phones,
+                  .samples = length,
+                  .recorded = std::min(length, static_cast<std::size_t>(record * rate) + 1),
+                  .values = std::move(memory)};
+  result.values.assign(phones * length, 0.0F);
   return result;
 }
 

@@ -95,8 +95,14 @@ class Synthesizer {
   [[nodiscard]] Baseband silence(std::size_t phones,
                                  std::vector<std::complex<float>> memory = {}) const;
 
+  /// Nothing heard yet at a covariance's phones, on a grid for its sound alone: where samples are
+  /// interpolated from it, as coarse as its band and levels every 50 ms allow. Else as the other.
+  [[nodiscard]] Baseband silence(const ReverberationCovariance& covariance,
+                                 std::vector<std::complex<float>> memory = {}) const;
+
   /// Adds reverberation of a known covariance: at every sample of the baseband a Gaussian impulse
-  /// at all phones, through the pulse. \param baseband  of as many phones as the covariance has
+  /// at all phones, through the pulse. \param baseband  of as many phones as the covariance has;
+  /// one of this synthesizer's silences, at least
   void add_gaussian(const ReverberationCovariance& covariance, const CovarianceDraw& draw,
                     Baseband& baseband) const;
 
@@ -111,8 +117,11 @@ class Synthesizer {
  private:
   void add_passband(const Baseband& baseband, double scale, std::span<float> pressure) const;
   void add_complex(const Baseband& baseband, double scale, std::span<float> samples) const;
+  [[nodiscard]] bool interpolates() const noexcept;
   void add_by_fft(const Baseband& baseband, double scale, std::span<float> samples) const;
   void add_by_interpolation(const Baseband& baseband, double scale, std::span<float> samples) const;
+  [[nodiscard]] Baseband silence_of(std::size_t phones, std::size_t length,
+                                    std::vector<std::complex<float>> memory) const;
   [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
       const BandNodes& band) const;
 

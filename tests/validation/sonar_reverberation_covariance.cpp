@@ -282,6 +282,38 @@ TEST(ReverberationCovariance, EnvelopeIsRayleighOfTheRightMean) {
   EXPECT_NEAR(sum / double(samples.size()), 1.0, 4.9 / std::sqrt(double(samples.size())));
 }
 
+// Where samples are interpolated from it, the sound has a coarser grid of its own: the same record
+// out of the grid of all else to −80 dB of its rms (the interpolator's error, −97 dB of the
+// loudest around). Samples of a level's step of 50 ms: two at least.
+TEST(ReverberationCovariance, ACoarserGridGivesTheSameRecord) {
+  const Scenario s = shallow_sea();
+  const Sea sea(s);
+  Recording recording = sea.recording();
+  recording.sample_rate = 2000.0;
+  recording.carrier = 990.0;
+  recording.samples = 24400;
+  const Synthesizer synthesizer(sea.pulse(), recording, doppler_bound(s));
+  const PingReverberation ping = sea.ping(1);
+  const CovarianceDraw draw{.seed = 5, .ping = 1};
+  const auto record = [&](Baseband grid) {
+    synthesizer.add_gaussian(*ping.covariance(), draw, grid);
+    std::vector<float> samples(grid.channels * recording.samples * 2, 0.0F);
+    synthesizer.add_samples(grid, 1.0, samples);
+    return samples;
+  };
+  const Baseband coarse = synthesizer.silence(*ping.covariance()), fine = synthesizer.silence(4);
+  EXPECT_LT(coarse.samples, fine.samples);
+  EXPECT_GE(coarse.sample_rate, 50.0);
+  const std::vector<float> one = record(coarse), other = record(fine);
+  ASSERT_EQ(one.size(), other.size());
+  double power = 0.0, error = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    power += double(other[i]) * double(other[i]);
+    error += std::pow(double(one[i]) - double(other[i]), 2);
+  }
+  EXPECT_LT(error, 1e-8 * power);
+}
+
 // It serves what stands still, is heard where it is sent and forgets from ping to ping; all else is
 // heard one scatterer after the other, and so is what has few returns unless it is asked for.
 TEST(ReverberationCovariance, ServesStillSeasHeardByOneArray) {
