@@ -22,12 +22,13 @@ bool jumps_at_its_edges(const Pulse& pulse) {
 }  // namespace
 
 BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
-                                   const std::function<double(double)>& response)
+                                   const std::function<double(double)>& response, double recorded)
     : centre_frequency_(pulse.centre_frequency()) {
   const PulseSpectrum spectrum = pulse_spectrum(pulse, centre_frequency_);
   const double analysed = spectrum.bin_width * static_cast<double>(spectrum.bins.size());
   const bool jumps = jumps_at_its_edges(pulse);
-  const double widest = jumps ? 4.0 * pulse.bandwidth_40db() : 2.0 * sample_rate;
+  const double widest =
+      jumps ? std::min(4.0 * pulse.bandwidth_40db(), recorded) : 2.0 * sample_rate;
   const double flat = std::min(
       {bandwidth_for_error(spectrum, tail_error), widest, analysed / (2.0 + 8.0 * slope_share)});
   const double slope = slope_share * flat;

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 
+#include "core/units.h"
 #include "sonar/pulse.h"
 #include "sonar/sampled_signal.h"
 
@@ -11,13 +12,15 @@ namespace asdic {
 ///
 /// The filter is flat over a width so chosen that a pulse with soft edges loses less than −90 dB of
 /// its peak. A pulse whose edges jump (no window) has no such width; it keeps four times its −40 dB
-/// bandwidth, and its edges rise in about 1/width. Source: docs/theory/synthesis.md, "Band".
+/// bandwidth, but no more than is recorded, and its edges rise in about 1/width. Source:
+/// docs/theory/synthesis.md, "Band".
 class BandLimitedPulse {
  public:
   /// \param filter  a further, real response over the frequency from the centre [Hz], smooth over
-  /// the band; none: 1
+  /// the band; none: 1   \param recorded  width around the centre beyond which nothing is recorded
+  /// [Hz]: a pulse whose edges jump is flat over no more than that
   BandLimitedPulse(const Pulse& pulse, double sample_rate,
-                   const std::function<double(double)>& filter = {});
+                   const std::function<double(double)>& filter = {}, double recorded = infinity);
 
   [[nodiscard]] std::complex<double> at(double u) const noexcept { return signal_.at(u); }
   /// Nothing is heard further than this from the middle [s].

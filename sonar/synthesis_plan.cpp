@@ -45,13 +45,24 @@ void check(const Pulse& pulse, const Recording& recording, double max_doppler) {
     throw InputError({.where = "recording.samples", .got = "0", .expected = "at least 1"});
 }
 
+/// Of the pulse's frequencies around its centre, those that a complex recording may keep under any
+/// Doppler factor: |η(f + ν) − f_rec| ≤ rate/2 [Hz].
+double recorded_width(const Pulse& sent, const Recording& record, double max_doppler) {
+  if (!record.is_complex()) return infinity;
+  const double f = sent.centre_frequency();
+  return 2.0 * (0.5 * record.sample_rate + std::abs(f - record.carrier) + f * max_doppler) /
+         (1.0 - max_doppler);
+}
+
 /// The pulse through every filter.
 std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& record,
+                                       double max_doppler,
                                        const std::vector<std::function<double(double)>>& filters) {
   const double rate =
       record.is_complex() ? 2.0 * record.carrier + record.sample_rate : record.sample_rate;
+  const double recorded = recorded_width(sent, record, max_doppler);
   std::vector<BandLimitedPulse> pulses;
-  for (const auto& filter : filters) pulses.emplace_back(sent, rate, filter);
+  for (const auto& filter : filters) pulses.emplace_back(sent, rate, filter, recorded);
   return pulses;
 }
 
@@ -100,10 +111,10 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
       recording(without_epoch((check(sent, record, doppler), record))),
       max_doppler(doppler),
       pulse_duration(sent.duration()),
-      pulses(filtered(sent, record, filters)),
+      pulses(filtered(sent, record, doppler, filters)),
       expansion(filters.size() == 1
                     ? pulses.front()
-                    : filtered(sent, record, {std::function<double(double)>()}).front()) {
+                    : filtered(sent, record, doppler, {std::function<double(double)>()}).front()) {
   const BandLimitedPulse& pulse = pulses.front();
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
   const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;
