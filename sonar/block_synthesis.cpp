@@ -14,15 +14,6 @@ namespace {
 
 using Scratch = FftBuffer<std::complex<float>>;
 
-/// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64
-/// lines that share a place in the first-level cache, five lines on, so that one impulse's taps in
-/// sixteen grids do not evict each other.
-std::size_t grid_stride(std::size_t length) {
-  std::size_t lines = FftBuffer<std::complex<float>>::row_stride(length) / 8;
-  while (lines % 64 != 5) ++lines;
-  return 8 * lines;
-}
-
 /// What transforming a grid of that length costs, counted in returns laid down for one node.
 double cost_of_grid(std::size_t length) {
   const auto n = static_cast<double>(length);
@@ -62,6 +53,15 @@ Baseband Synthesizer::baseband(const ReturnSource& source, std::span<const Vec3>
   auto bands = plan.expansion.cut(plan.expansion.bands_over(std::move(spans)), returns,
                                   cost_of_grid(plan.length));
   return BlockSynthesis(plan, std::move(bands), source, phones).run();
+}
+
+/// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64
+/// lines that share a place in the first-level cache, five lines on, so that one impulse's taps in
+/// sixteen grids do not evict each other.
+std::size_t BlockSynthesis::grid_stride(std::size_t length) {
+  std::size_t lines = FftBuffer<std::complex<float>>::row_stride(length) / 8;
+  while (lines % 64 != 5) ++lines;
+  return 8 * lines;
 }
 
 BlockSynthesis::BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
@@ -107,16 +107,19 @@ std::vector<BlockSynthesis::Batch> BlockSynthesis::batches(bool kept) const {
   return found;
 }
 
-void BlockSynthesis::find_spectra() {
+std::vector<std::complex<float>> BlockSynthesis::spectra(
+    const Synthesizer::Plan::Period& on) const {
   const std::size_t nodes = returns_.nodes.size();
-  spectra_.resize(colours_ * nodes * bins_);
+  const std::size_t bins = 2 * static_cast<std::size_t>(on.highest_bin) + 1;
+  std::vector<std::complex<float>> found(colours_ * nodes * bins);
   tbb::enumerable_thread_specific<Scratch> workspaces;
   tbb::parallel_for(std::size_t{0}, colours_ * nodes, [&](std::size_t i) {
     Scratch& scratch = workspaces.local();
-    scratch.reserve(stride_);
-    plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], scratch.data(),
-                             std::span(spectra_).subspan(i * bins_, bins_));
+    scratch.reserve(grid_stride(on.length));
+    plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], on, scratch.data(),
+                             std::span(found).subspan(i * bins, bins));
   });
+  return found;
 }
 
 void BlockSynthesis::add_product(const std::complex<float>* grid, std::size_t colour,
@@ -146,7 +149,8 @@ Baseband BlockSynthesis::run() {
                     (phones_.size() < many || batches(false).size() > 1);
   const std::vector<Batch> all = batches(keep);
   if (all.empty()) return result;
-  find_spectra();
+  bool in_windows = !keep && all.size() > 1;  // one batch has returns all over the grid
+  if (!in_windows) spectra_ = spectra(plan_.whole());
   if (keep) kept_ = FftBuffer<std::complex<float>>(grids * stride_);
   for (const Batch& batch : all) {
     blocks_.resize(std::max(blocks_.size(), batch.end - batch.begin));
@@ -156,13 +160,22 @@ Baseband BlockSynthesis::run() {
       source_.make(b, block);
     });
     returns_.take(std::span(blocks_).first(batch.end - batch.begin));
+    if (in_windows && !(in_windows = find_windows())) spectra_ = spectra(plan_.whole());
     if (keep)
       lay_into_kept();
+    else if (in_windows)
+      lay_in_windows(result);
     else
       lay_and_transform(result);
   }
-  transform(keep, result);
+  if (!in_windows) transform(keep, result);
   return result;
+}
+
+double BlockSynthesis::array_reach() const {
+  double furthest = 0.0;
+  for (const Vec3& phone : phones_) furthest = std::max(furthest, phone.norm());
+  return furthest * returns_.largest_slowness * plan_.rate;
 }
 
 /// Where the returns that all hear may be cut into segments for tasks of their own: a segment
@@ -170,10 +183,7 @@ Baseband BlockSynthesis::run() {
 std::vector<std::size_t> BlockSynthesis::cuts(const OrderedReturns::Band& band) const {
   constexpr std::size_t most = 16, fewest = 2048;  // segments; returns in one
   const std::size_t begin = band.ends[0], end = band.ends[1];
-  double furthest = 0.0;
-  for (const Vec3& phone : phones_) furthest = std::max(furthest, phone.norm());
-  const double reach = 2.0 * furthest * returns_.largest_slowness * plan_.rate +
-                       2.0 * DelayKernel::taps + 2.0;  // [samples]
+  const double reach = 2.0 * array_reach() + 2.0 * DelayKernel::taps + 2.0;  // [samples]
   const std::size_t each = std::max(fewest, (end - begin) / most + 1);
   std::vector<std::size_t> found = {begin};
   for (std::size_t i = begin + each; i + each <= end; i += each)

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sonar/delay_windows.h"
 #include "sonar/impulse_grid.h"
 #include "sonar/ordered_returns.h"
 #include "sonar/synthesis_plan.h"
@@ -12,8 +13,9 @@ namespace asdic {
 
 /// Synthesizer::baseband(): a source's returns are made, ordered and laid down batch by batch.
 /// Where the grids of all phones, Doppler nodes and colours fit into `most_kept` bytes, they are
-/// kept and transformed once; otherwise phone by phone, after every batch. Private to the
-/// synthesis. docs/theory/synthesis.md, "Memory"
+/// kept and transformed once; otherwise phone by phone, after every batch, of which only those
+/// windows of delay are transformed in which it has returns. Private to the synthesis.
+/// docs/theory/synthesis.md, "Memory"
 class BlockSynthesis {
  public:
   BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
@@ -31,13 +33,24 @@ class BlockSynthesis {
     std::size_t begin = 0, end = 0;  // of the source's blocks
   };
   [[nodiscard]] std::vector<Batch> batches(bool kept) const;
-  void find_spectra();
+  /// The pulse at every colour and node. \return [colours × nodes × (2·highest_bin + 1)]
+  [[nodiscard]] std::vector<std::complex<float>> spectra(const Synthesizer::Plan::Period& on) const;
+  /// Several samples of the grid from one node's to the next: no two's taps evict each other.
+  [[nodiscard]] static std::size_t grid_stride(std::size_t length);
+  /// How far a phone's delays are from those at the array's reference point [samples].
+  [[nodiscard]] double array_reach() const;
   void lay_into_kept();
   [[nodiscard]] std::vector<std::size_t> cuts(const OrderedReturns::Band& band) const;
   void lay_and_transform(Baseband& result);
   void transform(bool keep, Baseband& result);
   void add_product(const std::complex<float>* grid, std::size_t colour, std::size_t node,
                    std::complex<float>* sum) const;
+
+  /// Finds the windows of the batch in hand. \return whether they are cheaper than the
+  /// whole grid; always so once they were
+  [[nodiscard]] bool find_windows();
+  /// Adds the batch in hand, in time. \param result  rows in time
+  void lay_in_windows(Baseband& result);
   [[nodiscard]] std::complex<float>* kept(std::size_t channel, std::size_t colour,
                                           std::size_t node) {
     return kept_.data() + ((channel * colours_ + colour) * returns_.nodes.size() + node) * stride_;
@@ -50,8 +63,10 @@ class BlockSynthesis {
   OrderedReturns returns_;
   ImpulseGrid grid_;
   std::vector<ReturnBlock> blocks_;           // of the batch in hand
-  std::vector<std::complex<float>> spectra_;  // [colours × nodes × bins]
-  FftBuffer<std::complex<float>> kept_;       // [channels × colours × nodes × stride], if it is
+  std::vector<std::complex<float>> spectra_;  // [colours × nodes × bins], of windows if used
+  DelayWindows windows_;
+  std::ptrdiff_t highest_of_window_ = 0;
+  FftBuffer<std::complex<float>> kept_;  // [channels × colours × nodes × stride], if it is
 };
 
 }  // namespace asdic

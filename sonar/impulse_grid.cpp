@@ -46,7 +46,7 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
     locate(returns, start, n, part.colour, phone, at);
     for (std::size_t i = 0; i < n; ++i) {
       const double position = at.position[i];
-      const bool heard = position >= DelayKernel::taps && position <= last_position;
+      const bool heard = position >= first_position && position <= last_position;
       below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
       if (!heard) continue;
       const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));

@@ -16,6 +16,7 @@ struct ImpulseGrid {
   double carrier;        ///< [Hz]
   double last_position;  ///< impulses beyond are not heard in the record [samples]
   std::size_t stride;    ///< from the grid of one node to the next
+  double first_position = DelayKernel::taps;  ///< nor are those before [samples]
 
   static constexpr std::size_t most_nodes = 32;  ///< grids laid at one time: they stay in cache
 

@@ -54,7 +54,6 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   const auto middle_of = [&](const Return& r) {
     return r.delay + 0.5 * pulse_duration_ / r.doppler;
   };
-  const double last = static_cast<double>(grid_.samples);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     const Returns& returns = blocks[b].returns;
     for (std::size_t i = 0; i < returns.size(); ++i) {
@@ -64,9 +63,8 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
           [](double doppler, const DopplerBand& band) { return doppler < band.lowest; });
       const auto band = static_cast<std::size_t>(above - expansion_.begin()) - 1;
       const auto listener = static_cast<std::size_t>(r.channel - Return::all_channels);
-      const double sample = (middle_of(r) - grid_.first) * grid_.rate;
       source_[first[b] + i] = std::uint64_t{b} << 32 | i;
-      sample_[first[b] + i] = static_cast<std::uint32_t>(std::clamp(sample, 0.0, last));
+      sample_[first[b] + i] = static_cast<std::uint32_t>(sample_at(middle_of(r)));
       group_[first[b] + i] = static_cast<std::uint32_t>(band * (channels_ + 1) + listener);
     }
   });

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,11 @@ class OrderedReturns {
   void take(std::span<const ReturnBlock> blocks);
 
   [[nodiscard]] std::size_t size() const noexcept { return middle.size(); }
+  /// Of the grid, in which a pulse's middle falls: 0 and `Grid::samples` also for all beyond.
+  [[nodiscard]] std::size_t sample_at(double delay) const noexcept {
+    return static_cast<std::size_t>(
+        std::clamp((delay - grid_.first) * grid_.rate, 0.0, static_cast<double>(grid_.samples)));
+  }
   /// Memory that a return takes while it is here, its Return included.
   [[nodiscard]] std::size_t bytes_each() const noexcept;
 

@@ -138,33 +138,40 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
   rate = static_cast<double>(length) / period;
   lead = static_cast<std::size_t>(std::ceil(longest * rate)) + DelayKernel::taps;
   last_position = static_cast<double>(lead) + (record_duration + longest) * rate + 1.0;
-  for (std::ptrdiff_t k = -highest_bin; k <= highest_bin; ++k) {
-    const double frequency = static_cast<double>(k) / static_cast<double>(length);
-    deconvolution.push_back(
-        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(length))));
+  deconvolution = deconvolution_of(length, highest_bin);
+}
+
+std::vector<float> Synthesizer::Plan::deconvolution_of(std::size_t samples,
+                                                       std::ptrdiff_t highest) const {
+  std::vector<float> found;
+  for (std::ptrdiff_t k = -highest; k <= highest; ++k) {
+    const double frequency = static_cast<double>(k) / static_cast<double>(samples);
+    found.push_back(
+        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(samples))));
   }
+  return found;
 }
 
 void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, double doppler,
-                                           std::complex<float>* scratch,
+                                           const Period& on, std::complex<float>* scratch,
                                            std::span<std::complex<float>> spectrum) const {
-  std::fill(scratch, scratch + length, 0.0F);
+  std::fill(scratch, scratch + on.length, 0.0F);
   // An impulse at grid sample i belongs to the time of output sample i − lead: the response stands
   // `lead` samples early.
-  const auto n = static_cast<std::ptrdiff_t>(length);
+  const auto n = static_cast<std::ptrdiff_t>(on.length);
   const auto reach = static_cast<std::ptrdiff_t>(pulse.half_duration() / doppler * rate);
   for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
     const double t = static_cast<double>(j) / rate;
     // g(t) = s₊(ηt + T/2)·e^{−i2π f_c t}
     const double cycles = (pulse.centre_frequency() * doppler - carrier) * t;
     const std::complex<double> g = pulse.at(doppler * t) * std::polar(1.0, 2.0 * pi * cycles);
-    const std::ptrdiff_t place = (j - static_cast<std::ptrdiff_t>(lead)) % n;
+    const std::ptrdiff_t place = (j - static_cast<std::ptrdiff_t>(on.lead)) % n;
     scratch[place < 0 ? place + n : place] = std::complex<float>(g);
   }
-  ComplexFft<float>(length).forward(scratch);
-  for (std::ptrdiff_t k = -highest_bin; k <= highest_bin; ++k) {
-    const auto i = static_cast<std::size_t>(k + highest_bin);
-    spectrum[i] = deconvolution[i] * scratch[k < 0 ? k + n : k];
+  ComplexFft<float>(on.length).forward(scratch);
+  for (std::ptrdiff_t k = -on.highest_bin; k <= on.highest_bin; ++k) {
+    const auto i = static_cast<std::size_t>(k + on.highest_bin);
+    spectrum[i] = on.deconvolution[i] * scratch[k < 0 ? k + n : k];
   }
 }
 

@@ -47,9 +47,21 @@ struct Synthesizer::Plan {
   double last_position = 0.0;        ///< of an impulse in the grid, in samples
   std::vector<float> deconvolution;  ///< [2·highest_bin + 1] 1/(kernel's spectrum · length)
 
+  /// A stretch of the grid, or all of it, with an FFT of its own.
+  struct Period {
+    std::size_t length = 0;                ///< [samples]
+    std::size_t lead = 0;                  ///< how much earlier than the impulse a pulse stands
+    std::ptrdiff_t highest_bin = 0;        ///< of the same band
+    std::span<const float> deconvolution;  ///< [2·highest_bin + 1]
+  };
+  [[nodiscard]] Period whole() const noexcept { return {length, lead, highest_bin, deconvolution}; }
+  /// 1/(kernel's spectrum · length) at the bins of a period. \return [2·highest_bin + 1]
+  [[nodiscard]] std::vector<float> deconvolution_of(std::size_t length,
+                                                    std::ptrdiff_t highest_bin) const;
+
   /// Spectrum of a pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
-  /// \param scratch [length] \param spectrum [2·highest_bin + 1] from −highest_bin up
-  void stretched_spectrum(const BandLimitedPulse& pulse, double doppler,
+  /// \param scratch [on.length] \param spectrum [2·highest_bin + 1] from −highest_bin up
+  void stretched_spectrum(const BandLimitedPulse& pulse, double doppler, const Period& on,
                           std::complex<float>* scratch,
                           std::span<std::complex<float>> spectrum) const;
 };

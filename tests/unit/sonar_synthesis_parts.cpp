@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/units.h"
 #include "sonar/delay_kernel.h"
+#include "sonar/delay_windows.h"
 #include "sonar/doppler_expansion.h"
 #include "sonar/fft.h"
 #include "sonar/sampled_signal.h"
@@ -130,6 +133,48 @@ TEST_F(Expansion, AFewFactorsGetANodeEachAndGapsAreSkipped) {
   EXPECT_EQ(bands[1].nodes, std::vector<double>{1.02});
   EXPECT_LE(bands[0].nodes.size(), expansion.nodes_needed(5e-4));
   EXPECT_TRUE(expansion.bands({}).empty());
+}
+
+// Rings heard along two paths, in 1/16 of the grid each: windows of all lengths hold every sample
+// with room beside, and their FFTs are some 2·(1/16)·(1 + ½…2) of the grid's: below 0.4.
+TEST(DelayWindows, TransformWhatHoldsReturnsAndNoMore) {
+  const std::size_t whole = 100'000, margin = 1200;
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < whole / 16; i += 3) samples.push_back(20'000 + i);
+  for (std::size_t i = 0; i < whole / 16; i += 3) samples.push_back(71'000 + i);
+  DelayWindows windows;
+  ASSERT_TRUE(windows.fit(samples, margin, whole));
+  EXPECT_LT(windows.begins.size() * windows.length, 2 * whole / 5);
+  const auto all_held = [&] {
+    return std::all_of(samples.begin(), samples.end(), [&](std::size_t sample) {
+      return std::any_of(windows.begins.begin(), windows.begins.end(), [&](std::size_t begin) {
+        return sample >= begin && sample < begin + windows.width();
+      });
+    });
+  };
+  EXPECT_TRUE(all_held());
+  EXPECT_EQ(windows.length, windows.width() + 2 * margin);
+
+  // Another batch keeps the length, and more room beside is had from the width, or a longer window.
+  const std::size_t length = windows.length;
+  for (std::size_t& sample : samples) sample += 7'000;
+  EXPECT_TRUE(windows.fit(samples, margin + 50, whole));
+  EXPECT_EQ(windows.length, length);
+  EXPECT_EQ(windows.width(), length - 2 * (margin + 50));
+  EXPECT_TRUE(all_held());
+  EXPECT_TRUE(windows.fit(samples, 3 * length, whole));
+  EXPECT_GT(windows.length, 6 * length);
+  EXPECT_TRUE(all_held());
+}
+
+// Returns all over the grid, or a pulse as long as the record: the grid's own FFT is cheaper.
+TEST(DelayWindows, AreRefusedWhereTheGridIsCheaper) {
+  std::vector<std::size_t> everywhere(10'000);
+  for (std::size_t i = 0; i < everywhere.size(); ++i) everywhere[i] = 10 * i;
+  DelayWindows windows;
+  EXPECT_FALSE(windows.fit(everywhere, 12'000, 100'000));
+  EXPECT_FALSE(windows.fit(std::vector<std::size_t>{5'000}, 40'000, 100'000));
+  EXPECT_TRUE(windows.fit(std::vector<std::size_t>{5'000}, 1'000, 100'000));
 }
 
 }  // namespace
