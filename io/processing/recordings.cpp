@@ -145,8 +145,15 @@ std::vector<Replica> PingRecordings::replicas() const {
 std::vector<PingRecordings::Piece> PingRecordings::pieces(std::size_t row) const {
   std::vector<Piece> result{{row, static_cast<std::size_t>(valid_[row])}};
   if (!continuous_) return result;
-  // A ping is listened to into the rows of those that follow.
-  auto wanted = static_cast<std::size_t>(scenario_.pings.recording_duration * rate_);
+  // A ping is listened to into the rows of those that follow, until its transmitter sends again:
+  // what comes then is taken for the answer to that.
+  double listened = scenario_.pings.recording_duration;
+  for (std::size_t i = row + 1; i < pings(); ++i)
+    if (transmitter(i) == transmitter(row)) {
+      listened = std::min(listened, times_[i] - times_[row]);
+      break;
+    }
+  auto wanted = static_cast<std::size_t>(listened * rate_);
   for (std::size_t i = row;; ++i) {
     const auto here = std::min(wanted, static_cast<std::size_t>(valid_[i]));
     if (i == row)

@@ -37,7 +37,8 @@ class PingRecordings {
   /// [transmitters] what each sends
   [[nodiscard]] std::vector<Replica> replicas() const;
   [[nodiscard]] ArrayRecording recording(std::size_t row, int array) const;
-  /// When the recording of a row ends, after the ping's start [s].
+  /// When the recording of a row ends, after the ping's start [s]: that of a continuous record at
+  /// the latest when the same transmitter sends again.
   [[nodiscard]] double end(std::size_t row) const;
 
   [[nodiscard]] std::vector<TrueEcho> echoes(std::size_t row, int array) const;
