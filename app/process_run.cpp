@@ -51,7 +51,8 @@ void track_array(const PingProcessor& processor, const std::vector<const Process
     for (const ProcessedPing* ping : pings) {
       contacts.push_back(processor.contacts(ping->array, ping->ping_time, side));
       std::erase_if(contacts.back(), [&](const Contact& c) {
-        return ping->score.owner[static_cast<std::size_t>(c.detection)] == direct_sound;
+        const int owner = ping->score.owner[static_cast<std::size_t>(c.detection)];
+        return owner == direct_sound || owner == another_ping;
       });
       times.push_back(ping->ping_time);
     }

@@ -145,15 +145,8 @@ std::vector<Replica> PingRecordings::replicas() const {
 std::vector<PingRecordings::Piece> PingRecordings::pieces(std::size_t row) const {
   std::vector<Piece> result{{row, static_cast<std::size_t>(valid_[row])}};
   if (!continuous_) return result;
-  // A ping is listened to into the rows of those that follow, until its transmitter sends again:
-  // what comes then is taken for the answer to that.
-  double listened = scenario_.pings.recording_duration;
-  for (std::size_t i = row + 1; i < pings(); ++i)
-    if (transmitter(i) == transmitter(row)) {
-      listened = std::min(listened, times_[i] - times_[row]);
-      break;
-    }
-  auto wanted = static_cast<std::size_t>(listened * rate_);
+  // A ping is listened to into the rows of those that follow.
+  auto wanted = static_cast<std::size_t>(scenario_.pings.recording_duration * rate_);
   for (std::size_t i = row;; ++i) {
     const auto here = std::min(wanted, static_cast<std::size_t>(valid_[i]));
     if (i == row)
@@ -204,10 +197,26 @@ ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
 
 std::vector<TrueEcho> PingRecordings::echoes(std::size_t row, int array) const {
   std::vector<TrueEcho> result;
-  for (std::size_t i = 0; i < all_echoes_.size(); ++i)
-    if (echo_ping_[i] == numbers_[row] && echo_array_[i] == array &&
-        std::isfinite(all_echoes_[i].time))
+  const double last = end(row);
+  for (std::size_t i = 0; i < all_echoes_.size(); ++i) {
+    if (echo_array_[i] != array || !std::isfinite(all_echoes_[i].time)) continue;
+    if (echo_ping_[i] == numbers_[row]) {
       result.push_back(all_echoes_[i]);
+      continue;
+    }
+    if (!continuous_) continue;
+    // The other pings of a continuous record: their echoes, if they are of the same transmitter,
+    // and their direct sound, which is loud enough to be heard through the filters of another
+    // pulse.
+    const auto other = std::find(numbers_.begin(), numbers_.end(), echo_ping_[i]);
+    if (other == numbers_.end()) continue;
+    const auto at = static_cast<std::size_t>(other - numbers_.begin());
+    TrueEcho echo = all_echoes_[i];
+    if (transmitter(at) != transmitter(row) && echo.target != direct_sound) continue;
+    echo.target = another_ping;
+    echo.time += times_[at] - times_[row];
+    if (echo.time >= start_ && echo.time <= last) result.push_back(echo);
+  }
   return result;
 }
 

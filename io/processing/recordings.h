@@ -37,10 +37,10 @@ class PingRecordings {
   /// [transmitters] what each sends
   [[nodiscard]] std::vector<Replica> replicas() const;
   [[nodiscard]] ArrayRecording recording(std::size_t row, int array) const;
-  /// When the recording of a row ends, after the ping's start [s]: that of a continuous record at
-  /// the latest when the same transmitter sends again.
+  /// When the recording of a row ends, after the ping's start [s].
   [[nodiscard]] double end(std::size_t row) const;
 
+  /// In a continuous record with those of other pings that are heard in its time (another_ping).
   [[nodiscard]] std::vector<TrueEcho> echoes(std::size_t row, int array) const;
   /// The targets where the echo strikes them, half an echo's way after the ping; those without an
   /// echo where they are when it starts.

@@ -11,10 +11,12 @@ namespace asdic {
 
 /// In the place of a target: the transmitter's own sound, straight to the array.
 inline constexpr int direct_sound = -2;
+/// The same of what a continuous record holds of other pings.
+inline constexpr int another_ping = -3;
 
 /// One path pair of a target, as the simulation knows it.
 struct TrueEcho {
-  int target = 0;               ///< index, or direct_sound
+  int target = 0;               ///< index, direct_sound or another_ping
   double time = 0.0;            ///< of its leading edge [s]
   double doppler = 1.0;         ///< factor
   double level_db = 0.0;        ///< [dB re 1 µPa]
@@ -55,7 +57,8 @@ struct TargetScore {
 
 struct PingScore {
   std::vector<TargetScore> targets;
-  std::vector<int> owner;  ///< [detections] target, direct_sound, or −1: a false alarm
+  std::vector<int>
+      owner;  ///< [detections] target, direct_sound, another_ping, or −1: a false alarm
   int hits = 0, misses = 0, false_alarms = 0;
 };
 
