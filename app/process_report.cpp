@@ -32,6 +32,13 @@ const Detection* loudest_of(const ProcessedPing& ping, const TargetScore& score)
              : &ping.array.result.detections[static_cast<std::size_t>(score.detection)];
 }
 
+/// Whether it was found; and if it has no place, why not.
+std::string found_text(const TargetScore& score, const Detection* d) {
+  if (!score.hit) return score.audible ? "no" : "not audible";
+  if (d == nullptr || d->unplaced == Unplaced::no) return "yes";
+  return fmt::format("yes, no place: {}", words_for(d->unplaced));
+}
+
 std::string targets_text(const ProcessedRun& run, const Scenario& scenario) {
   Table table({{"ping"},
                {"array", "", true},
@@ -54,8 +61,7 @@ std::string targets_text(const ProcessedRun& run, const Scenario& scenario) {
       table.row({std::to_string(ping.array.ping),
                  scenario.arrays[static_cast<std::size_t>(ping.array.array)].name,
                  scenario.targets[static_cast<std::size_t>(score.target)].name,
-                 score.hit ? "yes" : (score.audible ? "no" : "not audible"),
-                 number(d != nullptr ? d->time : none, 3),
+                 found_text(score, d), number(d != nullptr ? d->time : none, 3),
                  number(d != nullptr ? d->snr_db : none, 1),
                  number(place != nullptr ? place->range : none, 0),
                  number(std::isnan(score.position_error) ? std::abs(score.range_error)

@@ -1,10 +1,13 @@
 #include "app/process_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "core/error.h"
 #include "raytrace/propagation.h"
 #include "sonar/geometry.h"
 
@@ -48,7 +51,8 @@ void track_array(const PingProcessor& processor, const std::vector<const Process
     for (const ProcessedPing* ping : pings) {
       contacts.push_back(processor.contacts(ping->array, ping->ping_time, side));
       std::erase_if(contacts.back(), [&](const Contact& c) {
-        return ping->score.owner[static_cast<std::size_t>(c.detection)] == direct_sound;
+        const int owner = ping->score.owner[static_cast<std::size_t>(c.detection)];
+        return owner == direct_sound || owner == another_ping;
       });
       times.push_back(ping->ping_time);
     }
@@ -79,13 +83,22 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
   const std::size_t first = ping ? recordings.row_of(*ping) : 0;
   const std::size_t end = ping ? first + 1 : recordings.pings();
   const int arrays = static_cast<int>(recordings.scenario().arrays.size());
+  double last_end = 0.0;
+  for (std::size_t row = first; row < end; ++row)
+    last_end = std::max(last_end, recordings.end(row));
+  if (const double from = processor.settings().detector.first_time; from >= last_end)
+    throw InputError({.where = "--from",
+                      .got = fmt::format("{:g} s", from),
+                      .expected = fmt::format("a time before the record's end, {:g} s", last_end)});
   for (std::size_t row = first; row < end; ++row) {
     for (int array = 0; array < arrays; ++array) {
       if (!proceed()) throw Interrupted();
       ProcessedPing made{.transmitter = recordings.transmitter(row),
                          .ping_time = recordings.ping_time(row)};
-      made.array = processor.process(recordings.recording(row, array), proceed);
-      const std::vector<TrueEcho> echoes = recordings.echoes(row, array);
+      std::vector<TrueEcho> echoes = recordings.echoes(row, array);
+      made.array = processor.process(recordings.recording(row, array), proceed, echoes);
+      for (std::size_t i = 0; i < echoes.size(); ++i)
+        echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);
       const DetectorSettings& searched = processor.settings().detector;
       made.score =

@@ -197,10 +197,26 @@ ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
 
 std::vector<TrueEcho> PingRecordings::echoes(std::size_t row, int array) const {
   std::vector<TrueEcho> result;
-  for (std::size_t i = 0; i < all_echoes_.size(); ++i)
-    if (echo_ping_[i] == numbers_[row] && echo_array_[i] == array &&
-        std::isfinite(all_echoes_[i].time))
+  const double last = end(row);
+  for (std::size_t i = 0; i < all_echoes_.size(); ++i) {
+    if (echo_array_[i] != array || !std::isfinite(all_echoes_[i].time)) continue;
+    if (echo_ping_[i] == numbers_[row]) {
       result.push_back(all_echoes_[i]);
+      continue;
+    }
+    if (!continuous_) continue;
+    // The other pings of a continuous record: their echoes, if they are of the same transmitter,
+    // and their direct sound, which is loud enough to be heard through the filters of another
+    // pulse.
+    const auto other = std::find(numbers_.begin(), numbers_.end(), echo_ping_[i]);
+    if (other == numbers_.end()) continue;
+    const auto at = static_cast<std::size_t>(other - numbers_.begin());
+    TrueEcho echo = all_echoes_[i];
+    if (transmitter(at) != transmitter(row) && echo.target != direct_sound) continue;
+    echo.target = another_ping;
+    echo.time += times_[at] - times_[row];
+    if (echo.time >= start_ && echo.time <= last) result.push_back(echo);
+  }
   return result;
 }
 

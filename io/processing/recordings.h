@@ -40,6 +40,7 @@ class PingRecordings {
   /// When the recording of a row ends, after the ping's start [s].
   [[nodiscard]] double end(std::size_t row) const;
 
+  /// In a continuous record with those of other pings that are heard in its time (another_ping).
   [[nodiscard]] std::vector<TrueEcho> echoes(std::size_t row, int array) const;
   /// The targets where the echo strikes them, half an echo's way after the ping; those without an
   /// echo where they are when it starts.

@@ -10,12 +10,13 @@
 namespace asdic {
 namespace {
 
-/// A unit vector across the axis: to its right seen from above, or north of a vertical one.
-Vec3 across(const Vec3& axis) {
-  const double horizontal = std::hypot(axis.x(), axis.y());
-  if (horizontal > 1e-6) return Vec3(axis.y(), -axis.x(), 0.0) / horizontal;
-  return Vec3::UnitY();
-}
+/// Extent across a line, in wavelengths, from which on a shape tells elevation. About the
+/// horizontal the wave's component along a bend of extent W changes by 1 − cos e; phones that are
+/// spread by σ = 0.3·W (an even spread 0.29, an arc 0.30) lose 3 dB where 2πσ(1 − cos e)/λ is √(ln
+/// 2) = 0.83: at e = 45° for W = 1.5λ.
+constexpr double slight_bend = 1.5;
+constexpr double slight_sag = 0.88;  // one that hangs down: sin e, 3 dB at 30°
+constexpr double much_longer = 4.0;  // than wide: else it is no line at all
 
 double extent(std::span<const Vec3> phones, const Vec3& along) {
   double low = infinity, high = -infinity;
@@ -44,6 +45,22 @@ double top_of(double before, double here, double after) {
 
 }  // namespace
 
+Vec3 mirrored(const ArrayShape& shape, const Vec3& look) {
+  if (shape.kind == ArrayKind::line) {
+    const Vec3 right = right_of(shape.axis);
+    return look - 2.0 * look.dot(right) * right;
+  }
+  if (shape.kind == ArrayKind::plane && !shape.bent)
+    return look - 2.0 * look.dot(shape.normal) * shape.normal;
+  return look;
+}
+
+Vec3 right_of(const Vec3& axis) {
+  const double horizontal = std::hypot(axis.x(), axis.y());
+  if (horizontal > 1e-6) return Vec3(axis.y(), -axis.x(), 0.0) / horizontal;
+  return Vec3::UnitY();
+}
+
 ArrayShape shape_of(std::span<const Vec3> phones, double wavelength) {
   ArrayShape shape;
   if (phones.empty()) return shape;
@@ -62,16 +79,27 @@ ArrayShape shape_of(std::span<const Vec3> phones, double wavelength) {
   if (shape.length < thin) return shape;
   shape.axis = longest.dot(phones.back() - phones.front()) < 0.0 ? Vec3(-longest) : longest;
   shape.normal = shortest;
-  if (extent(phones, middle) < thin)
+  shape.across = middle;
+  shape.width = extent(phones, middle);
+  if (shape.width < thin) {
     shape.kind = ArrayKind::line;
-  else
-    shape.kind = extent(phones, shortest) < thin ? ArrayKind::plane : ArrayKind::volume;
+    return shape;
+  }
+  const bool lying = std::abs(shape.axis.z()) <= std::sqrt(0.5);
+  const bool sideways = extent(phones, right_of(shape.axis)) >= thin;
+  if (lying && shape.width < (sideways ? slight_bend : slight_sag) * wavelength &&
+      shape.length > much_longer * shape.width) {
+    shape.bent = sideways;  // a bow that only sags tells no side either
+    shape.kind = sideways ? ArrayKind::plane : ArrayKind::line;
+    return shape;
+  }
+  shape.kind = extent(phones, shortest) < thin ? ArrayKind::plane : ArrayKind::volume;
   return shape;
 }
 
 Vec3 on_cone(const Vec3& axis, double cosine) {
   const double c = std::clamp(cosine, -1.0, 1.0);
-  return (c * axis + std::sqrt(1.0 - c * c) * across(axis)).normalized();
+  return (c * axis + std::sqrt(1.0 - c * c) * right_of(axis)).normalized();
 }
 
 BeamGrid beam_grid(const ArrayShape& shape, double wavelength, double lowest, double highest) {
@@ -92,6 +120,12 @@ BeamGrid beam_grid(const ArrayShape& shape, double wavelength, double lowest, do
     return grid;
   }
   grid.spacing = std::min(step, 0.5);
+  if (shape.bent) {
+    const int count = static_cast<int>(std::ceil(2.0 * pi / step));
+    for (int i = 0; i < count; ++i)
+      grid.looks.push_back(look_direction(2.0 * pi / count * i, std::clamp(0.0, lowest, highest)));
+    return grid;
+  }
   const auto add = [&](const Vec3& look) {
     // Of a plane's two mirror images the one on the side of its normal; in the plane, both are one.
     if (shape.kind == ArrayKind::volume || look.dot(shape.normal) > -1e-9)
@@ -176,10 +210,12 @@ Vec3 refine_direction(std::span<const std::complex<double>> snapshot, std::span<
     const double turn = h / std::max(std::cos(elevation), 0.1);
     bearing += turn * top_of(power(look_direction(bearing - turn, elevation)), here,
                              power(look_direction(bearing + turn, elevation)));
-    const double again = power(look_direction(bearing, elevation));
-    elevation += h * top_of(power(look_direction(bearing, elevation - h)), again,
-                            power(look_direction(bearing, elevation + h)));
-    elevation = std::clamp(elevation, -0.5 * pi, 0.5 * pi);
+    if (!shape.bent) {
+      const double again = power(look_direction(bearing, elevation));
+      elevation += h * top_of(power(look_direction(bearing, elevation - h)), again,
+                              power(look_direction(bearing, elevation + h)));
+      elevation = std::clamp(elevation, -0.5 * pi, 0.5 * pi);
+    }
     h *= 0.7;
   }
   return look_direction(bearing, elevation);

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "core/units.h"
@@ -19,6 +20,15 @@ struct Location {
   int surface_bounces = 0, bottom_bounces = 0;  ///< there and back together
 };
 
+/// Why a detection has no place.
+enum class Unplaced {
+  no,          ///< it has one
+  no_bearing,  ///< the array tells none and the pair lies apart: anywhere on an ellipse
+  no_path,     ///< no pair of paths to the assumed depth has its delay
+  ray_ends,    ///< the ray back at the measured elevation ends before
+};
+[[nodiscard]] std::string_view words_for(Unplaced reason) noexcept;
+
 /// One thing heard that is not background.
 struct Detection {
   int ping = 1;
@@ -26,15 +36,17 @@ struct Detection {
   double time = 0.0;          ///< of its leading edge after the ping's start [s]
   double doppler = 1.0;       ///< factor η
   Vec3 look = Vec3::UnitY();  ///< unit vector towards it; on a cone around a line, see `cosine`
-  double cosine = 0.0;        ///< line: of the angle between look and axis; else NaN
+  double cosine = 0.0;        ///< line, bent or not: of the angle between look and axis; else NaN
   double bearing = 0.0;       ///< of `look`; NaN for an upright line or a point [rad]
-  double elevation = 0.0;     ///< of `look`; NaN for a line that is not upright, or a point [rad]
-  double snr_db = 0.0;        ///< |peak|² over the mean square of the envelope around it [dB]
-  double excess_db = 0.0;     ///< peak over threshold [dB]
-  double level_db = 0.0;      ///< of an echo from `look`, peak envelope/√2 [dB re 1 µPa]
+  double elevation =
+      0.0;  ///< of `look`; NaN for a line that is not upright, bent or not, or a point [rad]
+  double snr_db = 0.0;     ///< |peak|² over the mean square of the envelope around it [dB]
+  double excess_db = 0.0;  ///< peak over threshold [dB]
+  double level_db = 0.0;   ///< of an echo from `look`, peak envelope/√2 [dB re 1 µPa]
   /// One; two where left and right cannot be told apart (right of the line's axis first, or the two
   /// mirror images of a plane); none where no path fits.
   std::vector<Location> locations;
+  Unplaced unplaced = Unplaced::no;  ///< why, if there is none
 };
 
 }  // namespace asdic

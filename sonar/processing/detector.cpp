@@ -47,7 +47,7 @@ class Search {
         cut_(fast_fft_length(static_cast<std::size_t>(
             std::ceil(1.5 * replica.duration() / dopplers.front() * baseband.sample_rate) + 64))) {}
 
-  DetectorResult run(const std::function<bool()>& proceed) {
+  DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
     const BeamSpectra beams =
         settings_.beamformer == Beamformer::mvdr && shape_.kind != ArrayKind::point
             ? mvdr_beams(baseband_, phones_, grid_.looks, sound_speed_, settings_.mvdr)
@@ -55,8 +55,12 @@ class Search {
                                  weights_);
     DetectorResult result;
     prepare_maps(result.maps);
+    place_probes(probes);
     const std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
     result.peaks = peaks.size();
+    for (const PlacedProbe& probe : probes_)
+      result.thresholds_db.push_back(std::isfinite(probe.threshold) ? level_of(probe.threshold)
+                                                                    : infinity);
     const LeakTable leaks(replica_, bank_);
     // Of one echo's paths the pattern of the loudest is known; the others' fill its zeros, to about
     // the level of far side lobes, 1/N².
@@ -69,9 +73,14 @@ class Search {
     };
     const auto beam_leak = [&](std::size_t kept, std::size_t beam) {
       const auto [at, fresh] = known.try_emplace({kept, beam}, 0.0);
-      if (fresh)
+      if (fresh) {
+        // Phones that stray a little from their line or plane hear its other side a little
+        // otherwise.
+        const Vec3& to = grid_.looks[beam];
         at->second =
-            std::max(beam_pattern(phones_, weights_, grid_.looks[beam], look[kept], k), least);
+            std::max({beam_pattern(phones_, weights_, to, look[kept], k),
+                      beam_pattern(phones_, weights_, to, mirrored(shape_, look[kept]), k), least});
+      }
       return at->second;
     };
     static_cast<void>(independent_peaks(peaks, leaks, keep, beam_leak,
@@ -99,6 +108,40 @@ class Search {
     std::vector<float> doppler_time;  // [filters × columns]
   };
 
+  struct PlacedProbe {
+    std::size_t beam = 0, filter = 0, sample = 0;
+    bool inside = false;
+    double threshold = infinity;  // |y|²
+  };
+
+  /// \return level of an echo of power |y|² [dB re 1 µPa]
+  static double level_of(double power) {
+    return db_from_power(0.5 * power) - db_from_amplitude(micropascal);
+  }
+
+  void place_probes(std::span<const Probe> probes) {
+    const double last = static_cast<double>(bank_.samples()) - 1.0;
+    for (const Probe& probe : probes) {
+      PlacedProbe placed;
+      const double sample = std::round((probe.time - bank_.time(0.0)) * bank_.sample_rate());
+      placed.inside = sample >= 0.0 && sample <= last;
+      if (placed.inside) placed.sample = static_cast<std::size_t>(sample);
+      double most = -1.0, least = infinity;
+      for (std::size_t b = 0; b < grid_.looks.size(); ++b) {
+        const double heard =
+            beam_pattern(phones_, weights_, grid_.looks[b], probe.look, wavenumber(1.0));
+        if (heard > most) most = heard, placed.beam = b;
+      }
+      for (std::size_t f = 0; f < bank_.filters(); ++f)
+        if (const double off = std::abs(bank_.doppler(f) - probe.doppler); off < least)
+          least = off, placed.filter = f;
+      // Beyond the bank's last filter as far as that still answers.
+      const double step = bank_.filters() > 1 ? bank_.doppler(1) - bank_.doppler(0) : 0.0;
+      placed.inside = placed.inside && least <= 0.5 * step + doppler_cell(replica_);
+      probes_.push_back(placed);
+    }
+  }
+
   void prepare_maps(DetectionMaps& maps) const {
     const std::size_t columns = std::min(settings_.map_columns, bank_.samples());
     maps.time.resize(columns);
@@ -111,7 +154,7 @@ class Search {
   }
 
   std::vector<Peak> find_peaks(const BeamSpectra& beams, const std::function<bool()>& proceed,
-                               DetectionMaps& maps) const {
+                               DetectionMaps& maps) {
     const std::size_t n = bank_.samples(), columns = maps.time.size();
     std::vector<std::vector<Peak>> found(beams.beams);
     tbb::enumerable_thread_specific<Work> works;
@@ -128,6 +171,9 @@ class Search {
         for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
         estimator_(work.power, work.background, work.threshold, work.scratch);
         pick(b, f, work, found[b]);
+        for (PlacedProbe& probe : probes_)  // each has one beam and one filter
+          if (probe.inside && probe.beam == b && probe.filter == f)
+            probe.threshold = work.threshold[probe.sample];
         for (std::size_t column = 0; column < columns; ++column) {
           float most = 0.0F;
           for (std::size_t i = column * n / columns; i < (column + 1) * n / columns; ++i)
@@ -192,7 +238,7 @@ class Search {
     const double power = std::max(static_cast<double>(peak.power), power_at(d));
     d.snr_db = db_from_power(power / static_cast<double>(peak.background));
     d.excess_db = db_from_power(power / static_cast<double>(peak.threshold));
-    d.level_db = db_from_power(0.5 * power) - db_from_amplitude(micropascal);
+    d.level_db = level_of(power);
     return d;
   }
 
@@ -282,7 +328,10 @@ class Search {
       return;
     }
     d.bearing = bearing;
-    d.elevation = elevation;
+    if (shape_.bent)
+      d.cosine = d.look.dot(shape_.axis);
+    else
+      d.elevation = elevation;
   }
 
   const Baseband& baseband_;
@@ -297,6 +346,7 @@ class Search {
   MatchedFilterBank bank_;
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
+  std::vector<PlacedProbe> probes_;
   std::size_t cut_;  // samples of baseband that a snapshot looks at
 };
 
@@ -304,8 +354,9 @@ class Search {
 
 DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
                       const Replica& replica, std::span<const double> dopplers,
-                      const DetectorSettings& settings, const std::function<bool()>& proceed) {
-  return Search(baseband, phones, sound_speed, replica, dopplers, settings).run(proceed);
+                      const DetectorSettings& settings, std::span<const Probe> probes,
+                      const std::function<bool()>& proceed) {
+  return Search(baseband, phones, sound_speed, replica, dopplers, settings).run(probes, proceed);
 }
 
 }  // namespace asdic

@@ -11,6 +11,12 @@
 
 namespace asdic {
 
+/// A cell of time, Doppler factor and direction whose threshold is asked for.
+struct Probe {
+  double time = 0.0, doppler = 1.0;
+  Vec3 look = Vec3::UnitY();
+};
+
 enum class Beamformer { conventional, mvdr };
 
 struct DetectorSettings {
@@ -41,8 +47,10 @@ struct DetectorResult {
   double time_cell = 0.0;     ///< [s]
   double doppler_cell = 0.0;  ///< half the factors' span in which a filter answers within 3 dB
   double delay_per_doppler =
-      0.0;                ///< by which a sweep's delay errs for an error of η: its ridge [s]
-  std::size_t peaks = 0;  ///< local maxima over the threshold, before clustering
+      0.0;  ///< by which a sweep's delay errs for an error of η: its ridge [s]
+  std::vector<double> thresholds_db;  ///< [probes] level of an echo that just meets the threshold
+                                      ///< there [dB re 1 µPa]; ∞ outside of what is searched
+  std::size_t peaks = 0;              ///< local maxima over the threshold, before clustering
 };
 
 /// Matched filters in beams, compared with their surroundings: what stands out, one detection a
@@ -53,13 +61,16 @@ struct DetectorResult {
 /// louder one explains it: what that leaks into its cell by the pulse's ambiguity function and the
 /// beams' pattern, times a margin. Time and Doppler factor are then interpolated, and the direction
 /// is the one that fits the phones' own filter outputs best. Deterministic for any number of
-/// threads. Source: docs/theory/processing.md \param phones       [channels] relative to the point
-/// that delays refer to [m] \param sound_speed  at the array [m/s] \param proceed      asked now
-/// and then; false stops (Interrupted is thrown)
+/// threads. Source: docs/theory/processing.md
+/// \param phones       [channels] relative to the point that delays refer to [m]
+/// \param sound_speed  at the array [m/s]
+/// \param probes       cells whose thresholds are told
+/// \param proceed      asked now and then; false stops (Interrupted is thrown)
 [[nodiscard]] DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones,
                                     double sound_speed, const Replica& replica,
                                     std::span<const double> dopplers,
                                     const DetectorSettings& settings,
+                                    std::span<const Probe> probes = {},
                                     const std::function<bool()>& proceed = {});
 
 }  // namespace asdic

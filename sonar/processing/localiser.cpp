@@ -28,7 +28,40 @@ const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double
   return best;
 }
 
+Vec3 heard_at(const Detection& detection, const SonarPlaces& places) {
+  return places.array.position + detection.time * places.array.velocity;
+}
+
+/// Without a bearing a pair that lies apart puts it on an ellipse, not at a range.
+bool on_ellipse(const Detection& detection, const SonarPlaces& places) {
+  const bool bearing_known = places.shape.kind != ArrayKind::point && !places.shape.upright();
+  const double apart = separation(places.source.position, heard_at(detection, places)).range;
+  return !bearing_known && apart > farthest_apart * detection.time;
+}
+
 }  // namespace
+
+std::string_view words_for(Unplaced reason) noexcept {
+  switch (reason) {
+    case Unplaced::no:
+      return "";
+    case Unplaced::no_bearing:
+      return "no bearing, a pair apart";
+    case Unplaced::no_path:
+      return "no path to the depth takes so long";
+    case Unplaced::ray_ends:
+      return "the ray ends before";
+  }
+  return "";
+}
+
+Unplaced Localiser::reason(const Detection& detection, const SonarPlaces& places) const {
+  if (on_ellipse(detection, places)) return Unplaced::no_bearing;
+  const bool elevation_known = places.shape.upright() ||
+                               (places.shape.kind == ArrayKind::plane && !places.shape.bent) ||
+                               places.shape.kind == ArrayKind::volume;
+  return elevation_known && !settings_.depth ? Unplaced::ray_ends : Unplaced::no_path;
+}
 
 struct Localiser::Tables {
   using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
@@ -212,28 +245,25 @@ std::optional<Location> Localiser::towards(Query query, std::optional<double> be
 std::vector<Location> Localiser::locate(const Detection& detection, const SonarPlaces& places,
                                         double elevation_sigma) const {
   const ArrayShape& shape = places.shape;
-  Query query{.detection = detection,
-              .places = places,
-              .heard_at = places.array.position + detection.time * places.array.velocity};
+  Query query{.detection = detection, .places = places, .heard_at = heard_at(detection, places)};
   std::vector<Location> result;
   const auto keep = [&](std::optional<Location> found) {
     if (found) result.push_back(*found);
   };
   query.elevation_sigma = std::max(elevation_sigma, 1e-3);
-  // Without a bearing a pair that lies apart puts it on an ellipse, not at a range.
-  const bool bearing_known = shape.kind != ArrayKind::point && !shape.upright();
-  const double apart = separation(places.source.position, query.heard_at).range;
-  if (!bearing_known && apart > farthest_apart * detection.time) return result;
+  if (on_ellipse(detection, places)) return result;
   if (shape.kind == ArrayKind::point) {
     keep(towards(query, std::nullopt));
   } else if (shape.upright()) {
     query.elevation = detection.elevation;
     keep(towards(query, std::nullopt));
-  } else if (shape.kind == ArrayKind::line) {
+  } else if (shape.kind == ArrayKind::line || shape.bent) {
     // look·axis = cos e·(a_x sin β + a_y cos β) − a_z sin e: two bearings for the path's elevation.
     const double along = std::hypot(shape.axis.x(), shape.axis.y());
     const double axis_bearing = std::atan2(shape.axis.x(), shape.axis.y());
+    const double seen = detection.look.dot(right_of(shape.axis));
     for (const double side : {1.0, -1.0}) {
+      if (shape.bent && side * seen < 0.0) continue;
       std::optional<Location> found;
       double elevation = 0.0;
       for (int i = 0; i < 4; ++i) {
@@ -248,8 +278,7 @@ std::vector<Location> Localiser::locate(const Detection& detection, const SonarP
     }
   } else {
     std::vector<Vec3> looks{detection.look};
-    if (shape.kind == ArrayKind::plane)
-      looks.push_back(detection.look - 2.0 * detection.look.dot(shape.normal) * shape.normal);
+    if (shape.kind == ArrayKind::plane) looks.push_back(mirrored(shape, detection.look));
     for (const Vec3& look : looks) {
       query.elevation = std::asin(std::clamp(-look.z(), -1.0, 1.0));
       keep(towards(query, std::atan2(look.x(), look.y())));

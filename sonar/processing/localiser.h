@@ -48,6 +48,8 @@ class Localiser {
   /// \return as Detection::locations
   [[nodiscard]] std::vector<Location> locate(const Detection& detection, const SonarPlaces& places,
                                              double elevation_sigma) const;
+  /// Why locate() found none.
+  [[nodiscard]] Unplaced reason(const Detection& detection, const SonarPlaces& places) const;
 
  private:
   struct Tables;

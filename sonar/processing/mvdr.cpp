@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +24,44 @@ Vector weights_for(const Eigen::LLT<Matrix>& factor, const Vector& steering) {
   const Vector solved = factor.solve(steering);
   return solved / steering.dot(solved).real();
 }
+
+/// w of a covariance V·diag(λ)·Vᴴ, loaded as much more as keeps |w|² within `most`/N.
+class ConstrainedWeights {
+ public:
+  ConstrainedWeights(const Matrix& covariance, double most)
+      : principal_(covariance), most_(most), spread_(covariance.rows()) {}
+
+  void operator()(const Vector& steering, Vector& w) {
+    const auto n = static_cast<double>(steering.size());
+    turned_.noalias() = principal_.eigenvectors().adjoint() * steering;
+    spread_ = turned_.cwiseAbs2();
+    // |w|² = Σ|b|²/(λ + μ)² / (Σ|b|²/(λ + μ))², b = Vᴴa, falls with μ towards 1/N.
+    const Eigen::ArrayXd& power = spread_;
+    const Eigen::ArrayXd lambda = principal_.eigenvalues().array();
+    const auto norm = [&](double mu) {
+      return n * (power / (lambda + mu).square()).sum() /
+             std::pow((power / (lambda + mu)).sum(), 2.0);
+    };
+    double mu = 0.0;
+    if (norm(0.0) > most_) {
+      double low = std::log(1e-3 * lambda[0]), high = std::log(1e3 * lambda[lambda.size() - 1]);
+      for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (low + high);
+        (norm(std::exp(middle)) > most_ ? low : high) = middle;
+      }
+      mu = std::exp(high);
+    }
+    const double sum = (power / (lambda + mu)).sum();
+    turned_.array() /= (lambda + mu) * sum;
+    w.noalias() = principal_.eigenvectors() * turned_;
+  }
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Matrix> principal_;
+  double most_;
+  Eigen::ArrayXd spread_;
+  Vector turned_;
+};
 
 /// The record as blocks: [channels × blocks × bins].
 struct Blocks {
@@ -107,7 +146,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
     const std::size_t from = begin > wing ? begin - wing : 0;
     const std::size_t to = std::min(end + wing, blocks.count);
     Matrix covariance(n, n);
-    Vector snapshot(n), steering(n);
+    Vector snapshot(n), steering(n), w(n);
     for (std::size_t k = 0; k < blocks.length; ++k) {
       covariance.setZero();
       for (std::size_t j = from; j < to; ++j) {
@@ -117,7 +156,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
       }
       covariance /= static_cast<double>(to - from);
       load(covariance, settings.loading);
-      const Eigen::LLT<Matrix> factor(covariance.selfadjointView<Eigen::Lower>());
+      ConstrainedWeights weights(covariance, power_from_db(settings.most_noise_db));
       const double bin = k < (blocks.length + 1) / 2
                              ? static_cast<double>(k)
                              : static_cast<double>(k) - static_cast<double>(blocks.length);
@@ -128,7 +167,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
           steering[static_cast<Eigen::Index>(c)] = std::polar(
               1.0, std::remainder(2.0 * pi * frequency * looks[b].dot(phones[c]) / sound_speed,
                                   2.0 * pi));
-        const Vector w = weights_for(factor, steering);
+        weights(steering, w);
         for (std::size_t j = begin; j < end; ++j) {
           std::complex<double> sum = 0.0;
           for (std::size_t c = 0; c < n; ++c)

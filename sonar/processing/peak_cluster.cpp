@@ -39,10 +39,11 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
     const auto bins = static_cast<std::size_t>((high - low) / fine);
     for (std::size_t i = 0; i < bins && i < n; ++i) {
       const double f = low + static_cast<double>(i) * fine;
-      work[i] = replica.spectrum(f, doppler) * std::conj(replica.spectrum(f));
+      work[i] = replica.spectrum(f) * std::conj(replica.spectrum(f, doppler));
     }
     ComplexFft<double>(n).inverse(work.data());
-    const double scale = fine * fine * doppler / (replica.energy() * replica.energy());
+    // eq. (3) of an echo s₊(t) in the filter of factor 1 + k·step
+    const double scale = std::pow(fine * doppler / replica.energy(), 2.0);
     float* row = values_.data() + (k + filters_ - 1) * width;
     const auto size = static_cast<std::ptrdiff_t>(n);
     for (std::ptrdiff_t i = -reach_; i <= reach_; ++i) {

@@ -13,12 +13,15 @@ struct Peak {
   float power = 0.0F, background = 0.0F, threshold = 0.0F;
 };
 
-/// What an echo leaks into the filters' other cells: |χ|² over differences of sample and filter.
+/// What an echo leaks into the filters' other cells: |y|² of eq. (3) over differences of sample and
+/// filter, both counted from the echo's own. A sweep's lies along its ridge: in a filter of another
+/// factor the same echo comes earlier or later.
 class LeakTable {
  public:
   LeakTable(const Replica& replica, const MatchedFilterBank& bank);
 
-  /// \return the largest |χ|² within a sample of this far from an echo of power 1
+  /// \param samples  later than the echo   \param filters  above the one that it matches
+  /// \return the largest |y|² within a sample of there, of an echo of power 1
   [[nodiscard]] double at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexcept;
   [[nodiscard]] std::ptrdiff_t reach() const noexcept { return reach_; }  ///< samples either way
 

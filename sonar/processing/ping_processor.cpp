@@ -66,6 +66,20 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
   require(settings_.tracker.start_hits >= 1 &&
               settings_.tracker.start_hits <= settings_.tracker.start_pings,
           "track_start", settings_.tracker.start_hits, "hits from 1 to the number of pings");
+  if (settings_.target_depth) {
+    // Somewhere at the platforms or targets there must be water that deep.
+    double floor = 0.0;
+    const auto look_at = [&](const Track& track) {
+      floor = std::max(floor, paths_.bottom_depth(track.at(0.0).position));
+    };
+    for (const Platform& platform : scenario_.platforms) look_at(platform.track);
+    for (const Target& target : scenario_.targets) look_at(target.track);
+    if (!(*settings_.target_depth < floor))
+      throw InputError(
+          {.where = "target_depth",
+           .got = std::to_string(*settings_.target_depth) + " m",
+           .expected = "a depth above the sea floor at " + std::to_string(floor) + " m"});
+  }
   for (const Replica& replica : replicas_) {
     // The slowest sound of any ocean, so that no echo falls outside the bank.
     banks_.push_back(
@@ -79,7 +93,8 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
 }
 
 ProcessedArray PingProcessor::process(const ArrayRecording& recording,
-                                      const std::function<bool()>& proceed) const {
+                                      const std::function<bool()>& proceed,
+                                      std::span<const TrueEcho> echoes) const {
   const Replica& pulse = replica(recording.transmitter);
   std::span<const double> factors = dopplers(recording.transmitter);
   if (recording.carrier)
@@ -114,7 +129,13 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
 
   DetectorSettings detector = settings_.detector;
   detector.first_time = std::max(detector.first_time, recording.start);
-  done.result = detect(baseband, phones, done.sound_speed, pulse, factors, detector, proceed);
+  std::vector<Probe> probes;
+  for (const TrueEcho& echo : echoes)
+    probes.push_back({.time = echo.time,
+                      .doppler = std::isnan(echo.doppler) ? 1.0 : echo.doppler,
+                      .look = -echo.travel});
+  done.result =
+      detect(baseband, phones, done.sound_speed, pulse, factors, detector, probes, proceed);
 
   // The transmitter as it was for that ping.
   const std::vector<Transmission> sent = transmissions(scenario_);
@@ -134,6 +155,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     d.ping = recording.ping;
     d.array = recording.array;
     d.locations = localiser.locate(d, places, done.elevation_sigma);
+    if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
   return done;
 }
@@ -155,7 +177,7 @@ std::vector<double> PingProcessor::ranges_at(const ProcessedArray& processed, in
 Resolution PingProcessor::resolution(const ProcessedArray& processed) const {
   const double wavelength = processed.sound_speed / replica(0).centre_frequency();
   return {.time = processed.result.time_cell,
-          .doppler = 2.0 * processed.result.doppler_cell,
+          .doppler = processed.result.doppler_cell,
           .delay_per_doppler = processed.result.delay_per_doppler,
           .direction =
               processed.shape.kind == ArrayKind::point ? 2.0 : wavelength / processed.shape.length};
@@ -186,7 +208,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
       c.bearing = place.bearing;
       // A line's cell widens as 1/sin of the angle with its axis, to its square root at endfire.
       double across = 1.0;
-      if (processed.shape.kind == ArrayKind::line)
+      if (processed.shape.kind == ArrayKind::line || processed.shape.bent)
         across = std::max(std::sqrt(std::max(1.0 - d.cosine * d.cosine, 0.0)),
                           std::sqrt(wavelength / processed.shape.length));
       c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);

@@ -56,8 +56,11 @@ class PingProcessor {
   PingProcessor(Scenario scenario, std::vector<Replica> replicas, ProcessingSettings settings);
 
   /// \param proceed  asked now and then; false stops (Interrupted is thrown)
+  /// \param echoes   that the simulation knows of: told is the level each had to have to be
+  /// detected
   [[nodiscard]] ProcessedArray process(const ArrayRecording& recording,
-                                       const std::function<bool()>& proceed = {}) const;
+                                       const std::function<bool()>& proceed = {},
+                                       std::span<const TrueEcho> echoes = {}) const;
 
   /// What a tracker takes of a processed ping: one contact a detection that has a place.
   /// \param side  0 or 1: which of two places, where there are two

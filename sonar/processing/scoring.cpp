@@ -12,7 +12,8 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// How far a direction is from where an echo comes from, in what the array can tell.
-double off_direction(const Detection& d, const TrueEcho& echo, const ArrayShape& shape) {
+double off_direction(const Detection& d, const TrueEcho& echo, const ArrayShape& shape,
+                     double direction) {
   const Vec3 from = -echo.travel;
   switch (shape.kind) {
     case ArrayKind::point:
@@ -20,13 +21,36 @@ double off_direction(const Detection& d, const TrueEcho& echo, const ArrayShape&
     case ArrayKind::line:
       return std::abs(from.dot(shape.axis) - d.cosine);
     case ArrayKind::plane: {
-      const Vec3 mirrored = from - 2.0 * from.dot(shape.normal) * shape.normal;
-      return std::acos(std::clamp(std::max(from.dot(d.look), mirrored.dot(d.look)), -1.0, 1.0));
+      // The components in the plane, each by its own extent; at most the side is asked for.
+      const double across = std::abs((from - d.look).dot(shape.across));
+      const double cell = std::min(1.0, direction * shape.length / shape.width);
+      return std::max(std::abs((from - d.look).dot(shape.axis)), across * direction / cell);
     }
     case ArrayKind::volume:
       return std::acos(std::clamp(from.dot(d.look), -1.0, 1.0));
   }
   return 0.0;
+}
+
+/// By so much an echo may be louder than its paths' levels say, or a little below its threshold:
+/// paths and noise add up by chance.
+constexpr double level_room_db = 10.0;
+
+/// What a target's paths within a cell amount to.
+struct Together {
+  double in_phase_db = 0.0;  ///< amplitudes added
+  double power_db = 0.0;     ///< powers added
+};
+
+Together together(std::span<const TrueEcho> echoes, const TrueEcho& echo, double cell) {
+  if (!std::isfinite(echo.level_db)) return {.in_phase_db = infinity, .power_db = infinity};
+  double amplitude = 0.0, power = 0.0;
+  for (const TrueEcho& other : echoes)
+    if (other.target == echo.target && std::abs(other.time - echo.time) <= cell) {
+      amplitude += amplitude_from_db(other.level_db);
+      power += power_from_db(other.level_db);
+    }
+  return {.in_phase_db = db_from_amplitude(amplitude), .power_db = db_from_power(power)};
 }
 
 }  // namespace
@@ -45,8 +69,11 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
       const double along_ridge = resolution.delay_per_doppler * off;
       if (std::abs(d.time - echo.time - along_ridge) > resolution.time ||
           std::abs(off) > resolution.doppler ||
-          off_direction(d, echo, shape) > resolution.direction || echo.level_db <= loudest)
+          off_direction(d, echo, shape, resolution.direction) > resolution.direction ||
+          echo.level_db <= loudest)
         continue;
+      const double most = together(echoes, echo, resolution.time).in_phase_db + level_room_db;
+      if (most < std::max(d.level_db, echo.threshold_db)) continue;
       loudest = echo.level_db;
       score.owner[i] = echo.target;
     }
@@ -59,7 +86,8 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
                     .range_error = none,
                     .bearing_error = none};
     row.audible = std::any_of(echoes.begin(), echoes.end(), [&](const TrueEcho& echo) {
-      return echo.target == target.target && echo.time >= first && echo.time <= last;
+      return echo.target == target.target && echo.time >= first && echo.time <= last &&
+             together(echoes, echo, resolution.time).power_db >= echo.threshold_db;
     });
     for (std::size_t i = 0; i < detections.size(); ++i)
       if (score.owner[i] == target.target &&
@@ -67,6 +95,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
            detections[i].snr_db > detections[static_cast<std::size_t>(row.detection)].snr_db))
         row.detection = static_cast<int>(i);
     row.hit = row.detection >= 0;
+    row.audible = row.audible || row.hit;  // by luck
     if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
       const Separation truth = separation(array_position, target.position);

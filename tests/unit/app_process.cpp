@@ -78,6 +78,10 @@ TEST_F(Process, SaysWhatIsWrong) {
   refused("process small.h5 --elevations 20:-20", "--elevations");
   refused("process small.h5 --beamformer best", "conventional");
   refused("process small.h5 --target-depth deep", "a length such as 60km, 500m or 500");
+  refused("process small.h5 --target-depth 9000m", "target_depth: found 9000");
+  refused("process small.h5 --target-depth 9000m", "a depth above the sea floor at ");
+  refused("process small.h5 --from 3000",
+          "--from: found 3000 s, expected a time before the record");
   refused("process small.h5 --false-alarm-probability 2", "--false-alarm-probability");
   refused("process small.h5 -o none/out.h5", "a file in a folder that is there");
 }

@@ -134,7 +134,16 @@ TEST(PingRecordingsTest, AContinuousRecordIsListenedToAcrossPings) {
       other_file(folder, "interval = 10.0", "interval = 3.0\ncontinuous = true");
   const PingRecordings file(path);
   EXPECT_NEAR(file.end(0), 5.0, 1e-2);
-  EXPECT_NEAR(loudest(path).time, 2.0 * std::hypot(3000.0, 300.0) / 1500.0, 5e-3);
+  const double delay = 2.0 * std::hypot(3000.0, 300.0) / 1500.0;
+  EXPECT_NEAR(loudest(path).time, delay, 5e-3);
+  // The second ping hears that echo 3 s earlier, and knows whose it is.
+  const auto echoes = file.echoes(1, 0);
+  const auto other = std::find_if(echoes.begin(), echoes.end(),
+                                  [](const TrueEcho& e) { return e.target == another_ping; });
+  ASSERT_NE(other, echoes.end());
+  EXPECT_NEAR(other->time, delay - 3.0, 1e-3);
+  EXPECT_TRUE(
+      std::any_of(echoes.begin(), echoes.end(), [](const TrueEcho& e) { return e.target == 0; }));
 }
 
 TEST(PingRecordingsTest, OtherFilesAreInputErrors) {
