@@ -145,7 +145,7 @@ bool ReverberationCovariance::serves(const ScatteringField& field) noexcept {
   const SheetEnds& ends = field.sheet.ends();
   const ScattererField& f = field.field;
   constexpr double one_place = 0.1;  // [m]
-  return ends.source.velocity.isZero() && ends.receiver.velocity.isZero() &&
+  return ends.source.velocity.isZero() && !ends.receiver_moves() &&
          (ends.source.position - ends.receiver.position).norm() < one_place && ends.band.empty() &&
          f.motion.kind == ScattererMotion::Kind::still && f.motion.current.isZero() &&
          f.statistics.coherence_time == 0.0 && !f.statistics.k_shape;

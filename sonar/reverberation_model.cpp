@@ -14,6 +14,42 @@ ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
   return std::visit([](const auto& model) { return ScatteringSheet::Law(model); }, law);
 }
 
+/// Source and receiver of one ping, with the ways that they take while it is sent and heard.
+SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context) {
+  const Transmitter& transmitter =
+      scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
+  const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
+  const auto track = [&](int platform) -> const Track& {
+    return scenario.platforms[static_cast<std::size_t>(platform)].track;
+  };
+  const double duration = context.pulse.duration();
+  SheetEnds ends = {
+      .source = sent_from(track(transmitter.platform), context.time, duration),
+      .receiver = array_at(scenario, context.array, context.time),
+      .legs = receiver_legs(track(array.platform), context.time, context.latest, duration),
+      .frequency = context.pulse.centre_frequency(),
+      .latest = context.latest,
+      .band = context.band};
+  ends.source.position += transmitter.offset;
+  for (ReceiverLeg& leg : ends.legs) leg.line.position += array.offset;
+  return ends;
+}
+
+/// How far the receiver gets from where it is at the ping's start [m].
+double way_of_receiver(const SheetEnds& ends) {
+  if (ends.legs.empty()) return ends.receiver.velocity.norm() * ends.latest;
+  double furthest = (ends.receiver_at(ends.latest) - ends.receiver.position).norm();
+  for (const ReceiverLeg& leg : ends.legs)  // straight between its turns
+    furthest = std::max(furthest, (ends.receiver_at(leg.until) - ends.receiver.position).norm());
+  return furthest;
+}
+
+double fastest_end(const SheetEnds& ends) {
+  double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
+  for (const ReceiverLeg& leg : ends.legs) speed = std::max(speed, leg.line.velocity.norm());
+  return speed;
+}
+
 /// Sectors so narrow that neither an array nor its Doppler tells them apart: λ/(2L) for a length L,
 /// and 1/T of Doppler, 2v/λ·Δφ, for a platform's speed v.
 int resolved_sectors(const Scenario& scenario, const ReverberationContext& context, double speed,
@@ -80,13 +116,7 @@ GroundLevel off(const GroundLevel& level, double thickness, double depth) {
 ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   const ScattererField& field = part.field;
-  const SheetEnds ends = {.source = transmitter_at(scenario_, context.transmitter, context.time),
-                          .receiver = array_at(scenario_, context.array, context.time),
-                          .source_speed = 0.0,
-                          .receiver_speed = 0.0,
-                          .frequency = context.pulse.centre_frequency(),
-                          .latest = context.latest,
-                          .band = context.band};
+  SheetEnds ends = ends_of(scenario_, context);
 
   // Around the middle of the two platforms.
   const auto middle = [&](double time) -> Vec2 {
@@ -102,7 +132,7 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
   const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
                                   field.motion.current, reach / 8.0, part.id);
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
-  const double moved = ends.receiver.velocity.norm() * context.latest;
+  const double moved = way_of_receiver(ends);
   const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
   const double apart = (source - receiver).norm() + moved;
 
@@ -112,15 +142,14 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
                                 .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
                                 .frequency = ends.frequency,
                                 .limits = limits_of(scenario_.propagation)};
-  SheetEnds here = ends;
-  here.source_speed = paths_.speed_at(ends.source.position);
-  here.receiver_speed = paths_.speed_at(ends.receiver.position);
+  ends.source_speed = paths_.speed_at(ends.source.position);
+  ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
                    ends.receiver.position.z());
   int azimuths = settings.azimuths;
   if (settings.resolve_azimuth) {
-    const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
-    azimuths = std::max(azimuths, resolved_sectors(scenario_, context, speed, here.receiver_speed));
+    azimuths = std::max(
+        azimuths, resolved_sectors(scenario_, context, fastest_end(ends), ends.receiver_speed));
   }
   const auto depth = [&](const Vec3& place) {
     if (!part.level.boundary) return part.level.depth;
@@ -134,7 +163,7 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
     return paths_to_level;
   };
   auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
-  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), here,
+  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), ends,
                                    context.pattern),
           .grid = {.anchor = anchor.place,
                    .identity = anchor.identity,
