@@ -44,25 +44,24 @@ double way_of_receiver(const SheetEnds& ends) {
   return furthest;
 }
 
-double fastest_end(const SheetEnds& ends) {
-  double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
-  for (const ReceiverLeg& leg : ends.legs) speed = std::max(speed, leg.line.velocity.norm());
-  return speed;
-}
-
-/// Sectors so narrow that neither an array nor its Doppler tells them apart: λ/(2L) for a length L,
-/// and 1/T of Doppler, 2v/λ·Δφ, for a platform's speed v.
-int resolved_sectors(const Scenario& scenario, const ReverberationContext& context, double speed,
-                     double sound_speed) {
-  double length = 0.0;
-  const auto& phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones;
-  for (const Vec3& phone : phones)
-    length = std::max(length, 2.0 * (phone - phones.front()).head<2>().norm());
-  const double wavelength = sound_speed / context.pulse.centre_frequency();
-  const double by_array = 2.0 * pi * length / wavelength;
-  const double by_doppler = 2.0 * pi * 2.0 * speed / wavelength * context.pulse.duration();
+/// Sectors so narrow that no array nor its Doppler tells them apart: λ/(2L) for a length L, and 1/T
+/// of Doppler, 2v/λ·Δφ, for a platform's speed v. The same for every array and every ping: they
+/// hear the same scatterers.
+int resolved_sectors(const Scenario& scenario, double sound_speed) {
+  double length = 0.0, speed = 0.0;
+  for (const ReceiverArray& array : scenario.arrays)
+    for (const Vec3& phone : array.phones)
+      length = std::max(length, 2.0 * (phone - array.phones.front()).head<2>().norm());
+  for (const Platform& platform : scenario.platforms)
+    speed = std::max(speed, fastest(platform.track));
+  double sectors = 0.0;
+  for (std::size_t i = 0; i < scenario.transmitters.size(); ++i) {
+    const Pulse pulse(pulse_of(scenario, static_cast<int>(i)));
+    const double wavenumber = 2.0 * pi * pulse.centre_frequency() / sound_speed;
+    sectors = std::max({sectors, wavenumber * length, wavenumber * 2.0 * speed * pulse.duration()});
+  }
   constexpr double most = 3600.0;
-  return static_cast<int>(std::ceil(std::min(most, std::max(by_array, by_doppler))));
+  return static_cast<int>(std::ceil(std::min(most, sectors)));
 }
 
 }  // namespace
@@ -73,7 +72,18 @@ ReverberationModel::ReverberationModel(const Scenario& scenario, const Propagati
       paths_(paths),
       fans_(paths),
       spacing_(asdic::ground_spacing(scenario, widest, paths)),
-      fastest_water_(asdic::fastest_water(scenario.environment)) {}
+      fastest_water_(asdic::fastest_water(scenario.environment)),
+      resolved_sectors_(scenario.reverberation.resolve_azimuth
+                            ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
+                            : 1) {}
+
+int ReverberationModel::sectors(double reach) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  const double cells = reach / spacing_ * settings.scatterers_per_cell;
+  const double most = 2.0 * static_cast<double>(settings.most_returns) / std::max(1.0, cells);
+  const double wanted = std::min(static_cast<double>(resolved_sectors_), std::floor(most));
+  return std::max(settings.azimuths, static_cast<int>(wanted));
+}
 
 std::vector<ReverberationModel::Part> ReverberationModel::parts() const {
   const ReverberationSettings& settings = scenario_.reverberation;
@@ -146,11 +156,6 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
   ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
                    ends.receiver.position.z());
-  int azimuths = settings.azimuths;
-  if (settings.resolve_azimuth) {
-    azimuths = std::max(
-        azimuths, resolved_sectors(scenario_, context, fastest_end(ends), ends.receiver_speed));
-  }
   const auto depth = [&](const Vec3& place) {
     if (!part.level.boundary) return part.level.depth;
     return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
@@ -168,7 +173,7 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
           .grid = {.anchor = anchor.place,
                    .identity = anchor.identity,
                    .spacing = spacing_,
-                   .azimuths = azimuths,
+                   .azimuths = sectors(reach),
                    .per_cell = settings.scatterers_per_cell,
                    .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
                    .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
@@ -177,6 +182,7 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
           .boundary = part.id,
           .depth = depth(ends.source.position),
           .thickness = part.thickness,
+          .bearings = settings.azimuths,
           // Who lies this far off an end is nearer to it than half its range only within:
           .divided_below =
               2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm())};

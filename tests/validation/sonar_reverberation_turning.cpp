@@ -77,12 +77,14 @@ TEST(ReverberationTurning, AShipThatStartsToMoveHearsTheRidgeOfHerWay) {
 }
 
 // A ship in a turn who speaks to the north alone: v·(sin ωt + sin ωT/2)/λ, the ping's middle and
-// what she makes good to the north when she hears it. A bin of 1 Hz; her first course says 0.
+// what she makes good to the north when she hears it. In 3 degrees to either side her way to the
+// east spreads that by 2v/λ·sin 3° = ±1.3 Hz, of 12 pings' mean 0.2 Hz. A bin of 1 Hz; her first
+// course says 0.
 TEST(ReverberationTurning, ATurningShipHearsTheRidgeTurn) {
   Scenario s = ship(3000.0);
   s.platforms[0].track = turning();
   s.reverberation.azimuths = 120;
-  const Sea sea(s, std::make_unique<support::Sector>(radians(10.0)));
+  const Sea sea(s, std::make_unique<support::Sector>(radians(3.0)));
   std::vector<double> frequencies;
   for (double f = -14.0; f <= 14.0; f += 0.25) frequencies.push_back(f);
   const std::complex<double> one = 1.0;
