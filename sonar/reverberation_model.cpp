@@ -128,19 +128,19 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
   const ScattererField& field = part.field;
   SheetEnds ends = ends_of(scenario_, context);
 
-  // Around the middle of the two platforms.
-  const auto middle = [&](double time) -> Vec2 {
+  // Around the middle of the two platforms, on a lattice through that of the first two: pairs whose
+  // middles have one lattice point in common hear one sea.
+  const auto middle = [&](int transmitter, int array, double time) -> Vec2 {
     const auto platform = [&](int i) -> Vec2 {
       return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
     };
-    return 0.5 *
-           (platform(
-                scenario_.transmitters[static_cast<std::size_t>(context.transmitter)].platform) +
-            platform(scenario_.arrays[static_cast<std::size_t>(context.array)].platform));
+    return 0.5 * (platform(scenario_.transmitters[static_cast<std::size_t>(transmitter)].platform) +
+                  platform(scenario_.arrays[static_cast<std::size_t>(array)].platform));
   };
   const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
-  const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
-                                  field.motion.current, reach / 8.0, part.id);
+  const Anchor anchor =
+      anchor_of(middle(0, 0, 0.0), middle(context.transmitter, context.array, context.time),
+                context.time, field.motion.current, reach / 8.0, part.id);
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
   const double moved = way_of_receiver(ends);
   const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
