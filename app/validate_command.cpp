@@ -52,8 +52,9 @@ std::string reverberation_text(const Scenario& s, double spacing) {
   const ReverberationSettings& r = s.reverberation;
   std::string text =
       r.enabled && r.surface_scatters
-          ? fmt::format("surface reverberation  {}, {} azimuths, ground grid of {:.3g} m\n",
-                        name_of(r.surface), r.azimuths, spacing)
+          ? fmt::format("surface reverberation  {}, {}{} azimuths, ground grid of {:.3g} m\n",
+                        name_of(r.surface), r.resolve_azimuth ? "at least " : "", r.azimuths,
+                        spacing)
           : "surface reverberation  none\n";
   if (!r.enabled) return text;
   if (r.bottom) text += fmt::format("bottom reverberation   {}\n", name_of(*r.bottom));

@@ -150,6 +150,9 @@ class ReverberationModel {
   };
   [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
   [[nodiscard]] std::vector<Part> parts() const;
+  /// Of a ring: as many as are told apart, but no more scatterers in all rings than twice the most
+  /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]
+  [[nodiscard]] int sectors(double reach) const;
   [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
       std::span<const ScatteringField> fields, const ReverberationContext& context) const;
   [[nodiscard]] std::shared_ptr<const ReverberationCovariance> covariance(
@@ -160,6 +163,7 @@ class ReverberationModel {
   const PropagationPaths& paths_;
   BoundaryFans fans_;
   double spacing_, fastest_water_;
+  int resolved_sectors_;
 };
 
 }  // namespace asdic

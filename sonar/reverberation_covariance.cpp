@@ -27,7 +27,7 @@ struct Circles {
     const double reach = field.grid.rings * field.grid.spacing, least = 0.25 * slowest_sea * bin;
     while (edges.back() < reach)
       edges.push_back(std::min(reach, edges.back() + std::max(least, edges.back() / 256.0)));
-    const auto n = static_cast<std::size_t>(field.grid.azimuths);
+    const auto n = static_cast<std::size_t>(field.bearings);
     sectors = all_round() ? 1 : n * ((bearings + 4 * n - 1) / (4 * n));
   }
   [[nodiscard]] std::size_t count() const noexcept { return edges.size() - 1; }
@@ -155,7 +155,7 @@ bool ReverberationCovariance::serves(const ScatteringField& field) noexcept {
   const SheetEnds& ends = field.sheet.ends();
   const ScattererField& f = field.field;
   constexpr double one_place = 0.1;  // [m]
-  return ends.source.velocity.isZero() && ends.receiver.velocity.isZero() &&
+  return ends.source.velocity.isZero() && !ends.receiver_moves() &&
          (ends.source.position - ends.receiver.position).norm() < one_place && ends.band.empty() &&
          f.motion.kind == ScattererMotion::Kind::still && f.motion.current.isZero() &&
          f.statistics.coherence_time == 0.0 && !f.statistics.k_shape;

@@ -14,19 +14,54 @@ ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
   return std::visit([](const auto& model) { return ScatteringSheet::Law(model); }, law);
 }
 
-/// Sectors so narrow that neither an array nor its Doppler tells them apart: λ/(2L) for a length L,
-/// and 1/T of Doppler, 2v/λ·Δφ, for a platform's speed v.
-int resolved_sectors(const Scenario& scenario, const ReverberationContext& context, double speed,
-                     double sound_speed) {
-  double length = 0.0;
-  const auto& phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones;
-  for (const Vec3& phone : phones)
-    length = std::max(length, 2.0 * (phone - phones.front()).head<2>().norm());
-  const double wavelength = sound_speed / context.pulse.centre_frequency();
-  const double by_array = 2.0 * pi * length / wavelength;
-  const double by_doppler = 2.0 * pi * 2.0 * speed / wavelength * context.pulse.duration();
+/// Source and receiver of one ping, with the ways that they take while it is sent and heard.
+SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context) {
+  const Transmitter& transmitter =
+      scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
+  const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
+  const auto track = [&](int platform) -> const Track& {
+    return scenario.platforms[static_cast<std::size_t>(platform)].track;
+  };
+  const double duration = context.pulse.duration();
+  SheetEnds ends = {
+      .source = sent_from(track(transmitter.platform), context.time, duration),
+      .receiver = array_at(scenario, context.array, context.time),
+      .legs = receiver_legs(track(array.platform), context.time, context.latest, duration),
+      .frequency = context.pulse.centre_frequency(),
+      .latest = context.latest,
+      .band = context.band};
+  ends.source.position += transmitter.offset;
+  for (ReceiverLeg& leg : ends.legs) leg.line.position += array.offset;
+  return ends;
+}
+
+/// How far the receiver gets from where it is at the ping's start [m].
+double way_of_receiver(const SheetEnds& ends) {
+  if (ends.legs.empty()) return ends.receiver.velocity.norm() * ends.latest;
+  double furthest = (ends.receiver_at(ends.latest) - ends.receiver.position).norm();
+  for (const ReceiverLeg& leg : ends.legs)  // straight between its turns
+    furthest = std::max(furthest, (ends.receiver_at(leg.until) - ends.receiver.position).norm());
+  return furthest;
+}
+
+/// Sectors so narrow that no array nor its Doppler tells them apart: λ/(2L) for a length L, and 1/T
+/// of Doppler, 2v/λ·Δφ, for a platform's speed v. The same for every array and every ping: they
+/// hear the same scatterers.
+int resolved_sectors(const Scenario& scenario, double sound_speed) {
+  double length = 0.0, speed = 0.0;
+  for (const ReceiverArray& array : scenario.arrays)
+    for (const Vec3& phone : array.phones)
+      length = std::max(length, 2.0 * (phone - array.phones.front()).head<2>().norm());
+  for (const Platform& platform : scenario.platforms)
+    speed = std::max(speed, fastest(platform.track));
+  double sectors = 0.0;
+  for (std::size_t i = 0; i < scenario.transmitters.size(); ++i) {
+    const Pulse pulse(pulse_of(scenario, static_cast<int>(i)));
+    const double wavenumber = 2.0 * pi * pulse.centre_frequency() / sound_speed;
+    sectors = std::max({sectors, wavenumber * length, wavenumber * 2.0 * speed * pulse.duration()});
+  }
   constexpr double most = 3600.0;
-  return static_cast<int>(std::ceil(std::min(most, std::max(by_array, by_doppler))));
+  return static_cast<int>(std::ceil(std::min(most, sectors)));
 }
 
 }  // namespace
@@ -37,7 +72,18 @@ ReverberationModel::ReverberationModel(const Scenario& scenario, const Propagati
       paths_(paths),
       fans_(paths),
       spacing_(asdic::ground_spacing(scenario, widest, paths)),
-      fastest_water_(asdic::fastest_water(scenario.environment)) {}
+      fastest_water_(asdic::fastest_water(scenario.environment)),
+      resolved_sectors_(scenario.reverberation.resolve_azimuth
+                            ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
+                            : 1) {}
+
+int ReverberationModel::sectors(double reach) const {
+  const ReverberationSettings& settings = scenario_.reverberation;
+  const double cells = reach / spacing_ * settings.scatterers_per_cell;
+  const double most = 2.0 * static_cast<double>(settings.most_returns) / std::max(1.0, cells);
+  const double wanted = std::min(static_cast<double>(resolved_sectors_), std::floor(most));
+  return std::max(settings.azimuths, static_cast<int>(wanted));
+}
 
 std::vector<ReverberationModel::Part> ReverberationModel::parts() const {
   const ReverberationSettings& settings = scenario_.reverberation;
@@ -80,29 +126,23 @@ GroundLevel off(const GroundLevel& level, double thickness, double depth) {
 ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   const ScattererField& field = part.field;
-  const SheetEnds ends = {.source = transmitter_at(scenario_, context.transmitter, context.time),
-                          .receiver = array_at(scenario_, context.array, context.time),
-                          .source_speed = 0.0,
-                          .receiver_speed = 0.0,
-                          .frequency = context.pulse.centre_frequency(),
-                          .latest = context.latest,
-                          .band = context.band};
+  SheetEnds ends = ends_of(scenario_, context);
 
-  // Around the middle of the two platforms.
-  const auto middle = [&](double time) -> Vec2 {
+  // Around the middle of the two platforms, on a lattice through that of the first two: pairs whose
+  // middles have one lattice point in common hear one sea.
+  const auto middle = [&](int transmitter, int array, double time) -> Vec2 {
     const auto platform = [&](int i) -> Vec2 {
       return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
     };
-    return 0.5 *
-           (platform(
-                scenario_.transmitters[static_cast<std::size_t>(context.transmitter)].platform) +
-            platform(scenario_.arrays[static_cast<std::size_t>(context.array)].platform));
+    return 0.5 * (platform(scenario_.transmitters[static_cast<std::size_t>(transmitter)].platform) +
+                  platform(scenario_.arrays[static_cast<std::size_t>(array)].platform));
   };
   const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
-  const Anchor anchor = anchor_of(middle(0.0), middle(context.time), context.time,
-                                  field.motion.current, reach / 8.0, part.id);
+  const Anchor anchor =
+      anchor_of(middle(0, 0, 0.0), middle(context.transmitter, context.array, context.time),
+                context.time, field.motion.current, reach / 8.0, part.id);
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
-  const double moved = ends.receiver.velocity.norm() * context.latest;
+  const double moved = way_of_receiver(ends);
   const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
   const double apart = (source - receiver).norm() + moved;
 
@@ -112,16 +152,10 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
                                 .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
                                 .frequency = ends.frequency,
                                 .limits = limits_of(scenario_.propagation)};
-  SheetEnds here = ends;
-  here.source_speed = paths_.speed_at(ends.source.position);
-  here.receiver_speed = paths_.speed_at(ends.receiver.position);
+  ends.source_speed = paths_.speed_at(ends.source.position);
+  ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
                    ends.receiver.position.z());
-  int azimuths = settings.azimuths;
-  if (settings.resolve_azimuth) {
-    const double speed = std::max(ends.source.velocity.norm(), ends.receiver.velocity.norm());
-    azimuths = std::max(azimuths, resolved_sectors(scenario_, context, speed, here.receiver_speed));
-  }
   const auto depth = [&](const Vec3& place) {
     if (!part.level.boundary) return part.level.depth;
     return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
@@ -134,12 +168,12 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
     return paths_to_level;
   };
   auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
-  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), here,
+  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), ends,
                                    context.pattern),
           .grid = {.anchor = anchor.place,
                    .identity = anchor.identity,
                    .spacing = spacing_,
-                   .azimuths = azimuths,
+                   .azimuths = sectors(reach),
                    .per_cell = settings.scatterers_per_cell,
                    .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
                    .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
@@ -148,6 +182,7 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
           .boundary = part.id,
           .depth = depth(ends.source.position),
           .thickness = part.thickness,
+          .bearings = settings.azimuths,
           // Who lies this far off an end is nearer to it than half its range only within:
           .divided_below =
               2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm())};

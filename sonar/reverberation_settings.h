@@ -35,10 +35,10 @@ struct ReverberationSettings {
   bool enabled = true;
   AnySurfaceScattering surface =
       NrlSurface{};   ///< wind and surface sound speed are filled in from the environment
-  int azimuths = 36;  ///< sectors of a ring
+  int azimuths = 36;  ///< sectors of a ring, at least; planes around a place over a transect
   std::optional<double> ground_spacing;  ///< of the grid [m]; by default from the pulse's bandwidth
   int scatterers_per_cell = 1;           ///< of ring and sector
-  bool resolve_azimuth = false;          ///< as many sectors as array and Doppler resolve, if more
+  bool resolve_azimuth = true;           ///< as many sectors as array and Doppler resolve, if more
   bool surface_scatters = true;
   ScattererField surface_field;
   std::optional<AnyBottomScattering> bottom;  ///< none: the bottom does not scatter

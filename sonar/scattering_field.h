@@ -18,6 +18,7 @@ struct ScatteringField {
   double depth = 0.0;               ///< near the ends [m]
   double thickness = 0.0;           ///< of a sheet of the volume [m]
   bool by_covariance = false;       ///< heard by it, not one scatterer after the other
+  int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]

@@ -1,9 +1,6 @@
 #include "sonar/scattering_sheet.h"
 
 #include <algorithm>
-#include <numbers>
-
-#include "reverb/scattering/motion.h"
 
 namespace asdic {
 namespace {
@@ -31,7 +28,7 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       ends_(ends),
       pattern_(pattern),
       all_round_pattern_(pattern.all_round() && out_->planes.size() == 1),
-      receiver_moves_(!ends.receiver.velocity.isZero()),
+      receiver_moves_(ends.receiver_moves()),
       moving_(receiver_moves_ || !ends.source.velocity.isZero()),
       one_place_(out_ == back_ && !receiver_moves_ &&
                  ends.source.position == ends.receiver.position) {
@@ -100,7 +97,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   double heard = 0.0;
   if (receiver_moves_) {
     heard = out.paths.front().delay + back.paths.front().delay;
-    back = leg(*back_, receiver + ends_.receiver.velocity.head<2>() * heard, place, false);
+    back = leg(*back_, ends_.receiver_at(heard).head<2>(), place, false);
     if (back.paths.empty()) return;
   }
   const Vec2 coming = -back.direction;
@@ -131,7 +128,12 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       const GroundPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
       double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
-      if (receiver_moves_) {
+      const Kinematics* on = &ends_.receiver;
+      if (!ends_.legs.empty()) {
+        const Hearing hearing = heard_under_way(back, j, heard, delay);
+        delay = hearing.delay;
+        on = hearing.receiver;
+      } else if (receiver_moves_) {
         // t = τ_out + τ_back − ξ·closing·(t − heard) + s_z·v_z·t, solved for t. The sound arrives
         // against the direction in which b was launched: s_z is minus its vertical slowness.
         const double along = b.horizontal_slowness * closing;
@@ -184,95 +186,43 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .grazing_out = geometry.grazing_out,
                              .area = out.tilt ? out.tilt->area : 1.0,
                              .leaving = out.direction,
-                             .coming = coming});
+                             .coming = coming,
+                             .receiver = on});
     }
   }
 }
 
-Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
-  const double level = pair.back_ends->launch_level;
-  return {level * pair.coming.x(), level * pair.coming.y(), -pair.back_ends->launch_down};
-}
-
-double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
-                                double bragg) const noexcept {
-  double factor = 1.0;
-  if (moving_) {
-    const double level = pair.out_ends->launch_level;
-    const Vec3 leaving(level * pair.leaving.x(), level * pair.leaving.y(),
-                       pair.out_ends->launch_down);
-    factor = (1.0 - ends_.receiver.velocity.dot(arriving(pair))) /
-             (1.0 - ends_.source.velocity.dot(leaving));
+/// Solves (2) on the leg on which it is heard. Tables are read where the receiver is at `heard`; a
+/// leg that it takes at another time passes beside there, and the way back changes by
+/// −n·d + |d − (n·d)n|²/2r for its place d from there on. \param unmoved  delay to that place [s]
+ScatteringSheet::Hearing ScatteringSheet::heard_under_way(const Leg& back, std::size_t path,
+                                                          double heard,
+                                                          double unmoved) const noexcept {
+  const GroundPath& b = back.paths[path];
+  const double rising = -back.ends[path].launch_down;  // s_z of the sound, which comes against it
+  const Vec3 there = ends_.receiver_at(heard);
+  Hearing found{.delay = unmoved};
+  constexpr int most = 4;  // at a turn, two legs may each send to the other: microseconds
+  for (int i = 0; i < most; ++i) {
+    const Kinematics& line = leg_at(ends_.legs, found.delay).line;
+    if (&line == found.receiver) break;
+    found.receiver = &line;
+    const Vec2 velocity = line.velocity.head<2>();
+    const Vec2 beside = (line.position - there).head<2>() + velocity * heard;
+    const double deeper = line.position.z() - ends_.receiver.position.z();
+    const double along = b.horizontal_slowness * velocity.dot(back.direction);
+    const double t = (unmoved - b.horizontal_slowness * beside.dot(back.direction) + along * heard +
+                      rising * deeper) /
+                     (1.0 + along - rising * line.velocity.z());
+    const Vec2 moved = beside + velocity * (t - heard);
+    const double closer = moved.dot(back.direction);
+    const double held = 0.2 * b.horizontal_slowness;
+    const double bend = std::clamp(b.slowness_slope * closer, -held, held);
+    const double across2 = moved.squaredNorm() - closer * closer;
+    found.delay =
+        t + 0.5 * (b.horizontal_slowness * across2 / std::max(1.0, back.range) + bend * closer);
   }
-  const Vec2 in = pair.out->horizontal_slowness * pair.leaving;
-  const Vec2 home = pair.back->horizontal_slowness * pair.coming;
-  if (!velocity.isZero()) {  // slowness at the scatterer; what came down goes up again
-    const Vec3 comes(in.x(), in.y(), pair.out_ends->down);
-    const Vec3 goes(home.x(), home.y(), -pair.back_ends->down);
-    factor *= (1.0 - velocity.dot(comes)) / (1.0 - velocity.dot(goes));
-  }
-  if (bragg != 0.0)
-    factor *= 1.0 + bragg * bragg_shift(scattering_wavenumber(in, home, ends_.frequency)) /
-                        ends_.frequency;
-  return factor;
-}
-
-namespace {
-
-/// The largest slownesses of a fan's paths [s/m].
-struct Slownesses {
-  double launch_level = 0.0, launch_down = 0.0;  // at the launch
-  double level = 0.0, down = 0.0;                // at the boundary
-  double least_level = infinity;
-};
-
-Slownesses slownesses(const BoundaryFan& fan) {
-  Slownesses s;
-  for (const FanPlane& plane : fan.planes) {
-    for (const PathEnds& ends : plane.ends) {
-      s.launch_level = std::max(s.launch_level, ends.launch_level);
-      s.launch_down = std::max(s.launch_down, std::abs(ends.launch_down));
-      s.down = std::max(s.down, std::abs(ends.down));
-    }
-    for (const GroundPath& path : plane.paths->all()) {
-      s.level = std::max(s.level, path.horizontal_slowness);
-      s.least_level = std::min(s.least_level, path.horizontal_slowness);
-    }
-  }
-  return s;
-}
-
-/// (1 ± a)/(1 ± b) at their extremes.
-DopplerSpan ratio(double a, double b) noexcept {
-  return {(1.0 - a) / (1.0 + b), (1.0 + a) / (1.0 - b)};
-}
-
-}  // namespace
-
-std::vector<DopplerSpan> ScatteringSheet::dopplers(const ScattererMotion& motion) const {
-  const Slownesses out = slownesses(*out_), back = slownesses(*back_);
-  const auto along = [](const Vec3& velocity, double level, double down) {
-    return velocity.head<2>().norm() * level + std::abs(velocity.z()) * down;
-  };
-  const DopplerSpan ends =
-      ratio(along(ends_.receiver.velocity, back.launch_level, back.launch_down),
-            along(ends_.source.velocity, out.launch_level, out.launch_down));
-  // A scatterer's own velocity is held at four standard deviations of each component.
-  const double own = motion.kind == ScattererMotion::Kind::spread ? 4.0 * motion.speed_rms : 0.0;
-  const Vec3 fastest(motion.current.norm() + std::numbers::sqrt2 * own, 0.0, own);
-  const DopplerSpan sea =
-      ratio(along(fastest, out.level, out.down), along(fastest, back.level, back.down));
-  const DopplerSpan both = {ends.lowest * sea.lowest, ends.highest * sea.highest};
-  if (motion.kind != ScattererMotion::Kind::bragg) return {both};
-  // √(gQ)/2π over the frequency, |Q| ≤ 2πf(ξ_out + ξ_back), and just that straight back.
-  const double k = 2.0 * pi * ends_.frequency;
-  const double most = bragg_shift(k * (out.level + back.level)) / ends_.frequency;
-  const double least =
-      one_place_
-          ? bragg_shift(2.0 * k * std::min(out.least_level, back.least_level)) / ends_.frequency
-          : 0.0;
-  return {{both.lowest * (1.0 - most), both.highest * (1.0 - least)},
-          {both.lowest * (1.0 + least), both.highest * (1.0 + most)}};
+  return found;
 }
 
 double ScatteringSheet::nearest_end(const Vec2& place, double depth) const noexcept {

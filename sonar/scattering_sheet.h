@@ -11,6 +11,7 @@
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering/models.h"
 #include "sonar/boundary_fans.h"
+#include "sonar/receiver_legs.h"
 #include "sonar/return_source.h"
 #include "sonar/reverberation_settings.h"
 #include "sonar/track.h"
@@ -40,6 +41,7 @@ struct PathPair {
   double area = 1.0;                           ///< of the boundary over its horizontal projection
   Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
   Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
+  const Kinematics* receiver = nullptr;  ///< the straight way on which it hears: of the sheet
 };
 
 class ScatteringSheet;
@@ -76,10 +78,20 @@ struct AudibleLimits {
 /// A law over the ends of one ping: which the boundary is, who sends and who hears.
 struct SheetEnds {
   Kinematics source, receiver;                            ///< at the ping's start
+  std::vector<ReceiverLeg> legs = {};                     ///< none: it keeps its velocity
   double source_speed = 1500.0, receiver_speed = 1500.0;  ///< of sound there [m/s]
   double frequency = 1000.0;                              ///< [Hz]
   double latest = infinity;                               ///< end of the record [s]
   std::span<const BandPoint> band = {};  ///< where one frequency is not enough; outlives the sheet
+
+  /// Where the receiver is when a leading edge of that delay is heard [m].
+  [[nodiscard]] Vec3 receiver_at(double delay) const noexcept {
+    const Kinematics& way = legs.empty() ? receiver : leg_at(legs, delay).line;
+    return way.position + way.velocity * delay;
+  }
+  [[nodiscard]] bool receiver_moves() const noexcept {
+    return !legs.empty() || !receiver.velocity.isZero();
+  }
 };
 
 /// One scattering boundary of one ping: joins the paths out and the paths back at any place.
@@ -136,6 +148,13 @@ class ScatteringSheet {
                                      double frequency) const noexcept;
   [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
                         bool bearing) const noexcept;
+  /// When a receiver that changes its velocity hears what comes along a path.
+  struct Hearing {
+    double delay = 0.0;                    // of the leading edge [s]
+    const Kinematics* receiver = nullptr;  // the leg on which it hears, at the ping's start
+  };
+  [[nodiscard]] Hearing heard_under_way(const Leg& back, std::size_t path, double heard,
+                                        double unmoved) const noexcept;
 
   std::shared_ptr<const BoundaryFan> out_, back_;
   Law law_;

@@ -51,10 +51,15 @@ void add(ExactKey& key, const Kinematics& end) {
 bool ScatteringSheet::add_to(ExactKey& key) const {
   key.add_all(out_->identity, back_->identity, law_.index());
   std::visit([&](const auto& law) { add(key, law); }, law_);
-  const auto& [source, receiver, source_speed, receiver_speed, frequency, latest, band] = ends_;
+  const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
+      ends_;
   add(key, source);
   add(key, receiver);
-  key.add_all(source_speed, receiver_speed, frequency, latest, band.size());
+  key.add_all(source_speed, receiver_speed, frequency, latest, band.size(), legs.size());
+  for (const auto& [until, line] : legs) {
+    key.add(until);
+    add(key, line);
+  }
   bool all = pattern_.add_to(key);
   for (const auto& [at, pattern, more_nepers] : band) {
     key.add_all(at, more_nepers);

@@ -26,6 +26,7 @@ struct FullDensity {
     }
     scenario.reverberation.enabled = true;
     scenario.reverberation.ground_spacing = 1.8;  // 25 000 rings
+    scenario.reverberation.resolve_azimuth = false;
   }
 
   Scenario scenario;

@@ -49,10 +49,11 @@ class ReverberantSea {
                                                 scenario_.pings.sample_rate)};
   }
 
-  [[nodiscard]] PingReverberation ping(std::uint32_t ping, double time = 0.0) const {
+  [[nodiscard]] PingReverberation ping(std::uint32_t ping, double time = 0.0, int array = 0) const {
     return model_.ping(
         {.pattern = *pattern_,
          .pulse = pulse_,
+         .array = array,
          .time = time,
          .ping = ping,
          .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration,

@@ -115,18 +115,19 @@ TEST(ScenarioReader, ReverberationIsReadKeyByKey) {
   EXPECT_TRUE(plain.volume.empty());
   EXPECT_TRUE(plain.surface_scatters);
   EXPECT_EQ(plain.azimuths, 36);
+  EXPECT_TRUE(plain.resolve_azimuth);
   EXPECT_EQ(plain.surface_field.statistics.coherence_time, 0.0);
   EXPECT_EQ(plain.surface_field.motion.kind, ScattererMotion::Kind::still);
 
   const ReverberationSettings all = read(
-      {"reverberation.resolve_azimuth=true", "reverberation.scatterers_per_cell=3",
+      {"reverberation.resolve_azimuth=false", "reverberation.scatterers_per_cell=3",
        "reverberation.most_returns=50000", "reverberation.synthesis=covariance",
        R"(reverberation.surface={kind="table", grazing_deg=[5, 40], strength_db=[-50, -30], )"
        R"(motion="bragg", receding_share=0.25, current=[1, -2], coherence_time=4})",
        R"(reverberation.bottom={kind="ellis-crowe", nu_db=-18, k_shape=0.8, correlation_length=80})",
        R"(reverberation.volume=[{depth=[100, 300], strength_db=-72, sheets=2, )"
        R"(motion="spread", speed_rms=0.5}])"});
-  EXPECT_TRUE(all.resolve_azimuth);
+  EXPECT_FALSE(all.resolve_azimuth);
   EXPECT_EQ(all.scatterers_per_cell, 3);
   EXPECT_EQ(all.most_returns, 50'000U);
   EXPECT_EQ(plain.synthesis, ScattererSynthesis::automatic);

@@ -310,6 +310,7 @@ TEST(Reverberation, ResolvedSectorsFollowArrayAndDoppler) {
   const auto sectors = [](const Scenario& scenario) {
     return Sea(scenario).ping(1).fields()[0].grid.azimuths;
   };
+  s.reverberation.resolve_azimuth = false;
   EXPECT_EQ(sectors(s), 12);
   s.reverberation.resolve_azimuth = true;
   const int by_array = sectors(s);

@@ -5,13 +5,14 @@
 #include <array>
 #include <functional>
 
+#include "support/heard_spectrum.h"
 #include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
 
 namespace asdic {
 namespace {
 
-using support::at;
+using support::at, support::ridge, support::Sector, support::spectrum;
 using Sea = support::ReverberantSea;
 
 Scenario quiet_sea() {
@@ -173,35 +174,6 @@ TEST(ReverberationField, CoherenceOfAnIsotropicSeaIsASinc) {
   }
 }
 
-/// Power of a beam (one weight a phone) at frequencies off the carrier, mean over pings: a Hann
-/// window from `from` to `to`.
-std::vector<double> spectrum(const Baseband& heard, std::span<const std::complex<double>> beam,
-                             double from, double to, std::span<const double> frequencies) {
-  std::vector<std::complex<double>> sum(frequencies.size());
-  const auto first = static_cast<std::size_t>((from - heard.start) * heard.sample_rate);
-  const auto last = static_cast<std::size_t>((to - heard.start) * heard.sample_rate);
-  for (std::size_t i = first; i < last; ++i) {
-    std::complex<double> x = 0.0;
-    for (std::size_t n = 0; n < beam.size(); ++n)
-      x += beam[n] * std::complex<double>(heard.channel(n)[i]);
-    x *= 0.5 - 0.5 * std::cos(2.0 * pi * double(i - first) / double(last - first));
-    for (std::size_t k = 0; k < sum.size(); ++k)
-      sum[k] += x * std::polar(1.0, -2.0 * pi * frequencies[k] * double(i) / heard.sample_rate);
-  }
-  std::vector<double> power;
-  for (const auto& value : sum) power.push_back(std::norm(value));
-  return power;
-}
-
-/// Centre of the peak: the mean of the frequencies within 6 dB of the largest.
-double ridge(std::span<const double> power, std::span<const double> frequencies) {
-  const double most = *std::max_element(power.begin(), power.end());
-  double sum = 0.0, weight = 0.0;
-  for (std::size_t k = 0; k < power.size(); ++k)
-    if (power[k] > 0.25 * most) sum += power[k] * frequencies[k], weight += power[k];
-  return sum / weight;
-}
-
 // A vehicle that makes 6 m/s to the east hears the surface at 2v·cos(angle)·cos θ/λ: a line of 48
 // phones along its way, tones of 1 s in windows of 1 s (bins of 1 Hz). Beams from astern to ahead;
 // the ridge is within one bin everywhere, and at zero on broadside.
@@ -282,18 +254,6 @@ TEST(ReverberationField, BraggLinesLieWhereTheWavesPutThem) {
   EXPECT_LT(db_from_power(power[middle] / up), -15.0);
   EXPECT_LT(db_from_power(power.front() / up), -15.0);
 }
-
-/// Speaks into one sector only.
-class Sector final : public TransmitPattern {
- public:
-  explicit Sector(double half_width) : half_width_(half_width) {}
-  [[nodiscard]] std::complex<double> towards(double bearing, double) const noexcept override {
-    return std::abs(bearing) < half_width_ ? 1.0 : 0.0;
-  }
-
- private:
-  double half_width_;
-};
 
 // Clutter with a gamma texture of shape ν, constant in squares much larger than what a narrow beam
 // lights up: the intensity is K-distributed, P(I > x) = 2(νx)^{ν/2} K_ν(2√(νx))/Γ(ν). One sample a
@@ -510,6 +470,7 @@ TEST(ReverberationField, FastSynthesisIsDirectSynthesis) {
   s.pulse = {.kind = PulseKind::lfm, .duration = 0.2};
   s.arrays[0] = line_array(3, 0.4, 0.4, 0.1);
   s.arrays[0].platform = 1;
+  s.reverberation.resolve_azimuth = false;
   const Sea sea(s);
   const Returns all = sea.ping(1).returns();
   Returns some;

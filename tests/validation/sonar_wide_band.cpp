@@ -126,6 +126,7 @@ Scenario wide_sea() {
   s.transmitters[0].beamwidth = radians(30.0);
   s.arrays[0].phones = {Vec3::Zero(), Vec3(0.4, -0.2, 0.3)};
   s.reverberation.azimuths = 5;
+  s.reverberation.resolve_azimuth = false;
   s.reverberation.ground_spacing = 60.0;
   s.reverberation.bottom = Lambert{};
   s.reverberation.volume = {{.top = 300.0, .bottom = 350.0, .strength_db = -70.0}};
