@@ -139,21 +139,5 @@ TEST(SoundScenario, HighlightTargetShowsItsHighlights) {
   EXPECT_GT(std::count_if(seen.begin(), seen.end(), [](int n) { return n > 0; }), 2);
 }
 
-TEST(SoundScenario, TowedArrayBendsInTheTurn) {
-  const PingSimulator simulator(read_scenario(ASDIC_SCENARIOS "/towed_array_turn.toml"));
-  const PingRecord straight = simulator.simulate(1), turning = simulator.simulate(3);
-  EXPECT_LT((straight.phones[0] - Vec3(0, -150, 80)).norm(), 1e-6);
-  // On the way that turns, nearer to the ship than along it.
-  const double chord = (turning.phones[0] - turning.platform.position).norm();
-  EXPECT_LT(chord, 149.0);
-  EXPECT_GT(chord, 100.0);
-  const std::size_t row = turning.recording.samples * 2;
-  EXPECT_TRUE(std::all_of(turning.pressure.begin() + std::ptrdiff_t(6 * row),
-                          turning.pressure.begin() + std::ptrdiff_t(7 * row),
-                          [](float p) { return p == 0.0F; }))
-      << "the dead phone";
-  EXPECT_FALSE(straight.echoes.empty());
-}
-
 }  // namespace
 }  // namespace asdic
