@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/units.h"
 #include "io/hdf5_file.h"
 #include "support/program.h"
 
@@ -39,6 +40,44 @@ TEST(SoundScenarioCommands, TheTowedLineFindsTheTargetInTheTurn) {
     EXPECT_LT(std::abs(bearing[ping]), 0.9) << "ping " << ping + 1;
     EXPECT_LT(off[ping], 80.0) << "ping " << ping + 1;
   }
+}
+
+// The listener hears the sea: after the last of the ping's own sound, 11.5 s, the record is 3 dB
+// louder than noise alone for a second and a half, and as loud as echo, reverberation and noise are
+// expected to be: quarters of a second of 100 Hz hold 25 independent values, so they stray by
+// 4.3/sqrt(25) = 0.9 dB; four of that.
+TEST(SoundScenarioCommands, TheListenerHearsTheSeaAndFindsTheSubmarine) {
+  const support::TemporaryDirectory folder;
+  expect_found(folder, "bistatic", "--target-depth 400m");
+  const Hdf5File file = Hdf5File::open(folder / "bistatic.h5");
+  EXPECT_EQ(file.read<std::int32_t>("processed/targets/hit"), std::vector<std::int32_t>{1});
+  // A filter half a Doppler step off shifts the sweep's delay by v·T·f/B, at 1.5 m/s of error 10 m;
+  // a line's beam of λ/L/2 = 3.6 degrees at 8 km, a tenth of that by its SNR of 28 dB.
+  EXPECT_LT(file.read<double>("processed/targets/position_error").at(0), 200.0);
+
+  const auto pressure = file.read<float>("pressure");
+  const double rate = file.attribute_number("pressure", "sample_rate_hz");
+  const auto time = file.read<double>("levels/level_time");
+  const auto echo = file.read<float>("levels/echo"), sea = file.read<float>("levels/reverberation"),
+             noise = file.read<float>("levels/noise");
+  const std::size_t samples = pressure.size() / 32;
+  double loud = 0.0;
+  for (double start = 11.5; start < 14.0; start += 0.25) {
+    double heard = 0.0, expected = 0.0, quiet = 0.0, steps = 0.0;
+    const auto first = std::size_t(start * rate), last = std::size_t((start + 0.25) * rate);
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t k = 0; k < 32; ++k) {  // 16 phones, two components each
+        const double p = double(pressure[((k / 2) * samples + i) * 2 + k % 2]);
+        heard += 0.5 * p * p / 16.0;
+      }
+    for (std::size_t i = 0; i < time.size(); ++i)
+      if (time[i] >= start && time[i] < start + 0.25)
+        expected += double(echo[i] + sea[i] + noise[i]), quiet += double(noise[i]), ++steps;
+    heard /= double(last - first), expected /= steps, quiet /= steps;
+    EXPECT_NEAR(db_from_power(heard / expected), 0.0, 3.6) << start;
+    if (heard > 2.0 * quiet) loud += 0.25;
+  }
+  EXPECT_GE(loud, 1.5) << "seconds";
 }
 
 }  // namespace
