@@ -17,7 +17,7 @@ std::string scenario(const std::string& transmitter, const std::string& array,
          "[environment.bottom]\ndepth = 500.0\nkind = \"rigid\"\n"
          "[platform]\nposition = [0.0, 0.0, 100.0]\n"
          "[pulse]\nkind = \"cw\"\nfrequency = 1000.0\nduration = 0.1\n"
-         "[pings]\nrecording_duration = 2.0\nsample_rate = 4000.0\n"
+         "[pings]\ncount = 2\nrecording_duration = 2.0\nsample_rate = 4000.0\n"
          "[transmitter]\nsource_level_db = 200.0\n" +
          transmitter + "\n[array]\n" + array + "\n[[target]]\nposition = [1000, 0, 100]\n" +
          target + "\n";
@@ -84,6 +84,13 @@ TEST(SoundScenario, SaysWhatIsWrong) {
        "strength_db: found 1, expected no \"strength_db\" beside highlight"},
       {t, a, "highlight = [{ offset = [1, 0, 0] }]", "highlight[0].strength_db: found nothing"},
       {t, a, "highlight = [{ offset = [1, 0, 0], strength_db = 1 }]", "heading_deg: found nothing"},
+      {t, a, "heading_deg = 0\nhighlight = [{ offset = [1, 2], strength_db = 1 }]",
+       "highlight[0].offset: found an array of 2, expected [forward, starboard, down] in m"},
+      {t, a, "strength_db = 1\n[[reverberation.volume]]\ndepth = [300, 200.5]\nstrength_db = -70",
+       "volume[0].depth: found 300 m and 200.5 m, expected two depths, the deeper one last"},
+      {"taper = \"omnidirectional\"\ninterval = 0.05", a, b,
+       "transmitter.interval: found 0.05 s, expected an interval of at least the pulse's duration, "
+       "0.1 s: a projector sends one pulse at a time"},
       {t, a, "strength_db = 1\nhull = { length = 10, beam = 2 }",
        "expected no \"hull\" without highlights that it could hide"},
       {t, a, "strength_db = 1\nfluctuation = \"swerling-1\"", "scan_pings: found nothing"},

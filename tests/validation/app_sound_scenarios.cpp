@@ -80,5 +80,22 @@ TEST(SoundScenarioCommands, TheListenerHearsTheSeaAndFindsTheSubmarine) {
   EXPECT_GE(loud, 1.5) << "seconds";
 }
 
+TEST(SoundScenarioCommands, ValidateSaysWhatIsThere) {
+  const support::TemporaryDirectory folder;
+  const auto said = [&](const std::string& name) {
+    return asdic(folder, "validate '" ASDIC_SCENARIOS "/" + name + ".toml'").out;
+  };
+  const std::string turn = said("towed_array_turn");
+  for (const char* line : {"206 dB, 4 projectors, steered to 0 deg from north",
+                           "64 phones, towed, 100 to 194.5 m behind",
+                           "gain or phase errors (drawn: 0.5 dB, 4 deg), 1 dead, band-pass 400 to "
+                           "600 Hz, 16 bits to 20 Pa",
+                           "submarine: 6 to 20 dB by aspect"})
+    EXPECT_NE(turn.find(line), std::string::npos) << line << " in\n" << turn;
+  const std::string submarine = said("highlight_target");
+  EXPECT_NE(submarine.find("submarine: 4 highlights, together "), std::string::npos) << submarine;
+  EXPECT_NE(submarine.find("dB by aspect, Swerling 3,"), std::string::npos) << submarine;
+}
+
 }  // namespace
 }  // namespace asdic
