@@ -81,9 +81,10 @@ void add_plot_command(CLI::App& program, Action& action) {
       ->type_name("N")
       ->check(above_zero());
   command
-      ->add_option("--array", options->array,
-                   "array of a ping file to draw; default: the first (range over bearing: the first "
-                   "that tells bearings)")
+      ->add_option(
+          "--array", options->array,
+          "array of a ping file to draw; default: the first (range over bearing: the first "
+          "that tells bearings)")
       ->type_name("NAME");
   command->footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
