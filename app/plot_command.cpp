@@ -15,7 +15,7 @@ namespace asdic::app {
 namespace {
 
 struct Options {
-  std::string file, folder;
+  std::string file, folder, array;
   std::optional<int> ping;
 };
 
@@ -59,6 +59,7 @@ int plot(const Options& options) {
   words.insert(words.begin(), file.string());
   if (!pictures.empty()) words.insert(words.end(), {"--output", pictures});
   if (options.ping) words.insert(words.end(), {"--ping", std::to_string(*options.ping)});
+  if (!options.array.empty()) words.insert(words.end(), {"--array", options.array});
   return draw_pictures(words);
 }
 
@@ -79,6 +80,12 @@ void add_plot_command(CLI::App& program, Action& action) {
   command->add_option("--ping", options->ping, "ping to draw; default: the first")
       ->type_name("N")
       ->check(above_zero());
+  command
+      ->add_option(
+          "--array", options->array,
+          "array of a ping file to draw; default: the first (range over bearing: the first "
+          "that tells bearings)")
+      ->type_name("NAME");
   command->footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
       "Example:  asdic plot deep_ocean.h5 -o pictures");

@@ -283,6 +283,7 @@ void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_targets(root, scenario);
   check_interferers(root, scenario);
   check_size(root, scenario);
+  check_intervals(root, scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
     check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));
 }

@@ -1,5 +1,6 @@
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
+#include "sonar/pulse.h"
 
 namespace asdic::scenario {
 
@@ -60,6 +61,22 @@ void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scena
   if (pings.continuous && pings.recording_start > 0.0)
     throw table.fault("recording_start", "0 in a continuous stream, which has no gaps");
   table.finish();
+}
+
+void check_intervals(TomlTable& root, const Scenario& scenario) {
+  if (scenario.pings.count < 2) return;
+  std::vector<TomlTable> transmitters = root.one_or_more("transmitter");
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const double interval = scenario.transmitters[t].interval.value_or(scenario.pings.interval),
+                 duration = Pulse(pulse_of(scenario, static_cast<int>(t))).duration();
+    if (interval >= duration) continue;
+    const TomlTable pings = root.table("pings");
+    const TomlTable& table = scenario.transmitters[t].interval ? transmitters[t] : pings;
+    throw table.fault("interval",
+                      "an interval of at least the pulse's duration, " + to_text(duration) +
+                          " s: a projector sends one pulse at a time",
+                      to_text(interval) + " s");
+  }
 }
 
 }  // namespace asdic::scenario

@@ -92,8 +92,10 @@ void read_field(TomlTable& table, bool moves, ScattererField& field) {
 VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {
   VolumeLayer layer;
   const std::vector<double> depth = table.numbers("depth", depth_quantity);
-  if (depth.size() != 2 || depth[1] <= depth[0])
-    throw table.fault("depth", "two depths, the deeper one last");
+  if (depth.size() != 2) throw table.fault("depth", "two depths, the deeper one last");
+  if (depth[1] <= depth[0])
+    throw table.fault("depth", "two depths, the deeper one last",
+                      to_text(depth[0]) + " m and " + to_text(depth[1]) + " m");
   const double bottom = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
   const double surface =
       ocean.surface.shape ? ocean.surface.shape->shallowest() : ocean.surface.depth;

@@ -26,6 +26,9 @@ void read_reverberation(TomlTable table, Scenario& scenario);
 void read_propagation(TomlTable table, Scenario& scenario);
 void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scenario);
 
+/// \throws InputError where a transmitter would send a pulse before its last one has ended
+void check_intervals(TomlTable& root, const Scenario& scenario);
+
 /// Platform, phones and targets are in the water throughout, sampling is fast enough for the band,
 /// a ping fits in memory. \param root  the document, for the places of faults
 void check_scenario(TomlTable& root, const Scenario& scenario);

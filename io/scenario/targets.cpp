@@ -42,7 +42,9 @@ AspectTable read_aspect(TomlTable table) {
 Highlight read_highlight(TomlTable table) {
   constexpr Quantity length{.noun = "offset", .unit = "m", .low = -1000.0, .high = 1000.0};
   Highlight highlight;
-  highlight.offset = table.vector("offset", length);
+  const std::vector<double> offset = table.numbers("offset", length);
+  if (offset.size() != 3) throw table.fault("offset", "[forward, starboard, down] in m");
+  highlight.offset = {offset[0], offset[1], offset[2]};
   if (table.has("aspect")) {
     exclude(table, "aspect", {"strength_db"});
     highlight.aspect = read_aspect(table.table("aspect"));

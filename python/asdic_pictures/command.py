@@ -20,6 +20,9 @@ def arguments(argv):
                         help="folder for the pictures (default: FILE without .h5); with --against "
                              "the picture")
     parser.add_argument("--ping", metavar="N", type=int, help="ping to draw (default: the first)")
+    parser.add_argument("--array", metavar="NAME",
+                        help="array to draw (default: the first; range_bearing the first that "
+                             "tells bearings)")
     parser.add_argument("--against", metavar="B.h5", help="draw FILE against this reference")
     parser.add_argument("--names", metavar="NAME", nargs="+", default=[],
                         help="what the files are called in the pictures")
@@ -45,19 +48,25 @@ def complain(line: str) -> None:
     say(f"asdic plot: {line}", sys.stderr)
 
 
-def draw_all(data: PingFile, ping: int, folder: Path) -> None:
+def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None) -> None:
     """Draws each picture, or says why it is left out: there is nothing to show.
 
     A picture of an earlier run that is left out now is removed, so a folder never shows two files'
     pictures. Those of `asdic process` are spoken of only where it has run.
+    Without `array`, what the first hears, and range over bearing of the first that tells bearings.
     """
     from . import (ambiguity, bearing_time, detections, levels, matched_filter, pressure, processed,
                    range_bearing, rays, spectrogram, style, sweep, tracks)
 
+    chosen = data.choose_array(array) if array else 0
+    of_all = (rays, levels, ambiguity)
     received = (detections, range_bearing, ambiguity, tracks)
     for module in (rays, pressure, bearing_time, levels, spectrogram, matched_filter, sweep,
                    *received):
         name = module.__name__.rsplit(".", 1)[1] + ".png"
+        data.select_array(chosen)
+        if module is range_bearing and not array:
+            select_first(data, lambda: module.nothing_to_show(data, ping))
         reason = module.nothing_to_show(data, ping)
         if reason:
             (folder / name).unlink(missing_ok=True)
@@ -65,7 +74,19 @@ def draw_all(data: PingFile, ping: int, folder: Path) -> None:
                 say(f"{folder / name}: left out, {reason}")
             continue
         style.write(module.draw(data, ping), folder / name)
-        say(f"{folder / name}: {module.TITLE}")
+        say(f"{folder / name}: {module.TITLE}{'' if module in of_all else data.of_array}")
+    if len(data.array_names) > 1 and not array:
+        names = ", ".join(f'"{n}"' for n in data.array_names)
+        say(f"the file holds {len(data.array_names)} arrays, {names}: --array NAME draws another")
+
+
+def select_first(data: PingFile, missing) -> None:
+    """The first array of which a picture can be drawn; the first of all if there is none."""
+    for number in range(len(data.array_names)):
+        data.select_array(number)
+        if not missing():
+            return
+    data.select_array(0)
 
 
 def draw_result(options) -> None:
@@ -135,7 +156,7 @@ def run(argv=None) -> int:
         ping = data.choose_ping(options.ping)
         folder = Path(options.output) if options.output else default_folder(options.file)
         folder.mkdir(parents=True, exist_ok=True)
-        draw_all(data, ping, folder)
+        draw_all(data, ping, folder, options.array)
         for warning in data.warnings():
             complain(f"{options.file}: {warning}")
     return 0

@@ -86,7 +86,9 @@ class PingFile:
         if (len(shape) != 3 and not self.complex) or 0 in shape:
             raise InputError(path, f"pressure of shape {shape}",
                              "(ping, channel, sample) or (ping, channel, sample, 2), none of them 0")
-        self.pings, self.channels, self.samples = shape[:3]
+        self.pings, self._file_channels, self.samples = shape[:3]
+        self.array: int | None = None    # the pictures' own, None: all phones, whatever their array
+        self._replica = "replica"        # of the transmitter whose ping is drawn
         if self.complex:
             self.samples *= self._finer
 
@@ -155,6 +157,46 @@ class PingFile:
     # ------------------------------------------------------------ what is in it
 
     @cached_property
+    def _channel_array(self) -> np.ndarray:
+        """[channel of the file] number of its array"""
+        if not self.has("channel_array"):
+            return np.zeros(self._file_channels, int)
+        return self.read("channel_array").astype(int)
+
+    @cached_property
+    def array_names(self) -> list[str]:
+        count = int(self._channel_array.max(initial=0)) + 1
+        names = []
+        if self.has("channel_array"):
+            names = np.ravel(self.file["channel_array"].attrs.get("names", []))
+        names = [n.decode() if isinstance(n, bytes) else str(n) for n in names] + [""] * count
+        return [names[i] or f"array {i + 1}" for i in range(count)]
+
+    def select_array(self, number: int | None) -> None:
+        """What is heard, from now on, is what this array hears; None: all of them together."""
+        if number != self.array:
+            self.array = number
+            self._envelopes.clear()
+
+    def choose_array(self, name: str) -> int:
+        if name not in self.array_names:
+            known = ", ".join(f'"{n}"' for n in self.array_names)
+            raise InputError(self.path, f'no array "{name}"', f"one of {known}"
+                             if len(self.array_names) > 1 else known)
+        return self.array_names.index(name)
+
+    @property
+    def _channels(self) -> np.ndarray:
+        """The file's channels that are drawn"""
+        if self.array is None:
+            return np.arange(self._file_channels)
+        return np.flatnonzero(self._channel_array == self.array)
+
+    @property
+    def channels(self) -> int:
+        return len(self._channels)
+
+    @cached_property
     def title(self) -> str:
         return self._text(self.file.attrs, "title") or ""
 
@@ -204,31 +246,38 @@ class PingFile:
 
     def replica(self) -> np.ndarray:
         """The pulse at `sample_rate`, unit peak before its window"""
-        r = np.nan_to_num(self.read("replica").astype(float))
+        r = np.nan_to_num(self.read(self._replica).astype(float))
         return self._real(r) if self.complex else r
 
-    @cached_property
+    @property
     def centre_frequency(self) -> float:
-        return self.attribute("replica", "centre_frequency_hz")
+        return self.attribute(self._replica, "centre_frequency_hz")
 
-    @cached_property
+    @property
     def bandwidth(self) -> float:
-        return max(self.attribute("replica", "bandwidth_hz"), 0.0)
+        return max(self.attribute(self._replica, "bandwidth_hz"), 0.0)
 
-    @cached_property
+    @property
     def pulse_duration(self) -> float:
-        return self.attribute("replica", "duration_s")
+        return self.attribute(self._replica, "duration_s")
 
-    @cached_property
+    @property
     def pulse_kind(self) -> str:
-        return self._text(self.file["replica"].attrs, "kind") or ""
+        return self._text(self.file[self._replica].attrs, "kind") or ""
 
     @cached_property
     def elevation_deg(self) -> np.ndarray:
         return self.read("elevation_deg")
 
     def choose_ping(self, number: int | None) -> int:
-        """Row of ping `number`, or of the first one."""
+        """Row of ping `number`, or of the first one. The pulse is its transmitter's from now on."""
+        row = self._row_of(number)
+        sender = int(self.read("transmitter", row)) if self.has("transmitter") else 0
+        if sender > 0 and self.has(f"replica_{sender}"):
+            self._replica = f"replica_{sender}"
+        return row
+
+    def _row_of(self, number: int | None) -> int:
         if self.simulated.size == 0:
             raise InputError(self.path, "no ping that was simulated", "at least one")
         if number is None:
@@ -250,7 +299,14 @@ class PingFile:
             text += f" · ping {self.numbers[row]} of {self.simulated.size}"
         if self.stopped:
             text += f" (stopped; {requested} were asked for)"
-        return text
+        return text + self.of_array
+
+    @property
+    def of_array(self) -> str:
+        """For titles: which array is drawn, where there are several."""
+        if len(self.array_names) == 1:
+            return ""
+        return "  ·  all arrays" if self.array is None else f"  ·  {self.array_names[self.array]}"
 
     @cached_property
     def stopped(self) -> bool:
@@ -259,8 +315,9 @@ class PingFile:
     def pressure(self, row: int, channel: int) -> np.ndarray:
         """Pressure of one phone [Pa]; samples that are not numbers are 0 (see `warnings`)."""
         valid = slice(0, int(self.valid_samples[row]) // self._finer)
-        p = self.read("pressure", (row, channel, valid)).astype(float)
-        self._bad_samples[row, channel] = int(np.count_nonzero(~np.isfinite(p)))
+        stored = int(self._channels[channel])
+        p = self.read("pressure", (row, stored, valid)).astype(float)
+        self._bad_samples[row, stored] = int(np.count_nonzero(~np.isfinite(p)))
         p = np.nan_to_num(p, nan=0.0, posinf=0.0, neginf=0.0)
         return self._real(p) if self.complex else p
 
@@ -269,7 +326,7 @@ class PingFile:
         bad = sum(self._bad_samples.values())
         return [f"{bad} samples of pressure are not numbers; drawn as 0"] if bad else []
 
-    @cached_property
+    @property
     def band(self) -> float:
         """Width around the centre frequency that holds the pulse and its Doppler shifts [Hz]"""
         factors = self.read("echoes/doppler_factor") if self.has("echoes") else np.zeros(0)
@@ -290,7 +347,11 @@ class PingFile:
 
     def phones(self, row: int) -> np.ndarray:
         """[channel, 3] east, north, depth [m]"""
-        return self.read("phone_position", row)
+        return self.read("phone_position", row)[self._channels]
+
+    def places(self) -> np.ndarray:
+        """[simulated ping, 3] the middle of the phones"""
+        return self.read("phone_position")[self.simulated][:, self._channels].mean(axis=1)
 
     def platform(self, row: int) -> np.ndarray:
         return self.read("platform_position", row)
@@ -340,15 +401,19 @@ class PingFile:
         return [(i, self.target_names[i], place[i], bool(there[i]))
                 for i in range(len(self.target_names)) if np.all(np.isfinite(place[i]))]
 
-    def echoes(self, row: int) -> list[Echo]:
+    def echoes(self, row: int, array: int | None = None) -> list[Echo]:
         """One entry a target that answers, as heard at the array's reference point.
 
         Where every phone has its own paths, as heard at the middle phone.
         """
+        several = len(self.array_names) > 1
         t = self._of_ping("echoes", row,
                           ["target", "channel", "delay", "doppler_factor", "level_db",
-                                          "arrival_elevation_deg", "arrival_bearing_deg"])
+                           "arrival_elevation_deg", "arrival_bearing_deg"]
+                          + ["array"] * several)
         good = np.isfinite(t["delay"]) & np.isfinite(t["level_db"])
+        if several:
+            good &= t["array"] == ((self.array or 0) if array is None else array)
         found = []
         for target in np.unique(t["target"][good]).astype(int):
             mine = good & (t["target"] == target)

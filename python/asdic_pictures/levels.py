@@ -29,6 +29,16 @@ def measured(data, ping, step: float):
 
 
 def draw(data, ping):
+    """The levels in the file are means over all phones: so is what is measured here."""
+    chosen = data.array
+    data.select_array(None)
+    try:
+        return draw_all_phones(data, ping)
+    finally:
+        data.select_array(chosen)
+
+
+def draw_all_phones(data, ping):
     time, parts = data.levels(ping)
     step = float(np.median(np.diff(time))) if time.size > 1 else data.samples / data.sample_rate
     t_total, total = measured(data, ping, step)
@@ -37,7 +47,8 @@ def draw(data, ping):
                                                                  1) / data.sample_rate, b.duration)
     in_band = b.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), edges)
 
-    echoes = data.echoes(ping)
+    echoes = all_echoes(data, ping)
+    targets = len({e.target for e in echoes})
     fig, axes = style.figure(TITLE, 4.8)
     # level_time tells where a step starts
     starts = time.size and time[0] - data.start < 0.25 * step
@@ -52,7 +63,7 @@ def draw(data, ping):
                         ("echo", echo_colour(echoes))):
         db = signal.decibels(parts[key])
         if np.isfinite(db).any():
-            label = f"echo, all {len(echoes)} targets" if key == "echo" and len(echoes) > 1 else key
+            label = f"echo, all {targets} targets" if key == "echo" and targets > 1 else key
             drawn.append(axes.plot(middle, db, color=colour, lw=1.9, label=label, zorder=4,
                                    alpha=0.9)[0])
             shown.append(db)
@@ -68,9 +79,14 @@ def draw(data, ping):
     return fig
 
 
+def all_echoes(data, ping):
+    """Of every array: marks of what each hears."""
+    return [echo for number in range(len(data.array_names)) for echo in data.echoes(ping, number)]
+
+
 def echo_colour(echoes):
     """A target's own colour; one that belongs to none where the line is the sum over several."""
-    return style.colour(echoes[0].target) if len(echoes) == 1 else style.BROWN
+    return style.colour(echoes[0].target) if len({e.target for e in echoes}) == 1 else style.BROWN
 
 
 def say_what_is_hidden(axes, lines):

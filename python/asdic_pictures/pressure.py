@@ -63,7 +63,8 @@ def mark_echoes(axes, echoes):
             axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(),
                       clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))
             label = f"{style.name(echo.name)}: true echo times"
-            handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
+            if label not in [h.get_label() for h in handles]:  # heard by several arrays
+                handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
     return handles[:6]
 
 

@@ -28,24 +28,26 @@ def nothing(data, ping):
 
 
 def detections(data, ping) -> dict:
-    """Columns of the detections of one ping, of the first array."""
+    """Columns of the detections of one ping, of the array that is drawn."""
     t = data._of_ping("processed/detections", ping, DETECTIONS)
-    mine = t["array"] == 0
+    mine = t["array"] == (data.array or 0)
     return {name: column[mine] for name, column in t.items()}
 
 
 def tracks(data) -> list[dict]:
-    """Columns of each track."""
+    """Columns of each track of the array that is drawn."""
     if not data.has("processed/tracks/track"):
         return []
     t = {name: data.read(f"processed/tracks/{name}") for name in TRACKS}
+    mine = t["array"] == (data.array or 0)
+    t = {name: column[mine] for name, column in t.items()}
     return [{name: column[t["track"] == number] for name, column in t.items()}
             for number in np.unique(t["track"])]
 
 
 @dataclass
 class Maps:
-    """Of the first array and one ping."""
+    """Of the array that is drawn and one ping."""
 
     kind: str                 # point, line, plane, volume
     time: np.ndarray          # [column] [s]
@@ -69,7 +71,7 @@ class Maps:
 
 
 def maps(data, ping) -> Maps | None:
-    group = "processed/maps/array_0"
+    group = f"processed/maps/array_{data.array or 0}"
     if not data.has(f"{group}/beam_time_db"):
         return None
     numbers = data.read(f"{group}/ping")

@@ -17,6 +17,9 @@ def nothing_to_show(data, ping):
     if m.kind == "point" or m.upright:
         return "the array tells no bearing"
     if m.range is None or np.isfinite(m.range).sum() < 2:
+        apart = np.linalg.norm(data.phones(ping).mean(axis=0) - data.platform(ping))
+        if apart > 10.0:
+            return f"{apart:.0f} m from the sender: a delay is another range in every bearing"
         return "no path has the delays of the record"
     return None
 

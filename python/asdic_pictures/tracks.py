@@ -25,7 +25,7 @@ def draw(data, ping):
     axes.grid(True)
     hits = sum(int(np.sum(t["detection"] >= 0)) for t in tracks)
     style.subtitle(axes, f"{data.title or data.path}  ·  {len(tracks)} tracks, {hits} detections "
-                         f"in them")
+                         f"in them{data.of_array}")
     style.legend_below(axes, legend(data, tracks), ncol=4, below=0.12)
     return fig
 
@@ -57,7 +57,7 @@ def draw_map(axes, data, tracks):
         axes.plot(*(place[-1:, :2].T / 1e3), **style.truth(index, "*", 12), zorder=5)
     for t in tracks:
         axes.plot(t["x"] / 1e3, t["y"] / 1e3, **look(t))
-    own = data.read("platform_position")[data.simulated]
+    own = data.places()
     axes.plot(own[:, 0] / 1e3, own[:, 1] / 1e3, color=style.INK, lw=1.0, marker="^", ms=5, zorder=6,
               markevery=[-1])
     axes.set_aspect("equal", adjustable="datalim")
@@ -66,7 +66,7 @@ def draw_map(axes, data, tracks):
 
 
 def draw_ranges(axes, data, tracks):
-    own = data.read("platform_position")[data.simulated]
+    own = data.places()
     time = data.read("ping_time")[data.simulated]
     for index, (when, place) in enumerate(true_places(data)):
         mine = own[np.isin(time, when)]

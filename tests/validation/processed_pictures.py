@@ -20,7 +20,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python")]
 
-from asdic_pictures import command, processed, range_bearing, style  # noqa: E402
+from asdic_pictures import bearing_time, command, processed, range_bearing, style  # noqa: E402
 from asdic_pictures.data import PingFile  # noqa: E402
 
 style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
@@ -90,10 +90,10 @@ class Case(unittest.TestCase):
             subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
         return path
 
-    def plot(self, path):
+    def plot(self, path, *options):
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = command.main([str(path), "-o", str(self.folder / "pictures")])
+            code = command.main([str(path), "-o", str(self.folder / "pictures"), *options])
         self.assertEqual((code, err.getvalue()), (0, ""))
         drawn = sorted(p.stem for p in (self.folder / "pictures").iterdir() if p.stem in FOUND)
         return drawn, out.getvalue()
@@ -119,6 +119,79 @@ class EveryPicture(Case):
         drawn, said = self.plot(self.make("horizontal", "--no-maps"))
         self.assertEqual(drawn, ["tracks"])
         self.assertEqual(said.count("processed without maps"), 3)
+
+
+class SeveralArrays(Case):
+    """An upright array 300 m astern, a line to the north and one to the east."""
+
+    ARRAYS = """[[array]]
+name = "upright"
+offset = [0.0, -300.0, 0.0]
+kind = "vertical"
+phones = 4
+spacing = 0.75
+[[array]]
+name = "north line"
+kind = "horizontal"
+phones = 8
+spacing = 0.75
+[[array]]
+name = "east line"
+kind = "horizontal"
+phones = 8
+spacing = 0.75
+heading_deg = 90.0
+"""
+
+    def make_several(self):
+        text = SCENARIO.format(array="@").replace("[array]\n@\n", self.ARRAYS)
+        (self.folder / "sea.toml").write_text(text)
+        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q", "--pings", "1"],
+                      ["process", "sea.h5", "--target-depth", "400m", "-q"]):
+            subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
+        return self.folder / "sea.h5"
+
+    def test_each_is_steered_alone(self):
+        """A line's axis is its sine from broadside, clockwise: minus the cosine of the angle
+        between the line and the target. By a quarter of a beam, 1/8 of the sine."""
+        with PingFile(self.make_several()) as data:
+            for name, along in (("north line", [0, 1, 0]), ("east line", [1, 0, 0])):
+                data.select_array(data.choose_array(name))
+                self.assertEqual(data.channels, 8)
+                where, _, db = bearing_time.record(data, 0)
+                self.assertEqual(where.kind, "horizontal")
+                off = data.targets(0)[0][2] - data.phones(0).mean(axis=0)
+                loud = np.unravel_index(np.nanargmax(db), db.shape)[0]
+                self.assertAlmostEqual(where.coordinate[loud], -off @ along / np.linalg.norm(off),
+                                       delta=0.03)
+            data.select_array(0)
+            self.assertEqual((data.channels, bearing_time.record(data, 0)[0].kind), (4, "vertical"))
+
+    def test_the_first_and_what_tells_bearings(self):
+        drawn, said = self.plot(self.make_several())
+        self.assertEqual(drawn, ["ambiguity", "detections", "range_bearing"])
+        self.assertRegex(said, "bearing_time.png: .* upright\n")
+        self.assertRegex(said, "range_bearing.png: .* north line\n")
+        self.assertIn('3 arrays, "upright", "north line", "east line": --array NAME', said)
+
+    def test_the_chosen_one(self):
+        path = self.make_several()
+        said = self.plot(path, "--array", "east line")[1]
+        for name in ("pressure", "bearing_time", "detections", "range_bearing"):
+            self.assertRegex(said, f"{name}.png: .* east line\n")
+        out = subprocess.run([os.environ["ASDIC"], "plot", str(path), "--array", "west line"],
+                             capture_output=True, text=True)
+        self.assertEqual(out.returncode, 2)
+        self.assertIn('found no array "west line", expected one of "upright", "north line", '
+                      '"east line"', out.stderr)
+
+
+    def test_apart_from_the_sender_a_delay_is_no_range(self):
+        self.ARRAYS = self.ARRAYS.replace("kind", "offset = [300.0, 0.0, 0.0]\nkind").replace(
+            "offset = [0.0, -300.0, 0.0]\n", "")
+        drawn, said = self.plot(self.make_several(), "--array", "north line")
+        self.assertNotIn("range_bearing", drawn)
+        self.assertIn("300 m from the sender: a delay is another range in every bearing", said)
 
 
 class WhatTheyShow(Case):

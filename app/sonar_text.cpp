@@ -1,0 +1,201 @@
+#include "app/sonar_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/console.h"
+#include "sonar/geometry.h"
+#include "sonar/noise_spectrum.h"
+
+namespace asdic::app {
+namespace {
+
+std::string position(const Vec3& p) {
+  return fmt::format("{:g} m east, {:g} m north, {:g} m deep", p.x(), p.y(), p.z());
+}
+
+std::string motion(const Vec3& v) {
+  return v.isZero() ? "at rest" : fmt::format("moving at {:.2f} m/s", v.norm());
+}
+
+std::string reverberation_text(const Scenario& s, double spacing) {
+  const ReverberationSettings& r = s.reverberation;
+  std::string text =
+      r.enabled && r.surface_scatters
+          ? fmt::format("surface reverberation  {}, {}{} azimuths, ground grid of {:.3g} m\n",
+                        name_of(r.surface), r.resolve_azimuth ? "at least " : "", r.azimuths,
+                        spacing)
+          : "surface reverberation  none\n";
+  if (!r.enabled) return text;
+  if (r.bottom) text += fmt::format("bottom reverberation   {}\n", name_of(*r.bottom));
+  for (const VolumeLayer& layer : r.volume)
+    text += fmt::format("volume reverberation   {:g} dB re 1/m from {:g} to {:g} m\n",
+                        layer.strength_db, layer.top, layer.bottom);
+  return text;
+}
+
+/// "transmitter" or, where there are several, "transmitter NAME on PLATFORM".
+template <class Carried>
+std::string carried(const Scenario& s, std::string_view what, const Carried& one,
+                    std::size_t count) {
+  if (count == 1 && s.platforms.size() == 1) return fmt::format("{:<10} ", what);
+  return fmt::format("{:<10} {} on {}: ", what, one.name,
+                     s.platforms[static_cast<std::size_t>(one.platform)].name);
+}
+
+std::string pulse_text(const Scenario& s, int transmitter) {
+  constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
+  constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
+  const PulseSettings& settings = pulse_of(s, transmitter);
+  const Pulse pulse(settings);
+  return fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
+                     kinds[static_cast<int>(settings.kind)], pulse.centre_frequency(),
+                     pulse.duration(), windows[static_cast<int>(settings.window)],
+                     pulse.bandwidth_40db());
+}
+
+/// Of a list of projectors or a table.
+std::string beam_text(const Transmitter& one) {
+  const std::string what = one.table
+                               ? fmt::format("beam by a table of {} and {}",
+                                             count_of(one.table->bearings.size(), "bearing"),
+                                             count_of(one.table->elevations.size(), "elevation"))
+                               : count_of(one.projectors.size(), "projector");
+  return fmt::format("{:g} dB, {}, {} {:g} deg from {}\n", one.source_level_db, what,
+                     one.table ? "turned to" : "steered to", compass_degrees(one.bearing),
+                     one.frame == BearingFrame::heading ? "the heading" : "north");
+}
+
+std::string transmitter_text(const PingSimulator& simulator, std::size_t t) {
+  const Scenario& s = simulator.scenario();
+  const Transmitter& one = s.transmitters[t];
+  const std::string who = carried(s, "projector", one, s.transmitters.size());
+  if (!one.projectors.empty() || one.table) return who + beam_text(one);
+  if (one.taper == Taper::omnidirectional)
+    return who + fmt::format("{:g} dB, omnidirectional\n", one.source_level_db);
+  double elevation = one.elevation;
+  for (int ping = 1; ping <= simulator.pings(); ++ping) {
+    if (simulator.transmission(ping).transmitter != static_cast<int>(t)) continue;
+    elevation = simulator.transmission(ping).elevation;  // of its first ping
+    break;
+  }
+  return who + fmt::format("{:g} dB, elevation {:g} deg, beamwidth {:g} deg\n", one.source_level_db,
+                           degrees(elevation), degrees(one.beamwidth));
+}
+
+/// What the phones' electronics do, if they are not ideal.
+std::string electronics_text(const Electronics& e) {
+  if (e.is_ideal()) return "";
+  std::string text;
+  if (!e.gain_db.empty() || !e.phase.empty() || e.gain_std_db > 0.0 || e.phase_std > 0.0)
+    text += ", gain or phase errors";
+  if (e.gain_std_db > 0.0 || e.phase_std > 0.0)
+    text += fmt::format(" (drawn: {:g} dB, {:g} deg)", e.gain_std_db, degrees(e.phase_std));
+  if (!e.dead.empty()) text += ", " + std::to_string(e.dead.size()) + " dead";
+  if (e.band_pass)
+    text += fmt::format(", band-pass {:g} to {:g} Hz", e.band_pass->low, e.band_pass->high);
+  if (e.converter)
+    text += fmt::format(", {} bits to {:g} Pa", e.converter->bits, e.converter->full_scale);
+  return "electronics  " + text.substr(2) + "\n";
+}
+
+std::string array_text(const Scenario& s, const ReceiverArray& array) {
+  double aperture = 0.0;
+  for (const Vec3& a : array.phones)
+    for (const Vec3& b : {array.phones.front(), array.phones.back()})
+      aperture = std::max(aperture, (a - b).norm());
+  std::string text =
+      carried(s, "array", array, s.arrays.size()) + count_of(array.phones.size(), "phone");
+  if (array.towed) {
+    const auto [first, last] =
+        std::minmax_element(array.towed->behind.begin(), array.towed->behind.end());
+    text += fmt::format(", towed, {:g} to {:g} m behind along the path", *first, *last);
+  } else if (array.shapes.size() > 1) {
+    text += fmt::format(", {} shapes in turn", array.shapes.size());
+  } else {
+    text += fmt::format(", {:g} m across", aperture);
+  }
+  return text + "\n" + electronics_text(array.electronics);
+}
+
+/// "10 dB", or what it is by aspect or of its highlights.
+std::string strength_text(const Target& target) {
+  constexpr const char* fluctuations[] = {"", ", Swerling 1", ", Swerling 2", ", Swerling 3",
+                                          ", Swerling 4"};
+  std::string text = fmt::format("{:g} dB", target.strength_db);
+  if (target.aspect) {
+    const auto [low, high] =
+        std::minmax_element(target.aspect->strength_db.begin(), target.aspect->strength_db.end());
+    text = fmt::format("{:g} to {:g} dB by aspect", *low, *high);
+  } else if (!target.highlights.empty()) {
+    double low = infinity, high = -infinity;
+    for (int degree = 0; degree < 360; ++degree) {
+      const double now = strength_db(target, radians(degree));
+      low = std::min(low, now), high = std::max(high, now);
+    }
+    text = fmt::format("{}, together {:.1f} to {:.1f} dB by aspect",
+                       count_of(target.highlights.size(), "highlight"), low, high);
+  }
+  return text + fluctuations[static_cast<int>(target.fluctuation)];
+}
+
+/// Which spectrum, and what it comes to at the pulse; between the phones.
+std::string noise_text(const PingSimulator& simulator) {
+  const NoiseSettings& noise = simulator.scenario().noise;
+  if (!noise.any()) return "noise      none\n";
+  const double f = simulator.pulse().centre_frequency();
+  std::string text = "noise      ";
+  if (!noise.law) text += fmt::format("{:g} dB re 1 µPa²/Hz", *noise.spectral_level_db);
+  if (noise.law) {
+    if (const auto* wenz = std::get_if<WenzNoise>(&*noise.law))
+      text += fmt::format("Wenz, shipping {:g}, wind {:g} m/s", wenz->shipping, wenz->wind_speed);
+    else if (const auto* knudsen = std::get_if<KnudsenNoise>(&*noise.law))
+      text += fmt::format("Knudsen, sea state {:.2g}", knudsen->sea_state);
+    else
+      text += "by a table";
+  }
+  if (noise.thermal) text += ", thermal";
+  if (noise.law || noise.thermal)
+    text += fmt::format(": {:.1f} dB re 1 µPa²/Hz at {:g} Hz", noise_level_db(noise, f), f);
+  constexpr const char* between[] = {"", ", isotropic", ", from a sheet under the surface",
+                                     ", by a profile over elevation"};
+  return text + between[static_cast<int>(noise.coherence)] + "\n";
+}
+
+}  // namespace
+
+std::string sonar_text(const PingSimulator& simulator) {
+  const Scenario& s = simulator.scenario();
+  const Kinematics platform = s.platforms[0].track.at(0.0);
+  std::string text;
+  for (const Platform& one : s.platforms) {
+    const Kinematics k = one.track.at(0.0);
+    text += fmt::format("platform   {}{}, {}\n", s.platforms.size() > 1 ? one.name + ": " : "",
+                        position(k.position), motion(k.velocity));
+  }
+  for (std::size_t t = 0; t < s.transmitters.size(); ++t) {
+    text += transmitter_text(simulator, t);
+    if (t == 0 || s.transmitters[t].pulse) text += pulse_text(s, static_cast<int>(t));
+  }
+  for (const ReceiverArray& array : s.arrays) text += array_text(s, array);
+  for (const Target& target : s.targets) {
+    const Kinematics k = target.track.at(0.0);
+    const Separation way = separation(platform.position, k.position);
+    text +=
+        fmt::format("target     {}: {}, {}, range {:.3f} km, bearing {:.1f} deg, {}\n", target.name,
+                    strength_text(target), position(k.position), way.range / 1000.0,
+                    degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0), motion(k.velocity));
+  }
+  for (const Interferer& ship : s.interferers) {
+    const Kinematics k = ship.track.at(0.0);
+    text += fmt::format("interferer {}: {}, {}, {}{}\n", ship.name, position(k.position),
+                        motion(k.velocity), ship.level_db || ship.table ? "broadband, " : "",
+                        count_of(ship.tonals.size(), "tonal"));
+  }
+  text += noise_text(simulator);
+  text += reverberation_text(s, simulator.ground_spacing());
+  return text;
+}
+
+}  // namespace asdic::app

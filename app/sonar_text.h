@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "sonar/ping.h"
+
+namespace asdic::app {
+
+/// What `asdic validate` says of platforms, transmitters, arrays, targets, noise and reverberation:
+/// a line each.
+[[nodiscard]] std::string sonar_text(const PingSimulator& simulator);
+
+}  // namespace asdic::app
