@@ -201,6 +201,8 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     outcome.stopped_early = true;
   }
   outcome.skipped = estimate.skipped();
+  outcome.left_out = estimate.left_out();
+  outcome.question = estimate.name();
   outcome.complete =
       assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;

@@ -48,6 +48,8 @@ struct StudyRun {
 struct StudyOutcome {
   std::uint64_t made = 0, before = 0, total = 0;
   std::uint64_t skipped = 0;   ///< of all that are there, those whose values made no scenario
+  std::uint64_t left_out = 0;  ///< rows in which the answer to the first question is not known
+  std::string question{};      ///< its name, "pd"
   std::uint64_t damaged = 0;   ///< rows of journals that had to be made again
   bool written = false;        ///< the output is there
   bool complete = false;       ///< and holds all of its range
