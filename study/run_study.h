@@ -22,7 +22,7 @@ struct Work {
   bool skips = true;  ///< rows that were skipped count as made (on_error = "skip")
 };
 
-/// \param realiser  outlives the work
+/// Its rows are the study's columns and then reuse_columns(). \param study  outlives the work
 [[nodiscard]] Work work_of(const Study& study, const Realise& realise);
 
 /// How far a run is.
