@@ -103,6 +103,16 @@ std::string workers(const StudyOrder& order) {
   return order.ranks == 1 ? threads : fmt::format("{} ranks of {}", order.ranks, threads);
 }
 
+/// Whether the interval became as narrow as --until asks for.
+std::string until_text(const study::StudyOutcome& outcome, double half_width) {
+  const std::string all = count_of(outcome.range.size(), "realisation");
+  if (outcome.stopped_early) return "enough after " + all;
+  const auto& last = outcome.estimate;
+  if (last && 0.5 * (last->high - last->low) <= half_width)
+    return "as narrow as --until asks for, after all " + all;
+  return "not as narrow as --until asks for";
+}
+
 }  // namespace
 
 int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet,
@@ -132,10 +142,10 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   if (outcome.skipped > 0)
     print(fmt::format("{} of them skipped; /faults in the file says why\n", outcome.skipped));
   if (outcome.estimate) print(estimate_text(*outcome.estimate) + '\n');
-  if (outcome.stopped_early)
-    print(fmt::format("enough after {}\n", count_of(outcome.range.size(), "realisation")));
-  else if (order.run.until)
-    print("not as narrow as --until asks for\n");
+  if (outcome.left_out > 0)
+    print(fmt::format("{} left out of {}: it is not known there (NaN or infinite)\n",
+                      count_of(outcome.left_out, "realisation"), outcome.question));
+  if (order.run.until) print(until_text(outcome, *order.run.until) + '\n');
   print(fmt::format("{}: {}{}\n", file,
                     byte_count(static_cast<double>(std::filesystem::file_size(file))),
                     outcome.complete ? ""

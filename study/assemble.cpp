@@ -54,9 +54,10 @@ bool assemble(const std::filesystem::path& output, const Imprint& imprint, Index
       if (!row.valid && results.faults.size() < most_faults)
         results.faults.push_back(std::to_string(row.index) + ": " + one_line(row.fault));
     });
-    journal.series_shapes(stretch.range, [&](std::uint64_t index, Shape&& shape) {
-      series.index.push_back(index);
-      series.shapes.push_back(std::move(shape));
+    journal.series(stretch.range, [&](Row&& row) {
+      series.index.push_back(row.index);
+      series.shapes.push_back(std::move(row.pressure_shape));
+      series.timing.push_back(row.timing);
       home.push_back(stretch.journal);
     });
   }

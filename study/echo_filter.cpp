@@ -25,6 +25,7 @@ struct Heard {
 /// What is listened for: the strongest path of a target.
 struct Listened {
   double delay = 0.0, doppler = 1.0;
+  Vec3 slowness = Vec3::Zero();  // [s/m]
   std::vector<Heard> phones;
 };
 
@@ -57,6 +58,7 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
     all.delay = ((place - record.platform.position).norm() + (place - reference).norm()) / c;
     slowness = (reference - place).normalized() / c;
   }
+  all.slowness = slowness;
   for (std::size_t n = 0; n < phones; ++n) {
     if (plan.phone && static_cast<std::size_t>(*plan.phone) != n) continue;
     double delay = all.delay + slowness.dot(record.phones[first + n] - reference);
@@ -92,14 +94,20 @@ class Template {
     }
   }
 
-  /// |y|² so many samples after the echo; none outside the record.
-  [[nodiscard]] std::optional<double> answer(std::ptrdiff_t shift) const {
+  /// The record has all that the filter needs so many samples after the echo.
+  [[nodiscard]] bool inside(std::ptrdiff_t shift) const {
+    const auto samples = static_cast<std::ptrdiff_t>(record_.recording.samples);
+    return std::all_of(first_.begin(), first_.end(), [&](std::ptrdiff_t first) {
+      return first + shift >= 0 && first + shift + length_ <= samples;
+    });
+  }
+
+  /// |y|² so many samples after the echo. \param shift  inside
+  [[nodiscard]] double answer(std::ptrdiff_t shift) const {
     const Recording& r = record_.recording;
-    const auto samples = static_cast<std::ptrdiff_t>(r.samples);
     std::complex<double> sum = 0.0;
     for (std::size_t n = 0; n < first_.size(); ++n) {
       const std::ptrdiff_t begin = first_[n] + shift;
-      if (begin < 0 || begin + length_ > samples) return std::nullopt;
       const std::complex<double>* w = weights_.data() + n * static_cast<std::size_t>(length_);
       const float* p =
           record_.pressure.data() +
@@ -127,24 +135,48 @@ class Template {
   double energy_ = 0.0;                        // Σ|w|²
 };
 
-/// Times at which echoes of any target are heard, in samples after the one listened for.
-class EchoTimes {
+/// Times at which the array hears the ping: echoes of any target, and the ping on its way out.
+class Busy {
  public:
-  EchoTimes(const PingRecord& record, int array, double delay, double duration)
-      : rate_(record.recording.sample_rate), duration_(duration) {
-    for (const EchoPath& echo : record.echoes)
-      if (echo.array == array) delays_.push_back(echo.heard.delay - delay);
+  /// \param duration  of the pulse as it is heard [s]
+  Busy(const PingSimulator& simulator, const PingRecord& record, const Listened& echo, int array,
+       double duration)
+      : rate_(record.recording.sample_rate) {
+    const Vec3 reference = array_at(simulator.scenario(), array, record.start_time).position;
+    // Two pulses that are one duration apart have nothing in common; the rest is for windows that
+    // ring and for Doppler.
+    const double apart = 1.1 * duration;
+    double reach = 0.0;
+    for (const Heard& phone : echo.phones)
+      reach = std::max(reach, (record.phones[phone.channel] - reference).norm());
+    for (const EchoPath& other : record.echoes) {
+      if (other.array != array) continue;
+      double spread = 0.0;  // in time over the phones, once they are steered at the target
+      for (const Heard& phone : echo.phones)
+        spread = std::max(spread, std::abs((other.heard.slowness - echo.slowness)
+                                               .dot(record.phones[phone.channel] - reference)));
+      add(other.heard.delay - echo.delay, apart + spread);
+    }
+    for (const Leg& leg : record.legs)  // the direct blast: from whatever side
+      if (leg.kind == Leg::Kind::source_to_array && leg.array == array)
+        for (const Arrival& path : leg.arrivals)
+          add(path.delay - echo.delay,
+              apart + 2.0 * reach / simulator.paths().speed_at(reference));
   }
-  /// The filter hears nothing of them when it listens so much later.
+
+  /// The filter hears nothing of them when it listens so many samples after the echo.
   [[nodiscard]] bool free(std::ptrdiff_t shift) const {
     const double t = static_cast<double>(shift) / rate_;
-    return std::none_of(delays_.begin(), delays_.end(),
-                        [&](double d) { return std::abs(t - d) < 1.1 * duration_; });
+    return std::none_of(spans_.begin(), spans_.end(),
+                        [&](const Span& busy) { return busy.first < t && t < busy.second; });
   }
 
  private:
-  double rate_, duration_;
-  std::vector<double> delays_;
+  using Span = std::pair<double, double>;  // [s] after the echo
+  void add(double middle, double half) { spans_.emplace_back(middle - half, middle + half); }
+
+  double rate_;
+  std::vector<Span> spans_;
 };
 
 /// (∫|S|²df)²/∫|S|⁴df [Hz]: answers that far apart in 1/B are independent in white noise.
@@ -169,6 +201,31 @@ double noise_bandwidth(const Pulse& pulse) {
   return second * second / fourth / (step * static_cast<double>(transform.length()));
 }
 
+/// The nearest free cells on both sides, whole cells away: `reference_cells` on either; where the
+/// record has fewer on one side, the other makes up for them. Empty where there are fewer than
+/// half of what is asked for: a threshold over a handful of cells detects next to nothing.
+std::vector<std::ptrdiff_t> reference_cells(const MatchedFilterPlan& plan, const Template& filter,
+                                            const Busy& busy, std::ptrdiff_t at,
+                                            std::ptrdiff_t cell) {
+  const auto guard = static_cast<std::ptrdiff_t>(plan.guard_cells);
+  const auto wanted = static_cast<std::size_t>(plan.reference_cells);
+  const auto side = [&](std::ptrdiff_t step) {
+    std::vector<std::ptrdiff_t> found;
+    for (std::ptrdiff_t shift = at + (guard + 1) * step;
+         found.size() < 2 * wanted && filter.inside(shift); shift += step)
+      if (busy.free(shift)) found.push_back(shift);
+    return found;
+  };
+  std::vector<std::ptrdiff_t> before = side(-cell), after = side(cell);
+  const std::size_t of_before =
+      std::min(before.size(), std::max(wanted, 2 * wanted - std::min(2 * wanted, after.size())));
+  const std::size_t of_after = std::min(after.size(), 2 * wanted - of_before);
+  before.resize(of_before);
+  before.insert(before.end(), after.begin(), after.begin() + static_cast<std::ptrdiff_t>(of_after));
+  if (before.size() < wanted) before.clear();
+  return before;
+}
+
 }  // namespace
 
 FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
@@ -179,28 +236,25 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
   const Listened echo = listened(simulator, record, plan, array, target);
   const Template filter(record, pulse, echo);
   const double duration = pulse.duration() / echo.doppler;
-  const EchoTimes echoes(record, array, echo.delay, duration);
+  const Busy busy(simulator, record, echo, array, duration);
   const double rate = record.recording.sample_rate;
   const auto cell = static_cast<std::ptrdiff_t>(std::ceil(rate / noise_bandwidth(pulse)));
 
   const auto compare = [&](std::ptrdiff_t at, double& statistic, double& threshold) {
     statistic = threshold = none;
-    const std::optional<double> power = filter.answer(at);
-    if (!power) return false;
+    if (!filter.inside(at)) return false;
     if (plan.background == MatchedFilterPlan::Background::noise) {
-      statistic = *power / filter.noise(noise_density(scenario.noise, pulse.centre_frequency()));
+      statistic =
+          filter.answer(at) / filter.noise(noise_density(scenario.noise, pulse.centre_frequency()));
       threshold = -std::log(false_alarm_probability);
       return true;
     }
-    double sum = 0.0, cells = 0.0;
-    const auto guard = static_cast<std::ptrdiff_t>(plan.guard_cells),
-               reference = static_cast<std::ptrdiff_t>(plan.reference_cells);
-    for (std::ptrdiff_t k = guard + 1; k <= guard + reference; ++k)
-      for (const std::ptrdiff_t shift : {at - k * cell, at + k * cell})
-        if (echoes.free(shift))
-          if (const std::optional<double> p = filter.answer(shift)) sum += *p, cells += 1.0;
-    if (cells < 1.0 || !(sum > 0.0)) return false;
-    statistic = *power * cells / sum;
+    double sum = 0.0;
+    const std::vector<std::ptrdiff_t> around = reference_cells(plan, filter, busy, at, cell);
+    for (const std::ptrdiff_t shift : around) sum += filter.answer(shift);
+    if (!(sum > 0.0)) return false;
+    const auto cells = static_cast<double>(around.size());
+    statistic = filter.answer(at) * cells / sum;
     threshold = cfar_multiplier(false_alarm_probability, cells);
     return true;
   };
@@ -212,8 +266,7 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
   const auto most = static_cast<std::ptrdiff_t>(record.recording.samples) / step + 1;
   for (std::ptrdiff_t k = 2; k <= most; ++k)  // the nearest free time, earlier ones first
     for (const std::ptrdiff_t shift : {-k * step, k * step})
-      if (echoes.free(shift) && compare(shift, answer.absent, answer.absent_threshold))
-        return answer;
+      if (busy.free(shift) && compare(shift, answer.absent, answer.absent_threshold)) return answer;
   return answer;
 }
 

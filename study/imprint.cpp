@@ -45,6 +45,8 @@ std::string listed(const std::set<std::string>& texts) {
 }  // namespace
 
 Imprint imprint_of(const Study& study) {
+  std::vector<Column> all = columns(study);
+  all.insert(all.end(), reuse_columns().begin(), reuse_columns().end());
   return {.identity = identity(study),
           .title = study.title,
           .seed = study.seed,
@@ -53,7 +55,7 @@ Imprint imprint_of(const Study& study) {
           .text = study.text,
           .scenario_text = study.scenario_text,
           .overrides = study.overrides,
-          .columns = columns(study)};
+          .columns = std::move(all)};
 }
 
 std::string to_json(const std::vector<Column>& columns) {

@@ -126,14 +126,17 @@ void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row
   }
 }
 
-void Journal::series_shapes(
-    IndexRange range,
-    const std::function<void(std::uint64_t, std::vector<std::size_t>&&)>& take) const {
+void Journal::series(IndexRange range, const std::function<void(Row&&)>& take) const {
   const std::lock_guard lock(impl_->mutex);
   sqlite::Statement get(impl_->database,
-                        "SELECT idx,shape FROM series WHERE idx>=? AND idx<? ORDER BY idx");
+                        "SELECT idx,shape,timing FROM series WHERE idx>=? AND idx<? ORDER BY idx");
   get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
-  while (get.step()) take(static_cast<std::uint64_t>(get.integer(0)), shape_of(get.text(1)));
+  while (get.step()) {
+    Row row{.index = static_cast<std::uint64_t>(get.integer(0))};
+    row.pressure_shape = shape_of(get.text(1));
+    row.timing = timing_of(get.text(2));
+    take(std::move(row));
+  }
 }
 
 }  // namespace asdic::study

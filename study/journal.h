@@ -51,10 +51,8 @@ class Journal {
   /// \param pressure  with the time series
   /// \throws RunError if a row has been damaged since the journal was opened
   void rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const;
-  /// Which of them have a time series, and its shape.
-  void series_shapes(
-      IndexRange range,
-      const std::function<void(std::uint64_t index, std::vector<std::size_t>&& shape)>& take) const;
+  /// Which of them have a time series, its shape and timing: rows without values or pressure.
+  void series(IndexRange range, const std::function<void(Row&&)>& take) const;
 
  private:
   struct Impl;

@@ -9,7 +9,7 @@
 namespace asdic::study {
 namespace {
 
-constexpr std::string_view format = "asdic journal 1";
+constexpr std::string_view format = "asdic journal 2";
 constexpr auto commit_after = std::chrono::milliseconds(500);
 
 // Without a rowid's own tree for time series, rows stay small and quick to read through.
@@ -18,8 +18,8 @@ constexpr const char* schema =
     "CREATE TABLE IF NOT EXISTS session(id INTEGER PRIMARY KEY, text TEXT);"
     "CREATE TABLE IF NOT EXISTS row(idx INTEGER PRIMARY KEY, valid INTEGER, fault TEXT,"
     " vals BLOB, kept INTEGER, checksum TEXT);"
-    "CREATE TABLE IF NOT EXISTS series(idx INTEGER PRIMARY KEY, shape TEXT, pressure BLOB,"
-    " checksum TEXT);";
+    "CREATE TABLE IF NOT EXISTS series(idx INTEGER PRIMARY KEY, shape TEXT, timing TEXT,"
+    " pressure BLOB, checksum TEXT);";
 
 }  // namespace
 
@@ -76,17 +76,20 @@ Row Journal::Impl::row_at(const sqlite::Statement& get) const {
           .fault = get.text(2),
           .values = vector_of<double>(get.blob(3)),
           .pressure = {},
-          .pressure_shape = {}};
+          .pressure_shape = {},
+          .reuse = {}};
 }
 
 bool Journal::Impl::add_series(Row& row) const {
-  sqlite::Statement get(database, "SELECT shape,pressure,checksum FROM series WHERE idx=?");
+  sqlite::Statement get(database, "SELECT shape,timing,pressure,checksum FROM series WHERE idx=?");
   get.bind(0, static_cast<std::int64_t>(row.index));
   if (!get.step()) return false;
   const std::string shape = get.text(0);
   row.pressure_shape = shape_of(shape);
-  row.pressure = vector_of<float>(get.blob(1));
-  return checksum_of_series(row.index, shape, get.blob(1)) == get.text(2);
+  const std::string timing = get.text(1);
+  row.timing = timing_of(timing);
+  row.pressure = vector_of<float>(get.blob(2));
+  return checksum_of_series(row.index, shape, timing, get.blob(2)) == get.text(3);
 }
 
 void Journal::Impl::drop(std::uint64_t index) const {
@@ -97,7 +100,7 @@ void Journal::Impl::drop(std::uint64_t index) const {
 void Journal::Impl::start() {
   check_rows();
   insert_row.emplace(database, "REPLACE INTO row VALUES(?,?,?,?,?,?)");
-  insert_series.emplace(database, "REPLACE INTO series VALUES(?,?,?,?)");
+  insert_series.emplace(database, "REPLACE INTO series VALUES(?,?,?,?,?)");
   committer = std::jthread([this](const std::stop_token& over) {
     using Clock = std::chrono::steady_clock;
     auto last = Clock::now();
@@ -133,11 +136,14 @@ void Journal::Impl::append(const Row& row) {
       .run();
   if (kept) {
     const std::string shape = shape_text(row.pressure_shape);
-    const std::string series_sum = checksum_of_series(row.index, shape, bytes_of(row.pressure));
+    const std::string timing = timing_text(row.timing);
+    const std::string series_sum =
+        checksum_of_series(row.index, shape, timing, bytes_of(row.pressure));
     insert_series->bind(0, index)
         .bind(1, shape)
-        .bind(2, bytes_of(row.pressure))
-        .bind(3, series_sum)
+        .bind(2, timing)
+        .bind(3, bytes_of(row.pressure))
+        .bind(4, series_sum)
         .run();
   }
   done.add(row.index);

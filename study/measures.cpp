@@ -117,11 +117,14 @@ void matched_filter(const MeasurePlan& plan, const PingSimulator* simulator,
     answer = filter_answer(*simulator, *record, plan.matched_filter, plan.array, target,
                            plan.detection ? plan.detection->false_alarm_probability : 1e-4);
   if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
-    to.add("detected", "1", "matched filter over its threshold at the echo's time",
-           answer.present > answer.threshold ? 1.0 : 0.0);
-    to.add(
-        "false_alarm", "1", "matched filter over its threshold where there is no echo",
-        std::isnan(answer.absent) ? none : (answer.absent > answer.absent_threshold ? 1.0 : 0.0));
+    const auto over = [](double statistic, double threshold) {
+      if (std::isnan(statistic)) return none;  // not known, which is not the same as missed
+      return statistic > threshold ? 1.0 : 0.0;
+    };
+    to.add("detected", "1", "matched filter over its threshold at the echo's time; NaN: not known",
+           over(answer.present, answer.threshold));
+    to.add("false_alarm", "1", "matched filter over its threshold where there is no echo",
+           over(answer.absent, answer.absent_threshold));
   }
   to.add("snr_matched_db", "dB", "matched filter over its background at the echo's time",
          db_from_power(answer.present));

@@ -154,6 +154,7 @@ class Collector {
   Table table_;
   std::vector<std::uint64_t> series_index_;
   std::vector<std::int32_t> samples_;
+  std::vector<SeriesTiming> timing_;
   Shape series_shape_;
 };
 
@@ -164,6 +165,7 @@ void Collector::open(std::size_t part) {
   series_index_ = file.series_index();
   series_shape_ = file.series_shape();
   samples_ = series_index_.empty() ? std::vector<std::int32_t>{} : file.series_samples();
+  timing_ = file.series_timing();
   here_ = part;
 }
 
@@ -181,6 +183,7 @@ void Collector::add(const Piece& piece) {
     shape[sample_axis(shape)] = static_cast<std::size_t>(samples_[k]);
     series_.index.push_back(series_index_[k]);
     series_.shapes.push_back(std::move(shape));
+    series_.timing.push_back(timing_[k]);
     kept_.push_back({piece.part, k});
   }
   std::error_code error;

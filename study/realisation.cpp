@@ -1,7 +1,5 @@
 #include "study/realisation.h"
 
-#include <atomic>
-#include <cmath>
 #include <limits>
 
 #include "core/error.h"
@@ -23,6 +21,13 @@ bool keeps_series(const MeasurePlan& plan, std::uint64_t index) {
   return plan.series_every > 0 && index % plan.series_every == 0;
 }
 
+/// \return [reuse_columns()]
+std::vector<double> reuse_of(const Reuse& reuse) {
+  return {reuse.ocean ? 1.0 : 0.0, static_cast<double>(reuse.legs_searched),
+          static_cast<double>(reuse.legs_reused), reuse.reverberation ? 1.0 : 0.0,
+          reuse.expected_level ? 1.0 : 0.0};
+}
+
 /// The channels of the measured array.
 void keep_series(const PingRecord& record, const Study& study, const Scenario& scenario, Row& row) {
   const Recording& r = record.recording;
@@ -35,9 +40,24 @@ void keep_series(const PingRecord& record, const Study& study, const Scenario& s
   row.pressure.assign(begin, begin + static_cast<std::ptrdiff_t>(channels * of_channel));
   row.pressure_shape = {channels, r.samples};
   if (r.is_complex()) row.pressure_shape.push_back(2);
+  row.timing = {
+      .sample_rate = r.sample_rate, .start = r.start, .carrier = r.carrier, .epoch = r.epoch};
 }
 
 }  // namespace
+
+const std::vector<Column>& reuse_columns() {
+  const auto column = [](const char* name, const char* meaning) {
+    return Column{.name = name, .unit = "1", .meaning = meaning, .role = Column::Role::reuse};
+  };
+  static const std::vector<Column> all{
+      column("ocean", "1: an earlier realisation had used an equal ocean"),
+      column("legs_searched", "sets of eigenrays of echoes and direct blasts that were searched"),
+      column("legs_reused", "the same, that were known"),
+      column("reverberation", "1: all paths to scattering boundaries and layers were known"),
+      column("expected_level", "1: so was the expected level of the reverberation")};
+  return all;
+}
 
 std::vector<Column> columns(const Study& study) {
   std::vector<Column> all = Sampler(study).columns();
@@ -56,29 +76,12 @@ struct Realiser::Impl {
   /// Bounded, so that memory stays flat: a target that moves never finds its paths again.
   std::shared_ptr<SharedPropagation> shared =
       std::make_shared<SharedPropagation>(std::size_t{64} << 20);
-
-  void count(const Reuse& reuse) noexcept {
-    ++pings;
-    oceans += reuse.ocean ? 1 : 0;
-    searched += static_cast<std::uint64_t>(reuse.legs_searched);
-    reused += static_cast<std::uint64_t>(reuse.legs_reused);
-    boundaries += reuse.reverberation ? 1 : 0;
-  }
-  std::atomic<std::uint64_t> pings = 0, oceans = 0, searched = 0, reused = 0, boundaries = 0;
 };
 
 Realiser::Realiser(Study study) : impl_(std::make_unique<Impl>(std::move(study))) {}
 Realiser::~Realiser() = default;
 
 const Study& Realiser::study() const noexcept { return impl_->study; }
-
-ReuseCounts Realiser::reuse() const noexcept {
-  return {.pings = impl_->pings,
-          .oceans_known = impl_->oceans,
-          .legs_searched = impl_->searched,
-          .legs_reused = impl_->reused,
-          .boundaries_known = impl_->boundaries};
-}
 
 Row Realiser::realise(std::uint64_t index) const {
   const Study& study = impl_->study;
@@ -91,7 +94,7 @@ Row Realiser::realise(std::uint64_t index) const {
     scenario.seed = seed_of(study, index);
     const PingSimulator simulator(std::move(scenario), impl_->shared);
     Measured measured = measure(study, simulator);
-    impl_->count(measured.record.reuse);
+    row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
     if (keeps_series(study.measure, index))
       keep_series(measured.record, study, simulator.scenario(), row);
@@ -104,7 +107,9 @@ Row Realiser::realise(std::uint64_t index) const {
     }
     row.valid = false;
     row.fault = fault.what();
-    row.values.resize(impl_->inputs() + impl_->measures, std::numeric_limits<double>::quiet_NaN());
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    row.values.resize(impl_->inputs() + impl_->measures, none);
+    row.reuse.assign(reuse_columns().size(), none);
   }
   return row;
 }

@@ -18,7 +18,18 @@ struct Column {
   std::vector<std::string> labels;  ///< of a categorical column, whose values are indices into it
 };
 
-/// What came out of one realisation: a pure function of (study, index).
+/// What places a kept time series in time and band: p(t) = Re(x_k e^{i2πf_c(t + t_0)}) at
+/// t = start + k/sample_rate after the ping; of real pressure, p = x_k.
+struct SeriesTiming {
+  double sample_rate = 0.0;  ///< [Hz]
+  double start = 0.0;        ///< of the first sample, after the ping's start [s]
+  double carrier = 0.0;      ///< f_c of complex baseband [Hz]; 0: real pressure
+  double epoch = 0.0;        ///< t_0 [s]
+
+  bool operator==(const SeriesTiming&) const = default;
+};
+
+/// What came out of one realisation: a pure function of (study, index), but for `reuse`.
 struct Row {
   std::uint64_t index = 0;
   bool valid = true;            ///< false: skipped (on_error = "skip"); its measures are NaN
@@ -26,20 +37,16 @@ struct Row {
   std::vector<double> values;   ///< [columns]
   std::vector<float> pressure;  ///< kept time series, empty where none [channels × samples × iq]
   std::vector<std::size_t> pressure_shape;
+  SeriesTiming timing{};      ///< of the time series
+  std::vector<double> reuse;  ///< [reuse_columns()] what was known before it was made
 };
 
 /// The columns of a study's rows: inputs first, in the order of [vary], then measures.
 [[nodiscard]] std::vector<Column> columns(const Study& study);
 
-/// What realisations so far found known (sonar/reuse.h). It tells of the run: counts depend on
-/// which realisation came first, rows never do.
-struct ReuseCounts {
-  std::uint64_t pings = 0;             ///< simulated
-  std::uint64_t oceans_known = 0;      ///< of them in an ocean that another had used
-  std::uint64_t legs_searched = 0;     ///< sets of eigenrays
-  std::uint64_t legs_reused = 0;       ///< the same, out of what was kept
-  std::uint64_t boundaries_known = 0;  ///< pings whose paths to scatterers were all known
-};
+/// What a realisation found known (sonar/reuse.h), NaN of one that was skipped. It tells of the
+/// run: of two alike the first one searches, whichever that is; their rows are the same.
+[[nodiscard]] const std::vector<Column>& reuse_columns();
 
 /// Makes rows. Built once; shared by threads. It keeps what realisations have in common (the ocean,
 /// its paths) for as long as they have it, which never changes a bit of a row.
@@ -52,7 +59,6 @@ class Realiser {
   [[nodiscard]] Row realise(std::uint64_t index) const;
 
   [[nodiscard]] const Study& study() const noexcept;
-  [[nodiscard]] ReuseCounts reuse() const noexcept;
 
  private:
   struct Impl;

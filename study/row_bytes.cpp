@@ -1,6 +1,8 @@
 #include "study/row_bytes.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 
@@ -42,9 +44,30 @@ std::vector<std::size_t> shape_of(const std::string& text) {
   return shape;
 }
 
+std::string timing_text(const SeriesTiming& timing) {
+  std::string text;
+  for (const double x : {timing.sample_rate, timing.start, timing.carrier, timing.epoch}) {
+    std::array<char, 40> digits{};
+    static_cast<void>(std::snprintf(digits.data(), digits.size(), "%a ", x));  // no digit is lost
+    text += digits.data();
+  }
+  return text;
+}
+
+SeriesTiming timing_of(const std::string& text) {
+  std::array<double, 4> x{};
+  const char* at = text.c_str();
+  for (double& value : x) {
+    char* end = nullptr;
+    value = std::strtod(at, &end);
+    at = end;
+  }
+  return {.sample_rate = x[0], .start = x[1], .carrier = x[2], .epoch = x[3]};
+}
+
 std::string checksum_of_series(std::uint64_t index, const std::string& shape,
-                               std::span<const std::byte> pressure) {
-  return checksum(std::to_string(index) + ":" + shape + sha256(view(pressure)));
+                               const std::string& timing, std::span<const std::byte> pressure) {
+  return checksum(std::to_string(index) + ":" + shape + ":" + timing + sha256(view(pressure)));
 }
 
 void one_kind_of_nan(std::vector<double>& values) {

@@ -25,13 +25,17 @@ template <class T>
 
 /// Of a row without its time series. \param kept  whether it has one
 [[nodiscard]] std::string checksum(const Row& row, bool kept);
-/// Of the time series alone. \param shape  as shape_text() writes it
+/// Of the time series alone. \param shape, timing  as shape_text() and timing_text() write them
 [[nodiscard]] std::string checksum_of_series(std::uint64_t index, const std::string& shape,
+                                             const std::string& timing,
                                              std::span<const std::byte> pressure);
 
 /// Numbers with a blank behind each.
 [[nodiscard]] std::string shape_text(const std::vector<std::size_t>& shape);
 [[nodiscard]] std::vector<std::size_t> shape_of(const std::string& text);
+/// Its four numbers, exactly, with a blank behind each.
+[[nodiscard]] std::string timing_text(const SeriesTiming& timing);
+[[nodiscard]] SeriesTiming timing_of(const std::string& text);
 
 /// A missing number has the same bits however it came about.
 void one_kind_of_nan(std::vector<double>& values);

@@ -8,7 +8,12 @@ namespace asdic::study {
 
 Work work_of(const Study& study, const Realise& realise) {
   return {.imprint = imprint_of(study),
-          .realise = realise,
+          .realise =
+              [realise](std::uint64_t index) {
+                Row row = realise(index);
+                row.values.insert(row.values.end(), row.reuse.begin(), row.reuse.end());
+                return row;
+              },
           .summarise = [&study](const Table& table) { return summary_of(study, table); },
           .estimate = [&study] { return RunningEstimate(study); },
           .skips = study.on_error == OnError::skip};
@@ -102,6 +107,7 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
   const Shape shape = file.series_shape();
   std::vector<std::int32_t> samples;
   if (!kept.empty()) samples = file.series_samples();
+  const std::vector<SeriesTiming> timing = file.series_timing();
   const std::vector<std::string> faults = file.faults();
   std::size_t series = 0, fault = 0;
   for (std::size_t i = 0; i < table.index.size(); ++i) {
@@ -116,6 +122,7 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
       row.pressure_shape.assign(shape.begin() + 1, shape.end());
       row.pressure_shape[sample_axis(row.pressure_shape)] =
           static_cast<std::size_t>(samples[series]);
+      row.timing = timing[series];
       ++series;
     }
     if (row.index >= range.first && row.index < range.end && (row.valid || skipped) &&
@@ -201,6 +208,8 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     outcome.stopped_early = true;
   }
   outcome.skipped = estimate.skipped();
+  outcome.left_out = estimate.left_out();
+  outcome.question = estimate.name();
   outcome.complete =
       assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;

@@ -22,7 +22,7 @@ struct Work {
   bool skips = true;  ///< rows that were skipped count as made (on_error = "skip")
 };
 
-/// \param realiser  outlives the work
+/// Its rows are the study's columns and then reuse_columns(). \param study  outlives the work
 [[nodiscard]] Work work_of(const Study& study, const Realise& realise);
 
 /// How far a run is.
@@ -48,6 +48,8 @@ struct StudyRun {
 struct StudyOutcome {
   std::uint64_t made = 0, before = 0, total = 0;
   std::uint64_t skipped = 0;   ///< of all that are there, those whose values made no scenario
+  std::uint64_t left_out = 0;  ///< rows in which the answer to the first question is not known
+  std::string question{};      ///< its name, "pd"
   std::uint64_t damaged = 0;   ///< rows of journals that had to be made again
   bool written = false;        ///< the output is there
   bool complete = false;       ///< and holds all of its range

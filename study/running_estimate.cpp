@@ -18,7 +18,11 @@ RunningEstimate::RunningEstimate(const Study& study) : level_(study.summary.conf
 }
 
 void RunningEstimate::add(const Row& row) {
-  if (!row.valid || column_ >= row.values.size() || !std::isfinite(row.values[column_])) return;
+  if (!row.valid || column_ >= row.values.size()) return;
+  if (!std::isfinite(row.values[column_])) {
+    ++left_out_;
+    return;
+  }
   ++count_;
   const double step = row.values[column_] - mean_;
   mean_ += step / static_cast<double>(count_);

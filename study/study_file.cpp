@@ -1,6 +1,7 @@
 #include "study/study_file.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -73,6 +74,15 @@ StudyFile::StudyFile(const std::filesystem::path& path)
   }
 }
 
+std::span<const SeriesDataset> series_datasets() {
+  static constexpr std::array<SeriesDataset, 4> all{
+      {{"sample_rate", "Hz", "samples a second", &SeriesTiming::sample_rate},
+       {"start", "s", "of the first sample, after the ping's start", &SeriesTiming::start},
+       {"carrier", "Hz", "of complex baseband; 0: real pressure", &SeriesTiming::carrier},
+       {"epoch", "s", "of the ping, on the clock that the carrier runs by", &SeriesTiming::epoch}}};
+  return all;
+}
+
 std::string StudyFile::stopped_by() const {
   return file_.has_attribute("", "stopped_by") ? file_.attribute_text("", "stopped_by") : "";
 }
@@ -117,6 +127,18 @@ Shape StudyFile::series_shape() const {
 
 std::vector<std::int32_t> StudyFile::series_samples() const {
   return file_.read<std::int32_t>("time_series/valid_samples");
+}
+
+std::vector<SeriesTiming> StudyFile::series_timing() const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<SeriesTiming> all(series_index().size(), {none, none, none, none});
+  for (const SeriesDataset& dataset : series_datasets()) {
+    const std::string path = std::string("time_series/") + dataset.name;
+    if (!file_.has(path)) continue;
+    const auto values = file_.read<double>(path);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k].*dataset.value = values.at(k);
+  }
+  return all;
 }
 
 std::vector<float> StudyFile::series(std::size_t k) const {

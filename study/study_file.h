@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,6 +35,7 @@ inline constexpr std::size_t most_faults = 1000;  ///< that a file tells
 struct SeriesSource {
   std::vector<std::uint64_t> index{};  ///< [kept] of which realisations
   std::vector<Shape> shapes{};         ///< [kept] [channels × samples × iq]: samples may differ
+  std::vector<SeriesTiming> timing{};  ///< [kept]
   /// The k-th of them; called once for each, in order.
   std::function<std::vector<float>(std::size_t k)> pressure{};
 };
@@ -72,6 +74,8 @@ class StudyFile {
   [[nodiscard]] std::vector<std::uint64_t> series_index() const;
   [[nodiscard]] Shape series_shape() const;  ///< of /time_series/pressure; {} if there is none
   [[nodiscard]] std::vector<std::int32_t> series_samples() const;
+  /// [kept]; NaN in files of version 1.0, which do not tell it
+  [[nodiscard]] std::vector<SeriesTiming> series_timing() const;
   /// The k-th of them, [channels × its own samples × iq].
   [[nodiscard]] std::vector<float> series(std::size_t k) const;
 
@@ -95,6 +99,13 @@ class StudyFile {
   bool complete_ = false;
   std::string manifest_;
 };
+
+/// A dataset of /time_series that has a number for each: how to read its samples.
+struct SeriesDataset {
+  const char *name, *unit, *meaning;
+  double SeriesTiming::*value;
+};
+[[nodiscard]] std::span<const SeriesDataset> series_datasets();
 
 /// Which axis of a time series counts its samples.
 [[nodiscard]] inline std::size_t sample_axis(const Shape& shape) noexcept {

@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& texts) {
 void StudyFileWriter::write_root() {
   const Imprint& imprint = results_.imprint;
   file_.set_attribute("", "filetype", "asdic study");
-  file_.set_attribute("", "version", "1.0");
+  file_.set_attribute("", "version", "1.1");
   file_.set_attribute("", "title", imprint.title);
   file_.set_attribute("", "identity", imprint.identity);
   file_.set_attribute("", "seed", std::to_string(imprint.seed));
@@ -107,6 +107,7 @@ void StudyFileWriter::write_run() {
   set("threads", [](const Session& s) { return std::to_string(s.made.threads); });
   set("library_versions", [](const Session& s) { return s.made.library_versions; });
   const Table& table = results_.reuse;
+  if (!table.columns.empty()) file_.make_group("run/reuse");
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string path = "run/reuse/" + table.columns[i].name;
     file_.write<double>(path, table.values[i], {table.values[i].size()});

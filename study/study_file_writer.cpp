@@ -66,6 +66,14 @@ void StudyFileWriter::write_series(const SeriesSource& series) {
   file_.make_scale("time_series/index", "kept");
   column<std::int32_t>("time_series/valid_samples", samples, 0, true);
   describe(file_, "time_series/valid_samples", "samples before the padding");
+  for (const SeriesDataset& dataset : series_datasets()) {
+    const std::string path = std::string("time_series/") + dataset.name;
+    std::vector<double> values;
+    for (const SeriesTiming& timing : series.timing) values.push_back(timing.*dataset.value);
+    column<double>(path, values, std::numeric_limits<double>::quiet_NaN(), true);
+    describe(file_, path, dataset.meaning, dataset.unit);
+    file_.attach_scales(path, {"time_series/index"});
+  }
   write_pressure(series, row);
   describe(file_, "time_series/pressure", "what the phones hear; complex where the last axis is 2",
            "Pa");

@@ -47,6 +47,9 @@ class RunningEstimate {
   explicit RunningEstimate(const Study& study);
   void add(const Row& row);
   [[nodiscard]] std::optional<Estimate> estimate() const;  ///< none before two valid rows
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Valid rows in which the answer is not known or not finite: they do not count.
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
 
  private:
   std::string name_, unit_;
@@ -54,7 +57,7 @@ class RunningEstimate {
   bool proportion_ = false;
   ProportionInterval interval_ = ProportionInterval::wilson;
   double level_ = 0.95;
-  std::uint64_t count_ = 0;
+  std::uint64_t count_ = 0, left_out_ = 0;
   double mean_ = 0.0, squares_ = 0.0;  // Welford
 };
 

@@ -32,6 +32,9 @@ class OrderedEstimate {
   [[nodiscard]] std::optional<std::uint64_t> enough() const noexcept { return enough_; }
   /// Of these rows, those that were skipped.
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
+  [[nodiscard]] const std::string& name() const noexcept { return estimate_.name(); }
+  /// Of these rows, those that are valid and tell nothing of the estimate.
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return estimate_.left_out(); }
   [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_.size(); }
 
  private:

@@ -11,6 +11,7 @@ from .study_data import Study, SummaryTable, spoken
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
 YES_OR_NO = ("detected", "false_alarm")
+DETAILS = ("path", "echo_time", "noise_level", "series_")  # measures that are left out first
 
 
 def panels(study: Study, what: str, count: int, height: float = 2.6):
@@ -69,11 +70,18 @@ def axes_of(table: SummaryTable) -> list:
     return [n for n in before if not n.endswith(("_low", "_high")) or n.rsplit("_", 1)[0] not in before]
 
 
+def drawn(table: SummaryTable) -> list:
+    """Of banded(): as many as there are panels for, what was detected and where before details."""
+    return sorted(banded(table), key=lambda n: n.startswith(DETAILS))[:MOST_PANELS]
+
+
 def title(table: SummaryTable, names: list) -> str:
     """What a table along inputs shows: "Probability of detection against range"."""
+    every = len(banded(table))
+    some = f", {len(names)} of {every} measures" if len(names) < every else ""
     what = spoken(names[0]) if len(names) == 1 and names[0].startswith(("pd", "pfa")) else "means"
     along = " and ".join(spoken(n) for n in axes_of(table))
-    return f"{what[0].upper()}{what[1:]} against {along}"
+    return f"{what[0].upper()}{what[1:]} against {along}{some}"
 
 
 def top(values) -> float:
@@ -86,7 +94,7 @@ def draw_by(study: Study) -> dict:
     """Probabilities and means along one input."""
     figures = {}
     for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 1):
-        names = banded(table)[:MOST_PANELS]
+        names = drawn(table)
         if not names:
             continue
         fig, axes = panels(study, title(table, names), len(names), 3.0)
@@ -132,7 +140,7 @@ def draw_map(study: Study) -> dict:
     """Probabilities over two inputs, as a map."""
     figures = {}
     for table in study.tables(lambda t: "_by_" in t.name and len(axes_of(t)) == 2):
-        names = banded(table)[:MOST_PANELS]
+        names = drawn(table)
         x, y = (table[n] for n in axes_of(table))
         across, down = bins(table, x), bins(table, y)
         cells = (across.size - 1, down.size - 1)

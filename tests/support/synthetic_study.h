@@ -29,6 +29,10 @@ struct SyntheticStudy {
     }
     if (series_every > 0 && index % series_every == 0) {
       row.pressure_shape = {2, 3 + index % 4};
+      row.timing = {.sample_rate = 100.0 / 3.0 + static_cast<double>(index),
+                    .start = 0.1 * static_cast<double>(index),
+                    .carrier = 1e3,
+                    .epoch = -0.7};
       for (std::size_t i = 0; i < row.pressure_shape[0] * row.pressure_shape[1]; ++i)
         row.pressure.push_back(static_cast<float>(stream.normal()));
     }

@@ -38,6 +38,7 @@ void expect_same(const Row& a, const Row& b) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(a.values[i]), std::bit_cast<std::uint64_t>(b.values[i]));
   EXPECT_EQ(a.pressure, b.pressure);
   EXPECT_EQ(a.pressure_shape, b.pressure_shape);
+  EXPECT_EQ(a.timing, b.timing);
 }
 
 TEST(Journal, GivesBackWhatItTook) {

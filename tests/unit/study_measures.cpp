@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "study/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 
@@ -69,6 +70,38 @@ TEST_F(Measures, BothBackgroundsKeepTheFalseAlarmProbability) {
     EXPECT_NEAR(alarms / n, 0.1, 4.9 * std::sqrt(0.09 / n)) << background;
     EXPECT_GT(hits / n, alarms / n);
   }
+}
+
+// The echo comes at 4 s and lasts 0.1 s; a cell is 0.053 s. 0.2 s on either side hold no free cell
+// behind the guard, and a record that ends before it nothing at all: that is not a miss.
+TEST_F(Measures, WhatCannotBeComparedIsNotKnown) {
+  const std::string tables = "[measure]\ndetection = true\nsnr_matched = true\n";
+  for (const auto& [start, duration] : {std::pair{"3.8", "0.5"}, {"0.0", "3.9"}}) {
+    const Study study = read(tables, {std::string("pings.recording_start=") + start,
+                                      std::string("pings.recording_duration=") + duration});
+    RunningEstimate estimate(study);
+    const Realiser realiser(study);
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      const Row row = realiser.realise(i);
+      EXPECT_TRUE(std::isnan(value(study, row, "detected"))) << start;
+      EXPECT_TRUE(std::isnan(value(study, row, "snr_matched_db"))) << start;
+      estimate.add(row);
+    }
+    EXPECT_EQ(estimate.left_out(), 3U);
+    EXPECT_FALSE(estimate.estimate().has_value());
+  }
+}
+
+// 24 free cells of 1/100 Hz around a pulse of 1 s, a hundred cells long.
+TEST_F(Measures, AWidePulseFindsItsFreeCellsFurtherOut) {
+  const Study study =
+      read("[measure]\ndetection = true\nsnr_matched = true\n",
+           {"pulse={kind=\"lfm\", start_frequency=950.0, end_frequency=1050.0, duration=1.0, "
+            "window=\"hann\"}",
+            "transmitter.source_level_db=220"});
+  const Row row = Realiser(study).realise(0);
+  EXPECT_EQ(value(study, row, "detected"), 1.0);
+  EXPECT_FALSE(std::isnan(value(study, row, "snr_absent_db")));
 }
 
 TEST_F(Measures, ReceiverFindsAndPlacesALoudTarget) {

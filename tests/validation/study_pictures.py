@@ -116,6 +116,25 @@ class Case(unittest.TestCase):
                 self.assertFalse(one.overlaps(other))
 
 
+class MoreMeasuresThanPanels(Case):
+    def test_what_is_left_out_is_told(self):
+        write(self.file)
+        names = [f"path_{k}" for k in range(10)] + ["series_rms_db", "echo_level_db",
+                                                    "position_error", "range_error",
+                                                    "bearing_error_deg"]
+        with h5py.File(self.file, "r+") as f:
+            del f["summary/means_by_range"]
+            columns = {}
+            for name in names:
+                columns.update(estimate(name, [3.0, 2.0, 1.0]))
+            table(f, "means_by_range", "", range=([15e3, 25e3, 35e3], "m"),
+                  count=np.full(3, 100.0), **columns)
+        fig = dict(study_pictures.draw(study_data.read(str(self.file))))["means_by_range"]
+        self.assertEqual(len(fig.axes), 12)
+        self.assertIn("12 of 15 measures", fig._suptitle.get_text())
+        self.assertTrue(any("osition error" in a.get_ylabel() for a in fig.axes))
+
+
 class EveryPictureIsDrawn(Case):
     def test_all_of_them(self):
         write(self.file)

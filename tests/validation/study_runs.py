@@ -19,6 +19,9 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/support"))
 from same_study import differences  # noqa: E402
 
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 ASDIC_MPI = ASDIC.with_name("asdic-mpi")
 KILLS = int(sys.argv[1]) if len(sys.argv) > 1 else 3
@@ -137,6 +140,28 @@ def threads_and_parts():
     check("found no part with 160 of 480 realisations: 0:160" in said, f"a gap: {said}")
 
 
+def time_series():
+    """Read as anybody would: out of the file alone. Rates differ; the echo lies where its time says."""
+    run("study", "study.toml", "-o", "s.h5", "-q", "--set", "study.realisations=4",
+        "--set", 'vary."pings.baseband_rate"={law="list", values=[3000.0, 4000.0]}',
+        "--set", 'measure={echo_time=true, time_series="all"}',
+        "--set", "transmitter.source_level_db=260")
+    with h5py.File("s.h5") as f:
+        series = f["time_series"]
+        for k, index in enumerate(series["index"][:]):
+            samples = series["pressure"][k, 0, :series["valid_samples"][k]]
+            p = np.hypot(samples[:, 0], samples[:, 1])
+            t = series["start"][k] + np.arange(len(p)) / series["sample_rate"][k]
+            into = t - f["table/echo_time"][index]
+            # A pulse of 0.1 s, 46 dB over the noise; its flanks ring for some 1/rate.
+            quiet = p[(into < -0.02) | (into > 0.12)].max()
+            check(p[(into > 0.01) & (into < 0.09)].min() > 5 * quiet, f"time series {index}: no echo")
+            check(series["carrier"][k] > 0, "time series: no carrier")
+        check(len(set(series["sample_rate"][:])) == 2, "time series: one rate")
+        check(f["run/reuse/legs_searched"].shape == (4,), "run/reuse: not a value a row")
+    print("time series: found in the file")
+
+
 def interrupted():
     run_ = start("study", "study.toml", "-o", "i.h5", "--threads", 2)
     wait_for_journal("i.h5.journal", run_)
@@ -247,6 +272,7 @@ if __name__ == "__main__":
         os.chdir(folder)
         Path("study.toml").write_text(STUDY)
         threads_and_parts()
+        time_series()
         interrupted()
         killed()
         by_mpi()
