@@ -36,15 +36,39 @@ double quantile(std::vector<double>& values, double share) {
 
 constexpr double most_bound_db = 99.0;  // where the bound is as large as the field
 
+/// Rows of receivers that have no limit, [first, last).
+struct RowsLeftOut {
+  std::size_t first = 0, last = 0, columns = 1;
+  [[nodiscard]] bool hold(std::size_t receiver) const noexcept {
+    const std::size_t row = receiver / columns;
+    return row >= first && row < last;
+  }
+};
+
+RowsLeftOut rows_without_limit(const ReceiverGrid& grid, const LevelRays& level,
+                               double source_depth) {
+  RowsLeftOut rows{.columns = std::max<std::size_t>(grid.ranges.size(), 1)};
+  if (level.angle == 0.0 || grid.irregular) return rows;
+  const auto row = [&](auto at) { return static_cast<std::size_t>(at - grid.depths.begin()); };
+  rows.first =
+      row(std::lower_bound(grid.depths.begin(), grid.depths.end(), source_depth - level.height));
+  rows.last =
+      row(std::upper_bound(grid.depths.begin(), grid.depths.end(), source_depth + level.height));
+  if (rows.last - rows.first == grid.depths.size()) rows.last = rows.first;
+  return rows;
+}
+
 /// |ΔTL| that a bound allows [dB], of the cells where field or bound is above the floor.
 std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
-                              const std::vector<double>& bound, bool coherent) {
+                              const std::vector<double>& bound, bool coherent,
+                              const RowsLeftOut& rows = {}) {
   const double faintest = faintest_of(field), factor = coherent ? 20.0 : 10.0;
   std::vector<double> unsure;
   unsure.reserve(field.size());
   for (std::size_t i = 0; i < field.size(); ++i) {
     const double p = std::abs(field[i]), x = coherent ? p : p * p;
-    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest) continue;
+    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest || rows.hold(i))
+      continue;
     unsure.push_back(bound[i] < x
                          ? std::min(most_bound_db, -factor * std::log10(1.0 - bound[i] / x))
                          : most_bound_db);
@@ -66,28 +90,51 @@ std::string percent(double share) {
   return std::to_string(static_cast<int>(std::floor(100.0 * share))) + " %";
 }
 
-std::string decimals(double value) {
+std::string decimals(double value, std::size_t places = 2) {
   std::string text = std::to_string(value);
-  return text.substr(0, text.find('.') + 3);
+  return text.substr(0, text.find('.') + 1 + places);
 }
+
+/// What the user should know of a source on a kink of least sound speed; nothing of another.
+std::string note_of(const LevelRays& level, double source_depth) {
+  if (level.angle == 0.0) return {};
+  return "the source at " + decimals(source_depth) +
+         " m is on a kink where the sound speed is least: rays within " +
+         decimals(degrees(level.angle), 3) + " deg of the horizontal stay within " +
+         decimals(1e3 * level.height, 1) +
+         " mm of that depth and are not told apart; only there the field has no ray limit, and "
+         "receivers there are not counted in the error";
+}
+
+/// No tube is narrower at the last receiver than this [m]: depths of rays are right to 1e-9 m, and
+/// beams as narrow as that would no longer share a receiver among them, but all reach it or none.
+constexpr double finest_tube = 1e-5;
 
 /// Until the bound is what is wanted.
 ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& field_of,
-                             bool circle, std::size_t first, std::size_t most) {
+                             const LevelRays& level_rays, double source_depth, bool circle,
+                             std::size_t first, std::size_t most) {
   const BeamSettings& beams = run_case.beams;
   const bool coherent = run_case.field == FieldKind::coherent;
   BeamFan fan = even_fan(beams.lowest, beams.highest, static_cast<int>(first));
+  const ReceiverGrid& grid = run_case.receivers;
+  const RowsLeftOut left_out = rows_without_limit(grid, level_rays, source_depth);
+  const double reach = std::max({std::abs(grid.ranges.front()), std::abs(grid.ranges.back()), 1.0});
+  const FinestTubes finest{.width = finest_tube / reach, .level = level_rays.angle};
   std::vector<double> level;
   while (true) {
     const std::size_t count = fan.elevation.size();
-    FanField pass = field_of(fan, {.bound = true, .level = level});
+    FanField pass = field_of(fan, {.bound = true,
+                                   .level = level,
+                                   .first_left_out = left_out.first,
+                                   .last_left_out = left_out.last});
+    std::vector<double> unsure = unsure_db(pass.field, pass.bound, coherent, left_out);
     ConvergedField answer{.field = std::move(pass.field),
                           .beams = count,
-                          .error_db = bound_db(answer.field, pass.bound, coherent, 0.95),
+                          .error_db = quantile(unsure, 0.95),
                           .bounded = true};
     if (answer.error_db <= wanted_bound_db) return answer;
     if (count >= most) {
-      const auto unsure = unsure_db(answer.field, pass.bound, coherent);
       const auto sure = std::count_if(unsure.begin(), unsure.end(),
                                       [](double db) { return db <= wanted_bound_db; });
       answer.note = std::to_string(count) + " beams leave the field sure to " +
@@ -103,7 +150,8 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
     // The bound falls with the number or a little faster.
     const double factor = std::clamp(1.05 * answer.error_db / wanted_bound_db, 1.25, 2.0);
     const auto next = std::min(static_cast<std::size_t>(factor * static_cast<double>(count)), most);
-    if (beams.kind == BeamKind::hat && !circle) fan = graded_fan(fan, pass.tube_share, next);
+    if (beams.kind == BeamKind::hat && !circle)
+      fan = graded_fan(fan, pass.tube_share, next, finest);
     if (fan.elevation.size() <= count)  // Gaussians, or no tube that stands out
       fan = even_fan(beams.lowest, beams.highest, static_cast<int>(std::max(next, count + 1)));
   }
@@ -131,14 +179,20 @@ double level_difference_db(const std::vector<std::complex<double>>& a,
   return quantile(difference, share);
 }
 
-ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of) {
+ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of,
+                               const LevelRays& level, double source_depth) {
   const BeamSettings& beams = run_case.beams;
   const bool circle = std::abs(beams.highest - beams.lowest - 2.0 * pi) < 1e-9;
   const int most = std::max(most_beams, beams.count | 1);
   int count = std::max(beams.count, first_count(run_case)) | 1;
-  if (has_error_bound(run_case))
-    return bounded_field(run_case, field_of, circle, static_cast<std::size_t>(count),
-                         static_cast<std::size_t>(most));
+  if (has_error_bound(run_case)) {
+    ConvergedField answer =
+        bounded_field(run_case, field_of, level, source_depth, circle,
+                      static_cast<std::size_t>(count), static_cast<std::size_t>(most));
+    const std::string note = note_of(level, source_depth);
+    if (!note.empty()) answer.note = answer.note.empty() ? note : note + "; " + answer.note;
+    return answer;
+  }
   double last_change = 0.0;
   int last_count = 0;
   while (true) {

@@ -6,6 +6,7 @@
 
 #include "raytrace/beams/fan.h"
 #include "raytrace/beams/field_run.h"
+#include "raytrace/tracing/level_rays.h"
 
 namespace asdic {
 
@@ -25,8 +26,12 @@ using FieldOfFan = std::function<FanField(const BeamFan&, const FieldCheck&)>;
 /// (has_error_bound): hats where their tubes need it, Gaussians evenly. Other kinds: until it is as
 /// good as every second beam of it to `wanted_error_db`, allowing for the rate at which that
 /// difference shrinks. docs/theory/fields.md
+/// \param level  of the source: its row of receivers, if not the only one, is left out of the rule,
+/// and the note says so
 [[nodiscard]] ConvergedField converged_field(const PropagationCase& run_case,
-                                             const FieldOfFan& field_of);
+                                             const FieldOfFan& field_of,
+                                             const LevelRays& level = {},
+                                             double source_depth = 0.0);
 
 inline constexpr double wanted_bound_db = 0.5;  ///< |ΔTL| at 95 % of the cells
 inline constexpr double wanted_error_db = 0.2;  ///< the same where it can only be estimated

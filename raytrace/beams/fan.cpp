@@ -16,18 +16,27 @@ BeamFan even_fan(double lowest, double highest, int count) {
   return fan;
 }
 
-BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share, std::size_t count) {
+BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share, std::size_t count,
+                   const FinestTubes& finest) {
   constexpr double most_parts = 8.0;
+  std::vector<double> most(share.size(), most_parts);  // of each tube
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double from = fan.elevation[i], to = fan.elevation[i + 1];
+    const bool level = from < finest.level && to > -finest.level;
+    const double least = level ? std::max(finest.level, finest.width) : finest.width;
+    if (least > 0.0) most[i] = std::clamp(std::floor((to - from) / least), 1.0, most_parts);
+  }
   const auto parts = [&](double scale, std::size_t i) {
-    return std::clamp(std::floor(scale * std::sqrt(share[i])), 1.0, most_parts);
+    return std::clamp(std::floor(scale * std::sqrt(share[i])), 1.0, most[i]);
   };
   const auto beams = [&](double scale) {
     double n = 1.0;
     for (std::size_t i = 0; i < share.size(); ++i) n += parts(scale, i);
     return n;
   };
-  const double wanted =
-      std::min(static_cast<double>(count), most_parts * static_cast<double>(share.size()));
+  double all = 1.0;
+  for (std::size_t i = 0; i < share.size(); ++i) all += share[i] > 0.0 ? most[i] : 1.0;
+  const double wanted = std::min(static_cast<double>(count), all);
   const double largest = share.empty() ? 0.0 : *std::max_element(share.begin(), share.end());
   double low = 0.0, high = largest > 0.0 ? 1.0 / std::sqrt(largest) : 0.0;
   for (int i = 0; i < 60 && beams(high) < wanted; ++i) low = high, high *= 2.0;

@@ -22,11 +22,18 @@ struct BeamFan {
 /// which is the first, is left out. \param count  ≥ 2
 [[nodiscard]] BeamFan even_fan(double lowest, double highest, int count);
 
+/// How narrow the tubes of a fan may get [rad].
+struct FinestTubes {
+  double width = 0.0;  ///< any of them
+  double level = 0.0;  ///< those that hold an elevation below this (LevelRays::angle)
+};
+
 /// Some `count` beams, where a tube between two rays whose error has a share S of the whole is
 /// divided in √S·λ equal parts (1 to 8): since an error falls at least as fast as the width, that
-/// leaves the least Σ S for the number. \param share  [beams − 1] ≥ 0
+/// leaves the least Σ S for the number. Fewer where tubes are the finest already.
+/// \param share  [beams − 1] ≥ 0
 [[nodiscard]] BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share,
-                                 std::size_t count);
+                                 std::size_t count, const FinestTubes& finest = {});
 
 /// Exactly the elevations asked for (two or more). They are taken as evenly spaced.
 [[nodiscard]] BeamFan given_fan(const std::vector<double>& elevations);

@@ -95,7 +95,9 @@ class FastPart {
     sum_.emplace_back(setting, grid.depths, memory.first(one));
     setting.spacing *= 2.0;
     if (work.also.half) sum_.emplace_back(setting, grid.depths, memory.subspan(one));
-    if (work.also.bound) tubes_.emplace(work.setting, grid.depths, grid.ranges.size());
+    if (work.also.bound)
+      tubes_.emplace(work.setting, grid.depths, grid.ranges.size(), work.also.first_left_out,
+                     work.also.last_left_out);
   }
   /// Numbers of memory for the sums.
   [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {

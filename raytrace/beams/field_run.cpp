@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "core/error.h"
 #include "raytrace/beams/convergence.h"
@@ -52,6 +53,15 @@ void check(const PropagationCase& run_case) {
     if (!(depth >= ocean.surface.depth_at(0.0) && depth <= ocean.bottom.depth_at(0.0)))
       throw InputError(
           {"source_depths", std::to_string(depth) + " m", "a depth between surface and bottom"});
+}
+
+/// Whether the pressure at the source is zero, come what may.
+bool on_vacuum(const Environment& ocean, double depth) {
+  for (const Boundary* wall : {&ocean.surface, &ocean.bottom})
+    if (depth == wall->depth_at(0.0) && wall->roughness.smooth() &&
+        std::holds_alternative<Vacuum>(wall->material_at(0.0)))
+      return true;
+  return false;
 }
 
 }  // namespace
@@ -213,10 +223,19 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
     const double depth = run_case.source_depths[i];
     ConvergedField answer;
-    if (run_case.beams.elevations.empty()) {
-      answer = converged_field(run_case, [&](const BeamFan& fan, const FieldCheck& also) {
-        return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, also);
-      });
+    if (on_vacuum(run_case.environment, depth)) {
+      answer = {.field = std::vector<std::complex<double>>(run_case.receivers.size()),
+                .bounded = has_error_bound(run_case),
+                .note = "the source at " + std::to_string(depth) +
+                        " m is on a boundary with a vacuum, which reflects all it sends with the "
+                        "opposite sign: there is no field, and no beam was traced"};
+    } else if (run_case.beams.elevations.empty()) {
+      answer = converged_field(
+          run_case,
+          [&](const BeamFan& fan, const FieldCheck& also) {
+            return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, also);
+          },
+          level_rays(run_case.environment, run_case.frequency, 0.0, depth), depth);
     } else {
       const BeamFan fan = given_fan(run_case.beams.elevations);
       answer = {.field = field_of_fan(run_case, tracer, depth, fan, progress).field,

@@ -41,6 +41,8 @@ struct FieldCheck {
   std::span<const double>
       level;  ///< [ranges] the pressure that an error is held against (intensity
               ///< if not coherent); empty: that of the fan spread over depth
+  std::size_t first_left_out = 0,
+              last_left_out = 0;  ///< rows in [first, last) count for no tube_share
 };
 
 /// Whether FieldCheck::bound can be had.

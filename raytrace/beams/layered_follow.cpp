@@ -7,6 +7,13 @@
 
 // A ray from layer to layer: what LayeredCrossings knows of it before it looks at columns.
 namespace asdic {
+namespace {
+
+/// A ray that passes more layers than this is trapped, as TraceLimits::max_segments has it:
+/// launched within 1e-6 rad or so of the level of a kink (LevelRays), it would fill the memory.
+constexpr std::size_t most_passes = 1'000'000;
+
+}  // namespace
 
 /// Each layer once: sin θ at its nodes, the range and time it takes to pass it, what p/ξ loses per
 /// q where its gradient ends. Where ξc > 1 the ray does not come; the numbers there are not used.
@@ -63,7 +70,7 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
           .bend = 0.0,
           .length = 0.0};
   bool inside = !source_on_node_;  // the first layer is entered from within
-  while (at.r <= last_range) {
+  while (at.r <= last_range && passes < most_passes) {
     const double g = gradient_[layer];
     at.bend = xi * g;
     if (passes == work.pass.size()) work.pass.resize(2 * passes + 64);

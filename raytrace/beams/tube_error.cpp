@@ -58,8 +58,13 @@ void TubeError::Pieces::resize(std::size_t n) {
 }
 
 TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
-                     std::size_t columns)
-    : setting_(setting), depths_(depths), first_depth_(depths.front()), stride_(depths.size() + 1) {
+                     std::size_t columns, std::size_t first_left_out, std::size_t last_left_out)
+    : setting_(setting),
+      depths_(depths),
+      first_depth_(depths.front()),
+      first_left_out_(first_left_out),
+      last_left_out_(last_left_out),
+      stride_(depths.size() + 1) {
   sum_.assign(columns * stride_, 0.0);
   head_.assign(columns, -1);
   const std::size_t n = depths.size();
@@ -266,7 +271,10 @@ double TubeError::put_between(std::size_t column, double error, double from, dou
   double* sum = sum_.data() + column * stride_;
   sum[first] += error;
   sum[last] -= error;
-  return static_cast<double>(last - first);
+  const std::size_t from_left_out = std::max(first, first_left_out_),
+                    to_left_out = std::min(last, last_left_out_);
+  const std::size_t left_out = to_left_out > from_left_out ? to_left_out - from_left_out : 0;
+  return static_cast<double>(last - first - left_out);
 }
 
 void TubeError::finish() {

@@ -31,7 +31,9 @@ struct RayAtColumns {
 /// are added without regard to sign. docs/theory/fields.md, "Error bound"
 class TubeError {
  public:
-  TubeError(const BeamSetting& setting, std::span<const double> depths, std::size_t columns);
+  /// \param first_left_out, last_left_out  rows in [first, last) count for no share
+  TubeError(const BeamSetting& setting, std::span<const double> depths, std::size_t columns,
+            std::size_t first_left_out = 0, std::size_t last_left_out = 0);
 
   /// Adds the tube between two neighbouring rays, `width` rad apart.
   /// \param level  [columns] what an error is held against, in units of the sum before field_scale
@@ -68,7 +70,8 @@ class TubeError {
 
   BeamSetting setting_;
   std::span<const double> depths_;
-  double first_depth_ = 0.0, per_spacing_ = 0.0;  // of evenly spaced depths, else 0
+  double first_depth_ = 0.0, per_spacing_ = 0.0;        // of evenly spaced depths, else 0
+  std::size_t first_left_out_ = 0, last_left_out_ = 0;  // rows
   std::size_t stride_ = 0;
   std::vector<double> sum_;                // [columns × (rows + 1)] changes from row to row
   Pieces tube_;                            // bounds of one tube, [crossings]: all over it

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/beams/convergence.h"
+#include "raytrace/beams/field_run.h"
+
+// Fields of sources and at receivers where rays have something special to them: kinks of the sound
+// speed, boundaries, nodes of boundaries.
+namespace asdic {
+namespace {
+
+/// 200 m of water over a fluid, the sound speed least at 50 m, with a kink.
+PropagationCase kinked_duct() {
+  PropagationCase run_case;
+  run_case.environment.water = SoundSpeedProfile::table(
+      std::vector{0.0, 50.0, 200.0}, std::vector{1500.0, 1495.0, 1505.0}, Interpolation::c_linear);
+  run_case.environment.bottom = {.depth = 200.0,
+                                 .material = FluidHalfSpace{.speed = 1600.0, .density = 1800.0}};
+  run_case.frequency = 250.0;
+  run_case.source_depths = {50.0};
+  for (int j = 1; j <= 25; ++j) run_case.receivers.ranges.push_back(400.0 * j);
+  for (int k = 1; k <= 9; ++k) run_case.receivers.depths.push_back(20.0 * k);
+  run_case.receivers.depths.push_back(50.0);
+  std::sort(run_case.receivers.depths.begin(), run_case.receivers.depths.end());
+  run_case.beams.lowest = radians(-30.0);
+  run_case.beams.highest = radians(30.0);
+  return run_case;
+}
+
+// Rays launched nearly level from the kink run in ever shorter arcs without end, and no number of
+// beams is enough for receivers at its depth (level_rays.h). The rule leaves these alone; all other
+// rows are as sure as it says, against an even fan as dense as any it may use.
+TEST(FieldsAtSpecialPlaces, OfASourceOnAKinkOfLeastSpeed) {
+  const PropagationCase run_case = kinked_duct();
+  const PropagationResult own = run_field(run_case);
+  EXPECT_LE(own.beams, static_cast<std::size_t>(most_beams));
+  EXPECT_LE(own.beam_error_db, wanted_bound_db);
+  ASSERT_EQ(own.notes.size(), 1U);
+  EXPECT_NE(own.notes[0].find("kink"), std::string::npos);
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const auto dense =
+      field_of_fan(run_case, tracer, 50.0,
+                   even_fan(run_case.beams.lowest, run_case.beams.highest, most_beams))
+          .field;
+  const std::size_t columns = run_case.receivers.ranges.size();
+  std::vector<std::complex<double>> a, b;
+  for (std::size_t i = 0; i < dense.size(); ++i)
+    if (run_case.receivers.depths[i / columns] != 50.0)
+      a.emplace_back(own.field[i]), b.push_back(dense[i]);
+  EXPECT_LT(level_difference_db(a, b, 0.95), 2.0 * wanted_bound_db);  // each is sure to one
+}
+
+// ε and h of the header's formula, h = cα²/(2g) with the lesser gradient, 10/150 1/s; none beside
+// the kink, at a maximum, or where the speed is smooth.
+TEST(LevelRays, AreThoseOfAKinkOfLeastSpeed) {
+  const Environment ocean = kinked_duct().environment;
+  const LevelRays level = level_rays(ocean, 250.0, 0.0, 50.0);
+  EXPECT_NEAR(level.height, 1495.0 / 250.0 / 1000.0, 1e-12);
+  EXPECT_NEAR(1495.0 * level.angle * level.angle / (2.0 * 10.0 / 150.0), level.height, 1e-9);
+  EXPECT_EQ(level_rays(ocean, 250.0, 0.0, 51.0).angle, 0.0);
+  Environment other = ocean;
+  other.water = SoundSpeedProfile::table(
+      std::vector{0.0, 50.0, 200.0}, std::vector{1490.0, 1495.0, 1480.0}, Interpolation::c_linear);
+  EXPECT_EQ(level_rays(other, 250.0, 0.0, 50.0).angle, 0.0);
+  other.water = SoundSpeedProfile::munk();
+  EXPECT_EQ(level_rays(other, 250.0, 0.0, 1300.0).angle, 0.0);
+}
+
+// A pressure-release surface takes back all that a source on it sends; said without a search.
+TEST(FieldsAtSpecialPlaces, OfASourceOnTheSurface) {
+  PropagationCase run_case = kinked_duct();
+  run_case.source_depths = {0.0};
+  const PropagationResult nothing = run_field(run_case);
+  EXPECT_EQ(nothing.beams, 0U);
+  EXPECT_EQ(nothing.beam_error_db, 0.0);
+  for (const auto& p : nothing.field) EXPECT_EQ(std::abs(p), 0.0F);
+  ASSERT_EQ(nothing.notes.size(), 1U);
+  EXPECT_NE(nothing.notes[0].find("vacuum"), std::string::npos);
+}
+
+// No tube is divided below what was asked for, whatever its share.
+TEST(GradedFans, HaveNoTubesFinerThanAsked) {
+  const BeamFan even = even_fan(-1.0, 1.0, 9);
+  const BeamFan fan =
+      graded_fan(even, std::vector<double>(8, 1.0), 1000, {.width = 0.06, .level = 0.11});
+  double least = 1.0, least_level = 1.0;
+  for (std::size_t i = 0; i + 1 < fan.elevation.size(); ++i) {
+    const bool level = fan.elevation[i] < 0.11 && fan.elevation[i + 1] > -0.11;
+    (level ? least_level : least) =
+        std::min(level ? least_level : least, fan.elevation[i + 1] - fan.elevation[i]);
+  }
+  EXPECT_GE(least, 0.06);
+  EXPECT_GE(least_level, 0.11);
+}
+
+}  // namespace
+}  // namespace asdic
