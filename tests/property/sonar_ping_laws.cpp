@@ -194,7 +194,8 @@ TEST(PingLaws, LevelsAreThoseOfTheWholePing) {
 }
 
 // The summary tells of the array that hears the loudest pair: what it says there is what it says in
-// a scenario with that array alone, wherever in the list it stands.
+// a scenario with that array alone, wherever in the list it stands. Of the reverberation but for
+// where the grid hangs whose cell centres are summed (from the first pair's middle on): 0.1 dB.
 TEST(PingLaws, SummaryIsThatOfTheArrayThatHearsTheTargetBest) {
   Scenario s = two_arrays();
   s.platforms[1].track.start.position = {2800.0, 700.0, 80.0};  // beside the target
@@ -205,7 +206,7 @@ TEST(PingLaws, SummaryIsThatOfTheArrayThatHearsTheTargetBest) {
   EXPECT_EQ(alone.array, 0);
   EXPECT_EQ(both.paths, alone.paths);
   EXPECT_EQ(both.echo_peak_db, alone.echo_peak_db);
-  EXPECT_EQ(both.reverberation_db, alone.reverberation_db);
+  EXPECT_NEAR(both.reverberation_db, alone.reverberation_db, 0.1);
 }
 
 }  // namespace

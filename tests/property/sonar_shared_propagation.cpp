@@ -206,6 +206,7 @@ Scenario with_every_field() {
   s.transmitters[0].taper = Taper::hann;
   s.reverberation.volume = {{.top = 200.0, .bottom = 240.0}};
   s.reverberation.azimuths = 6;
+  s.reverberation.resolve_azimuth = false;
   s.pings.recording_duration = 2.5;
   s.targets[0].track.start = {.position = {900.0, 100.0, 125.0}, .velocity = Vec3::Zero()};
   for (Platform& platform : s.platforms) platform.track.start.velocity.setZero();
@@ -291,6 +292,7 @@ std::vector<Change> changes_of_what_is_expected() {
       {"pulse", [](Scenario& s) { s.pulse.duration = 0.12; }},
       {"end of the record", [](Scenario& s) { s.pings.recording_duration = 2.6; }},
       {"sectors", [](Scenario& s) { s.reverberation.azimuths = 7; }},
+      {"sectors by the array", [](Scenario& s) { s.reverberation.resolve_azimuth = true; }},
       {"rings", [](Scenario& s) { s.reverberation.ground_spacing = 30.0; }},
       {"scatterers a cell", [](Scenario& s) { s.reverberation.scatterers_per_cell = 2; }},
       {"source", [](Scenario& s) { s.platforms[0].track.start.position.x() += 1.0; }},
