@@ -160,12 +160,62 @@ Command read_command(std::string_view line, const SessionLimits& limits) {
   return command;
 }
 
-std::string id_of(std::string_view line, const SessionLimits& limits) {
-  try {
-    return checked_id(parse(line, limits));
-  } catch (const Refusal&) {
-    return "null";
+namespace {
+
+/// Listens to a text for the id of its outermost object, whatever else is wrong with it; builds
+/// nothing. The names are those of nlohmann::json_sax.
+class IdListener {
+ public:
+  [[nodiscard]] std::string id() const { return times_ == 1 ? id_ : "null"; }
+
+  bool null() { return value("null"); }
+  bool boolean(bool) { return value("null"); }
+  bool number_integer(std::int64_t x) { return value(Json(x).dump()); }
+  bool number_unsigned(std::uint64_t x) { return value(Json(x).dump()); }
+  bool number_float(double x, const std::string&) { return value(Json(x).dump()); }
+  bool string(std::string& x) { return value(wanted_ ? Json(x).dump() : "null"); }
+  bool binary(Json::binary_t&) { return value("null"); }
+  bool start_object(std::size_t) { return open(true); }
+  bool start_array(std::size_t) { return open(false); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  bool key(std::string& name) {
+    wanted_ = depth_ == 1 && name == "id";
+    return true;
   }
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) { return false; }
+
+ private:
+  bool value(const std::string& json) {
+    if (wanted_) {
+      ++times_;
+      id_ = json.size() <= longest_id ? json : "null";
+    }
+    wanted_ = false;
+    return depth_ > 0;  // a lone value has none
+  }
+  bool open(bool object) {
+    if (wanted_) static_cast<void>(value("null"));
+    return ++depth_ > 1 || object;
+  }
+  bool close() {
+    --depth_;
+    return true;
+  }
+
+  std::string id_ = "null";
+  std::size_t depth_ = 0;
+  int times_ = 0;
+  bool wanted_ = false;  // the next value is the id
+};
+
+}  // namespace
+
+std::string id_of(std::string_view line, const SessionLimits& limits) {
+  if (line.size() > limits.line_bytes) return "null";
+  IdListener listener;
+  static_cast<void>(Json::sax_parse(line, &listener));
+  return listener.id();
 }
 
 Handshake read_handshake(std::string_view line) {

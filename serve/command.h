@@ -31,7 +31,8 @@ struct Handshake {
 /// \throws Refusal ("handshake") whose message says nothing of the line
 [[nodiscard]] Handshake read_handshake(std::string_view line);
 
-/// The id of a line that is no command, if it has one that can be told; else "null".
+/// The id of a line that is no command, however far it can be read; "null" if it has none up to
+/// there, or two.
 [[nodiscard]] std::string id_of(std::string_view line, const SessionLimits& limits);
 
 [[nodiscard]] std::string_view name_of(CommandKind kind);

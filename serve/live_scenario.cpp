@@ -68,8 +68,8 @@ Refusal LiveScenario::refusal(const InputError& error, const Changes& changes,
   for (const auto& [section, value] : changes) {  // "--set SECTION: SECTION.key"
     const bool here = error.fault().where.starts_with("--set " + section);
     if (here && value.find("\"file\" = ") != std::string::npos)
-      return {"scenario", refusal_text(client_key(section, fields, document).name, other_contents,
-                                       what_files_hold)};
+      return {"scenario", refusal_text(client_key(section, fields, document).name + ".file",
+                                       other_contents, what_files_hold)};
   }
   return refusal_of(error, source_.path.string(), fields, document);
 }
@@ -125,6 +125,23 @@ LiveScenario::State LiveScenario::with(const PingChanges& wanted, const TomlValu
   return read_for_client(changes, fields, document);
 }
 
+namespace {
+
+/// Which of the command's files an error is of: "sound_speed.file"; "a file" if it is none of them.
+std::string file_key(const TomlValue& fields, const std::string& where) {
+  for (const char* key : {"sound_speed", "noise", "waveform"}) {
+    const TomlValue* table = fields.find(key);
+    const TomlValue* file = table == nullptr ? nullptr : table->find("file");
+    const auto* name = file == nullptr ? nullptr : std::get_if<std::string>(&file->data);
+    if (name == nullptr || name->empty()) continue;
+    const std::string last = std::filesystem::path(*name).filename().string();
+    if (where.find(last) != std::string::npos) return std::string(key) + ".file";
+  }
+  return "a file";
+}
+
+}  // namespace
+
 Refusal refusal_of(const InputError& error, const std::string& scenario, const TomlValue& fields,
                    const TomlValue& document) {
   const InputFault& fault = error.fault();
@@ -139,7 +156,9 @@ Refusal refusal_of(const InputError& error, const std::string& scenario, const T
   });
   const bool ours = by_client || fault.where.starts_with(scenario + ":") ||
                     (colon == std::string::npos && is_key && !fault.where.ends_with(".csv"));
-  if (!ours) return {"scenario", refusal_text("a file", other_contents, what_files_hold)};
+  if (!ours)
+    return {"scenario",
+            refusal_text(file_key(fields, fault.where), other_contents, what_files_hold)};
   const std::string own = "what the scenario has";  // which nobody is told
   if (!is_key) return {"scenario", refusal_text("the scenario", own, fault.expected)};
   const ClientKey there = client_key(key, fields, document);

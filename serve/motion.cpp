@@ -1,9 +1,11 @@
 #include "serve/motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/scenario/sections.h"
 #include "io/text/toml_value.h"
+#include "serve/places.h"
 
 namespace asdic::serve {
 namespace {
@@ -11,8 +13,17 @@ namespace {
 using scenario::coordinate;
 using scenario::velocity_component;
 
-constexpr double horizon = 86400.0;  // a straight line goes on for a day [s]
 constexpr Quantity moment{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
+
+/// How long a straight line goes on: until no ping can be any more, or to where the scenario's
+/// coordinates end (there check_places() refuses).
+double horizon(const Kinematics& state, double time) {
+  double seconds = moment.high - time;
+  for (int i = 0; i < 3; ++i)
+    if (const double v = state.velocity[i]; v != 0.0)
+      seconds = std::min(seconds, (std::copysign(farthest, v) - state.position[i]) / v);
+  return seconds;
+}
 
 TomlValue waypoint(double time, const Vec3& position) {
   TomlValue point{.data = TomlValue::Table{}, .origin = ""};
@@ -59,11 +70,10 @@ void set_kinematics(const Kinematics& state, double time, TomlValue& table) {
     return;
   }
   // A velocity from the scenario's start would lead back to places that were never passed.
-  set_key(table, "waypoints",
-          {.data = TomlValue::Array{waypoint(time, state.position),
-                                    waypoint(time + horizon,
-                                             state.position + horizon * state.velocity)},
-           .origin = ""});
+  const double on = horizon(state, time);
+  TomlValue::Array line{waypoint(time, state.position)};
+  if (on > 0.0) line.push_back(waypoint(time + on, state.position + on * state.velocity));
+  set_key(table, "waypoints", {.data = std::move(line), .origin = ""});
 }
 
 void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& table) {

@@ -1,5 +1,6 @@
 #include "serve/places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -26,6 +27,13 @@ std::vector<double> moments(const Scenario& scenario, const Track& track, double
 
 void check_depth(const Scenario& scenario, const Vec3& place, double time,
                  const std::string& what) {
+  // It would stand still there: no straight line leads on.
+  if (std::max(std::abs(place.x()), std::abs(place.y())) >= (1.0 - 1e-9) * farthest)
+    throw Refusal("scenario",
+                  refusal_text(what,
+                               "a place " + to_text(std::round(place.head<2>().norm())) +
+                                   " m away at " + to_text(time) + " s",
+                               "coordinates below " + to_text(farthest) + " m"));
   const double x = scenario.transect.range_of(place.x(), place.y());
   const double top = scenario.environment.surface.depth_at(x),
                bottom = scenario.environment.bottom.depth_at(x);

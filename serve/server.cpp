@@ -67,7 +67,7 @@ class Server::Impl {
     const KeepFlags in(STDIN_FILENO), out(STDOUT_FILENO);
     const int mine = dup(STDIN_FILENO), theirs = dup(STDOUT_FILENO);
     if (mine < 0 || theirs < 0) throw RunError("standard input or output is closed");
-    open({.in = mine, .out = theirs, .socket = false, .token = ""}, false);
+    open({.in = mine, .out = theirs, .socket = false, .token = ""}, of_socket_, false);
     io_.run();
     if (refused_)
       throw InputError({.where = "standard input: first line",
@@ -76,6 +76,11 @@ class Server::Impl {
   }
 
  private:
+  /// Connections of one listener.
+  struct Places {
+    std::size_t serving = 0, turned_away = 0;
+  };
+
   void listen(const std::filesystem::path& path) {
     make_room_for_socket(path);
     std::error_code error;
@@ -127,28 +132,27 @@ class Server::Impl {
       if (in >= 0) ::close(in);
       return;
     }
+    // Peers of one kind cannot take the places of the other: TCP is open to every user here.
+    Places& places = std::is_same_v<Socket, Tcp::socket> ? of_tcp_ : of_socket_;
     const std::size_t most = settings_.limits.connections;
-    if (connections_.size() >= 2 * most) {  // even those that are told so are bounded
+    if (places.serving + places.turned_away >= 2 * most) {  // even those that are told so
       ::close(in);
       ::close(out);
       return;
     }
-    open({.in = in, .out = out, .socket = true, .token = token}, serving() >= most);
+    open({.in = in, .out = out, .socket = true, .token = token}, places, places.serving >= most);
   }
 
-  [[nodiscard]] std::size_t serving() const {
-    return connections_.size() - static_cast<std::size_t>(turned_away_);
-  }
-
-  void open(const Connection::Ends& ends, bool away) {
+  void open(const Connection::Ends& ends, Places& places, bool away) {
     const auto place = connections_.emplace(connections_.end());
-    *place = std::make_unique<Connection>(io_, engine_, ends, [this, place, away] {
+    std::size_t& count = away ? places.turned_away : places.serving;
+    ++count;
+    *place = std::make_unique<Connection>(io_, engine_, ends, [this, place, &count] {
       refused_ = refused_ || !(*place)->refused().empty();
       connections_.erase(place);
-      if (away) --turned_away_;
+      --count;
     });
     if (away) {
-      ++turned_away_;
       (*place)->turn_away(
           "limit",
           refusal_text("server", std::to_string(settings_.limits.connections) + " connections",
@@ -178,7 +182,7 @@ class Server::Impl {
   asio::steady_timer pause_;
   std::unique_ptr<SocketName> name_;
   std::list<std::unique_ptr<Connection>> connections_;
-  int turned_away_ = 0;
+  Places of_socket_, of_tcp_;
   bool refused_ = false;  // the handshake of one of them
   bool stopping_ = false;
 };

@@ -215,7 +215,8 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
     changed.emplace_back("noise");
   }
   if (reader.has("seed")) {
-    static_cast<void>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+    constexpr auto most = std::numeric_limits<std::int64_t>::max() - 1;  // so that it is told
+    static_cast<void>(reader.integer("seed", 0, most));
     set_key(document, "seed", *fields.find("seed"));
     changed.emplace_back("seed");
   }

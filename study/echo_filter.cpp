@@ -160,8 +160,7 @@ class Busy {
     for (const Leg& leg : record.legs)  // the direct blast: from whatever side
       if (leg.kind == Leg::Kind::source_to_array && leg.array == array)
         for (const Arrival& path : leg.arrivals)
-          add(path.delay - echo.delay,
-              apart + 2.0 * reach / simulator.paths().speed_at(reference));
+          add(path.delay - echo.delay, apart + 2.0 * reach / simulator.paths().speed_at(reference));
   }
 
   /// The filter hears nothing of them when it listens so many samples after the echo.

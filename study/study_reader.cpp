@@ -42,7 +42,8 @@ void read_head(TomlTable table, Study& study) {
       table.choice("design", {"random", "latin_hypercube", "sobol", "grid"}, "random");
   for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid})
     if (design == name(d)) study.design = d;
-  const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : most;
+  constexpr std::int64_t plenty = 1'000'000'000'000'000;
+  const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : plenty;
   if (study.design != Design::grid || table.has("realisations"))  // else: of the grid once
     study.realisations = static_cast<std::uint64_t>(table.integer("realisations", 1, last));
   if (table.choice("on_error", {"stop", "skip"}, "stop") == "skip") study.on_error = OnError::skip;

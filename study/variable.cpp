@@ -26,8 +26,11 @@ std::vector<InputColumn> columns(const NumberLaw&, const Variable& v) {
 
 std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
   if (!law.by_row)
-    return {
-        {.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .labels = law.labels.front()}};
+    return {{.name = v.name,
+             .unit = law.labels.front().empty() ? v.unit
+                                                : "1",  // a choice among names is a number of it
+             .meaning = v.keys.front(),
+             .labels = law.labels.front()}};
   std::vector<InputColumn> made;
   for (std::size_t k = 0; k < v.keys.size(); ++k)
     made.push_back({.name = v.name + '_' + last_name(v.keys[k]),

@@ -104,8 +104,21 @@ TEST(Command, ALongLineIsRefused) {
 
 TEST(Command, ARefusedLineStillHasItsId) {
   EXPECT_EQ(id_of(R"({"id": 5, "command": "fire"})", {}), "5");
-  EXPECT_EQ(id_of(R"({"id": 5, "command")", {}), "null");
   EXPECT_EQ(id_of(R"({"id": {"a": 1}})", {}), "null");
+  // Whatever comes behind it.
+  EXPECT_EQ(id_of(R"({"id": 5, "command")", {}), "5");
+  EXPECT_EQ(id_of(R"({"id": 7, "command": "ping", "time": 1e999})", {}), "7");
+  EXPECT_EQ(id_of(R"({"id": "a", "time": NaN})", {}), R"("a")");
+  EXPECT_EQ(id_of(R"({"id": 7, "time": 1, "time": 2})", {}), "7");
+  EXPECT_EQ(id_of(R"({"time": 1, "time": 2, "id": 7})", {}), "7");
+  EXPECT_EQ(id_of(R"({"no such": 1, "id": 7.5})", {}), "7.5");
+  EXPECT_EQ(id_of(R"({"x": {"id": 1}, "id": 7, "y": [{"id": 2}]})", {}), "7");
+  EXPECT_EQ(id_of("{\"id\": 7, \"a\": " + std::string(100, '['), {}), "7");
+  EXPECT_EQ(id_of("{\"a\": " + std::string(100, '[') + std::string(100, ']') + ", \"id\": 7}", {}),
+            "7");
+  EXPECT_EQ(id_of(R"({"id": 1, "id": 2})", {}), "null");
+  EXPECT_EQ(id_of(R"([{"id": 1}])", {}), "null");
+  EXPECT_EQ(id_of("{\"id\": \"" + std::string(200, 'a') + "\"}", {}), "null");
 }
 
 TEST(Handshake, IsTheFirstLine) {

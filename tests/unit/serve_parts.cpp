@@ -270,8 +270,11 @@ TEST(RefusalOf, SaysTheKeyAndWhatIsExpected) {
       {"cast.csv", "a file: " + file},
       {"cast.csv:3: speed", "a file: " + file},
       {"secret/other.toml:3: environment.depth", "a file: " + file},
+      {"/secret/may.csv:3: speed", "sound_speed.file: " + file},
   };
-  const TomlValue fields = parse_toml("platform = { waypoints = [{}, { time = 3 }] }", "command");
+  const TomlValue fields = parse_toml(
+      "platform = { waypoints = [{}, { time = 3 }] }\nsound_speed = { file = \"casts/may.csv\" }",
+      "command");
   for (const auto& one : cases) {
     const bool said = one.message.find("found 3") != std::string::npos;
     const Refusal refusal =

@@ -104,6 +104,23 @@ TEST(Server, AnswersAndEnds) {
   running.stop();
 }
 
+// The data are there before the echo would be: its target is 3 km away, 4 s there and back, at rest
+// and, as nothing of its paths is known then, on the move.
+TEST(Server, IsSoonerThanTheEcho) {
+  Running running;
+  Client client(running.socket());
+  EXPECT_EQ(client.ask(hello)["ok"], true);
+  ASSERT_EQ(client.ask(R"({"command": "update", "targets": {"velocity": [1, 0, 0]}})")["ok"], true);
+  for (int i = 0; i < 20; ++i) {
+    const json said = client.ask(R"({"command": "ping"})");
+    ASSERT_EQ(said["ok"], true) << said;
+    EXPECT_GT(said["latency"].get<double>(), 0.0);
+    EXPECT_LT(said["latency"].get<double>(), said["first_echo"].get<double>());
+  }
+  const json state = client.ask(R"({"command": "state"})");
+  EXPECT_LT(state["latency"]["p99"].get<double>(), 4.0) << state;
+}
+
 // What was sent before the client's last byte is still carried out.
 TEST(Server, AClientMayHangUpItsHalf) {
   Running running;

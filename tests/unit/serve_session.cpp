@@ -296,6 +296,8 @@ TEST(Session, RefusesInOneMessage) {
        "dB"},
       {update + R"("targets": {"name": "new"}})",
        "value: targets.position: found nothing, expected the position of a new target"},
+      {update + R"("seed": 1e30})",
+       "value: seed: found 1e+30, expected a whole number from 0 to 9223372036854775806"},
       {update + R"("wind_speed": 61})",
        "value: wind_speed: found 61 m/s, expected a wind speed from 0 to 60 m/s"},
       {update + R"("sound_speed": {"depth": [0, 1000], "speed": [1500]}})",
@@ -313,7 +315,8 @@ TEST(Session, RefusesInOneMessage) {
                  "duration": 0.1}})",
        "scenario: pings.baseband_rate: found what the scenario has, expected a baseband rate of at "
        "least 2000 Hz: the pulse's band with its Doppler shift about a carrier of 1000 Hz"},
-      {update + R"("seed": 1.5})", "value: seed: found 1.5, expected a whole number of at least 0"},
+      {update + R"("seed": 1.5})",
+       "value: seed: found 1.5, expected a whole number from 0 to 9223372036854775806"},
       {update + R"("pings": {"count": 9}})",
        R"(value: pings: found an unknown key, expected one of "array", "noise", "platform", "recording", "seed", "sound_speed", "targets", "time" or "wind_speed")"},
       {R"({"command": "state", "of": "SECRET"})",
@@ -354,6 +357,26 @@ TEST(Session, CapsWhatAPingMayNeed) {
     serve::set_limit(settings.limits, limit);
     EXPECT_THROW(Served(support::served_scenario, settings), InputError) << limit;
   }
+}
+
+// A straight line has no end in time, and is refused where coordinates have theirs.
+TEST(Session, AStraightLineGoesOn) {
+  Served served;
+  ASSERT_EQ(served(R"({"command": "update", "time": 0, "targets":
+                     {"position": [3000, 0, 200], "velocity": [0.01, 0, 0]}})")["ok"],
+            true);
+  for (const double time : {86400.0, 200000.0, 900000.0}) {
+    const auto said = served(R"({"command": "ping", "time": )" + std::to_string(time) + "}");
+    ASSERT_EQ(said["ok"], true) << said;
+    // The echo comes from where the target is when it is hit: there and back at 1500 m/s.
+    EXPECT_NEAR(said["first_echo"].get<double>(), 2.0 * (3000.0 + 0.01 * time) / 1500.0, 1e-3);
+  }
+  ASSERT_EQ(served(R"({"command": "update", "time": 900000, "targets":
+                     {"position": [9989000, 0, 100], "velocity": [10, 0, 0]}})")["ok"],
+            true);
+  EXPECT_THAT(served.refusal(R"({"command": "ping", "time": 900200})"),
+              HasSubstr("targets: found a place 9990000 m away at 900200 s, expected coordinates "
+                        "below 9990000 m"));
 }
 
 // Phones and targets stay in the water from the ping to the end of its record.

@@ -40,11 +40,11 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
        "study.toml:1: study: found no [study], expected a [study] with its "
        "realisations: a study file"},
       {"[study]\n",
-       "study.toml:1: study.realisations: found nothing, expected a whole number of "
-       "at least 1"},
+       "study.toml:1: study.realisations: found nothing, expected a whole number "
+       "from 1 to 1000000000000000"},
       {"[study]\nrealisations = 0\n",
        "study.toml:2: study.realisations: found 0, expected a whole "
-       "number of at least 1"},
+       "number from 1 to 1000000000000000"},
       {study + "design = \"latin\"\n",
        "study.toml:3: study.design: found \"latin\", expected \"random\", \"latin_hypercube\", "
        "\"sobol\" or \"grid\""},
@@ -322,6 +322,7 @@ TEST_F(Drawn, CastsAndWaypointsAreDrawnWhole) {
       "[measure]\nstrongest_path = true\n");
   const std::vector<Column> all = columns(study);
   EXPECT_EQ(all[0].labels, (std::vector<std::string>{"slow", "2"}));
+  EXPECT_EQ(all[0].unit, "1");  // which cast: no speed
   EXPECT_EQ(all[1].labels, (std::vector<std::string>{"near", "far"}));
   const Realiser realiser(study);
   for (std::uint64_t i = 0; i < 8; ++i) {
