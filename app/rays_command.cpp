@@ -61,14 +61,13 @@ std::vector<double> elevations(const Options& options, const BeamSettings& fan, 
   for (const double elevation : options.elevations) all.push_back(radians(elevation));
   if (!all.empty()) return all;
   if (as_run && !options.has_fan() && !fan.elevations.empty()) return fan.elevations;
-  const double from = options.from ? radians(*options.from)
-                      : as_run     ? fan.lowest
-                                   : radians(usual_from);
-  const double to = options.to ? radians(*options.to) : as_run ? fan.highest : radians(usual_to);
   const int of_run = fan.count > 0 ? fan.count : usual_count_of_run;
   const int count = options.count.value_or(as_run ? of_run : usual_count);
+  // in degrees, so that whole ones stay whole
+  const double from = options.from.value_or(as_run ? degrees(fan.lowest) : usual_from);
+  const double to = options.to.value_or(as_run ? degrees(fan.highest) : usual_to);
   for (int i = 0; i < count; ++i)
-    all.push_back(count == 1 ? from : std::lerp(from, to, double(i) / (count - 1)));
+    all.push_back(radians(count == 1 ? from : std::lerp(from, to, double(i) / (count - 1))));
   return all;
 }
 
