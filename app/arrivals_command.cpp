@@ -122,7 +122,10 @@ int arrivals_of_run(const Options& options) {
   set("run.receivers.depth", options.receiver_depth);
   set("run.receivers.range", options.range);
   set("run.frequency", options.frequency);
-  if (!options.output.empty()) check_output(options.output, options.scenario.path);
+  if (!options.output.empty()) {
+    check_output(options.output, options.scenario.path);
+    check_kind(options.output, ".arr");
+  }
   const RunArrivals found = find_run_arrivals(options.scenario, overrides);
   if (!options.output.empty()) write_run_arrivals(options.output, found);
   if (options.json)
@@ -135,6 +138,7 @@ int arrivals_of_run(const Options& options) {
 int arrivals(const Options& options) {
   if (!has_sonar(options.scenario.path, options.scenario.overrides))
     return arrivals_of_run(options);
+  if (!options.output.empty()) check_kind(options.output, "");
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
   const bool free = options.receiver_depth || options.range;

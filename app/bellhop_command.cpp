@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -110,6 +111,8 @@ PropagationResult search(const bellhop::Input& input, const Options& options) {
                                 : run(input.run_case, progress);
   } catch (const Interrupted&) {
     throw RunError("interrupted; no result was written");
+  } catch (const InputError& error) {
+    throw bellhop::told_of_file(error, input);
   }
 }
 
@@ -139,6 +142,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   if (!options.like_bellhop) choose_single_beam(input.run_case, input.notes);
   if (options.beams_as_written) fix_fan(input.run_case);
   const double parse = watch.lap();
+  for (const std::string& leak : input.leaks) fmt::print(stderr, "asdic: note: {}\n", leak);
   report.line(input.echo);
   report.notes(input.notes);
   report.line(options.like_bellhop ? "traced     as BELLHOP does it, step by step"

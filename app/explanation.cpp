@@ -181,7 +181,8 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
         Effect{"what remains", "all of these -> the truth", compare_files(improved, truth, c.task)};
   } catch (const InputError& error) {
     e.truth = "BELLHOP's own way with all of these improved";
-    e.notes.push_back(std::string("asdic's own run: ") + error.what());
+    e.notes.push_back(std::string("asdic's own run: ") +
+                      bellhop::told_of_file(error, input).what());
   }
   e.total = compare_files(asked, truth, c.task);
 
@@ -200,7 +201,11 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
       e.notes.push_back(file.string() + ": not compared: another kind of result");
     }
   }
-  e.advice = advice_on(e);
+  for (const std::string& leak : input.leaks)
+    e.advice.push_back("look at the input first: " + leak +
+                       "; what follows holds for the case as it is read, not for one that was "
+                       "meant otherwise");
+  for (std::string& line : advice_on(e)) e.advice.push_back(std::move(line));
   return e;
 }
 

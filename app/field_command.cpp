@@ -41,6 +41,8 @@ PropagationResult run_field_of(const PropagationCase& run_case, const Options& o
     return options.like_bellhop ? run_like_bellhop(run_case, progress) : run(run_case, progress);
   } catch (const Interrupted&) {
     throw RunError("interrupted; no file was written");
+  } catch (const InputError& error) {
+    throw told_of_scenario(error, options.scenario.path, options.scenario.overrides);
   }
 }
 
@@ -49,6 +51,11 @@ int field(const Options& options) {
   FieldResult result;
   result.run_case =
       read_propagation_case(options.scenario.path, options.scenario.overrides, result.notes);
+  if (asks_for_rays(options.scenario.path, options.scenario.overrides))
+    throw InputError({.where = options.scenario.path + ": run.task",
+                      .got = '"' + std::string(name(result.run_case.task)) + '"',
+                      .expected = "\"field\"; asdic rays does what this asks for, and --set "
+                                  "run.task=field makes a field of it"});
   result.run_case.task = Task::field;
   result.origin = {.title = result.run_case.title,
                    .path = options.scenario.path,
@@ -58,6 +65,7 @@ int field(const Options& options) {
                       ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                       : options.output;
   check_output(result.output, options.scenario.path);
+  check_kind(result.output, ".shd");
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

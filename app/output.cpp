@@ -25,6 +25,19 @@ void Hdf5Output::finish() {
   finished_ = true;
 }
 
+void check_kind(const std::filesystem::path& path, std::string_view own) {
+  const std::string ending = path.extension().string();
+  for (const auto& [other, command] :
+       {std::pair{".arr", "arrivals of a [run]"}, std::pair{".ray", "asdic rays"},
+        std::pair{".shd", "asdic field"}})
+    if (ending == other && ending != own)
+      throw InputError(
+          {.where = "--output",
+           .got = path.string() + ", a name for " + command,
+           .expected = (own.empty() ? std::string() : "a name in " + std::string(own) + ", or ") +
+                       "another, say .h5, for HDF5"});
+}
+
 ResultOrigin origin_of(const Scenario& scenario) {
   return {.title = scenario.title,
           .path = scenario.path,

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "app/text_output.h"
 #include "io/hdf5_file.h"
@@ -30,6 +31,10 @@ struct ResultOrigin {
   std::string title{}, path{}, text{};
   std::vector<std::string> overrides{};
 };
+
+/// That a name does not end like a file of BELLHOP's of another kind (.arr .ray .shd), which would
+/// hold HDF5 then. \param own  the one ending a command writes, or "" \throws InputError
+void check_kind(const std::filesystem::path& path, std::string_view own);
 
 [[nodiscard]] ResultOrigin origin_of(const Scenario& scenario);
 

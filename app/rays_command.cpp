@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/interrupt.h"
 #include "app/output.h"
 #include "app/rays_output.h"
 #include "core/error.h"
@@ -13,41 +15,59 @@
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/propagation.h"
 
 namespace asdic::app {
 namespace {
 
 struct Options {
   ScenarioChoice scenario;
-  double from = -20.0, to = 20.0;  // [°]
-  int count = 41;
-  std::vector<double> elevations;  // [°], instead of the three
-  double range = 50e3;
-  std::optional<double> depth, bearing;  // [m], [°]
-  int bounces = 100;
+  std::optional<double> from, to;  // [°]
+  std::optional<int> count;
+  std::vector<double> elevations;               // [°], instead of the three
+  std::optional<double> range, depth, bearing;  // [m], [m], [°]
+  std::optional<int> bounces;
   bool json = false;
   std::string output;
+
+  [[nodiscard]] bool has_fan() const { return from || to || count || !elevations.empty(); }
 };
 
-std::vector<double> elevations(const Options& options) {
-  std::vector<double> all = options.elevations;
-  if (all.empty())
-    for (int i = 0; i < options.count; ++i)
-      all.push_back(options.count == 1
-                        ? options.from
-                        : std::lerp(options.from, options.to, double(i) / (options.count - 1)));
-  std::vector<double> given = all;
-  given.insert(given.end(), {options.from, options.to});  // std::lerp makes a number of NaN
+// of a fan that neither the command line nor a run of rays describes
+constexpr double usual_from = -20.0, usual_to = 20.0, usual_range = 50e3;  // [°], [°], [m]
+constexpr int usual_count = 41, usual_bounces = 100;
+constexpr int usual_count_of_run = 50;  // as raytrace/runs/rays_run.cpp
+
+void check(const Options& options) {
+  std::vector<double> given = options.elevations;
+  for (const auto& end : {options.from, options.to})
+    if (end) given.push_back(*end);
   for (const double elevation : given)
     if (!(std::abs(elevation) < 90.0))
       throw InputError({.where = "--elevations, --from, --to",
                         .got = fmt::format("{} degrees", elevation),
                         .expected = "an angle between -90 and 90 degrees, both excluded"});
   constexpr double longest = 2e7;  // half way round the Earth [m]
-  if (!(options.range > 0.0 && options.range <= longest))
+  if (options.range && !(*options.range > 0.0 && *options.range <= longest))
     throw InputError({.where = "--range",
-                      .got = fmt::format("{} m", options.range),
+                      .got = fmt::format("{} m", *options.range),
                       .expected = "a range above 0 m and at most 20000 km"});
+}
+
+/// Launch elevations [rad]: the command line's, and what it leaves open as [run.fan] has it in a
+/// run of rays, else the usual ones.
+std::vector<double> elevations(const Options& options, const BeamSettings& fan, bool as_run) {
+  std::vector<double> all;
+  for (const double elevation : options.elevations) all.push_back(radians(elevation));
+  if (!all.empty()) return all;
+  if (as_run && !options.has_fan() && !fan.elevations.empty()) return fan.elevations;
+  const int of_run = fan.count > 0 ? fan.count : usual_count_of_run;
+  const int count = options.count.value_or(as_run ? of_run : usual_count);
+  // in degrees, so that whole ones stay whole
+  const double from = options.from.value_or(as_run ? degrees(fan.lowest) : usual_from);
+  const double to = options.to.value_or(as_run ? degrees(fan.highest) : usual_to);
+  for (int i = 0; i < count; ++i)
+    all.push_back(radians(count == 1 ? from : std::lerp(from, to, double(i) / (count - 1))));
   return all;
 }
 
@@ -64,10 +84,12 @@ Environment plane_along(const Options& options, double bearing) {
 }
 
 /// The ocean and the source out of a sonar scenario, or one of an ocean and a run.
-RaysResult read(const Options& options) {
+/// \param as_run  [run] asks for rays: its box and its task stand
+RaysResult read(const Options& options, bool as_run) {
   std::vector<std::string> overrides = options.scenario.overrides, notes;
-  overrides.insert(overrides.end(),
-                   {"run.task=rays", fmt::format("run.box_range={}", options.range)});
+  if (!as_run) overrides.push_back("run.task=rays");
+  if (options.range || !as_run)
+    overrides.push_back(fmt::format("run.box_range={}", options.range.value_or(usual_range)));
   RaysResult result;
   result.run_case = read_propagation_case(options.scenario.path, overrides, notes);
   result.origin = {.title = result.run_case.title,
@@ -75,27 +97,74 @@ RaysResult read(const Options& options) {
                    .text = read_text_file(options.scenario.path, "a scenario file"),
                    .overrides = options.scenario.overrides};
   if (options.bearing) result.run_case.environment = plane_along(options, *options.bearing);
+  std::vector<double>& sources = result.run_case.source_depths;
+  if (options.depth)
+    sources = {*options.depth};
+  else if (!as_run)
+    sources = {sources.front()};
+  else if (sources.size() > 1 && std::filesystem::path(options.output).extension() != ".ray")
+    throw InputError({.where = options.scenario.path + ": run.source.depth",
+                      .got = fmt::format("{} depths", sources.size()),
+                      .expected = "one, or --source-depth, or -o NAME.ray, which takes all"});
   const Environment& ocean = result.run_case.environment;
-  const double depth = options.depth.value_or(result.run_case.source_depths.front());
   const double top = ocean.surface.depth_at(0.0), bottom = ocean.bottom.depth_at(0.0);
-  if (!(depth >= top && depth <= bottom))
-    throw InputError({.where = "--source-depth",
-                      .got = fmt::format("{} m", depth),
-                      .expected = fmt::format("a depth between {} and {} m", top, bottom)});
-  result.run_case.source_depths = {depth};
+  for (const double depth : sources)
+    if (!(depth >= top && depth <= bottom))
+      throw InputError(
+          {.where = options.depth ? "--source-depth" : options.scenario.path + ": run.source.depth",
+           .got = fmt::format("{} m", depth),
+           .expected = fmt::format("a depth between {} and {} m", top, bottom)});
+  return result;
+}
+
+std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case, const Options& options) {
+  const Interrupt interrupt;
+  try {
+    return run(run_case, [](double) { return !Interrupt::requested(); }).rays;
+  } catch (const Interrupted&) {
+    throw RunError("interrupted");
+  } catch (const InputError& error) {
+    throw told_of_scenario(error, options.scenario.path, options.scenario.overrides);
+  }
+}
+
+/// Traces what is asked for. A run of rays or eigenrays goes as `asdic bellhop` goes; a fan of the
+/// command line beside a run of eigenrays stands instead of them, and so does a limit of bounces.
+RaysResult trace(const Options& options) {
+  const bool asked = asks_for_rays(options.scenario.path, options.scenario.overrides);
+  RaysResult result = read(options, asked);
+  PropagationCase& run_case = result.run_case;
+  const bool fan_alone = options.has_fan() || options.bounces;
+  if (asked && run_case.task != Task::rays && !fan_alone) {
+    run_case.task = Task::eigenrays;
+    result.rays_of_source = run_of(run_case, options);
+    return result;
+  }
+  const bool as_run = asked && run_case.task == Task::rays;
+  run_case.task = Task::rays;
+  const std::vector<double> fan = elevations(options, run_case.beams, as_run);
+  if (as_run && !options.bounces) {
+    run_case.beams.elevations = fan;
+    result.rays_of_source = run_of(run_case, options);
+    return result;
+  }
+  for (const double depth : run_case.source_depths) {
+    std::vector<RayPath>& rays = result.rays_of_source.emplace_back();
+    for (const double elevation : fan)
+      rays.push_back(trace_ray(run_case.environment, depth, elevation, run_case.box_range, 50.0,
+                               options.bounces.value_or(usual_bounces)));
+  }
   return result;
 }
 
 int rays(const Options& options) {
-  const std::vector<double> fan = elevations(options);
-  RaysResult result = read(options);
-  for (const double elevation : fan)
-    result.rays.push_back(trace_ray(result.run_case.environment, result.source_depth(),
-                                    radians(elevation), options.range, 50.0, options.bounces));
+  check(options);
   if (!options.output.empty()) {
     check_output(options.output, options.scenario.path);
-    write_rays_file(options.output, result);
+    check_kind(options.output, ".ray");
   }
+  const RaysResult result = trace(options);
+  if (!options.output.empty()) write_rays_file(options.output, result);
   if (options.json)
     print(rays_json(result));
   else if (options.output.empty())
@@ -107,18 +176,19 @@ int rays(const Options& options) {
 
 void add_rays_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("rays",
-                                             "Trace a fan of rays from the platform, or from the "
-                                             "source of a run, and tell where they go.");
+  CLI::App* command =
+      program.add_subcommand("rays",
+                             "Trace a fan of rays from the platform, or from the "
+                             "source of a run, and tell where they go; a run whose task is "
+                             "rays or eigenrays is done as it says.");
   add_scenario_options(*command, options->scenario);
-  command->add_option("--from", options->from, "first elevation, positive up [deg]")
-      ->capture_default_str()
+  command
+      ->add_option("--from", options->from,
+                   "first elevation, positive up; default: -20, or of a run of rays its own [deg]")
       ->type_name("DEG");
-  command->add_option("--to", options->to, "last elevation [deg]")
-      ->capture_default_str()
+  command->add_option("--to", options->to, "last elevation; default: 20, or the run's [deg]")
       ->type_name("DEG");
-  command->add_option("--count", options->count, "number of rays")
-      ->capture_default_str()
+  command->add_option("--count", options->count, "number of rays; default: 41, or the run's")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   command
@@ -129,7 +199,7 @@ void add_rays_command(CLI::App& program, Action& action) {
       ->allow_extra_args(false);
   add_length_option(
       *command, "--range", [options](double x) { options->range = x; },
-      "how far to trace, e.g. 50km; default: 50km");
+      "how far to trace, e.g. 50km; default: 50km, or the box of a run of rays");
   add_length_option(
       *command, "--source-depth", [options](double x) { options->depth = x; },
       "depth of the source; default: the platform's at the start, or the run's");
@@ -138,8 +208,9 @@ void add_rays_command(CLI::App& program, Action& action) {
                    "of the rays, where the ocean varies along a transect; default: along it [deg]")
       ->type_name("DEG")
       ->check(CLI::Range(-360.0, 360.0));
-  command->add_option("--bounces", options->bounces, "end a ray after so many bounces")
-      ->capture_default_str()
+  command
+      ->add_option("--bounces", options->bounces,
+                   "end a ray after so many bounces; default: 100, or as a run of rays does")
       ->type_name("N")
       ->check(CLI::Range(0, 100000));
   command->add_flag("--json", options->json, "print JSON (docs/formats/rays.md)");

@@ -89,7 +89,7 @@ std::string rays_table(const RaysResult& result) {
                {"bottom"},
                {"turns"},
                {"meets the surface at", "km", true}});
-  for (const RayPath& ray : result.rays) {
+  for (const RayPath& ray : result.rays()) {
     const RayPoint& end = ray.points.back();
     table.row({number(degrees(ray.launch_elevation), 3), number(degrees(ray.final_elevation), 3),
                number(end.range / 1000.0, 3), number(end.depth, 1), number(end.time, 4),
@@ -101,7 +101,7 @@ std::string rays_table(const RaysResult& result) {
 
 std::string rays_json(const RaysResult& result) {
   ordered_json list = ordered_json::array();
-  for (const RayPath& ray : result.rays) {
+  for (const RayPath& ray : result.rays()) {
     ordered_json range = ordered_json::array(), depth = range, time = range;
     for (const RayPoint& point : ray.points) {
       range.push_back(point.range);
@@ -131,14 +131,13 @@ std::string rays_json(const RaysResult& result) {
 
 void write_rays_file(const std::filesystem::path& path, const RaysResult& result) {
   if (path.extension() == ".ray") {
-    PropagationCase run_case = result.run_case;
-    run_case.task = Task::rays;
     bellhop::write_ray_file(
-        path, bellhop::ray_file(run_case, {.rays = {result.rays}, .beams = result.rays.size()}));
+        path, bellhop::ray_file(result.run_case,
+                                {.rays = result.rays_of_source, .beams = result.rays().size()}));
     return;
   }
   double least_range = 0.0, greatest_range = 0.0;
-  for (const RayPath& ray : result.rays)
+  for (const RayPath& ray : result.rays())
     for (const RayPoint& point : ray.points) {
       least_range = std::min(least_range, point.range);
       greatest_range = std::max(greatest_range, point.range);
@@ -149,7 +148,7 @@ void write_rays_file(const std::filesystem::path& path, const RaysResult& result
   file.set_attribute("", "source_depth_m", result.source_depth());
   write_environment_group(file, result.run_case.environment, least_range, greatest_range);
 
-  RaysGroup group(file, result.rays);
+  RaysGroup group(file, result.rays());
   group.column<double>(
       "launch_elevation_deg", [](const RayPath& r) { return degrees(r.launch_elevation); },
       "elevation at launch, positive up", "degree");
@@ -171,7 +170,7 @@ void write_rays_file(const std::filesystem::path& path, const RaysResult& result
       "turns", [](const RayPath& r) { return r.turns; }, "turning points between the boundaries");
 
   std::size_t points = 1, hits = 1;
-  for (const RayPath& ray : result.rays) {
+  for (const RayPath& ray : result.rays()) {
     points = std::max(points, ray.points.size());
     hits = std::max(hits, ray.surface_hits.size());
   }

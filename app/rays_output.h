@@ -9,13 +9,15 @@
 
 namespace asdic::app {
 
-/// A fan that was traced.
+/// A fan that was traced, or eigenrays.
 struct RaysResult {
   ResultOrigin origin{};
-  PropagationCase run_case{};  ///< its ocean and frequency, and the one source
-  std::vector<RayPath> rays{};
+  PropagationCase run_case{};  ///< its ocean, frequency and sources
+  /// [sources]; several only for a .ray file: all else tells of one
+  std::vector<std::vector<RayPath>> rays_of_source{};
 
   [[nodiscard]] double source_depth() const { return run_case.source_depths.front(); }  ///< [m]
+  [[nodiscard]] const std::vector<RayPath>& rays() const { return rays_of_source.front(); }
 };
 
 [[nodiscard]] std::string rays_table(const RaysResult& result);

@@ -51,6 +51,8 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
     });
   } catch (const Interrupted&) {
     throw RunError("interrupted");
+  } catch (const InputError& error) {
+    throw told_of_scenario(error, choice.path, overrides);
   }
   all.notes.insert(all.notes.end(), all.result.notes.begin(), all.result.notes.end());
   return all;

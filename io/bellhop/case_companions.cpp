@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -19,15 +20,36 @@ double increasing(ListReader& from, const std::vector<double>& before, const cha
   return value;
 }
 
+/// Nodes of the bottom above the surface: rays end or turn back before they come there.
+void note_dry_nodes(CaseReading& reading, const std::string& file, const std::vector<double>& range,
+                    const std::vector<double>& depth) {
+  const Boundary& surface = reading.ocean().surface;
+  std::size_t dry = 0, first = 0;
+  for (std::size_t i = depth.size(); i-- > 0;)
+    if (depth[i] < surface.depth_at(range[i])) {
+      ++dry;
+      first = i;
+    }
+  if (dry > 0)
+    reading.note(file + ": " + std::to_string(dry) + " of " + std::to_string(depth.size()) +
+                 " nodes are above the surface, the first of them node " +
+                 std::to_string(first + 1) + " at " + shown(range[first] / 1000.0) + " km, " +
+                 shown(depth[first]) + " m deep: no sound gets past them");
+}
+
 }  // namespace
 
 ListReader CaseReading::companion(const std::string& extension,
                                   const std::string& wanted_for) const {
   for (const auto& [name, text] : texts.companions)
     if (name == extension) return {text, root + extension};
+  std::error_code unknown;
+  const std::filesystem::path path = root + extension;
   throw InputError(
       {.where = root + extension,
-       .got = "no such file",
+       .got = std::filesystem::is_directory(path, unknown) ? "a folder"
+              : std::filesystem::exists(path, unknown)     ? "a file that cannot be read"
+                                                           : "no such file",
        .expected = "the file that \"" + wanted_for + "\" in " + env.file() + " asks for"});
 }
 
@@ -116,6 +138,7 @@ BoundaryShape read_shape(CaseReading& reading, bool surface) {
     file.end();
   }
   for (double& r : range) r *= 1000.0;
+  if (!surface) note_dry_nodes(reading, file.file(), range, depth);
   return {range, depth,
           type[0] == 'L' ? ShapeInterpolation::piecewise_linear : ShapeInterpolation::curvilinear,
           std::move(material)};

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -113,6 +114,36 @@ void echo_boundary(Lines& lines, const char* who, const Boundary& boundary) {
               boundary.shape->shallowest(), boundary.shape->deepest());
 }
 
+/// The least and the greatest value of a quantity over depth.
+std::pair<double, double> range_of(const DepthFunction& f) {
+  if (f.is_constant()) return {f.at(0.0), f.at(0.0)};
+  const auto [least, greatest] = std::minmax_element(f.values().begin(), f.values().end());
+  return {*least, *greatest};
+}
+
+/// Of the water, where the profile's rows do not give 1 g/cm³.
+void echo_density(Lines& lines, const DepthFunction& density) {
+  const auto [least, greatest] = range_of(density);
+  if (least != greatest)
+    lines.add("%-10s %g to %g kg/m3", "", least, greatest);
+  else if (least != 1000.0)
+    lines.add("%-10s %g kg/m3", "", least);
+}
+
+/// What a wave loses in the water: the volume loss and what the profile's rows (and layers of fish)
+/// give.
+void echo_absorption(Lines& lines, double volume_loss, const DepthFunction& rows) {
+  const auto [least, greatest] = range_of(rows);
+  if (greatest == 0.0)
+    lines.add("%-10s %g dB/km", "absorption", volume_loss);
+  else if (least == greatest)
+    lines.add("%-10s %g dB/km, %g of it by the rows of the profile", "absorption",
+              volume_loss + least, least);
+  else
+    lines.add("%-10s %g to %g dB/km, %g to %g of it by the rows of the profile", "absorption",
+              volume_loss + least, volume_loss + greatest, least, greatest);
+}
+
 void echo_vector(Lines& lines, const char* who, const std::vector<double>& x, double unit,
                  const char* name) {
   if (x.size() == 1)
@@ -138,8 +169,9 @@ std::string echo(const CaseReading& reading) {
   if (ocean.section)
     lines.add("%-10s %zu profiles from %g to %g km", "", ocean.section->ranges().size(),
               ocean.section->ranges().front() / 1000.0, ocean.section->ranges().back() / 1000.0);
-  lines.add("%-10s %g dB/km", "absorption",
-            absorption_db_per_km(ocean.absorption, run_case.frequency));
+  echo_density(lines, ocean.water_density);
+  echo_absorption(lines, absorption_db_per_km(ocean.absorption, run_case.frequency),
+                  ocean.attenuation_db_per_km);
   echo_boundary(lines, "surface", ocean.surface);
   echo_boundary(lines, "bottom", ocean.bottom);
   echo_vector(lines, "sources", run_case.source_depths, 1.0, "m");

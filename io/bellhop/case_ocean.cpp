@@ -8,6 +8,7 @@ namespace asdic::bellhop {
 namespace {
 
 constexpr std::size_t most_rows = 100'001;
+const std::string the_profile = "the profile";
 
 /// α [Np/m] that the case's volume loss adds to a wave of a speed, in dB per wavelength.
 double per_wavelength(double nepers_per_m, double speed, double frequency) noexcept {
@@ -46,14 +47,27 @@ void check_water(const CaseReading& reading) {
 
 }  // namespace
 
-void read_material_row(CaseReading& reading, ListReader& from) {
+void read_material_row(CaseReading& reading, ListReader& from, const std::string& purpose) {
   MaterialRow& row = reading.row;
+  const MaterialRow initial;
+  const bool water = purpose == the_profile;  // which knows no shear
+  std::string taken;
+  const auto read = [&](double& value, double usual, const char* item, const char* unit,
+                        bool counts) {
+    if (!from.real(value, item) && counts && value != usual)
+      taken += (taken.empty() ? "" : ", ") + (item + (' ' + shown(value))) + unit;
+  };
   from.real(row.depth, "depth");
-  from.real(row.speed, "speed");
-  from.real(row.shear_speed, "shear speed");
-  from.real(row.density, "density");
-  from.real(row.attenuation, "attenuation");
-  from.real(row.shear_attenuation, "shear attenuation");
+  read(row.speed, initial.speed, "speed", " m/s", true);
+  read(row.shear_speed, initial.shear_speed, "shear speed", " m/s", !water);
+  read(row.density, initial.density, "density", " g/cm^3", true);
+  read(row.attenuation, initial.attenuation, "attenuation", "", true);
+  read(row.shear_attenuation, initial.shear_attenuation, "shear attenuation", "",
+       !water && row.shear_speed != 0.0);
+  if (!taken.empty() && !reading.row_of.empty() && reading.row_of != purpose)
+    reading.leak(from.where("") + ": " + taken + ": left out there, so taken over from " +
+                 reading.row_of + ", as BELLHOP does");
+  reading.row_of = purpose;
 }
 
 BoundaryMaterial half_space(const CaseReading& reading, const ListReader& from,
@@ -97,7 +111,7 @@ BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface) 
       return read_reflection_table(reading, surface);
     case 'A': {
       env.begin(field);
-      read_material_row(reading, env);
+      read_material_row(reading, env, "the " + field);
       BoundaryMaterial result =
           half_space(reading, env, reading.row, reading.options.unit, reading.volume_loss);
       env.end();
@@ -149,7 +163,7 @@ void read_profile(CaseReading& reading) {
     if (depth.size() == most_rows)
       env.fail("depth", "more than " + std::to_string(most_rows) + " rows",
                "the last row at the bottom depth, " + shown(reading.bottom_depth) + " m");
-    read_material_row(reading, env);
+    read_material_row(reading, env, the_profile);
     if (!depth.empty() && reading.row.depth <= depth.back())
       env.fail("depth", shown(reading.row.depth) + " m",
                "a depth below the one before, " + shown(depth.back()) + " m");

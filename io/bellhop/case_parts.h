@@ -35,15 +35,21 @@ struct CaseReading {
   std::string root;
   const Texts& texts;
   CaseOptions options;
-  MaterialRow row;             ///< the last one read
-  double volume_loss = 0.0;    ///< [Np/m] at the case's frequency, without biology
-  double surface_depth = 0.0;  ///< first depth of the profile [m]
-  double bottom_depth = 0.0;   ///< DEPTH [m]
+  MaterialRow row;                ///< the last one read
+  std::string row_of;             ///< what that was for: "the profile"; empty: none was read
+  double volume_loss = 0.0;       ///< [Np/m] at the case's frequency, without biology
+  double surface_depth = 0.0;     ///< first depth of the profile [m]
+  double bottom_depth = 0.0;      ///< DEPTH [m]
+  bool receivers_sorted = false;  ///< their depths or ranges do not stand in the file's order
   Input input;
 
   [[nodiscard]] PropagationCase& run_case() noexcept { return input.run_case; }
   [[nodiscard]] Environment& ocean() noexcept { return input.run_case.environment; }
   void note(std::string text) { input.notes.push_back(std::move(text)); }
+  void leak(std::string text) {
+    input.leaks.push_back(text);
+    note(std::move(text));
+  }
 
   /// A companion by extension. \throws InputError if it is not there, saying what it is wanted for
   [[nodiscard]] ListReader companion(const std::string& extension,
@@ -56,7 +62,9 @@ void read_bottom_options(CaseReading& reading);
 
 // case_ocean.cpp
 void read_profile(CaseReading& reading);  ///< with .ssp
-void read_material_row(CaseReading& reading, ListReader& from);
+/// A row for a purpose ("the profile"). Values left out that come from a row for another one, and
+/// are not BELLHOP's initial ones, are noted.
+void read_material_row(CaseReading& reading, ListReader& from, const std::string& purpose);
 /// What is behind the surface or the bottom, by its option letter.
 [[nodiscard]] BoundaryMaterial read_material(CaseReading& reading, char letter, bool surface);
 /// \param volume_loss  added [Np/m]
@@ -88,7 +96,9 @@ struct GivenVector {
 [[nodiscard]] GivenVector read_vector(ListReader& from, std::int64_t count,
                                       const std::string& field);
 /// The values that are meant, ascending, in single precision as BELLHOP keeps depths and ranges.
-[[nodiscard]] std::vector<double> single_precision(const GivenVector& given, float factor);
+/// \param sorted  becomes true if they were not ascending
+[[nodiscard]] std::vector<double> single_precision(const GivenVector& given, float factor,
+                                                   bool& sorted);
 
 /// The input in words. case_echo.cpp
 [[nodiscard]] std::string echo(const CaseReading& reading);

@@ -15,6 +15,8 @@ namespace {
 constexpr const char* companion_kinds[] = {".bty", ".ati", ".ssp", ".brc", ".trc", ".sbp"};
 
 std::optional<std::string> text_of(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) return std::nullopt;  // it opens, empty
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   std::ostringstream text;
@@ -32,6 +34,13 @@ void shape_of(CaseReading& reading, Boundary& boundary, bool surface) {
 
 }  // namespace
 
+InputError told_of_file(const InputError& error, const Input& input) {
+  InputFault fault = error.fault();
+  fault.where =
+      fault.where.starts_with("beams.") ? input.fan_place : input.file + ": " + fault.where;
+  return InputError(std::move(fault));
+}
+
 Input read_case(const Texts& texts, const std::string& root_name) {
   CaseReading reading{
       .env = ListReader(texts.env, root_name + ".env"), .root = root_name, .texts = texts};
@@ -43,6 +52,7 @@ Input read_case(const Texts& texts, const std::string& root_name) {
   read_receivers(reading);
   read_run(reading);
   reading.input.echo = echo(reading);
+  reading.input.file = reading.env.file();
   return std::move(reading.input);
 }
 
@@ -53,8 +63,9 @@ Input read_case(const std::filesystem::path& root) {
   errno = 0;
   auto text = text_of(env);
   if (!text)
-    throw InputError(
-        {.where = env, .got = unreadable(errno), .expected = "the input of a BELLHOP case"});
+    throw InputError({.where = env,
+                      .got = std::filesystem::is_directory(env) ? "a folder" : unreadable(errno),
+                      .expected = "the input of a BELLHOP case"});
   Texts texts{.env = std::move(*text), .companions = {}};
   for (const char* kind : companion_kinds)
     if (auto companion = text_of(stem.string() + kind))

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "raytrace/propagation_case.h"
 
 namespace asdic::bellhop {
@@ -13,8 +14,17 @@ struct Input {
   PropagationCase run_case;
   bool binary_arrivals = false;
   std::vector<std::string> notes;
-  std::string echo;  ///< the input in words, for the .prt file
+  /// Those of the notes that tell of values taken over from a line of another kind (of the ice into
+  /// the water): they change the answer and are hardly ever meant.
+  std::vector<std::string> leaks;
+  std::string echo;       ///< the input in words, for the .prt file
+  std::string file;       ///< "case.env"
+  std::string fan_place;  ///< where the launch angles stand: "case.env:14: launch angles"
 };
+
+/// A fault that a run found in a case, told of the file: "beams.highest" is the place of its launch
+/// angles, all else gets the file's name.
+[[nodiscard]] InputError told_of_file(const InputError& error, const Input& input);
 
 /// Reads ROOT.env and the companions it names (.bty .ati .ssp .brc .trc .sbp). No letter of the
 /// file's options gets past this function. docs/formats/bellhop.md

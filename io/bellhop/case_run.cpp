@@ -76,6 +76,10 @@ void read_run_type(CaseReading& reading) {
   run_case.beams.source = letters[3] == 'X' ? SourceKind::line : SourceKind::point;
   run_case.receivers.irregular = letters[4] == 'I';
   run_case.beams.displacement = letters[6] == 'S';
+  if (run_case.receivers.irregular && reading.receivers_sorted)
+    reading.note(env.where("letter 5") +
+                 ": the depths and the ranges of the receivers were sorted, each on their own, as "
+                 "BELLHOP does: those of an irregular grid (I) no longer pair as written");
   if (letters[5] == '3') reading.note("run type, letter 6: a 2-D run although the file says 3-D");
   const ReceiverGrid& grid = run_case.receivers;
   if (grid.irregular && grid.depths.size() != grid.ranges.size())
@@ -145,6 +149,7 @@ void read_fan(CaseReading& reading) {
     reading.note("number of beams 0: by asdic's own rule; BELLHOP's gives " + std::to_string(n));
 
   const GivenVector given = read_vector(env, n, "launch angles");
+  reading.input.fan_place = env.where("");
   for (const double angle : given.values)
     if (!(std::abs(angle) <= 360.0))
       env.fail("angle", shown(angle) + " degrees", "an angle from -360 to 360 degrees");
@@ -180,6 +185,22 @@ void read_step_and_box(CaseReading& reading) {
     reading.note("step 0: asdic chooses its own; BELLHOP's rule gives " +
                  shown(run_case.literal.step) + " m");
   }
+}
+
+/// Where rays go on beyond the profiles of a .ssp file.
+void note_short_section(CaseReading& reading) {
+  const PropagationCase& run_case = reading.input.run_case;
+  if (!run_case.environment.section) return;
+  const auto ranges = run_case.environment.section->ranges();
+  const std::vector<double>& receivers = run_case.receivers.ranges;
+  const bool rays = run_case.task == Task::rays;
+  const double first = rays ? 0.0 : std::min(0.0, receivers.front());
+  const double last = rays ? run_case.box_range : std::max(0.0, receivers.back());
+  if (first >= ranges.front() && last <= ranges.back()) return;
+  reading.note(reading.root + ".ssp: its profiles go from " + shown(ranges.front() / 1000.0) +
+               " to " + shown(ranges.back() / 1000.0) + " km, the " + (rays ? "box" : "receivers") +
+               " from " + shown(first / 1000.0) + " to " + shown(last / 1000.0) +
+               " km: beyond them the outer profile goes on (BELLHOP stops there with an error)");
 }
 
 template <class Value>
@@ -242,6 +263,7 @@ void read_run(CaseReading& reading) {
   read_run_type(reading);
   read_fan(reading);
   read_step_and_box(reading);
+  note_short_section(reading);
   const BeamKind kind = reading.run_case().beams.kind;
   if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred)
     reading.run_case().beams.cerveny = read_cerveny(reading.env);

@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::int64_t most_values = 1'000'000;
 
-std::vector<double> read_depths(CaseReading& reading, const std::string& who) {
+std::vector<double> read_depths(CaseReading& reading, const std::string& who, bool& sorted) {
   ListReader& env = reading.env;
   env.begin("number of " + who + " depths");
   const std::int64_t n = env.need_integer("", 1, most_values);
   env.end();
-  std::vector<double> depths = single_precision(read_vector(env, n, who + " depths"), 1.0F);
+  std::vector<double> depths = single_precision(read_vector(env, n, who + " depths"), 1.0F, sorted);
   std::size_t above = 0, below = 0;
   for (double& z : depths) {
     above += z < reading.surface_depth ? 1 : 0;
@@ -48,7 +48,7 @@ GivenVector read_vector(ListReader& from, std::int64_t count, const std::string&
   return given;
 }
 
-std::vector<double> single_precision(const GivenVector& given, float factor) {
+std::vector<double> single_precision(const GivenVector& given, float factor, bool& sorted) {
   std::vector<float> x(given.values.begin(), given.values.end());
   const auto n = std::size_t(given.count);
   if (given.are_ends()) {
@@ -57,7 +57,10 @@ std::vector<double> single_precision(const GivenVector& given, float factor) {
     for (std::size_t i = 0; i < n; ++i) x[i] = std::fma(float(i), spacing, first);
   }
   x.resize(n, x.front());
-  if (!std::is_sorted(x.begin(), x.end())) std::sort(x.begin(), x.end());
+  if (!std::is_sorted(x.begin(), x.end())) {
+    sorted = true;
+    std::sort(x.begin(), x.end());
+  }
   std::vector<double> result;
   result.reserve(n);
   for (const float value : x) result.push_back(double(value * factor));
@@ -67,12 +70,14 @@ std::vector<double> single_precision(const GivenVector& given, float factor) {
 void read_receivers(CaseReading& reading) {
   ListReader& env = reading.env;
   PropagationCase& run_case = reading.run_case();
-  run_case.source_depths = read_depths(reading, "source");
-  run_case.receivers.depths = read_depths(reading, "receiver");
+  bool of_sources = false;  // nothing pairs with them
+  run_case.source_depths = read_depths(reading, "source", of_sources);
+  run_case.receivers.depths = read_depths(reading, "receiver", reading.receivers_sorted);
   env.begin("number of receiver ranges");
   const std::int64_t n = env.need_integer("", 1, most_values);
   env.end();
-  run_case.receivers.ranges = single_precision(read_vector(env, n, "receiver ranges"), 1000.0F);
+  run_case.receivers.ranges =
+      single_precision(read_vector(env, n, "receiver ranges"), 1000.0F, reading.receivers_sorted);
 }
 
 }  // namespace asdic::bellhop

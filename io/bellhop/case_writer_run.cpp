@@ -23,7 +23,8 @@ std::string vector_text(CaseWriting& writing, const std::vector<double>& x, floa
     const std::string first = text_of(x.front()), last = text_of(x.back());
     const GivenVector ends{.values = {*fortran_number(first), *fortran_number(last)},
                            .count = std::int64_t(x.size())};
-    std::vector<double> even = single_precision(ends, factor);
+    bool sorted = false;
+    std::vector<double> even = single_precision(ends, factor, sorted);
     for (double& value : even) value = std::clamp(value, least, most);
     if (even == x) return count + first + ' ' + last + " /\n";
   }

@@ -79,7 +79,9 @@ std::string shown(double value) {
 }
 
 ListReader::ListReader(std::string_view text, std::string file)
-    : text_(text), file_(std::move(file)) {}
+    : text_(text), file_(std::move(file)) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // UTF-8's byte order mark
+}
 
 std::string ListReader::where(std::string_view item) const {
   std::string result = file_ + ':' + std::to_string(item_line_) + ": " + field_;

@@ -15,7 +15,8 @@ namespace asdic::bellhop {
 /// Items are parted by blanks, tabs, line ends or a comma; strings may stand in quotes of either
 /// kind, a doubled quote is one; `3*0.5` repeats; two commas in a row leave an item out; `/` leaves
 /// out all that are still to come; a statement that wants more goes on to the next line, and what
-/// is left on its last line is dropped. So every statement is: begin(), the items, end().
+/// is left on its last line is dropped. A byte order mark in front of all is skipped. So every
+/// statement is: begin(), the items, end().
 class ListReader {
  public:
   /// \param text  must outlive the reader   \param file  its name, for messages

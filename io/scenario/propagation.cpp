@@ -61,6 +61,55 @@ bool has_sonar(const std::filesystem::path& path, std::span<const std::string> o
   return document.find("platform") != nullptr || document.find("run") == nullptr;
 }
 
+bool asks_for_rays(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  const TomlValue document =
+      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
+  const TomlValue* run = document.find("run");
+  const TomlValue* task = run == nullptr ? nullptr : run->find("task");
+  if (task == nullptr) return false;
+  const auto* text = std::get_if<std::string>(&task->data);
+  return text != nullptr && (*text == name(Task::rays) || *text == name(Task::eigenrays) ||
+                             *text == name(Task::eigenrays_and_arrivals));
+}
+
+InputError told_of_scenario(const InputError& error, const std::filesystem::path& path,
+                            std::span<const std::string> overrides) {
+  InputFault fault = error.fault();
+  const std::pair<std::string_view, std::string_view> names[] = {
+      {"beams.highest", "run.fan.highest"},
+      {"beams.elevations", "run.fan.elevations"},
+      {"source_depths", "run.source.depth"},
+      {"source depths", "run.source.depth"},
+      {"receivers.depths", "run.receivers.depth"},
+      {"receivers", "run.receivers"},
+      {"frequency", "run.frequency"},
+      {"box", "run.box_range"}};
+  for (const auto& [ours, theirs] : names)
+    if (fault.where.starts_with(ours)) {
+      fault.where.replace(0, ours.size(), theirs);
+      break;
+    }
+  const TomlValue document =
+      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
+  std::string origin = path.string();
+  const TomlValue* value = &document;  // as deep as the file goes
+  for (std::string_view rest = fault.where; !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of(".["), rest.size());
+    const std::string key(rest.substr(0, end));
+    const TomlValue* next = value->find(key);
+    for (const char* unit : {"_deg", "_rad"})
+      if (next == nullptr) next = value->find(key + unit);
+    if (next == nullptr) break;
+    value = next;
+    origin = value->origin;
+    rest.remove_prefix(end);
+    if (rest.empty() || rest.front() != '.') break;
+    rest.remove_prefix(1);
+  }
+  fault.where = origin + ": " + fault.where;
+  return InputError(std::move(fault));
+}
+
 PropagationCase parse_propagation_case(std::string_view text, const std::filesystem::path& path,
                                        std::span<const std::string> overrides,
                                        std::vector<std::string>& notes) {

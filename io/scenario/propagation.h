@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
 #include "io/text/toml_table.h"
 #include "raytrace/propagation_case.h"
 
@@ -30,6 +31,16 @@ namespace asdic {
 /// Whether a file describes a sonar: it has a [platform], or no [run] either.
 [[nodiscard]] bool has_sonar(const std::filesystem::path& path,
                              std::span<const std::string> overrides);
+
+/// Whether [run] of a file asks for rays or eigenrays: it names that task.
+[[nodiscard]] bool asks_for_rays(const std::filesystem::path& path,
+                                 std::span<const std::string> overrides);
+
+/// A fault that a run found in a case, told of the file it came from: "source_depths[0]" is
+/// "FILE:LINE: run.source.depth[0]".
+[[nodiscard]] InputError told_of_scenario(const InputError& error,
+                                          const std::filesystem::path& path,
+                                          std::span<const std::string> overrides);
 
 /// How a task, a kind of field, beam or source is called in a file and in messages.
 [[nodiscard]] std::string_view name(Task task) noexcept;

@@ -65,6 +65,32 @@ TEST_F(BellhopCommand, ARunThatFailsLeavesAReport) {
   EXPECT_FALSE(exists("bad.shd"));
 }
 
+// What only the run finds is told of the line it comes from.
+TEST_F(BellhopCommand, AFanOfOneAngleIsToldOfItsLine) {
+  static_cast<void>(folder.write("one.env", R"('one beam'
+250.0
+1
+'CVW'
+2 0.0 200.0
+0.0 1500.0 /
+200.0 1500.0 /
+'R' 0.0
+1
+45 /
+2
+50 150 /
+2
+0.5 1 /
+'C'
+1
+10 /
+0.0 250.0 1.2
+)"));
+  const auto run = asdic(folder, "bellhop one");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.err.find("asdic: one.env:17: launch angles: found one elevation"), 0U) << run.err;
+}
+
 TEST_F(BellhopCommand, CasesBecomeScenariosAndCasesAgain) {
   const auto there = asdic(folder, "convert " + case_of("seamount-curved") + ".env a.toml");
   ASSERT_EQ(there.status, 0) << there.err;
@@ -73,6 +99,62 @@ TEST_F(BellhopCommand, CasesBecomeScenariosAndCasesAgain) {
   EXPECT_TRUE(exists("b.bty"));
   ASSERT_EQ(asdic(folder, "convert b.env c.toml").status, 0);
   EXPECT_EQ(text("a.toml"), text("c.toml"));
+}
+
+// The scenario of a ray run gives the rays of the case: its own 21, not a fan of the command's.
+TEST_F(BellhopCommand, AConvertedRunOfRaysGivesTheCasesRays) {
+  ASSERT_EQ(asdic(folder, "bellhop " + case_of("rays-upslope") + " -q -o a").status, 0);
+  ASSERT_EQ(asdic(folder, "convert " + case_of("rays-upslope") + ".env s.toml").status, 0);
+  const auto run = asdic(folder, "rays s.toml -o b.ray");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const bellhop::RayFile a = bellhop::read_ray_file(folder / "a.ray"),
+                         b = bellhop::read_ray_file(folder / "b.ray");
+  ASSERT_EQ(a.rays.size(), b.rays.size());
+  for (std::size_t i = 0; i < a.rays.size(); ++i) {
+    EXPECT_NEAR(a.rays[i].launch_angle_deg, b.rays[i].launch_angle_deg, 1e-9);
+    ASSERT_EQ(a.rays[i].range.size(), b.rays[i].range.size()) << i;
+    // angles pass through degrees in the scenario: a last bit of 40 degrees is 4e-10 m at 25 km
+    EXPECT_NEAR(a.rays[i].depth.back(), b.rays[i].depth.back(), 1e-3) << i;
+  }
+}
+
+// Ice over water whose rows give only depth and speed: the water has the loss of the ice.
+TEST_F(BellhopCommand, ALeakOfIceIntoWaterIsTold) {
+  static_cast<void>(folder.write("ice.env", R"('ice'
+250.0
+1
+'CAW'
+0 3300 1700 0.9 0.3 1
+2 0.0 200.0
+0.0 1500.0 /
+200.0 1500.0 /
+'A' 0.0
+200.0 1600.0 0.0 1.8 0.5 /
+1
+45 /
+2
+50 150 /
+2
+0.5 1 /
+'C'
+0
+-30.0 30.0 /
+0.0 250.0 1.2
+)"));
+  const std::string leak =
+      "ice.env:7: profile row 1: density 0.9 g/cm^3, attenuation 0.3: left out";
+  const auto run = asdic(folder, "bellhop ice -q");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err.find("asdic: note: " + leak), 0U) << run.err;
+  EXPECT_NE(text("ice.prt").find("note       " + leak), std::string::npos);
+  // 0.3 dB in each 6 m
+  EXPECT_NE(text("ice.prt").find("\nabsorption 50 dB/km, 50 of it by the rows of the profile\n"),
+            std::string::npos);
+  const auto explained = asdic(folder, "explain ice -q");
+  ASSERT_EQ(explained.status, 0) << explained.err;
+  const std::size_t said = explained.out.find("* look at the input first: " + leak);
+  ASSERT_NE(said, std::string::npos) << explained.out;
+  EXPECT_LT(said, explained.out.find("* trust"));
 }
 
 TEST_F(BellhopCommand, ResultsBecomeHdf5AndTheSameBytesAgain) {

@@ -134,13 +134,55 @@ TEST_F(FieldCommand, RaysOfARunAreItsOceans) {
   EXPECT_EQ(bellhop::read_ray_file(folder / "fan.ray").rays.size(), 5U);
 }
 
+// A run of rays names its fan and its box: the command line only changes what it gives.
+TEST_F(FieldCommand, ARunOfRaysIsDoneAsItSays) {
+  const std::string as_rays = "rays mirror.toml --set run.task=rays --set run.fan.count=7 ";
+  ASSERT_EQ(asdic(folder, as_rays + "-o run.ray").status, 0);
+  const auto file = bellhop::read_ray_file(folder / "run.ray");
+  ASSERT_EQ(file.rays.size(), 7U);
+  EXPECT_NEAR(file.rays.front().launch_angle_deg, -60.0, 1e-9);
+  EXPECT_NEAR(file.rays.back().launch_angle_deg, 60.0, 1e-9);
+  // box_range: 1.01 times the furthest receiver, 1500 m; the ray straight ahead goes that far
+  EXPECT_NEAR(file.rays[3].range.back(), 1515.0, 1e-6);
+
+  const json some = json::parse(asdic(folder, as_rays + "--from 0 --count 3 --json").out)["rays"];
+  ASSERT_EQ(some.size(), 3U);
+  EXPECT_NEAR(some[0]["launch_elevation_deg"].get<double>(), 0.0, 1e-12);
+  EXPECT_NEAR(some[2]["launch_elevation_deg"].get<double>(), 60.0, 1e-9);
+
+  ASSERT_EQ(asdic(folder, as_rays + "--set run.source.depth=[40,90] -o two.ray").status, 0);
+  EXPECT_EQ(bellhop::read_ray_file(folder / "two.ray").rays.size(), 14U);
+  const auto two = asdic(folder, as_rays + "--set run.source.depth=[40,90]");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.err.find("run.source.depth: found 2 depths"), std::string::npos) << two.err;
+}
+
+// To each of 22 receivers the direct ray and the one by the surface, as task = "eigenrays" asks.
+TEST_F(FieldCommand, ARunOfEigenraysGivesThem) {
+  const auto run = asdic(folder, "rays mirror.toml --set run.task=eigenrays --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json rays = json::parse(run.out)["rays"];
+  ASSERT_EQ(rays.size(), 44U);
+  for (const json& ray : rays) EXPECT_LE(ray["range"].back().get<double>(), 1500.0 + 1e-6);
+}
+
 TEST_F(FieldCommand, WrongInputIsToldInOneLine) {
   for (const auto& [words, says] : std::vector<std::pair<std::string, std::string>>{
            {"field none.toml", "none.toml"},
-           {"field mirror.toml --set run.source.depth=9000", "9000"},
+           {"field mirror.toml --set run.source.depth=9000",
+            "--set run.source.depth: run.source.depth"},
+           {"field mirror.toml --set run.source.depth=-3",
+            "--set run.source.depth: run.source.depth"},
+           {"field mirror.toml --set run.fan.highest_deg=-60",
+            "--set run.fan.highest_deg: run.fan.highest: found -60"},
            {"field mirror.toml --set run.beams.kind=square", "run.beams.kind"},
            {"field mirror.toml -o nowhere/x.h5", "--output"},
            {"field mirror.toml -o mirror.toml", "--output"},
+           {"field mirror.toml --set run.task=rays", "run.task: found \"rays\""},
+           {"field mirror.toml --set run.task=eigenrays", "run.task: found \"eigenrays\""},
+           {"field mirror.toml -o e.ray", "--output: found e.ray"},
+           {"arrivals mirror.toml -o e.ray", "--output: found e.ray"},
+           {"rays mirror.toml -o e.arr", "--output: found e.arr"},
            {"arrivals mirror.toml --leg target", "platform"}}) {
     const auto run = asdic(folder, words);
     EXPECT_EQ(run.status, 2) << words;

@@ -9,7 +9,9 @@
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/case_writer.h"
 #include "io/bellhop/list_reader.h"
+#include "raytrace/propagation.h"
 #include "support/same_case.h"
+#include "support/temporary_directory.h"
 
 // BELLHOP's input files: what list-directed reading means, what the sixteen cases of
 // tests/data/bellhop hold, what every malformed line is told.
@@ -198,6 +200,101 @@ TEST(BellhopCase, ValuesLeftOutAreThoseOfTheRowBefore) {
   const auto& bottom = std::get<FluidHalfSpace>(ocean.bottom.material);
   EXPECT_EQ(bottom.density, 1100.0);
   EXPECT_EQ(bottom.attenuation_db_per_wavelength, 0.2);
+}
+
+// Rows `z c /` of the water after a line of ice: its density and attenuation are in the water now.
+// 0.3 dB per wavelength of 1.5 m at 1 kHz is 200 dB/km; the shear attenuation means nothing there.
+TEST(BellhopCase, ALeakFromAnotherLineIsTold) {
+  Texts texts = small_case(4, "'CAW'\n0 3300 1700 0.9 0.3 1");
+  texts.env.replace(texts.env.find("50 1490 0 1.1 0.2 /"), 19, "50 1500 /");
+  const Input input = read_case(texts, "case");
+  const std::string leak =
+      "case.env:7: profile row 1: density 0.9 g/cm^3, attenuation 0.3: left out there, so taken "
+      "over from the surface half space, as BELLHOP does";
+  EXPECT_EQ(input.leaks, std::vector<std::string>{leak});
+  EXPECT_EQ(std::count(input.notes.begin(), input.notes.end(), leak), 1);
+  EXPECT_NE(
+      input.echo.find("\nabsorption 198.675 to 200 dB/km, 198.675 to 200 of it by the rows of "
+                      "the profile\n"),
+      std::string::npos)  // the row at 100 m has 1510 m/s: 200·1500/1510
+      << input.echo;
+  EXPECT_NE(input.echo.find("900 kg/m3\n"), std::string::npos) << input.echo;
+
+  // the profile's last row has 1.1 g/cm^3, 0.2 dB per wavelength
+  const Input short_bottom = read_small(10, "100 1700 /");
+  ASSERT_EQ(short_bottom.leaks.size(), 1U);
+  EXPECT_EQ(short_bottom.leaks[0],
+            "case.env:10: bottom half space: density 1.1 g/cm^3, attenuation 0.2: left out there, "
+            "so taken over from the profile, as BELLHOP does");
+}
+
+// Values of the profile's own row before, BELLHOP's initial ones, and what no fluid has are meant.
+TEST(BellhopCase, WhatIsUsuallyLeftOutIsNoLeak) {
+  EXPECT_TRUE(read_small().leaks.empty());
+  EXPECT_TRUE(read_small(4, "'CAW'\n0 1600 0 1 0 /").leaks.empty());
+  for (const auto& root : all_roots()) EXPECT_TRUE(read_case(root).leaks.empty()) << root;
+  EXPECT_NE(read_small(7, "50 1490 /").echo.find("\nabsorption 0 dB/km\n"), std::string::npos);
+}
+
+std::size_t notes_with(const Input& input, const std::string& words) {
+  return std::size_t(std::count_if(
+      input.notes.begin(), input.notes.end(),
+      [&](const std::string& note) { return note.find(words) != std::string::npos; }));
+}
+
+TEST(BellhopCase, AnIrregularGridThatIsSortedIsTold) {
+  const auto irregular = [](const std::string& depths, const std::string& ranges) {
+    Texts texts = small_case(17, "'CG  I'");
+    texts.env.replace(texts.env.find("10 90 /"), 7, depths);
+    texts.env.replace(texts.env.find("11\n0 1 /"), 8, "5\n" + ranges);
+    return read_case(texts, "case");
+  };
+  const std::string words = "run type: letter 5: the depths and the ranges";
+  EXPECT_EQ(notes_with(irregular("50 40 60 20 10", "0.1 0.2 0.3 0.4 0.5"), words), 1U);
+  EXPECT_EQ(notes_with(irregular("10 20 30 40 50", "0.1 0.3 0.2 0.4 0.5"), words), 1U);
+  EXPECT_EQ(notes_with(irregular("50 10 /", "0.1 0.5 /"), words), 1U);
+  EXPECT_EQ(notes_with(irregular("10 20 30 40 50", "0.1 0.2 0.3 0.4 0.5"), words), 0U);
+  EXPECT_EQ(notes_with(read_small(14, "90 10 /"), words), 0U);  // a grid is a grid
+}
+
+TEST(BellhopCase, ABottomAboveTheSurfaceIsTold) {
+  Texts texts = small_case(9, "'A~' 0");
+  texts.companions.emplace_back(".bty", "'L'\n3\n0 50\n0.5 -10\n1 -20\n");
+  EXPECT_EQ(notes_with(read_case(texts, "case"),
+                       "case.bty: 2 of 3 nodes are above the surface, the first of them node 2 at "
+                       "0.5 km, -10 m deep"),
+            1U);
+}
+
+TEST(BellhopCase, ASectionShorterThanTheReceiversIsTold) {
+  Texts texts = small_case(4, "'QVW'");
+  texts.companions.emplace_back(".ssp", "2\n0 0.5\n1500 1500\n1490 1490\n1510 1510\n");
+  EXPECT_EQ(notes_with(read_case(texts, "case"),
+                       "case.ssp: its profiles go from 0 to 0.5 km, the receivers from 0 to 1 km"),
+            1U);
+  texts.companions[0].second = "2\n0 1.0\n1500 1500\n1490 1490\n1510 1510\n";
+  EXPECT_EQ(notes_with(read_case(texts, "case"), "case.ssp"), 0U);
+}
+
+TEST(BellhopCase, AByteOrderMarkIsSkipped) {
+  Texts texts = small_case();
+  texts.env = "\xEF\xBB\xBF" + texts.env;
+  EXPECT_EQ(read_case(texts, "case").run_case.title, "a small case");
+}
+
+// What only a run finds is told of the line of the file it comes from.
+TEST(BellhopCase, FaultsOfARunAreToldOfTheFile) {
+  const Input input = read_small(19, "20 20 /");
+  try {
+    static_cast<void>(run(input.run_case));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(told_of_file(error, input).what(),
+                 "case.env:19: launch angles: found -20.000000 deg, expected above the lowest, "
+                 "-20.000000 deg");
+  }
+  EXPECT_STREQ(told_of_file(InputError({"bottom.depth", "1", "2"}), input).what(),
+               "case.env: bottom.depth: found 1, expected 2");
 }
 
 // One loss in the six units, at 1 kHz and c = 1500 m/s (so λ = 1.5 m): 0.3 dB per wavelength is 0.2
@@ -484,6 +581,22 @@ TEST(BellhopCase, EveryMalformedCompanionIsTold) {
       EXPECT_STREQ(error.what(), bad.message);
     }
   }
+}
+
+TEST(BellhopCase, AFolderInPlaceOfAFileIsTold) {
+  const support::TemporaryDirectory folder;
+  static_cast<void>(folder.write("case.env", small_case(9, "'A~' 0").env));
+  std::filesystem::create_directory(folder / "case.bty");
+  std::filesystem::create_directory(folder / "other.env");
+  for (const auto& [root, says] :
+       {std::pair{"case", "case.bty: found a folder, expected the file that"},
+        std::pair{"other", "other.env: found a folder, expected the input of"}})
+    try {
+      (void)read_case(folder / root);
+      ADD_FAILURE() << root;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
 }
 
 TEST(BellhopCase, AMissingFileIsTold) {
