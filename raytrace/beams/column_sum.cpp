@@ -126,27 +126,52 @@ void ColumnSum::add_crossing_rows(const Crossings& x, std::size_t i) {
   }
 }
 
+Crossing ColumnSum::crossing_at(const Crossings& x, std::size_t i) const {
+  return {.depth = x.depth[i],
+          .cosine = x.cosine[i],
+          .sine = x.sine[i],
+          .speed = x.speed[i],
+          .time = x.time[i],
+          .length = 0.0,
+          .q = x.q[i],
+          .dq_ds = x.dq_ds[i],
+          .loss = std::polar(x.level[i], x.phase[i]),
+          .mirror = x.mirror[i]};
+}
+
+void ColumnSum::add_number(std::size_t at, const std::complex<double>& p) {
+  sum_[paired_ ? 2 * at : at] += static_cast<float>(p.real());
+  if (paired_)
+    sum_[2 * at + 1] += static_cast<float>(p.imag());
+  else if (setting_.coherent)
+    imaginary_[at] += static_cast<float>(p.imag());
+}
+
 void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
-  const Crossing crossing{.depth = x.depth[i],
-                          .cosine = x.cosine[i],
-                          .sine = x.sine[i],
-                          .speed = x.speed[i],
-                          .time = x.time[i],
-                          .length = 0.0,
-                          .q = x.q[i],
-                          .dq_ds = x.dq_ds[i],
-                          .loss = std::polar(x.level[i], x.phase[i]),
-                          .mirror = x.mirror[i]};
   const std::size_t column = x.column[i] * stride_;
-  beams::add_crossing(setting_, launch_, launched_, x.source_speed, crossing, depths_,
-                      [&](std::size_t k, std::complex<double> p) {
-                        const std::size_t at = column + k;
-                        sum_[paired_ ? 2 * at : at] += static_cast<float>(p.real());
-                        if (paired_)
-                          sum_[2 * at + 1] += static_cast<float>(p.imag());
-                        else if (setting_.coherent)
-                          imaginary_[at] += static_cast<float>(p.imag());
-                      });
+  beams::add_crossing(setting_, launch_, launched_, x.source_speed, crossing_at(x, i), depths_,
+                      [&](std::size_t k, std::complex<double> p) { add_number(column + k, p); });
+}
+
+void ColumnSum::add_twins(const BeamLaunch& launch, const Crossings& x, const BoundaryRows& rows) {
+  const double width = std::max({launch.higher, launch.lower, setting_.spacing});
+  const bool is_hat = setting_.kind == BeamKind::hat;
+  for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom})
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::int32_t row = rows.row(kind, x.column[i]);
+      if (row < 0) continue;
+      const auto k = static_cast<std::size_t>(row);
+      const double dz = depths_[k] - x.depth[i];
+      const double across = std::abs(x.q[i] + x.dq_ds[i] * x.sine[i] * dz) * width;
+      const double reach =
+          is_hat ? across : 4.0 * std::max(across, pi * x.speed[i] / setting_.frequency);
+      if (std::abs(dz * x.cosine[i]) > reach) continue;
+      Crossing there = crossing_at(x, i);
+      there.loss *= rows.twin(kind, x.column[i], there);
+      const std::size_t at = x.column[i] * stride_ + k;
+      beams::add_crossing(setting_, launch, launched_, x.source_speed, there, depths_.subspan(k, 1),
+                          [&](std::size_t, std::complex<double> p) { add_number(at, p); });
+    }
 }
 
 void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {

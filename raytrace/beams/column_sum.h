@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "raytrace/beams/beam.h"
+#include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
 #include "raytrace/beams/lanes.h"
 
@@ -26,6 +27,9 @@ class ColumnSum {
 
   /// Adds one beam.
   void add(const BeamLaunch& launch, const Crossings& crossings);
+
+  /// Adds what its twins bring to receivers on the boundaries; after add() of the same beam.
+  void add_twins(const BeamLaunch& launch, const Crossings& crossings, const BoundaryRows& rows);
 
   /// Adds what another sum of the same receivers has.
   void absorb(const ColumnSum& other);
@@ -68,6 +72,8 @@ class ColumnSum {
   void add_even_gaussians(const Crossings& crossings);
   void add_lanes(std::size_t at, const Lanes& re, const Lanes& im);
   void add_plainly(const Crossings& crossings, std::size_t i);
+  void add_number(std::size_t at, const std::complex<double>& p);
+  [[nodiscard]] Crossing crossing_at(const Crossings& x, std::size_t i) const;
 
   /// The half of a hat that is being added.
   enum class Half : std::int8_t { both, higher, lower };

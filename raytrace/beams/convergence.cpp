@@ -103,7 +103,7 @@ std::string note_of(const LevelRays& level, double source_depth) {
          decimals(degrees(level.angle), 3) + " deg of the horizontal stay within " +
          decimals(1e3 * level.height, 1) +
          " mm of that depth and are not told apart; only there the field has no ray limit, and "
-         "receivers there are not counted in the error";
+         "receivers there do not count in the error unless there are no others";
 }
 
 /// No tube is narrower at the last receiver than this [m]: depths of rays are right to 1e-9 m, and

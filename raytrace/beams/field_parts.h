@@ -27,6 +27,7 @@ struct FieldWork {
   std::vector<double> level;        // [ranges] of TubeError
   std::vector<double>& tube_share;  // [beams − 1]
   double* end_share;                // [2] of the first and the last ray
+  const BoundaryRows& boundary_rows;
 
   [[nodiscard]] BeamLaunch launch(std::size_t i, double source_speed) const {
     const double elevation = fan.elevation[i];
@@ -63,8 +64,8 @@ class PlainPart {
     const double elevation = work_.fan.elevation[i];
     work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
     const BeamLaunch launch = work_.launch(i, ray_.source_speed);
-    add_beam(setting_[0], launch, ray_, field_[0]);
-    if (work_.also.half && i % 2 == 0) add_beam(setting_[1], launch, ray_, field_[1]);
+    add_to(0, launch);
+    if (work_.also.half && i % 2 == 0) add_to(1, launch);
   }
   /// Adds what another part has.
   void absorb(const PlainPart& other) {
@@ -78,6 +79,14 @@ class PlainPart {
   }
 
  private:
+  void add_to(std::size_t h, const BeamLaunch& launch) {
+    add_beam(setting_[h], launch, ray_, field_[h]);
+    const bool cartesian =
+        work_.setting.kind == BeamKind::hat || work_.setting.kind == BeamKind::gaussian;
+    if (cartesian && work_.boundary_rows.any())
+      beams::add_twins(setting_[h], launch, ray_, work_.boundary_rows, field_[h]);
+  }
+
   const FieldWork& work_;
   BeamSetting setting_[2];
   RayTrajectory ray_;
@@ -112,8 +121,12 @@ class FastPart {
         std::swap(here_, before_);
     }
     const BeamLaunch launch = cross(i, here_);
-    sum_[0].add(launch, here_.crossings);
-    if (work_.also.half && i % 2 == 0) sum_[1].add(launch, here_.crossings);
+    for (std::size_t h = 0; h < sum_.size(); ++h) {
+      if (h == 1 && i % 2 != 0) continue;
+      sum_[h].add(launch, here_.crossings);
+      if (work_.boundary_rows.any())
+        sum_[h].add_twins(launch, here_.crossings, work_.boundary_rows);
+    }
     if (work_.also.bound && i > 0)
       work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
     if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))

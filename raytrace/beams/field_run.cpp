@@ -150,6 +150,10 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
           for (const auto& part : parts) sum += part->bound_at(j, k);
           result.bound[k * columns + j] = scale * sum;
         }
+        for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom})
+          if (const std::int32_t k = work.boundary_rows.row(kind, j); k >= 0)  // 1 + |R| ≤ 2
+            result.bound[static_cast<std::size_t>(k) * columns + j] *=
+                work.boundary_rows.silent(kind, j) ? 0.0 : 2.0;
       }
     }
   }
@@ -187,6 +191,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                       const FieldCheck& also) {
   std::vector<double> tube_share(also.bound ? fan.elevation.size() - 1 : 0);
   double end_share[2] = {0.0, 0.0};
+  const BoundaryRows boundary_rows(run_case.environment, run_case.frequency, run_case.receivers);
   const FieldWork work{run_case,
                        tracer,
                        source_depth,
@@ -197,7 +202,8 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                        also,
                        tube_level(run_case, also),
                        tube_share,
-                       end_share};
+                       end_share,
+                       boundary_rows};
   const std::size_t cells = run_case.receivers.size();
   const bool fast = method == FieldMethod::fast && has_error_bound(run_case);
   // A packet of beams costs as much as a share of the grid: fewer parts for fewer beams.

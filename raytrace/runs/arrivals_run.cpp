@@ -12,6 +12,7 @@
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/drawn_path.h"
 #include "raytrace/runs/rays_run.h"
+#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
@@ -74,6 +75,13 @@ class ArrivalSearch {
       SearchWatch watch{.progress = progress};
       found = marching_eigenrays(tracer(), 0.0, source_depth, receivers_, limits, &watch);
       if (watch.stopped) throw Interrupted();
+      if (const LevelRays level = level_rays(case_.environment, case_.frequency, 0.0, source_depth);
+          level.angle > 0.0)
+        notes.push_back(
+            "the source at " + std::to_string(source_depth) +
+            " m is on a kink where the sound speed is least: of the rays within " +
+            std::to_string(degrees(level.angle)) + " deg of the horizontal, which stay within " +
+            std::to_string(1e3 * level.height) + " mm of that depth, the level one stands for all");
       if (watch.unfinished > 0)
         notes.push_back("source at " + std::to_string(source_depth) +
                         " m: rays part without end in " + std::to_string(watch.unfinished) +

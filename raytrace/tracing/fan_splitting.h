@@ -58,9 +58,16 @@ class FanSplitting {
       if (stopped) return;
       Memory& memory = memory_of(worker);
       const auto slot = static_cast<std::size_t>(i);
-      split(memory.work, memory.rays, ends[slot], ends[slot + 1], 0, left[slot], results[slot]);
-      if (watch != nullptr && watch->progress && !watch->progress(double(++done) / first_intervals))
-        stopped = true;
+      const auto stop = [&] {  // asked now and then within an interval too, which may take long
+        if (watch != nullptr && watch->progress &&
+            !watch->progress(double(done.load()) / first_intervals))
+          stopped = true;
+        return stopped.load();
+      };
+      split(memory.work, memory.rays, ends[slot], ends[slot + 1], 0, left[slot], results[slot],
+            stop);
+      ++done;
+      stop();
     });
     if (watch != nullptr) {
       watch->stopped = stopped;
@@ -77,6 +84,7 @@ class FanSplitting {
 
  private:
   static constexpr std::size_t deepest = 58;
+  static constexpr int rays_per_question = 32;
   static constexpr int most_rays = (1 << 22) / first_intervals;  // in one of the first intervals
 
   /// Twice denser about the middle of the fan, mostly the horizontal, where rays are bent most.
@@ -94,9 +102,11 @@ class FanSplitting {
     return true;
   }
 
-  /// \param left  rays that may still be traced
+  /// \param left  rays that may still be traced   \param stop  asked every so many rays
+  template <class Stop>
   static void split(Work& work, std::deque<Ray>& rays, const Ray& a, const Ray& b, std::size_t slot,
-                    int& left, std::vector<Result>& out) {
+                    int& left, std::vector<Result>& out, const Stop& stop) {
+    if (left % rays_per_question == 0 && stop()) return;
     if constexpr (Work::coarse_levels > 0)
       if (slot >= Work::coarse_levels && work.pair_tells(a, b)) return work.search(a, b, out);
     double middle = slot % 4 == 2 ? 0.5 * (a.angle + b.angle) : work.middle(a, b);
@@ -106,8 +116,8 @@ class FanSplitting {
     Ray& m = rays[slot];
     work.trace(middle, m);
     if (--left > 0 && slot < deepest && !known(work, a, m, b, slot)) {
-      split(work, rays, a, m, slot + 1, left, out);
-      split(work, rays, m, b, slot + 1, left, out);
+      split(work, rays, a, m, slot + 1, left, out, stop);
+      split(work, rays, m, b, slot + 1, left, out, stop);
     } else {
       work.search(a, m, out);
       work.search(m, b, out);

@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/tracing/fan_splitting.h"
+#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
 
@@ -86,6 +87,7 @@ struct ColumnSearch {
         limits_(limits),
         columns_(columns),
         max_turns_(max_turns),
+        level_(level_rays(tracer.environment(), tracer.frequency(), source_range, source_depth)),
         test_(tracer.environment(), columns),
         roots_(tracer, source_range, source_depth, limits, columns) {}
 
@@ -94,29 +96,39 @@ struct ColumnSearch {
     digest(trajectory_, tracer_.environment(), columns_, out);
   }
   [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
-    return test_.holds(a, m, b);
+    return level(a, b) || test_.holds(a, m, b);
   }
   [[nodiscard]] bool pair_tells(const FanRay& a, const FanRay& b) const {
-    return test_.pair_tells(a, b);
+    return level(a, b) || test_.pair_tells(a, b);
   }
   [[nodiscard]] bool regular(const FanRay& a, const FanRay& m, const FanRay& b) const {
-    return test_.regular(a, m, b);
+    return level(a, b) || test_.regular(a, m, b);
   }
   [[nodiscard]] double middle(const FanRay& a, const FanRay& b) const {
+    for (const double edge : {-level_.angle, level_.angle})
+      if (a.angle < edge && edge < b.angle) return edge;
     return splitting_angle(a, b, tracer_.environment());
   }
   void search(const FanRay& a, const FanRay& b, std::vector<Hit>& out) {
-    roots_.search(a, b, max_turns_, [&](std::uint32_t receiver, Arrival&& path) {
+    const RootFinder::Found found = [&](std::uint32_t receiver, Arrival&& path) {
       out.push_back({receiver, std::move(path)});
-    });
+    };
+    if (level(a, b)) return roots_.search_level(a, b, level_.height, max_turns_, found);
+    roots_.search(a, b, max_turns_, found);
   }
 
  private:
+  /// Whether two rays are no further apart than a fan tells them (LevelRays).
+  [[nodiscard]] bool level(const FanRay& a, const FanRay& b) const noexcept {
+    return level_.angle > 0.0 && a.angle >= -level_.angle && b.angle <= level_.angle;
+  }
+
   const RayTracer& tracer_;
   double source_range_, source_depth_;
   TraceLimits limits_;
   std::span<const ReceiverColumn> columns_;
   int max_turns_;
+  LevelRays level_;
   NeighbourTest test_;
   RootFinder roots_;
   RayTrajectory trajectory_;

@@ -28,6 +28,9 @@ struct FanLimits {
 /// the same side, are refined by Newton's method on re-traced rays to a miss below a hundredth of a
 /// millimetre. docs/theory/eigenrays.md
 ///
+/// A receiver at the depth of a source on a kink of least sound speed has no end of paths; of those
+/// that stay within a thousandth of a wavelength of that depth the level one is told (LevelRays).
+///
 /// \param receivers  [n]   \param watch  progress, interruption, completeness
 /// \return [n] arrivals, each sorted by delay
 [[nodiscard]] std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_range,

@@ -13,6 +13,8 @@ RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
 const Environment& RayTracer::environment() const noexcept { return ocean_->environment; }
 
+double RayTracer::frequency() const noexcept { return ocean_->frequency; }
+
 void RayTracer::trace(double source_range, double source_depth, double launch_elevation,
                       const TraceLimits& limits, RayTrajectory& out) const {
   tracing::March(*ocean_, limits, out).run(source_range, source_depth, launch_elevation);

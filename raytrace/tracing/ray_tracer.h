@@ -48,6 +48,7 @@ class RayTracer {
   RayTracer& operator=(RayTracer&&) noexcept;
 
   [[nodiscard]] const Environment& environment() const noexcept;
+  [[nodiscard]] double frequency() const noexcept;  ///< [Hz]
 
   /// Traces one ray from (source_range, source_depth). Angles beyond ±π/2 go to smaller ranges.
   /// \param out  its memory is reused

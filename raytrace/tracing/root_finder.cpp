@@ -1,6 +1,7 @@
 #include "raytrace/tracing/root_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/units.h"
@@ -36,6 +37,27 @@ void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const F
   if (!(middle > a.angle && middle < b.angle)) return search_legs(a, b, 0);
   const WholeRay &first = whole_ray(0, a.angle), &last = whole_ray(2, b.angle);
   search_families(first, whole_ray(1, middle), last, 0, 3);
+}
+
+void RootFinder::search_level(const FanRay& a, const FanRay& b, double height, int max_turns,
+                              const Found& found) {
+  found_ = &found;
+  max_turns_ = max_turns;
+  if (a.angle <= 0.0 && b.angle >= 0.0) {
+    tracer_.trace(source_range_, source_depth_, 0.0, limits_, ray_);
+    std::vector<LegOfRay> legs;
+    split_into_legs(ray_, tracer_.environment(), legs);
+    for (const ReceiverColumn& column : columns_) {
+      const ExactCrossing there = cross_leg(ray_, tracer_, legs.front(), column.range);
+      if (!there.real) continue;
+      column_ = &column;
+      const auto on_it =
+          column.between(there.crossing.depth - height, there.crossing.depth + height);
+      for (std::size_t i = on_it.first; i < on_it.last; ++i)
+        found(column.indices[i], arrival(there, column.depths[i]));
+    }
+  }
+  search_legs(a, b, 1);
 }
 
 void RootFinder::search_legs(const FanRay& a, const FanRay& b, std::size_t first_leg) {
@@ -178,6 +200,40 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
   const RayHistory& h = there->history;
   if (h.upper_turns + h.lower_turns > max_turns_) return;
   Arrival path = arrival(*there, depth);
+  if (std::isfinite(path.delay) && std::isfinite(path.spreading))
+    (*found_)(receiver, std::move(path));
+  twin_at_node(x, depth, receiver);
+}
+
+/// A receiver on a node between two facets of a boundary: what arrives there is reflected there,
+/// but on either side rays of another facet begin, and no two neighbours enclose it. By the facet
+/// that the ray itself strikes.
+void RootFinder::twin_at_node(double angle, double depth, std::uint32_t receiver) {
+  constexpr double on_node = 1e-3;  // [m]
+  const double range = column_->range;
+  const Environment& ocean = tracer_.environment();
+  const bool at_node =
+      std::ranges::any_of(std::array{&ocean.surface, &ocean.bottom}, [&](const Boundary* wall) {
+        const auto& shape = wall->shape;
+        return shape && shape->interpolation() == ShapeInterpolation::piecewise_linear &&
+               shape->facet(range - on_node) != shape->facet(range + on_node) &&
+               std::abs(shape->depth_at(range) - depth) < on_node;
+      });
+  if (!at_node) return;
+  TraceLimits limits = limits_;
+  limits.max_range = std::min(limits.max_range, reach_);
+  tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
+  std::vector<LegOfRay> legs;
+  split_into_legs(ray_, ocean, legs);
+  if (leg_ + 1 >= legs.size() || legs[leg_].history != history_) return;
+  const ExactCrossing before = cross_leg(ray_, tracer_, legs[leg_], range);
+  const ExactCrossing there = cross_leg(ray_, tracer_, legs[leg_ + 1], range);
+  const auto bounces = [](const ExactCrossing& x) {
+    return x.history.surface_bounces + x.history.bottom_bounces;
+  };
+  const double away = std::abs(there.state.range - range) + std::abs(there.state.depth - depth);
+  if (!there.real || away > 2.0 * on_node || bounces(there) != bounces(before) + 1) return;
+  Arrival path = arrival(there, depth);
   if (std::isfinite(path.delay) && std::isfinite(path.spreading))
     (*found_)(receiver, std::move(path));
 }

@@ -30,6 +30,11 @@ class RootFinder {
 
   /// Every path between two neighbours to every receiver, on the legs whose history they share.
   void search(const FanRay& a, const FanRay& b, int max_turns, const Found& found);
+  /// The same of rays that stay on a kink of least sound speed up to their first reflection
+  /// (LevelRays): on the first leg the level ray stands for all of them.
+  /// \param height  receivers so close to its depth are on it [m]
+  void search_level(const FanRay& a, const FanRay& b, double height, int max_turns,
+                    const Found& found);
 
  private:
   void search_legs(const FanRay& a, const FanRay& b, std::size_t first_leg);
@@ -44,6 +49,7 @@ class RootFinder {
               std::uint32_t receiver);
   [[nodiscard]] HermiteNode extremum(HermiteNode a, HermiteNode b, double guess);
   [[nodiscard]] std::optional<ExactCrossing> exact(double angle);
+  void twin_at_node(double angle, double depth, std::uint32_t receiver);
   [[nodiscard]] Arrival arrival(const ExactCrossing& there, double depth) const;
 
   const RayTracer& tracer_;

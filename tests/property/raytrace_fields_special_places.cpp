@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_run.h"
+#include "raytrace/tracing/marching_eigenrays.h"
 
 // Fields of sources and at receivers where rays have something special to them: kinks of the sound
 // speed, boundaries, nodes of boundaries.
@@ -93,6 +95,107 @@ TEST(GradedFans, HaveNoTubesFinerThanAsked) {
   }
   EXPECT_GE(least, 0.06);
   EXPECT_GE(least_level, 0.11);
+}
+
+/// Iso-speed water over a bottom of two slopes, and a receiver on the node between them.
+PropagationCase node_between_slopes() {
+  PropagationCase run_case;
+  run_case.environment.water = SoundSpeedProfile::isovelocity(1500.0);
+  run_case.environment.bottom = {
+      .depth = 200.0,
+      .material = FluidHalfSpace{.speed = 1700.0, .density = 1800.0},
+      .shape = BoundaryShape(std::vector{0.0, 2000.0, 5000.0}, std::vector{200.0, 180.0, 100.0},
+                             ShapeInterpolation::piecewise_linear)};
+  run_case.frequency = 500.0;
+  run_case.source_depths = {50.0};
+  run_case.receivers = {.depths = {180.0}, .ranges = {2000.0}};
+  run_case.beams.lowest = radians(-60.0);
+  run_case.beams.highest = radians(60.0);
+  return run_case;
+}
+
+Arrivals arrivals_at_the_receiver(const PropagationCase& run_case, double faintest = 1e-4) {
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const std::vector<ReceiverPoint> receiver = {
+      {run_case.receivers.ranges[0], run_case.receivers.depths[0]}};
+  return marching_eigenrays(tracer, 0.0, run_case.source_depths[0], receiver,
+                            {.lowest = run_case.beams.lowest,
+                             .highest = run_case.beams.highest,
+                             .max_surface_bounces = 2048,
+                             .max_bottom_bounces = 2048,
+                             .max_turns = 4096,
+                             .faintest = faintest})[0];
+}
+
+// What arrives at the bottom leaves it at once: paths come in twins of equal delay, one reflection
+// apart. (Of none too faint to be followed past its last reflection.)
+TEST(ArrivalsAtSpecialPlaces, AtANodeOfTheBottomComeInTwins) {
+  const Arrivals all = arrivals_at_the_receiver(node_between_slopes(), 0.0);
+  EXPECT_GE(all.size(), 24U);
+  for (const Arrival& a : all)
+    EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                            [&](const Arrival& b) {
+                              return std::abs(a.delay - b.delay) < 1e-8 &&
+                                     a.surface_bounces == b.surface_bounces &&
+                                     std::abs(a.bottom_bounces - b.bottom_bounces) == 1;
+                            }),
+              1)
+        << a.delay << ' ' << a.bottom_bounces;
+}
+
+// The sum of hats at a receiver on a boundary is the sum of its arrivals (0.2 dB: rays 3·10⁻⁵ rad
+// apart, no caustic near), and nothing at the surface. On a node each arrival is reflected by one
+// facet or the other, whose slopes differ by 1 degree: below the critical angle, 28 degrees, R
+// turns by some 180/28 times that, 0.1 rad, which is 10 % of the field or 0.9 dB.
+TEST(FieldsAtSpecialPlaces, OnBoundariesAreTheSumsOfArrivals) {
+  PropagationCase run_case = node_between_slopes();
+  const auto tl_of_field = [&] {
+    return -20.0 * std::log10(static_cast<double>(std::abs(run_field(run_case).field[0])));
+  };
+  const auto tl_of_arrivals = [&] {
+    std::complex<double> sum = 0.0;
+    for (const Arrival& a : arrivals_at_the_receiver(run_case))
+      sum += a.amplitude * std::polar(1.0, -2.0 * pi * run_case.frequency * a.delay);
+    return -20.0 * std::log10(std::abs(sum));
+  };
+  EXPECT_NEAR(tl_of_field(), tl_of_arrivals(), 0.9);
+  run_case.environment.bottom.shape.reset();
+  for (const double range : {1000.0, 2000.0, 3000.0}) {
+    run_case.receivers = {.depths = {200.0}, .ranges = {range}};
+    EXPECT_NEAR(tl_of_field(), tl_of_arrivals(), 0.2) << range;
+    run_case.receivers.depths = {0.0};
+    EXPECT_GT(tl_of_field(), 120.0) << range;
+  }
+}
+
+// A duct whose axis is a kink, over a slope, source and receiver on the axis: no end of paths, and
+// of rays between any two of them. The search ends, with the paths that leave the axis by more than
+// a thousandth of a wavelength in pairs up and down, and the level one; and heeds its watch.
+TEST(ArrivalsAtSpecialPlaces, AlongAKinkOfLeastSpeedHaveAnEnd) {
+  PropagationCase run_case = node_between_slopes();
+  run_case.environment.water = SoundSpeedProfile::table(
+      std::vector{0.0, 80.0, 200.0}, std::vector{1500.0, 1480.0, 1500.0}, Interpolation::c_linear);
+  run_case.source_depths = {80.0};
+  run_case.receivers.depths = {80.0};
+  const LevelRays level = level_rays(run_case.environment, run_case.frequency, 0.0, 80.0);
+  const Arrivals all = arrivals_at_the_receiver(run_case);
+  EXPECT_LT(all.size(), 1000U);
+  EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                          [](const Arrival& a) { return a.launch_elevation == 0.0; }),
+            1);
+  // R = n·cα/g₁ + n·cα/g₂ for n whole cycles: about R/(cε(1/g₁ + 1/g₂)) of them, for each side
+  const double cycles = 2000.0 / (2.0 * 1480.0 * level.angle * (80.0 / 20.0 + 120.0 / 20.0));
+  const auto trapped = std::count_if(all.begin(), all.end(), [](const Arrival& a) {
+    return a.surface_bounces + a.bottom_bounces == 0 && a.launch_elevation != 0.0;
+  });
+  EXPECT_GE(trapped, static_cast<int>(2.0 * cycles) - 4);
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  const std::vector<ReceiverPoint> receiver = {{2000.0, 80.0}};
+  std::atomic<int> asked = 0;
+  SearchWatch watch{.progress = [&](double) { return ++asked < 3; }};
+  (void)marching_eigenrays(tracer, 0.0, 80.0, receiver, {}, &watch);
+  EXPECT_TRUE(watch.stopped);
+  EXPECT_LT(asked, 64);
 }
 
 }  // namespace
