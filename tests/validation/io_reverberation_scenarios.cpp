@@ -66,9 +66,9 @@ double loudest_shift(const PingRecord& record, double time, double low, double h
 // Heard in the beam towards the target, from the pressure: without it the sound of the sea lies on
 // the ridge of that bearing, 2·v·cos(angle)/λ = 10 Hz at 1500 Hz and 1500 m/s (the Bragg lines at
 // ±1.8 Hz and a beam 0.75 Hz wide: 3 Hz). With it a line stands off the ridge by its closing speed
-// of 5 m/s, another 10 Hz. The pairs of paths that go by the bottom, 15 degrees steep and within the
-// same half second, shift by cos(15 degrees), 0.7 Hz, less: 1 Hz, half of the pulse's resolution. A
-// target taken to rest would be on the ridge.
+// of 5 m/s, another 10 Hz. The pairs of paths that go by the bottom, 15 degrees steep and within
+// the same half second, shift by cos(15 degrees), 0.7 Hz, less: 1 Hz, half of the pulse's
+// resolution. A target taken to rest would be on the ridge.
 TEST(ReverberationScenarios, TheTargetLeavesTheRidge) {
   const PingRecord record = run("moving_platform_reverb"),
                    sea = run("moving_platform_reverb", {"target=[]"});

@@ -55,7 +55,7 @@ const std::filesystem::path file =
     std::filesystem::path(ASDIC_SCENARIOS) / "studies/known_answer.toml";
 
 TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
-  const Study study = read_study(file, std::vector<std::string>{"study.realisations=1500"});
+  const Study study = read_study(file, std::vector<std::string>{"study.realisations=4000"});
   const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
   // Over all ranges, within the study's own 99 % interval.
   const SummaryTable& all = named(summary, "convergence");
@@ -85,7 +85,7 @@ TEST(KnownAnswer, PdOfASwerling1TargetInWhiteNoise) {
 TEST(KnownAnswer, ATargetThatDoesNotFluctuateIsAnother) {
   // The wrong model must fail: four degrees of freedom instead of two.
   const Study study = read_study(
-      file, std::vector<std::string>{"target.0.fluctuation=swerling-3", "study.realisations=1500"});
+      file, std::vector<std::string>{"target.0.fluctuation=swerling-3", "study.realisations=4000"});
   const std::vector<SummaryTable> summary = summarise(study, rows_of(study));
   const SummaryTable& by_range = named(summary, "pd_by_range");
   int outside = 0;
