@@ -12,4 +12,5 @@ if(ASDIC_MPI AND MPI_CXX_FOUND)
   set_target_properties(asdic_mpi PROPERTIES OUTPUT_NAME asdic-mpi RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_link_libraries(asdic_mpi PRIVATE asdic::study CLI11::CLI11 spdlog::spdlog TBB::tbb MPI::MPI_CXX Threads::Threads
                         asdic_warnings asdic_build_options)
+  asdic_allocator(asdic_mpi)
 endif()

@@ -42,6 +42,15 @@ function(asdic_library folder)
   set_property(GLOBAL APPEND PROPERTY ASDIC_LIBRARIES ${folder})
 endfunction()
 
+# asdic_allocator(<program>): oneTBB's allocator stands for malloc and new. What is kept of one realisation of a study lies between
+# the large arrays of the next ones, which malloc's heap then has no holes for: it grew by 70 kB a realisation. Faster, too.
+function(asdic_allocator program)
+  if(NOT ASDIC_SANITIZE)
+    target_link_options(${program} PRIVATE LINKER:--no-as-needed)
+    target_link_libraries(${program} PRIVATE TBB::tbbmalloc_proxy)
+  endif()
+endfunction()
+
 # asdic_program(<folder> <libraries>...): every .cpp of <folder> makes libexec/asdic/asdic-full, the whole program; those named
 # in <folder>/quick/sources.cmake make bin/asdic, which starts in a few milliseconds: libraries that it does not call are not loaded.
 function(asdic_program folder)
@@ -55,6 +64,7 @@ function(asdic_program folder)
   set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME asdic RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_link_options(asdic_${folder} PRIVATE LINKER:--as-needed)
   add_dependencies(asdic_${folder} asdic_full)
+  asdic_allocator(asdic_full)
   foreach(program asdic_full asdic_${folder})
     target_link_libraries(${program} PRIVATE ${ARGN} Threads::Threads asdic_warnings asdic_build_options)
   endforeach()
