@@ -94,7 +94,7 @@ TEST(SoundScenarioCommands, TheTurningSubmarineIsFoundInEveryPing) {
   for (const double error : file.read<double>("processed/targets/position_error"))
     EXPECT_LT(error, 85.0);
   const auto target = file.read<std::int32_t>("processed/detections/target");
-  EXPECT_LE(std::count(target.begin(), target.end(), -1), 10);
+  EXPECT_LE(std::count(target.begin(), target.end(), -1), 2) << "none seen; one echo detected once";
 }
 
 TEST(SoundScenarioCommands, ValidateSaysWhatIsThere) {
