@@ -110,7 +110,7 @@ std::optional<DelayCurve> delay_curve(const std::vector<PulseMoment>& moments,
     if (i % points == 0) pieces.emplace_back().first_slowness = m.at_array;
     pieces.back().last_slowness = m.at_array;
     turned = std::max(turned, (m.at_array - straight.slowness).norm());
-    const double heard = m.heard + (m.into_target - m.out_of_target).dot(offset);
+    const double heard = m.heard + m.lag.dot(offset);
     if (i == 0) first = heard;
     pieces.back().heard[i % points] = heard;
     pieces.back().sent[i % points] = m.sent;

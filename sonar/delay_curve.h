@@ -13,9 +13,9 @@ namespace asdic {
 /// edge left [s], slownesses [s/m].
 struct PulseMoment {
   double sent = 0.0;
-  double struck = 0.0;  ///< the target (on a direct path: when it is heard)
-  double heard = 0.0;   ///< at the array's reference point
-  Vec3 into_target = Vec3::Zero(), out_of_target = Vec3::Zero();
+  double struck = 0.0;           ///< the target (on a direct path: when it is heard)
+  double heard = 0.0;            ///< at the array's reference point
+  Vec3 lag = Vec3::Zero();       ///< of the body's points (BodyLag::per_offset)
   Vec3 at_array = Vec3::Zero();  ///< as the moving array meets it (met_by())
 };
 

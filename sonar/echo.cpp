@@ -106,13 +106,25 @@ class EchoFinder {
             .at_phone = slowness_vector(home, pair.home.path.arrival_elevation, c_phone)};
   }
 
+  Vec3 lag_of(const PathPair& pair) const {
+    const Slownesses s = slownesses(pair);
+    return BodyLag{.into = s.into_target,
+                   .out = s.out_of_target,
+                   .at_phone = s.at_phone,
+                   .body_velocity = pair.target.velocity,
+                   .phone_velocity = pair.home.way.end.velocity}
+        .per_offset();
+  }
+
   /// What all glints of the target send back by one pair of paths.
   std::vector<EchoPath> answer(const PathPair& pair, const Vec3& offset, int channel) const {
     const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
+    const Vec3 lag = lag_of(pair);
     const Kinematics& phone = pair.home.way.end;
     EchoPath echo;
     echo.target = index_;
     echo.array = context_.array;
+    echo.struck = pair.there.time;
     echo.heard.channel = channel < 0 ? Return::all_channels : channel;
     echo.heard.doppler =
         echo_doppler({pair.source.velocity, at_source}, {pair.target.velocity, into_target},
@@ -134,11 +146,8 @@ class EchoFinder {
     const Vec3 x = offset - array_.offset;
     std::vector<EchoPath> echoes;
     for (const Glint& glint : seen) {
-      // The front passes a glint s_in·x after the reference point; what it sends back arrives
-      // s_out·x earlier.
       echo.highlight = glint.highlight;
-      echo.heard.delay = pair.home.time + (into_target - out_of_target).dot(glint.offset) -
-                         echo.heard.slowness.dot(x);
+      echo.heard.delay = pair.home.time + lag.dot(glint.offset) - echo.heard.slowness.dot(x);
       echo.heard.amplitude = carried * glint.amplitude;
       echo.colour.without_pattern = crossed * glint.amplitude;
       echo.level_db =
@@ -213,8 +222,7 @@ class EchoFinder {
     return PulseMoment{.sent = sent,
                        .struck = then.there.time,
                        .heard = then.home.time,
-                       .into_target = s.into_target,
-                       .out_of_target = s.out_of_target,
+                       .lag = lag_of(then),
                        .at_array = met_by(then.home.way.end.velocity, s.at_phone)};
   }
 

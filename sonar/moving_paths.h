@@ -16,6 +16,23 @@ namespace asdic {
   return slowness / (1.0 - slowness.dot(velocity));
 }
 
+/// How much later the echo of a moving body's point at x is heard than that of its reference point,
+/// as a vector a: a·x, fronts being plane. The front that passes the reference point with the
+/// slowness s_in meets the point δ = s_in·x/(1 − s_in·v_T) later, v_T·δ farther on; what that sends
+/// back with s_out comes δ(1 − s_out·v_T) − s_out·x later to a place at rest, and a phone that
+/// moves meets it η_R = 1/(1 − s_R·v_R) times as much later. Source: docs/theory/target.md, eq. (2)
+struct BodyLag {
+  Vec3 into = Vec3::Zero(), out = Vec3::Zero();  ///< slownesses at the body [s/m]
+  Vec3 at_phone = Vec3::Zero();
+  Vec3 body_velocity = Vec3::Zero(), phone_velocity = Vec3::Zero();  ///< [m/s]
+
+  /// a [s/m]
+  [[nodiscard]] Vec3 per_offset() const noexcept {
+    const double meets = (1.0 - out.dot(body_velocity)) / (1.0 - into.dot(body_velocity));
+    return (meets * into - out) / (1.0 - at_phone.dot(phone_velocity));
+  }
+};
+
 /// One way from a fixed point at a known time to something that moves: eigenrays to where it is at
 /// a reference time. Times count from the start of the ping.
 struct Way {

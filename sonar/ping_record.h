@@ -33,6 +33,7 @@ struct EchoPath {
   int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
+  double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
   Return heard;           ///< at the array's reference point (or the phone)
   PathColour colour;      ///< for other frequencies than the pulse's centre
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
