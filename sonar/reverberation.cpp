@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sonar/moving_paths.h"
+
 namespace asdic {
 namespace {
 
@@ -66,7 +68,7 @@ void PingReverberation::hear(const ScatteringField& field, const PathPairs& pair
   into.returns.push_back({.delay = pair.delay,
                           .amplitude = pair.amplitude * strength,
                           .doppler = field.sheet.doppler(pair, met.velocity, met.bragg),
-                          .slowness = field.sheet.arriving(pair)});
+                          .slowness = met_by(pair.receiver->velocity, field.sheet.arriving(pair))});
   const std::size_t points = context_.band.size();
   const auto first = static_cast<std::size_t>(&pair - pairs.found.data()) * points;
   for (std::size_t k = 0; k < points; ++k)
