@@ -34,7 +34,13 @@ double error_of(const ProcessedTrack& made, const TrackPoint& p, const Processed
   const Vec3 truth =
       scenario.targets[static_cast<std::size_t>(made.target)].track.at(p.time).position;
   if (made.has_bearing) return (p.position - truth.head<2>()).norm();
-  return std::abs(p.position.y() - separation(ping.array.places.array.position, truth).range);
+  // A range is from where the array heard it; a track that coasts, from where it would have.
+  const double heard =
+      p.detection >= 0 ? ping.array.result.detections[static_cast<std::size_t>(p.detection)].time
+                       : 2.0 * (p.time - ping.ping_time);
+  const Kinematics& array = ping.array.places.array;
+  return std::abs(p.position.y() -
+                  separation(array.position + heard * array.velocity, truth).range);
 }
 
 void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,
@@ -103,7 +109,7 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
       const DetectorSettings& searched = processor.settings().detector;
       made.score =
           score_detections(made.array.result.detections, echoes, made.truth, made.array.shape,
-                           made.array.places.array.position, processor.resolution(made.array),
+                           made.array.places.array, processor.resolution(made.array),
                            searched.first_time, std::min(searched.last_time, recordings.end(row)));
       if (row == first)
         made.map_range =

@@ -57,6 +57,7 @@ std::vector<TrueEcho> echoes_of(const PingRecord& record, int array) {
     if (echo.array == array)
       made.push_back({.target = echo.target,
                       .time = echo.heard.delay,
+                      .struck = echo.struck,
                       .doppler = echo.heard.doppler,
                       .level_db = echo.level_db,
                       .travel = echo.heard.slowness.normalized()});
@@ -73,7 +74,7 @@ std::vector<TrueTarget> targets_of(const Scenario& scenario, const PingRecord& r
     for (const TrueEcho& echo : echoes)
       if (echo.target == static_cast<int>(i) && echo.level_db > loudest) {
         loudest = echo.level_db;
-        time = 0.5 * echo.time;
+        time = echo.struck;
       }
     made.push_back({.target = static_cast<int>(i),
                     .name = target.name,
@@ -97,10 +98,10 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   const std::vector<TrueEcho> echoes = echoes_of(record, array);
   const double end =
       recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
-  const PingScore score = score_detections(
-      processed.result.detections, echoes, targets_of(scenario, record, echoes), processed.shape,
-      processed.places.array.position, processor.resolution(processed), chosen.detector.first_time,
-      std::min(chosen.detector.last_time, end));
+  const PingScore score =
+      score_detections(processed.result.detections, echoes, targets_of(scenario, record, echoes),
+                       processed.shape, processed.places.array, processor.resolution(processed),
+                       chosen.detector.first_time, std::min(chosen.detector.last_time, end));
   ReceiverAnswers answers{.false_alarms = score.false_alarms};
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,

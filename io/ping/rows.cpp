@@ -64,8 +64,8 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
     const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
     echoes.row({double(record.ping), double(echo.target), double(echo.array),
                 double(echo.heard.channel), double(echo.highlight), double(echo.outgoing),
-                double(echo.returning), echo.heard.delay, echo.heard.doppler, echo.level_db,
-                degrees(elevation), bearing});
+                double(echo.returning), echo.heard.delay, echo.struck, echo.heard.doppler,
+                echo.level_db, degrees(elevation), bearing});
   }
   const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
   every = std::max(every, step);

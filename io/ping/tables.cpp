@@ -16,6 +16,7 @@ std::vector<GrowingTable::Column> echo_columns() {
           {"outgoing", "path of the leg source to target", "", Type::int32},
           {"returning", "path of the leg target to array", "", Type::int32},
           {"delay", "from the start of the ping to the echo's leading edge", "s"},
+          {"struck", "from the start of the ping to when that edge meets the target", "s"},
           {"doppler_factor", "received over transmitted frequency", ""},
           {"level_db", "peak envelope over sqrt 2, pulse not windowed, re 1 uPa", "dB"},
           {"arrival_elevation_deg", "elevation of travel at the array, positive up", "degree"},

@@ -75,6 +75,12 @@ PingRecordings::PingRecordings(const std::filesystem::path& path,
   const auto delay = column("delay"), doppler = column("doppler_factor"),
              level = column("level_db"), elevation = column("arrival_elevation_deg"),
              bearing = column("arrival_bearing_deg");
+  // Files of before 2026-11-22 do not tell: half the way, right for a pair in one place.
+  std::vector<double> struck = delay;
+  if (file_.has("echoes/struck"))
+    struck = column("struck");
+  else
+    for (double& time : struck) time *= 0.5;
   const auto ping = file_.read<std::int32_t>("echoes/ping");
   std::vector<std::int32_t> array(delay.size(), 0);
   if (file_.has("echoes/array")) array = file_.read<std::int32_t>("echoes/array");
@@ -87,6 +93,7 @@ PingRecordings::PingRecordings(const std::filesystem::path& path,
     echo_array_.push_back(array[i]);
     all_echoes_.push_back({.target = target[i],
                            .time = delay[i],
+                           .struck = struck[i],
                            .doppler = doppler[i],
                            .level_db = level[i],
                            .travel = direction(radians(bearing[i]), radians(elevation[i]))});
@@ -229,7 +236,7 @@ std::vector<TrueTarget> PingRecordings::targets(std::size_t row,
     for (const TrueEcho& echo : echoes)
       if (echo.target == static_cast<int>(i) && echo.level_db > loudest) {
         loudest = echo.level_db;
-        time = 0.5 * echo.time;
+        time = echo.struck;
       }
     result.push_back(
         {.target = static_cast<int>(i),

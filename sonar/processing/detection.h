@@ -16,8 +16,16 @@ struct Location {
   double elevation = 0.0;   ///< look elevation of the returning path, positive up [rad]
   double range_rate = 0.0;  ///< of half the horizontal way there and back [m/s]; from the Doppler
                             ///< factor and the paths' slowness
-  double range_slope = 0.0;                     ///< dr/dτ: range per delay [m/s]
+  double range_slope = 0.0;  ///< dr/dτ along the bearing: range per delay [m/s]
+  double rate_slope = 0.0;   ///< range rate per Doppler factor, 1/(ξ_out + ξ_home) [m/s]
+  double struck = 0.0;       ///< when the sound struck it, since the ping's start [s]
   int surface_bounces = 0, bottom_bounces = 0;  ///< there and back together
+
+  /// Range and range rate per delay and Doppler factor. Along the bearing looked at the way out
+  /// grows by cos(turn) of the way home, dT/dr = ξ_out·cos(turn) + ξ_home; a thing that moves
+  /// changes both by its own velocity, η − 1 = −(ξ_out + ξ_home)·ṙ, ṙ half the horizontal way's.
+  /// \param xi_out, xi_home  horizontal slownesses [s/m]  \param turn  between their bearings [rad]
+  void set_slopes(double xi_out, double xi_home, double turn, double factor);
 };
 
 /// Why a detection has no place.

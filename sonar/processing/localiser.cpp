@@ -55,6 +55,12 @@ std::string_view words_for(Unplaced reason) noexcept {
   return "";
 }
 
+void Location::set_slopes(double xi_out, double xi_home, double turn, double factor) {
+  range_slope = 1.0 / (xi_out * std::cos(turn) + xi_home);
+  rate_slope = 1.0 / (xi_out + xi_home);
+  range_rate = -(factor - 1.0) * rate_slope;
+}
+
 Unplaced Localiser::reason(const Detection& detection, const SonarPlaces& places) const {
   if (on_ellipse(detection, places)) return Unplaced::no_bearing;
   const bool elevation_known = places.shape.upright() ||
@@ -107,9 +113,11 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
     found.range = low;
     found.position = point(low);
     found.elevation = std::atan2(back.z() - depth, low);
-    const double xi = std::cos(found.elevation) / c;
-    found.range_rate = -(query.detection.doppler - 1.0) / (2.0 * xi);
-    found.range_slope = 1.0 / (2.0 * xi);
+    const Separation out = separation(from, found.position);
+    const double xi_home = std::cos(found.elevation) / c,
+                 xi_out = out.range / (c * (found.position - from).norm());
+    found.struck = (found.position - from).norm() / c;
+    found.set_slopes(xi_out, xi_home, out.bearing - query.bearing, query.detection.doppler);
     return found;
   }
   // The farthest that sound of 1600 m/s comes, rounded so that tables serve many detections.
@@ -144,7 +152,7 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
 
   struct Candidate {
     const DelayTable::Branch *out, *home;
-    double range, score, elevation_out, elevation_home;
+    double range, score, elevation_out, elevation_home, struck;
   };
   std::optional<Candidate> best;
   for (const auto& there : out->branches())
@@ -167,7 +175,8 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
             score *= std::exp(-0.5 * off * off) + 1e-12;
           }
           if (!best || score > best->score)
-            best = Candidate{&there, &here, range, score, leg->elevation, node.elevation};
+            best =
+                Candidate{&there, &here, range, score, leg->elevation, node.elevation, leg->delay};
         }
         has_last = leg.has_value();
         last_range = node.range;
@@ -178,8 +187,8 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
 
   // Newton with exact eigenrays.
   found.range = best->range;
-  double slowness = 0.0;
   found.elevation = best->elevation_home;
+  found.struck = best->struck;
   for (int i = 0; i < 6; ++i) {
     const Vec3 p = point(found.range);
     const Arrivals homes = paths_.find(back, p, settings_.frequency, settings_.limits);
@@ -187,20 +196,25 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
     const Arrival* h = of_kind(homes, best->home->history, found.elevation);
     const Arrival* o = of_kind(outs, best->out->history, best->elevation_out);
     if (h == nullptr || o == nullptr) break;  // at the end of a branch: the table's answer stands
-    const double turn = std::cos(separation(from, p).bearing - query.bearing);
-    slowness = o->horizontal_slowness * turn + h->horizontal_slowness;
-    const double step = (query.detection.time - o->delay - h->delay) / slowness;
+    found.set_slopes(o->horizontal_slowness, h->horizontal_slowness,
+                     separation(from, p).bearing - query.bearing, query.detection.doppler);
+    const double step = (query.detection.time - o->delay - h->delay) * found.range_slope;
     if (!std::isfinite(step) || std::abs(step) > 2.0 * home->step()) break;
     found.range += step;
     found.elevation = h->launch_elevation;
+    found.struck = o->delay;
     found.surface_bounces = o->surface_bounces + h->surface_bounces;
     found.bottom_bounces = o->bottom_bounces + h->bottom_bounces;
     if (std::abs(step) < 1e-3) break;
   }
-  if (!(slowness > 0.0)) slowness = 2.0 * std::cos(found.elevation) / paths_.speed_at(back);
   found.position = point(found.range);
-  found.range_rate = -(query.detection.doppler - 1.0) / slowness;
-  found.range_slope = 1.0 / slowness;
+  if (!(found.rate_slope > 0.0)) {  // by the table alone
+    const Vec3& p = found.position;
+    const double turn = separation(from, p).bearing - query.bearing;
+    found.set_slopes(std::cos(best->elevation_out) / paths_.speed_at(from),
+                     std::cos(found.elevation) / paths_.speed_at(back), turn,
+                     query.detection.doppler);
+  }
   return found;
 }
 

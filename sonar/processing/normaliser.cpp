@@ -12,8 +12,8 @@ namespace {
 
 constexpr double outstanding = 4.0;  // over the last mean: put back to it
 /// A mean that was itself clipped by a low mean is lower still, so its lower tail, which lets false
-/// alarms through, is that of fewer cells. Measured: 10⁸ exponential cells, windows of 6 to 24
-/// cells a side, P = 10⁻³ … 10⁻⁶ (docs/theory/processing.md).
+/// alarms through, is that of fewer cells. Measured: 6·10⁷ exponential cells, windows of 6 to 24
+/// cells a side, P = 10⁻³ … 10⁻⁵ (docs/theory/processing.md).
 constexpr double cells_of_clipped = 0.91;
 
 }  // namespace

@@ -192,15 +192,14 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
     if (d.locations.size() <= static_cast<std::size_t>(side)) continue;
     const Location& place = d.locations[static_cast<std::size_t>(side)];
     const double snr = power_from_db(d.snr_db);
-    Contact c{.detection = static_cast<int>(i), .time = ping_time + 0.5 * d.time};
+    Contact c{.detection = static_cast<int>(i), .time = ping_time + place.struck};
     c.range = place.range;
     c.range_rate = place.range_rate;
     const double doppler_sigma = sigma_of(2.0 * processed.result.doppler_cell, snr);
     c.range_sigma = std::hypot(sigma_of(processed.result.time_cell, snr),
                                processed.result.delay_per_doppler * doppler_sigma) *
                     place.range_slope;
-    // η − 1 = −(ξ_out + ξ_home)·ṙ, and range_slope is 1/(ξ_out + ξ_home)
-    c.range_rate_sigma = doppler_sigma * place.range_slope;
+    c.range_rate_sigma = doppler_sigma * place.rate_slope;
     if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
       c.bearing = 0.0;
       c.bearing_sigma = 1e-3;

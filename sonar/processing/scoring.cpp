@@ -57,7 +57,7 @@ Together together(std::span<const TrueEcho> echoes, const TrueEcho& echo, double
 
 PingScore score_detections(std::span<const Detection> detections, std::span<const TrueEcho> echoes,
                            std::span<const TrueTarget> targets, const ArrayShape& shape,
-                           const Vec3& array_position, const Resolution& resolution, double first,
+                           const Kinematics& array, const Resolution& resolution, double first,
                            double last) {
   PingScore score;
   score.owner.assign(detections.size(), -1);
@@ -98,13 +98,15 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     row.audible = row.audible || row.hit;  // by luck
     if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
-      const Separation truth = separation(array_position, target.position);
-      for (const Location& place : detections[static_cast<std::size_t>(row.detection)].locations) {
+      const Detection& own = detections[static_cast<std::size_t>(row.detection)];
+      const Vec3 heard_at = array.position + own.time * array.velocity;
+      const Separation truth = separation(heard_at, target.position);
+      for (const Location& place : own.locations) {
         const Vec3 off = place.position - target.position;
         const double error = std::isnan(place.bearing) ? std::abs(place.range - truth.range)
                                                        : std::hypot(off.x(), off.y());
         if (!std::isnan(row.position_error) && error >= row.position_error) continue;
-        const Separation seen = separation(array_position, place.position);
+        const Separation seen = separation(heard_at, place.position);
         row.position_error = std::isnan(place.bearing) ? none : error;
         row.range_error = (std::isnan(place.bearing) ? place.range : seen.range) - truth.range;
         row.bearing_error = std::isnan(place.bearing)

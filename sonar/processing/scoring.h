@@ -6,6 +6,7 @@
 
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/detection.h"
+#include "sonar/track.h"
 
 namespace asdic {
 
@@ -18,6 +19,7 @@ inline constexpr int another_ping = -3;
 struct TrueEcho {
   int target = 0;               ///< index, direct_sound or another_ping
   double time = 0.0;            ///< of its leading edge [s]
+  double struck = 0.0;          ///< when that met the target [s]
   double doppler = 1.0;         ///< factor
   double level_db = 0.0;        ///< [dB re 1 µPa]
   Vec3 travel = Vec3::UnitY();  ///< direction at the array, unit vector
@@ -67,12 +69,13 @@ struct PingScore {
 /// between) that can be so loud: whose target's pairs within a cell, all in phase, are no more than
 /// 10 dB below it or below the threshold. It belongs to the one whose echo is loudest there. A
 /// target is audible if its pairs within a cell have together, as powers, the level that they need.
-/// \param array_position  when the ping was sent [m]   \param first, last  time that is searched
+/// Ranges and bearings are those from where the array was when it heard the detection.
+/// \param array  when the ping was sent [m]   \param first, last  time that is searched
 /// [s]
 [[nodiscard]] PingScore score_detections(std::span<const Detection> detections,
                                          std::span<const TrueEcho> echoes,
                                          std::span<const TrueTarget> targets,
-                                         const ArrayShape& shape, const Vec3& array_position,
+                                         const ArrayShape& shape, const Kinematics& array,
                                          const Resolution& resolution, double first, double last);
 
 }  // namespace asdic

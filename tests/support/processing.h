@@ -31,6 +31,7 @@ inline std::vector<TrueEcho> echoes_of(const PingRecord& record, int array = 0) 
     if (e.array == array)
       echoes.push_back({.target = e.target,
                         .time = e.heard.delay,
+                        .struck = e.struck,
                         .doppler = e.heard.doppler,
                         .level_db = e.level_db,
                         .travel = e.heard.slowness.normalized()});
@@ -44,7 +45,7 @@ inline std::vector<TrueTarget> targets_of(const Scenario& scenario, const PingRe
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     double loudest = -infinity, time = 0.0;
     for (const TrueEcho& e : echoes)
-      if (e.target == int(i) && e.level_db > loudest) loudest = e.level_db, time = 0.5 * e.time;
+      if (e.target == int(i) && e.level_db > loudest) loudest = e.level_db, time = e.struck;
     targets.push_back(
         {.target = int(i),
          .name = scenario.targets[i].name,

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/doppler.h"
+#include "sonar/geometry.h"
+#include "sonar/moving_paths.h"
 #include "sonar/processing/delay_table.h"
+#include "sonar/processing/localiser.h"
 #include "sonar/processing/scoring.h"
 
 namespace asdic {
@@ -64,7 +68,7 @@ TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
       at(10.0, 1.002, Vec3::UnitY()),           // another direction
       at(3.02, 0.99, Vec3::UnitY())};           // the transmitter itself
   const PingScore score =
-      score_detections(found, echoes, targets, line, Vec3::Zero(), cell, 1.0, 20.0);
+      score_detections(found, echoes, targets, line, Kinematics{}, cell, 1.0, 20.0);
   EXPECT_EQ(score.owner, (std::vector<int>{0, 0, -1, -1, -1, direct_sound}));
   EXPECT_EQ(score.hits, 1);
   EXPECT_EQ(score.misses, 0);  // target 1 has no echo: it is not missed
@@ -75,9 +79,9 @@ TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
   EXPECT_FALSE(score.targets[1].audible);
   // Nothing is missed that was not searched for.
   const PingScore nothing =
-      score_detections({}, echoes, targets, line, Vec3::Zero(), cell, 11.0, 20.0);
+      score_detections({}, echoes, targets, line, Kinematics{}, cell, 11.0, 20.0);
   EXPECT_EQ(nothing.misses, 0);
-  EXPECT_EQ(score_detections({}, echoes, targets, line, Vec3::Zero(), cell, 1.0, 20.0).misses, 1);
+  EXPECT_EQ(score_detections({}, echoes, targets, line, Kinematics{}, cell, 1.0, 20.0).misses, 1);
 }
 
 // On a sweep's ridge an error of the Doppler factor moves the time by κ times it.
@@ -89,10 +93,69 @@ TEST(Scoring, FollowsASweepsRidge) {
   const std::vector<Detection> along{at(10.2, 1.005, Vec3::UnitX())},
       across{at(10.2, 0.995, Vec3::UnitX())};
   const auto hits = [&](const std::vector<Detection>& found) {
-    return score_detections(found, echoes, targets, point, Vec3::Zero(), cell, 1.0, 20.0).hits;
+    return score_detections(found, echoes, targets, point, Kinematics{}, cell, 1.0, 20.0).hits;
   };
   EXPECT_EQ(hits(along), 1);
   EXPECT_EQ(hits(across), 0);
+}
+
+// A pair 8 km apart and a target that moves, all at one depth where sound is straight. Half the
+// horizontal way changes by ½v·(u_out + u_home); the Doppler factor tells it to the second order,
+// (v/c)² of 8/1500: 1 %. By dT/dr, one leg turned by the bistatic angle b, it would be
+// 2/(1 + cos b) times as much, twice at 90°.
+TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  ocean.bottom = {.depth = 4000.0, .material = Rigid{}};
+  const PropagationPaths paths(ocean, {});
+  SonarPlaces places;
+  places.source.position = {-4000.0, 0.0, 1000.0};
+  places.array.position = {4000.0, 0.0, 1000.0};
+  places.shape = {.kind = ArrayKind::volume, .length = 2.0, .width = 2.0, .height = 2.0};
+  const Vec3 velocity(3.0, -7.0, 0.0);
+  for (const auto& [x, y] : {std::pair{500.0, 8000.0}, {-2000.0, 4000.0}, {1000.0, 2500.0}}) {
+    const Vec3 target(x, y, 1000.0);
+    const Separation out = separation(places.source.position, target),
+                     home = separation(target, places.array.position),
+                     seen = separation(places.array.position, target);
+    const Vec3 in = slowness_vector(out.bearing, 0.0, 1500.0),
+               back = slowness_vector(home.bearing, 0.0, 1500.0);
+    const Detection heard{.time = (out.range + home.range) / 1500.0,
+                          .doppler = echo_doppler({Vec3::Zero(), in}, {velocity, in},
+                                                  {velocity, back}, {Vec3::Zero(), back}),
+                          .look = direction(seen.bearing, 0.0)};
+    const double rate = 0.5 * velocity.dot(1500.0 * in - 1500.0 * back);
+    for (const std::optional<double> speed : {std::optional<double>(), {1500.0}}) {
+      const Localiser localiser(paths,
+                                {.limits = {.max_surface_bounces = 0, .max_bottom_bounces = 0},
+                                 .depth = 1000.0,
+                                 .speed = speed});
+      const auto found = localiser.locate(heard, places, 0.01);
+      ASSERT_EQ(found.size(), 1U);
+      EXPECT_LT((found[0].position - target).norm(), 0.01);
+      EXPECT_NEAR(found[0].range_rate, rate, 0.01 * std::abs(rate));
+      EXPECT_NEAR(found[0].struck, out.range / 1500.0, 1e-5);
+      // dr/dτ and dr/d(1 − η), from their geometry
+      const double turn = std::cos(out.bearing - seen.bearing);
+      EXPECT_NEAR(found[0].range_slope, 1500.0 / (1.0 + turn), 0.1);
+      EXPECT_NEAR(found[0].rate_slope, 750.0, 0.1);
+    }
+  }
+}
+
+// A vehicle at 10 m/s listens with one phone: the range found is from where it heard, 50 m nearer.
+TEST(Scoring, MeasuresRangesFromWhereTheArrayHeard) {
+  const std::vector<TrueEcho> echoes{{.target = 0, .time = 5.0, .doppler = 1.0}};
+  const std::vector<TrueTarget> targets{
+      {.target = 0, .present = true, .position = {0.0, 3750.0, 0.0}}};
+  Detection found = at(5.0, 1.0, Vec3::UnitY());
+  found.locations = {{.position = {0.0, 3700.0, 0.0}, .range = 3703.0, .bearing = std::nan("")}};
+  const Kinematics array{.position = Vec3::Zero(), .velocity = {0.0, 10.0, 0.0}};
+  const PingScore score =
+      score_detections(std::vector{found}, echoes, targets, ArrayShape{}, array,
+                       {.time = 0.1, .doppler = 0.1, .direction = 2.0}, 1.0, 20.0);
+  ASSERT_EQ(score.hits, 1);
+  EXPECT_NEAR(score.targets[0].range_error, 3.0, 1e-9);
 }
 
 }  // namespace

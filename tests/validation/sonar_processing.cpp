@@ -46,7 +46,7 @@ Outcome run(const PingSimulator& simulator, const PingRecord& record, Processing
   out.echoes = support::echoes_of(record);
   out.targets = support::targets_of(scenario, record, out.echoes);
   out.score = score_detections(out.processed.result.detections, out.echoes, out.targets,
-                               out.processed.shape, out.processed.places.array.position,
+                               out.processed.shape, out.processed.places.array,
                                processor.resolution(out.processed), settings.detector.first_time,
                                scenario.pings.recording_duration);
   return out;

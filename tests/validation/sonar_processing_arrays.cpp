@@ -47,10 +47,10 @@ Heard hear(const Scenario& s, Beamformer beamformer, double depth = 100.0) {
   out.processed = processor.process(support::recording_of(s, record), {}, echoes);
   for (std::size_t i = 0; i < echoes.size(); ++i)
     echoes[i].threshold_db = out.processed.result.thresholds_db[i];
-  out.score = score_detections(out.processed.result.detections, echoes,
-                               support::targets_of(s, record, echoes), out.processed.shape,
-                               out.processed.places.array.position,
-                               processor.resolution(out.processed), 0.5, 6.0);
+  out.score =
+      score_detections(out.processed.result.detections, echoes,
+                       support::targets_of(s, record, echoes), out.processed.shape,
+                       out.processed.places.array, processor.resolution(out.processed), 0.5, 6.0);
   return out;
 }
 
@@ -114,8 +114,8 @@ TEST(ProcessedTruth, DoesNotExplainABurstByAWhisper) {
     changed[0].level_db -= weaker_db;
     changed[0].threshold_db = done.result.thresholds_db[0];
     return score_detections(done.result.detections, changed,
-                            support::targets_of(s, record, changed), done.shape,
-                            done.places.array.position, processor.resolution(done), 0.5, 6.0);
+                            support::targets_of(s, record, changed), done.shape, done.places.array,
+                            processor.resolution(done), 0.5, 6.0);
   };
   EXPECT_EQ(score(0.0).hits, 1);
   const PingScore whisper = score(40.0);
