@@ -84,6 +84,7 @@ class FanSplitting {
 
  private:
   static constexpr std::size_t deepest = 58;
+  static constexpr double least_middle = 0.35;  // how far from the even middle a ray may lie
   static constexpr int rays_per_question = 32;
   static constexpr int most_rays = (1 << 22) / first_intervals;  // in one of the first intervals
 
@@ -115,7 +116,15 @@ class FanSplitting {
     if (rays.size() <= slot) rays.emplace_back();  // a deque: references stay
     Ray& m = rays[slot];
     work.trace(middle, m);
-    if (--left > 0 && slot < deepest && !known(work, a, m, b, slot)) {
+    bool told = --left <= 0 || slot >= deepest || known(work, a, m, b, slot);
+    // one beside an end tells nothing of what lies between
+    if (const double even = 0.5 * (a.angle + b.angle);
+        told && left > 0 && slot < deepest &&
+        std::abs(middle - even) > least_middle * (b.angle - a.angle)) {
+      work.trace(even, m);
+      told = --left <= 0 || known(work, a, m, b, slot);
+    }
+    if (!told) {
       split(work, rays, a, m, slot + 1, left, out, stop);
       split(work, rays, m, b, slot + 1, left, out, stop);
     } else {

@@ -10,15 +10,18 @@
 
 namespace asdic::support {
 
+/// An ocean over a slope, and the receivers that a search is asked for: every depth at every range.
 struct SlopingSea {
   std::string name;
   Environment ocean;
-  double source_depth, steepest;  // [m], launch angles within ± that [rad]
-  int bounces;                    // of each boundary at most
-  std::vector<double> ranges, depths;
+  double source_depth, steepest;       ///< [m]; launch elevations within ± that [rad]
+  int bounces;                         ///< of each boundary at most
+  std::vector<double> ranges, depths;  ///< [m]
   friend void PrintTo(const SlopingSea& s, std::ostream* out) { *out << s.name; }
 };
 
+/// Shelves, continental slopes, a seamount and a front out to 10–60 km, under every law of the
+/// profile.
 inline std::vector<SlopingSea> sloping_seas() {
   using enum ShapeInterpolation;
   const SoundSpeedProfile munk = SoundSpeedProfile::munk();
@@ -37,19 +40,23 @@ inline std::vector<SlopingSea> sloping_seas() {
   shelf.bottom = bottom({0.0, 60e3}, {300.0, 120.0}, piecewise_linear);
   all.push_back({"Pekeris shelf", shelf, 40.0, 0.25, 60, far, {20.0, 60.0, 110.0}});
 
-  // a rough sea floor as charts have it: a node a kilometre, 3 % of slope between
+  // relief as charts have it: a node a kilometre, slopes of 1 % between
   std::mt19937 generator(7);
   std::normal_distribution<> normal;
   auto r = samples(0.0, 60e3, 61);
   std::vector<double> z;
-  for (const double x : r) z.push_back(500.0 - 4e-3 * x + 15.0 * normal(generator));
+  for (const double x : r) z.push_back(500.0 - 4e-3 * x + 7.0 * normal(generator));
   Environment facets{.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear)};
   facets.bottom = bottom(r, z, piecewise_linear);
   all.push_back(
-      {"facets up a shelf", facets, 60.0, 0.3, 12, {10e3, 16e3, 24e3, 35e3}, {30.0, 150.0}});
+      {"facets up a shelf", facets, 60.0, 0.3, 12, {10e3, 19e3, 28e3, 39e3}, {30.0, 150.0}});
   facets.bottom = bottom(r, z, smooth);
   all.push_back(
-      {"the same smoothly", facets, 60.0, 0.3, 12, {10e3, 16e3, 24e3, 35e3}, {30.0, 150.0}});
+      {"the same smoothly", facets, 60.0, 0.3, 12, {10e3, 19e3, 28e3, 39e3}, {30.0, 150.0}});
+
+  facets.bottom = bottom(r, z, curvilinear);
+  all.push_back(
+      {"the same curvilinear", facets, 60.0, 0.3, 12, {10e3, 19e3, 28e3, 39e3}, {30.0, 150.0}});
 
   Environment down{.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear)};
   down.bottom = bottom({0.0, 5e3, 50e3, 60e3}, {200.0, 250.0, 3500.0, 3800.0}, piecewise_linear);
