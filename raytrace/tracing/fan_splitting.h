@@ -23,6 +23,8 @@ namespace asdic {
 ///   std::size_t coarse_levels;  the fan begins with 256/2ⁿ intervals; if that is not none, as well
 ///   bool regular(const Ray& a, const Ray& m, const Ray& b);  may a–b be wider than 1/256?
 ///   bool pair_tells(const Ray& a, const Ray& b);  is a–b known without a ray between?
+/// and may have
+///   SearchCost cost();  of all its rays
 template <class Work>
 class FanSplitting {
  public:
@@ -74,6 +76,9 @@ class FanSplitting {
       watch->intervals = first_intervals;
       watch->unfinished = static_cast<int>(
           std::count_if(left.begin(), left.end(), [](int rays) { return rays <= 0; }));
+      if constexpr (requires(const Work& work) { work.cost(); })
+        for (const auto& memory : memories)
+          if (memory) watch->cost += memory->work.cost();
     }
     std::vector<Result> all;
     for (auto& some : results)
