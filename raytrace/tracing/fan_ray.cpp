@@ -99,6 +99,10 @@ void split_into_legs(const RayTrajectory& ray, const Environment& environment,
       history = history_after(history, wall, kind, segments[i - 1].end.range);
       if (displaced(segments[i - 1], segments[i]))
         history = history_after(history, wall, kind, segments[i].begin.range);
+      // where speed changes with range, between rays that leave forward and backward some do the
+      // one and turn back to the other
+      if (environment.section && forward(segments[i]) != forward(segments[i - 1]))
+        history = mixed(history, turned_back);
     } else {
       history = mixed(history, turned_back);
     }

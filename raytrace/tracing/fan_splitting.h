@@ -23,6 +23,8 @@ namespace asdic {
 ///   std::size_t coarse_levels;  the fan begins with 256/2ⁿ intervals; if that is not none, as well
 ///   bool regular(const Ray& a, const Ray& m, const Ray& b);  may a–b be wider than 1/256?
 ///   bool pair_tells(const Ray& a, const Ray& b);  is a–b known without a ray between?
+/// and may have
+///   SearchCost cost();  of all its rays
 template <class Work>
 class FanSplitting {
  public:
@@ -74,6 +76,9 @@ class FanSplitting {
       watch->intervals = first_intervals;
       watch->unfinished = static_cast<int>(
           std::count_if(left.begin(), left.end(), [](int rays) { return rays <= 0; }));
+      if constexpr (requires(const Work& work) { work.cost(); })
+        for (const auto& memory : memories)
+          if (memory) watch->cost += memory->work.cost();
     }
     std::vector<Result> all;
     for (auto& some : results)
@@ -84,6 +89,7 @@ class FanSplitting {
 
  private:
   static constexpr std::size_t deepest = 58;
+  static constexpr double least_middle = 0.35;  // how far from the even middle a ray may lie
   static constexpr int rays_per_question = 32;
   static constexpr int most_rays = (1 << 22) / first_intervals;  // in one of the first intervals
 
@@ -115,7 +121,15 @@ class FanSplitting {
     if (rays.size() <= slot) rays.emplace_back();  // a deque: references stay
     Ray& m = rays[slot];
     work.trace(middle, m);
-    if (--left > 0 && slot < deepest && !known(work, a, m, b, slot)) {
+    bool told = --left <= 0 || slot >= deepest || known(work, a, m, b, slot);
+    // one beside an end tells nothing of what lies between
+    if (const double even = 0.5 * (a.angle + b.angle);
+        told && left > 0 && slot < deepest &&
+        std::abs(middle - even) > least_middle * (b.angle - a.angle)) {
+      work.trace(even, m);
+      told = --left <= 0 || known(work, a, m, b, slot);
+    }
+    if (!told) {
       split(work, rays, a, m, slot + 1, left, out, stop);
       split(work, rays, m, b, slot + 1, left, out, stop);
     } else {

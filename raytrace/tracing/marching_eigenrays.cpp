@@ -93,7 +93,12 @@ struct ColumnSearch {
 
   void trace(double angle, FanRay& out) {
     tracer_.trace(source_range_, source_depth_, angle, limits_, trajectory_);
+    cost_.add(trajectory_.segments.size());
     digest(trajectory_, tracer_.environment(), columns_, out);
+  }
+  [[nodiscard]] SearchCost cost() const noexcept {
+    SearchCost all = cost_;
+    return all += roots_.cost();
   }
   [[nodiscard]] bool holds(const FanRay& a, const FanRay& m, const FanRay& b) const {
     return level(a, b) || test_.holds(a, m, b);
@@ -132,6 +137,7 @@ struct ColumnSearch {
   NeighbourTest test_;
   RootFinder roots_;
   RayTrajectory trajectory_;
+  SearchCost cost_;
 };
 
 void sort_and_drop_doubles(Arrivals& arrivals) {

@@ -25,6 +25,16 @@ constexpr double regular_miss = 1.0, regular_share = 0.05;
 /// Two rays alone tell what lies between when all they say of it lies on lines to this [m].
 constexpr double pair_miss = 0.1;
 
+/// A cubic through two rays misses one between by E·16t²(1 − t)², t its place from 0 to 1, in value
+/// and in slope by E/h·32t(1 − t)(1 − 2t): the part of E seen in the greater of the value's miss
+/// and h/8 of the slope's where the third ray is; 1 in the middle. Beside a node or a ray that
+/// grazes it is far from the middle, and a cubic that is right there is none that tells the rest.
+double seen_at(const FanRay& a, const FanRay& m, const FanRay& b) noexcept {
+  constexpr double least = 1e-3;  // quintics tell depths and slopes no better than that
+  const double t = (m.angle - a.angle) / (b.angle - a.angle), bell = 4.0 * t * (1.0 - t);
+  return std::max({bell * bell, bell * std::abs(1.0 - 2.0 * t), least});
+}
+
 /// Whether the cubic through two tells where the ray between them strikes the boundary.
 bool strikes_evenly(const FanRay& a, const FanRay& m, const FanRay& b, std::size_t i) noexcept {
   const RayLeg &la = a.legs[i], &lm = m.legs[i], &lb = b.legs[i];
@@ -32,7 +42,8 @@ bool strikes_evenly(const FanRay& a, const FanRay& m, const FanRay& b, std::size
   const Hermite place({a.angle, la.end.range, la.d_end}, {b.angle, lb.end.range, lb.d_end});
   const double error =
       std::max(std::abs(place.value(m.angle) - lm.end.range),
-               std::abs(place.slope(m.angle) - lm.d_end) * 0.125 * (b.angle - a.angle));
+               std::abs(place.slope(m.angle) - lm.d_end) * 0.125 * (b.angle - a.angle)) /
+      seen_at(a, m, b);
   return error <= regular_miss + regular_share * std::abs(lb.end.range - la.end.range);
 }
 
@@ -103,6 +114,18 @@ DepthSpan around(const ColumnCrossing& known, const std::optional<ColumnCrossing
   take(known);
   if (middle) take(*middle);
   return span;
+}
+
+/// Whether the depths and slopes of two rays lie on a line, or no receiver is near them.
+bool half_tells(const ReceiverColumn& column, const ColumnCrossing& a, const ColumnCrossing& m,
+                double width) {
+  const double rise = std::abs(m.depth - a.depth);
+  const double bend = std::max(std::abs(rise - 0.5 * std::abs(a.slope + m.slope) * width),
+                               std::abs(m.slope - a.slope) * 0.125 * width);
+  if (bend * m.cosine < tolerance) return true;
+  const double margin = 0.5 * rise + 4.0 * bend + tolerance;
+  return column.between(std::min(a.depth, m.depth) - margin, std::max(a.depth, m.depth) + margin)
+      .empty();
 }
 
 /// Whether a leg begins or ends closer to a range than half its extent.
@@ -204,7 +227,7 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
       too_faint(lb, std::min(std::abs(lb.begin.q), std::abs(lb.end.q))))
     return true;
   if (!ends_hold(a, m, b, i)) return false;
-  const double width = b.angle - a.angle;
+  const double width = b.angle - a.angle, seen = seen_at(a, m, b);
   const auto [first, last] = columns_between(a, b, i, columns_);
   for (std::uint32_t k = first; k < last; ++k) {
     const ReceiverColumn& column = columns_[k];
@@ -218,6 +241,10 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
                                   : swept_at(column.range, la, lb, za || zb, {za, zm, zb});
       if (!column.between(swept.low, swept.high).empty() && !finest_apart(a.angle, b.angle))
         return false;
+      // of the half between two that reach it no third ray tells
+      if (zm && (za || zb) &&
+          !half_tells(column, za ? *za : *zb, *zm, std::abs(m.angle - (za ? a : b).angle)))
+        return false;
       continue;
     }
     if (!zm) continue;
@@ -225,8 +252,8 @@ bool NeighbourTest::leg_holds(const FanRay& a, const FanRay& m, const FanRay& b,
         nb{b.angle, zb->depth, zb->slope};
     const Hermite cubic(na, nb);
     // the slope tells what a lucky value does not
-    const double miss = std::abs(cubic.value(m.angle) - zm->depth),
-                 slope_miss = std::abs(cubic.slope(m.angle) - zm->slope);
+    const double miss = std::abs(cubic.value(m.angle) - zm->depth) / seen,
+                 slope_miss = std::abs(cubic.slope(m.angle) - zm->slope) / seen;
     const double error = std::max(miss, slope_miss * 0.125 * width);
     const bool turns_apart = std::abs(za->turns - zb->turns) > 1;
     // rays that turn in different rows have one between that turns on a knot: a cusp
@@ -253,7 +280,8 @@ bool NeighbourTest::ends_hold(const FanRay& a, const FanRay& m, const FanRay& b,
   const Hermite place({a.angle, la.end.range, la.d_end}, {b.angle, lb.end.range, lb.d_end});
   const double error =
       std::max(std::abs(place.value(m.angle) - lm.end.range),
-               std::abs(place.slope(m.angle) - lm.d_end) * 0.125 * (b.angle - a.angle));
+               std::abs(place.slope(m.angle) - lm.d_end) * 0.125 * (b.angle - a.angle)) /
+      seen_at(a, m, b);
   const double steep = std::abs(lm.end.zeta * lm.end.c);
   if (error * steep < tolerance) return true;
   // Receivers that the legs' ends may sweep over lie close to the boundary there.

@@ -55,7 +55,7 @@ std::size_t RootFinder::expected(const FanRay& a, const FanRay& b, std::size_t f
 WholeRay& RootFinder::whole_ray(std::size_t slot, double angle) {
   while (whole_rays_.size() <= slot) whole_rays_.emplace_back();  // a deque: references stay
   WholeRay& whole = whole_rays_[slot];
-  tracer_.trace(source_range_, source_depth_, angle, limits_, whole.ray);
+  trace(angle, limits_, whole.ray);
   digest(whole.ray, tracer_.environment(), columns_, whole.fan);
   whole.sign(tracer_.environment());
   return whole;

@@ -28,6 +28,11 @@ double spread_of(const RayLeg& a, const RayLeg& b) {
 
 }  // namespace
 
+void RootFinder::trace(double angle, const TraceLimits& limits, RayTrajectory& out) {
+  tracer_.trace(source_range_, source_depth_, angle, limits, out);
+  cost_.add(out.segments.size());
+}
+
 void RootFinder::search(const FanRay& a, const FanRay& b, int max_turns, const Found& found) {
   found_ = &found;
   max_turns_ = max_turns;
@@ -44,7 +49,7 @@ void RootFinder::search_level(const FanRay& a, const FanRay& b, double height, i
   found_ = &found;
   max_turns_ = max_turns;
   if (a.angle <= 0.0 && b.angle >= 0.0) {
-    tracer_.trace(source_range_, source_depth_, 0.0, limits_, ray_);
+    trace(0.0, limits_, ray_);
     std::vector<LegOfRay> legs;
     split_into_legs(ray_, tracer_.environment(), legs);
     for (const ReceiverColumn& column : columns_) {
@@ -121,7 +126,7 @@ std::optional<ExactCrossing> RootFinder::exact(double angle) {
   if (family_ != nullptr) return family_->at(angle);
   TraceLimits limits = limits_;
   limits.max_range = std::min(limits.max_range, reach_);
-  tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
+  trace(angle, limits, ray_);
   return cross_column(ray_, tracer_, leg_, history_, column_->range);
 }
 
@@ -222,7 +227,7 @@ void RootFinder::twin_at_node(double angle, double depth, std::uint32_t receiver
   if (!at_node) return;
   TraceLimits limits = limits_;
   limits.max_range = std::min(limits.max_range, reach_);
-  tracer_.trace(source_range_, source_depth_, angle, limits, ray_);
+  trace(angle, limits, ray_);
   std::vector<LegOfRay> legs;
   split_into_legs(ray_, ocean, legs);
   if (leg_ + 1 >= legs.size() || legs[leg_].history != history_) return;

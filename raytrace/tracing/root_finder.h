@@ -7,6 +7,7 @@
 #include "raytrace/tracing/fan_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_family.h"
+#include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
 
@@ -36,7 +37,10 @@ class RootFinder {
   void search_level(const FanRay& a, const FanRay& b, double height, int max_turns,
                     const Found& found);
 
+  [[nodiscard]] const SearchCost& cost() const noexcept { return cost_; }  ///< so far
+
  private:
+  void trace(double angle, const TraceLimits& limits, RayTrajectory& out);
   void search_legs(const FanRay& a, const FanRay& b, std::size_t first_leg);
   [[nodiscard]] std::size_t expected(const FanRay& a, const FanRay& b, std::size_t first_leg) const;
   WholeRay& whole_ray(std::size_t slot, double angle);
@@ -57,6 +61,7 @@ class RootFinder {
   TraceLimits limits_;
   std::span<const ReceiverColumn> columns_;
   std::size_t receivers_ = 0;
+  SearchCost cost_;
   RayTrajectory ray_;
   std::deque<WholeRay> whole_rays_;  // three, and two for each depth of splitting
   std::vector<RayFamily> families_;

@@ -1,7 +1,23 @@
 #pragma once
+#include <cstddef>
 #include <functional>
 
 namespace asdic {
+
+/// What a search takes: rays traced, for the fan and for roots, and the segments of them.
+struct SearchCost {
+  std::size_t rays = 0, segments = 0;
+
+  void add(std::size_t segments_of_ray) noexcept {
+    ++rays;
+    segments += segments_of_ray;
+  }
+  SearchCost& operator+=(const SearchCost& other) noexcept {
+    rays += other.rays;
+    segments += other.segments;
+    return *this;
+  }
+};
 
 /// How a search fares.
 struct SearchWatch {
@@ -13,6 +29,7 @@ struct SearchWatch {
   /// boundaries are so rough that rays part without end, faint paths are missing.
   int unfinished = 0;
   int intervals = 0;  ///< how many these are
+  SearchCost cost;    ///< the same for any number of threads
 };
 
 }  // namespace asdic

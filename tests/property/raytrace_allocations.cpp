@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include "raytrace/beams/layered_crossings.h"
 #include "raytrace/eigenrays.h"
 #include "raytrace/ray_fan.h"
+#include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/deep_ocean.h"
 #include "support/oceans.h"
@@ -91,6 +93,44 @@ TEST(Allocations, NoneOfATracedRay) {
               }),
               0U)
         << ocean.name;
+  }
+}
+
+// A search over slopes, ridges and fronts allocates for its results (a list a receiver, which grows
+// by doubling, a list of bounces a path) and for the rays that it keeps to compare: the 33 ends of
+// the fan's first intervals, one for each depth of splitting, 58 at most, and some for families of
+// roots, each of legs, parts and crossings that grow by doubling to a few dozen. Never for another
+// ray, a segment, an event, a Newton step, of which there are hundreds of thousands here.
+TEST(Allocations, OfAMarchingSearchAreBoundedByItsResults) {
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  constexpr std::size_t kept_rays = 33 + 58, arrays_each = 3, doublings = 6;
+  for (const support::CurvedOcean& ocean : support::curved_oceans()) {
+    const RayTracer tracer(ocean.environment, 1000.0);
+    for (const int n : {1, 10, 1000}) {
+      std::vector<ReceiverPoint> receivers;
+      for (int i = 0; i < n; ++i)
+        receivers.push_back({0.8 * ocean.range, 20.0 + 330.0 * (i + 0.5) / n});
+      std::size_t paths = 0;
+      SearchWatch watch;
+      const std::size_t count = allocations_of([&] {
+        paths = 0;
+        watch = {};
+        for (const Arrivals& here : marching_eigenrays(tracer, 0.0, ocean.source_depth, receivers,
+                                                       {.lowest = -1.2,
+                                                       .highest = 1.2,
+                                                       .max_surface_bounces = 4,
+                                                       .max_bottom_bounces = 4},
+                                                       &watch))
+          paths += here.size();
+      });
+      const std::size_t lists_of_paths = 5 * receivers.size();  // 1, 2, 4, 8, 16 of them
+      EXPECT_LE(count, paths + lists_of_paths + kept_rays * arrays_each * doublings)
+          << ocean.name << ", " << n << " receivers, " << paths << " paths, " << watch.cost.rays
+          << " rays of " << watch.cost.segments << " segments";
+      if (n == 1000) {
+        EXPECT_GT(watch.cost.segments, 50 * kept_rays * arrays_each * doublings);
+      }
+    }
   }
 }
 
