@@ -32,23 +32,31 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
       }
       any = any || rows[j] >= 0;
     }
-    if (any) (kind == BoundaryKind::surface ? surface_ : bottom_) = std::move(rows);
+    if (!any) continue;
+    std::vector<std::int8_t> silent(rows.size());
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      silent[j] = wall(kind).roughness.smooth() &&
+                  std::holds_alternative<Vacuum>(wall(kind).material_at(grid.ranges[j]));
+    const bool surface = kind == BoundaryKind::surface;
+    (surface ? silent_surface_ : silent_bottom_) = std::move(silent);
+    (surface ? surface_ : bottom_) = std::move(rows);
   }
 }
 
-bool BoundaryRows::silent(BoundaryKind kind, std::size_t column) const noexcept {
-  return wall(kind).roughness.smooth() &&
-         std::holds_alternative<Vacuum>(wall(kind).material_at(ranges_[column]));
+std::complex<double> WallMeeting::twin() const noexcept {
+  if (!there) return 0.0;
+  if (!reflected) return reflection;
+  return std::abs(reflection) < least_reflection ? 0.0 : 1.0 / reflection;
 }
 
-std::complex<double> BoundaryRows::twin(BoundaryKind kind, std::size_t column,
-                                        const Crossing& x) const noexcept {
+WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double cosine_here,
+                                  double sine_here, double speed) const noexcept {
   const Boundary& boundary = wall(kind);
   const double range = ranges_[column], depth = boundary.depth_at(range);
   const double c = sound_speed(environment_, range, depth).c;
-  const double cosine = x.cosine * c / x.speed;  // Snell
-  if (!(std::abs(cosine) < 1.0)) return 0.0;
-  const double sine = std::copysign(std::sqrt(1.0 - cosine * cosine), x.sine);
+  const double cosine = cosine_here * c / speed;  // Snell
+  if (!(std::abs(cosine) < 1.0)) return {};
+  const double sine = std::copysign(std::sqrt(1.0 - cosine * cosine), sine_here);
   const double slope = boundary.shape ? boundary.shape->at(range).slope : 0.0;
   const double sense = kind == BoundaryKind::surface ? 1.0 : -1.0;  // n into the water
   const double into_water = sense * (sine - slope * cosine) / std::sqrt(1.0 + slope * slope);
@@ -59,8 +67,7 @@ std::complex<double> BoundaryRows::twin(BoundaryKind kind, std::size_t column,
   if (!boundary.roughness.smooth())
     reflection *=
         coherent_reflection(boundary.roughness, std::sin(grazing), 2.0 * pi * frequency_ / c);
-  if (into_water < 0.0) return reflection;  // it is yet to be reflected
-  return std::abs(reflection) < least_reflection ? 0.0 : 1.0 / reflection;
+  return {true, into_water >= 0.0, slope, reflection};
 }
 
 void beams::add_twins(const BeamSetting& setting, const BeamLaunch& launch,

@@ -106,7 +106,7 @@ class FastPart {
     if (work.also.half) sum_.emplace_back(setting, grid.depths, memory.subspan(one));
     if (work.also.bound)
       tubes_.emplace(work.setting, grid.depths, grid.ranges.size(), work.also.first_left_out,
-                     work.also.last_left_out);
+                     work.also.last_left_out, &work.boundary_rows);
   }
   /// Numbers of memory for the sums.
   [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {

@@ -150,10 +150,6 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
           for (const auto& part : parts) sum += part->bound_at(j, k);
           result.bound[k * columns + j] = scale * sum;
         }
-        for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom})
-          if (const std::int32_t k = work.boundary_rows.row(kind, j); k >= 0)  // 1 + |R| ≤ 2
-            result.bound[static_cast<std::size_t>(k) * columns + j] *=
-                work.boundary_rows.silent(kind, j) ? 0.0 : 2.0;
       }
     }
   }
