@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "raytrace/beams/foot.h"
 #include "raytrace/beams/geometric.h"
 
 namespace asdic {
@@ -70,22 +71,67 @@ WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double 
   return {true, into_water >= 0.0, slope, reflection};
 }
 
-void beams::add_twins(const BeamSetting& setting, const BeamLaunch& launch,
-                      const RayTrajectory& ray, const BoundaryRows& rows, FieldSum& field) {
-  const double launched = launch_factor(setting, launch);
+BeamTwins::BeamTwins(const BoundaryRows& rows, const FieldSum& field) : rows_(rows) {
+  for (AtWall& wall : walls_) {
+    for (std::size_t j = 0; j < field.ranges.size(); ++j)
+      if (const std::int32_t row = rows.row(wall.kind, j); row >= 0) {
+        const auto k = static_cast<std::size_t>(row);
+        wall.ranges.push_back(field.ranges[j]);
+        wall.depths.push_back(field.column_depths(j)[k]);
+        wall.column.push_back(j), wall.row.push_back(k);
+      }
+    wall.field.ranges = wall.ranges, wall.field.depths = wall.depths;
+    wall.field.irregular = true;
+    wall.field.sum.resize(wall.ranges.size());  // its places tell the receivers
+  }
+}
+
+void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+                    FieldSum& field) {
+  const double launched = beams::launch_factor(setting, launch);
+  switch (setting.kind) {
+    case BeamKind::hat:
+    case BeamKind::gaussian:
+    case BeamKind::simple_gaussian:
+      break;
+    case BeamKind::ray_centred_hat:
+    case BeamKind::ray_centred_gaussian:
+      return add_ray_centred(setting, launched, ray, field);
+    case BeamKind::cerveny_cartesian:
+    case BeamKind::cerveny_ray_centred:
+      return;
+  }
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
-      for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom}) {
-        const std::int32_t row = rows.row(kind, column);
+      for (const AtWall& wall : walls_) {
+        const std::int32_t row = rows_.row(wall.kind, column);
         if (row < 0) continue;
         Crossing x = crossing_of(segment, state);
-        x.loss *= rows.twin(kind, column, x);
+        x.loss *= rows_.twin(wall.kind, column, x);
         const auto k = static_cast<std::size_t>(row);
-        add_crossing(setting, launch, launched, ray.source_speed, x,
-                     field.column_depths(column).subspan(k, 1),
-                     [&](std::size_t, std::complex<double> p) { field.column(column)[k] += p; });
+        const auto depth = field.column_depths(column).subspan(k, 1);
+        const auto put = [&](std::size_t, std::complex<double> p) { field.column(column)[k] += p; };
+        if (setting.kind == BeamKind::simple_gaussian)
+          beams::add_simple_crossing(setting, launched, x, depth, put);
+        else
+          beams::add_crossing(setting, launch, launched, ray.source_speed, x, depth, put);
       }
     });
+}
+
+void BeamTwins::add_ray_centred(const BeamSetting& setting, double launched,
+                                const RayTrajectory& ray, FieldSum& field) {
+  for (AtWall& wall : walls_) {
+    if (wall.ranges.empty()) continue;
+    beams::visit_ray_centred(
+        setting, launched, ray, wall.field,
+        [&](const Foot& foot, const Crossing& x, std::complex<double> p) {
+          const auto i = static_cast<std::size_t>(foot.sum - wall.field.sum.data());
+          const std::complex<double> twin = rows_.twin(wall.kind, wall.column[i], x);
+          field.column(wall.column[i])[wall.row[i]] +=
+              setting.coherent ? p * twin : p * std::norm(twin);
+        });
+  }
 }
 
 }  // namespace asdic

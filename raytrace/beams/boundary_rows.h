@@ -60,10 +60,30 @@ class BoundaryRows {
   std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise
 };
 
-namespace beams {
-/// The twins of one ray's hat or Gaussian beam (Cartesian), receiver by receiver.
-void add_twins(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
-               const BoundaryRows& rows, FieldSum& field);
-}  // namespace beams
+/// The twins of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams
+/// have their images.)
+class BeamTwins {
+ public:
+  /// \param rows  kept by reference
+  BeamTwins(const BoundaryRows& rows, const FieldSum& field);
+  BeamTwins(const BeamTwins&) = delete;
+  BeamTwins& operator=(const BeamTwins&) = delete;
+  void add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+           FieldSum& field);
+
+ private:
+  void add_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,
+                       FieldSum& field);
+
+  const BoundaryRows& rows_;
+  /// Receivers on one boundary as an irregular grid, whose spans are its own arrays.
+  struct AtWall {
+    BoundaryKind kind;
+    std::vector<double> ranges, depths;
+    std::vector<std::size_t> column, row;
+    FieldSum field;
+  };
+  AtWall walls_[2] = {{.kind = BoundaryKind::surface}, {.kind = BoundaryKind::bottom}};
+};
 
 }  // namespace asdic

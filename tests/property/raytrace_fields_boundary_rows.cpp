@@ -104,5 +104,99 @@ TEST(BoundAtBoundaries, LetsTheRuleEnd) {
   EXPECT_LT(result.beams, 8000U);
 }
 
+/// Iso-speed water, 500 m deep, and a fan that meets the receivers at 1 km straight and by one
+/// reflection at the bottom.
+PropagationCase above_the_bottom(BeamKind kind, std::vector<double> depths) {
+  PropagationCase run_case;
+  run_case.environment.water = SoundSpeedProfile::isovelocity(1500.0);
+  run_case.environment.bottom = {.depth = 500.0,
+                                 .material = FluidHalfSpace{.speed = 1700.0, .density = 1800.0}};
+  run_case.frequency = 200.0;
+  run_case.source_depths = {300.0};
+  run_case.receivers = {.depths = std::move(depths), .ranges = {1000.0}};
+  run_case.beams.lowest = radians(-40.0);
+  run_case.beams.highest = radians(-2.0);
+  run_case.beams.kind = kind;
+  return run_case;
+}
+
+std::vector<std::complex<double>> field_of(const PropagationCase& run_case, int beams) {
+  const RayTracer tracer(run_case.environment, run_case.frequency);
+  return field_of_fan(run_case, tracer, run_case.source_depths[0],
+                      even_fan(run_case.beams.lowest, run_case.beams.highest, beams))
+      .field;
+}
+
+/// The direct path and its image under the bottom, with R at the image's angle.
+double exact_db(const PropagationCase& run_case, double depth) {
+  const double range = run_case.receivers.ranges[0], k = 2.0 * pi * run_case.frequency / 1500.0;
+  const double down = depth - 300.0, image = 2.0 * 500.0 - depth - 300.0;
+  const std::complex<double> reflection = reflection_coefficient(
+      run_case.environment.bottom.material, std::atan(image / range), {.speed = 1500.0});
+  const double a = std::hypot(range, down), b = std::hypot(range, image);
+  return 20.0 * std::log10(std::abs(std::polar(1.0 / a, -k * a) +
+                                    reflection * std::polar(1.0 / b, -k * b)));
+}
+
+// Beams as narrow as their tubes: on the bottom and half a metre above, a dozen tubes, the field is
+// the sum of both paths. 0.01 complex is what simple Gaussians are right to in free space: 0.1 dB.
+TEST(FieldsAtBoundaries, OfNarrowBeamsAreTheLimitFromInside) {
+  for (const BeamKind kind :
+       {BeamKind::hat, BeamKind::ray_centred_hat, BeamKind::simple_gaussian}) {
+    const PropagationCase run_case = above_the_bottom(kind, {499.5, 500.0});
+    const auto field = field_of(run_case, 20'001);
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_NEAR(20.0 * std::log10(std::abs(field[k])),
+                  exact_db(run_case, run_case.receivers.depths[k]), 0.15)
+          << int(kind) << ' ' << k;
+  }
+}
+
+// Gaussians of least width σ lose what their rays have left at the bottom: Φ(d·cos θ/σ) of both
+// waves is there at a distance d, half of them (6.02 dB) just above it. On the bottom itself the
+// twins bring the other half. (0.1 dB: the bell's own bias, 0.3 %, and its cut at 4σ; R is the same
+// at all angles, else its bell would mix some.)
+TEST(FieldsAtBoundaries, OfGaussiansAreWholeOnThemAndHalfJustInside) {
+  for (const BeamKind kind : {BeamKind::gaussian, BeamKind::ray_centred_gaussian}) {
+    PropagationCase run_case = above_the_bottom(kind, {499.99, 500.0});
+    run_case.environment.bottom.material = FluidHalfSpace{.speed = 1500.0, .density = 2500.0};
+    run_case.frequency = 1000.0;
+    const auto field = field_of(run_case, 16'001);
+    const double inside = 20.0 * std::log10(std::abs(field[0]));
+    EXPECT_NEAR(inside - exact_db(run_case, 499.99), 20.0 * std::log10(0.5), 0.1) << int(kind);
+    EXPECT_NEAR(20.0 * std::log10(std::abs(field[1])), exact_db(run_case, 500.0), 0.1) << int(kind);
+  }
+}
+
+// Cerveny's beams go on beyond the boundary, and their images come back: both are smooth there. A
+// millimetre is 1e-3 of phase. Beam and image in the surface cancel on it but for rounding (a third
+// image, in the bottom, has none in the surface).
+TEST(FieldsAtBoundaries, OfCervenyBeamsAreContinuous) {
+  for (const BeamKind kind : {BeamKind::cerveny_cartesian, BeamKind::cerveny_ray_centred})
+    for (const int images : {1, 2, 3}) {
+      PropagationCase run_case = above_the_bottom(kind, {0.0, 0.001, 499.999, 500.0});
+      run_case.beams.lowest = radians(-40.0), run_case.beams.highest = radians(40.0);
+      run_case.beams.cerveny = CervenyBeams{.images = images};
+      const auto field = field_of(run_case, 401);
+      const double scale = std::abs(field[3]);
+      EXPECT_LT(std::abs(field[0] - field[1]), 3e-3 * scale) << int(kind) << ' ' << images;
+      EXPECT_LT(std::abs(field[2] - field[3]), 3e-3 * scale) << int(kind) << ' ' << images;
+      if (images == 2) {
+        EXPECT_LT(std::abs(field[0]), 1e-6 * scale) << int(kind) << ' ' << images;
+      }
+    }
+}
+
+// A pressure-release surface leaves nothing of any geometric kind: what is left is rounding.
+TEST(FieldsAtBoundaries, AreNothingAtAVacuum) {
+  for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian, BeamKind::ray_centred_hat,
+                              BeamKind::ray_centred_gaussian, BeamKind::simple_gaussian}) {
+    PropagationCase run_case = above_the_bottom(kind, {0.0, 250.0});
+    run_case.beams.lowest = radians(-60.0), run_case.beams.highest = radians(60.0);
+    const auto field = field_of(run_case, 2001);
+    EXPECT_LT(std::abs(field[0]), 1e-5 * std::abs(field[1])) << int(kind);
+  }
+}
+
 }  // namespace
 }  // namespace asdic
