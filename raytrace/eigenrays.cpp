@@ -14,6 +14,7 @@
 #include "raytrace/layered/followed_branch.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
@@ -81,7 +82,8 @@ void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) 
 Arrival horizontal_ray(const Environment& ocean, double depth, double range, double frequency) {
   const SoundSpeed water = ocean.water.at(depth);
   // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
-  const double k = std::sqrt(std::abs(water.d2c_dz2) / water.c);
+  // (on a kink it is straight: k = 0)
+  const double k = water.dc_dz == 0.0 ? std::sqrt(std::abs(water.d2c_dz2) / water.c) : 0.0;
   Arrival path;
   path.q = k * range < 1e-6
                ? range
@@ -98,6 +100,16 @@ Arrival horizontal_ray(const Environment& ocean, double depth, double range, dou
   path.amplitude =
       path.spreading * amplitude_from_db(-path.absorption_db) * caustic_phase(path.caustics);
   return path;
+}
+
+/// The rays that are one path for a receiver at this depth; none if it is not near the source's.
+LevelRays level_at(const Environment& ocean, double frequency, double source_depth,
+                   double receiver_depth) {
+  const double apart = std::abs(source_depth - receiver_depth);
+  constexpr double furthest = 1000.0;  // LevelRays::height is c/4f
+  if (apart * frequency > furthest) return {};
+  const LevelRays level = level_paths(ocean, frequency, 0.0, source_depth);
+  return apart <= level.height ? level : LevelRays{};
 }
 
 FanLimits fan_of(const PathLimits& limits) {
@@ -284,14 +296,23 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
     sort_and_drop_doubles(found[i], order);
   }
 
-  if (source_depth == receiver_depth && environment_.water.at(source_depth).dc_dz == 0.0) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (!(ranges[i] > 0.0)) continue;
-      // Rays that stay within centimetres of the level are this one, seen through rounding.
-      std::erase_if(found[i], [](const Arrival& a) { return std::abs(a.launch_elevation) < 1e-5; });
-      found[i].push_back(horizontal_ray(environment_, source_depth, ranges[i], frequency));
-      std::sort(found[i].begin(), found[i].end(), earlier);
-    }
+  // What cannot be told from the ray along the level: of a smooth extremum of c rays that stay
+  // within centimetres of it, this one seen through rounding; of a kink of least speed those of
+  // LevelRays.
+  const bool smooth =
+      source_depth == receiver_depth && environment_.water.at(source_depth).dc_dz == 0.0;
+  const LevelRays level = smooth ? LevelRays{.angle = 1e-5}
+                                 : level_at(environment_, frequency, source_depth, receiver_depth);
+  for (std::size_t i = 0; level.angle > 0.0 && i < found.size(); ++i) {
+    if (!(ranges[i] > 0.0)) continue;
+    found[i].push_back(horizontal_ray(environment_, source_depth, ranges[i], frequency));
+    if (smooth)
+      std::erase_if(found[i], [&](const Arrival& a) {
+        return a.launch_elevation != 0.0 && std::abs(a.launch_elevation) < level.angle;
+      });
+    else
+      merge_level_paths(level, found[i]);
+    std::sort(found[i].begin(), found[i].end(), earlier);
   }
   return found;
 }

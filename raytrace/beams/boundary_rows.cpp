@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "raytrace/beams/foot.h"
 #include "raytrace/beams/geometric.h"
 
 namespace asdic {
@@ -32,23 +33,31 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
       }
       any = any || rows[j] >= 0;
     }
-    if (any) (kind == BoundaryKind::surface ? surface_ : bottom_) = std::move(rows);
+    if (!any) continue;
+    std::vector<std::int8_t> silent(rows.size());
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      silent[j] = wall(kind).roughness.smooth() &&
+                  std::holds_alternative<Vacuum>(wall(kind).material_at(grid.ranges[j]));
+    const bool surface = kind == BoundaryKind::surface;
+    (surface ? silent_surface_ : silent_bottom_) = std::move(silent);
+    (surface ? surface_ : bottom_) = std::move(rows);
   }
 }
 
-bool BoundaryRows::silent(BoundaryKind kind, std::size_t column) const noexcept {
-  return wall(kind).roughness.smooth() &&
-         std::holds_alternative<Vacuum>(wall(kind).material_at(ranges_[column]));
+std::complex<double> WallMeeting::twin() const noexcept {
+  if (!there) return 0.0;
+  if (!reflected) return reflection;
+  return std::abs(reflection) < least_reflection ? 0.0 : 1.0 / reflection;
 }
 
-std::complex<double> BoundaryRows::twin(BoundaryKind kind, std::size_t column,
-                                        const Crossing& x) const noexcept {
+WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double cosine_here,
+                                  double sine_here, double speed) const noexcept {
   const Boundary& boundary = wall(kind);
   const double range = ranges_[column], depth = boundary.depth_at(range);
   const double c = sound_speed(environment_, range, depth).c;
-  const double cosine = x.cosine * c / x.speed;  // Snell
-  if (!(std::abs(cosine) < 1.0)) return 0.0;
-  const double sine = std::copysign(std::sqrt(1.0 - cosine * cosine), x.sine);
+  const double cosine = cosine_here * c / speed;  // Snell
+  if (!(std::abs(cosine) < 1.0)) return {};
+  const double sine = std::copysign(std::sqrt(1.0 - cosine * cosine), sine_here);
   const double slope = boundary.shape ? boundary.shape->at(range).slope : 0.0;
   const double sense = kind == BoundaryKind::surface ? 1.0 : -1.0;  // n into the water
   const double into_water = sense * (sine - slope * cosine) / std::sqrt(1.0 + slope * slope);
@@ -59,26 +68,70 @@ std::complex<double> BoundaryRows::twin(BoundaryKind kind, std::size_t column,
   if (!boundary.roughness.smooth())
     reflection *=
         coherent_reflection(boundary.roughness, std::sin(grazing), 2.0 * pi * frequency_ / c);
-  if (into_water < 0.0) return reflection;  // it is yet to be reflected
-  return std::abs(reflection) < least_reflection ? 0.0 : 1.0 / reflection;
+  return {true, into_water >= 0.0, slope, reflection};
 }
 
-void beams::add_twins(const BeamSetting& setting, const BeamLaunch& launch,
-                      const RayTrajectory& ray, const BoundaryRows& rows, FieldSum& field) {
-  const double launched = launch_factor(setting, launch);
+BeamTwins::BeamTwins(const BoundaryRows& rows, const FieldSum& field) : rows_(rows) {
+  for (AtWall& wall : walls_) {
+    for (std::size_t j = 0; j < field.ranges.size(); ++j)
+      if (const std::int32_t row = rows.row(wall.kind, j); row >= 0) {
+        const auto k = static_cast<std::size_t>(row);
+        wall.ranges.push_back(field.ranges[j]);
+        wall.depths.push_back(field.column_depths(j)[k]);
+        wall.column.push_back(j), wall.row.push_back(k);
+      }
+    wall.field.ranges = wall.ranges, wall.field.depths = wall.depths;
+    wall.field.irregular = true;
+    wall.field.sum.resize(wall.ranges.size());  // its places tell the receivers
+  }
+}
+
+void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+                    FieldSum& field) {
+  const double launched = beams::launch_factor(setting, launch);
+  switch (setting.kind) {
+    case BeamKind::hat:
+    case BeamKind::gaussian:
+    case BeamKind::simple_gaussian:
+      break;
+    case BeamKind::ray_centred_hat:
+    case BeamKind::ray_centred_gaussian:
+      return add_ray_centred(setting, launched, ray, field);
+    case BeamKind::cerveny_cartesian:
+    case BeamKind::cerveny_ray_centred:
+      return;
+  }
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
-      for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom}) {
-        const std::int32_t row = rows.row(kind, column);
+      for (const AtWall& wall : walls_) {
+        const std::int32_t row = rows_.row(wall.kind, column);
         if (row < 0) continue;
         Crossing x = crossing_of(segment, state);
-        x.loss *= rows.twin(kind, column, x);
+        x.loss *= rows_.twin(wall.kind, column, x);
         const auto k = static_cast<std::size_t>(row);
-        add_crossing(setting, launch, launched, ray.source_speed, x,
-                     field.column_depths(column).subspan(k, 1),
-                     [&](std::size_t, std::complex<double> p) { field.column(column)[k] += p; });
+        const auto depth = field.column_depths(column).subspan(k, 1);
+        const auto put = [&](std::size_t, std::complex<double> p) { field.column(column)[k] += p; };
+        if (setting.kind == BeamKind::simple_gaussian)
+          beams::add_simple_crossing(setting, launched, x, depth, put);
+        else
+          beams::add_crossing(setting, launch, launched, ray.source_speed, x, depth, put);
       }
     });
+}
+
+void BeamTwins::add_ray_centred(const BeamSetting& setting, double launched,
+                                const RayTrajectory& ray, FieldSum& field) {
+  for (AtWall& wall : walls_) {
+    if (wall.ranges.empty()) continue;
+    beams::visit_ray_centred(
+        setting, launched, ray, wall.field,
+        [&](const Foot& foot, const Crossing& x, std::complex<double> p) {
+          const auto i = static_cast<std::size_t>(foot.sum - wall.field.sum.data());
+          const std::complex<double> twin = rows_.twin(wall.kind, wall.column[i], x);
+          field.column(wall.column[i])[wall.row[i]] +=
+              setting.coherent ? p * twin : p * std::norm(twin);
+        });
+  }
 }
 
 }  // namespace asdic

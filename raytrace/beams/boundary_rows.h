@@ -7,6 +7,16 @@
 
 namespace asdic {
 
+/// A ray near a receiver on a boundary, as Snell's law has it there.
+struct WallMeeting {
+  bool there = false;               ///< false: it turns before the boundary
+  bool reflected = false;           ///< it leaves the boundary
+  double slope = 0.0;               ///< dz/dr of the boundary
+  std::complex<double> reflection;  ///< R
+  /// What the twin of its beam is to the beam: R, or 1/R behind the reflection; 0: it has none.
+  [[nodiscard]] std::complex<double> twin() const noexcept;
+};
+
 /// Receivers that lie on the surface or on the bottom, where a wave and its reflection arrive at
 /// once.
 ///
@@ -27,10 +37,17 @@ class BoundaryRows {
     return rows.empty() ? -1 : rows[column];
   }
   /// Whether the sum of both is nothing whatever arrives: a smooth boundary with a vacuum.
-  [[nodiscard]] bool silent(BoundaryKind kind, std::size_t column) const noexcept;
-  /// What the twin of a beam is to the beam; 0 for a ray that turns before the boundary.
+  [[nodiscard]] bool silent(BoundaryKind kind, std::size_t column) const noexcept {
+    return (kind == BoundaryKind::surface ? silent_surface_ : silent_bottom_)[column] != 0;
+  }
+  /// A ray with these at its column. \param cosine, sine, speed  of it (Crossing)
+  [[nodiscard]] WallMeeting meeting(BoundaryKind kind, std::size_t column, double cosine,
+                                    double sine, double speed) const noexcept;
+  /// What the twin of a beam is to the beam.
   [[nodiscard]] std::complex<double> twin(BoundaryKind kind, std::size_t column,
-                                          const Crossing& x) const noexcept;
+                                          const Crossing& x) const noexcept {
+    return meeting(kind, column, x.cosine, x.sine, x.speed).twin();
+  }
 
  private:
   [[nodiscard]] const Boundary& wall(BoundaryKind kind) const noexcept {
@@ -39,13 +56,34 @@ class BoundaryRows {
   const Environment& environment_;
   double frequency_;
   std::span<const double> ranges_;
-  std::vector<std::int32_t> surface_, bottom_;  // [columns], or empty
+  std::vector<std::int32_t> surface_, bottom_;               // [columns], or empty
+  std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise
 };
 
-namespace beams {
-/// The twins of one ray's hat or Gaussian beam (Cartesian), receiver by receiver.
-void add_twins(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
-               const BoundaryRows& rows, FieldSum& field);
-}  // namespace beams
+/// The twins of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams
+/// have their images.)
+class BeamTwins {
+ public:
+  /// \param rows  kept by reference
+  BeamTwins(const BoundaryRows& rows, const FieldSum& field);
+  BeamTwins(const BeamTwins&) = delete;
+  BeamTwins& operator=(const BeamTwins&) = delete;
+  void add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+           FieldSum& field);
+
+ private:
+  void add_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,
+                       FieldSum& field);
+
+  const BoundaryRows& rows_;
+  /// Receivers on one boundary as an irregular grid, whose spans are its own arrays.
+  struct AtWall {
+    BoundaryKind kind;
+    std::vector<double> ranges, depths;
+    std::vector<std::size_t> column, row;
+    FieldSum field;
+  };
+  AtWall walls_[2] = {{.kind = BoundaryKind::surface}, {.kind = BoundaryKind::bottom}};
+};
 
 }  // namespace asdic

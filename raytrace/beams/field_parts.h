@@ -55,7 +55,10 @@ struct FieldWork {
 class PlainPart {
  public:
   PlainPart(const FieldWork& work, std::span<float> /*memory*/)
-      : work_(work), setting_{work.setting, work.setting}, field_{empty_field(work.run_case), {}} {
+      : work_(work),
+        setting_{work.setting, work.setting},
+        field_{empty_field(work.run_case), {}},
+        twins_(work.boundary_rows, field_[0]) {
     setting_[1].spacing *= 2.0;
     if (work.also.half) field_[1] = field_[0];
   }
@@ -81,16 +84,14 @@ class PlainPart {
  private:
   void add_to(std::size_t h, const BeamLaunch& launch) {
     add_beam(setting_[h], launch, ray_, field_[h]);
-    const bool cartesian =
-        work_.setting.kind == BeamKind::hat || work_.setting.kind == BeamKind::gaussian;
-    if (cartesian && work_.boundary_rows.any())
-      beams::add_twins(setting_[h], launch, ray_, work_.boundary_rows, field_[h]);
+    if (work_.boundary_rows.any()) twins_.add(setting_[h], launch, ray_, field_[h]);
   }
 
   const FieldWork& work_;
   BeamSetting setting_[2];
   RayTrajectory ray_;
   FieldSum field_[2];
+  BeamTwins twins_;
 };
 
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
@@ -106,7 +107,7 @@ class FastPart {
     if (work.also.half) sum_.emplace_back(setting, grid.depths, memory.subspan(one));
     if (work.also.bound)
       tubes_.emplace(work.setting, grid.depths, grid.ranges.size(), work.also.first_left_out,
-                     work.also.last_left_out);
+                     work.also.last_left_out, &work.boundary_rows);
   }
   /// Numbers of memory for the sums.
   [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {

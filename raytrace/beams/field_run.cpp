@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <variant>
 
 #include "core/error.h"
 #include "raytrace/beams/convergence.h"
@@ -53,15 +52,6 @@ void check(const PropagationCase& run_case) {
     if (!(depth >= ocean.surface.depth_at(0.0) && depth <= ocean.bottom.depth_at(0.0)))
       throw InputError(
           {"source_depths", std::to_string(depth) + " m", "a depth between surface and bottom"});
-}
-
-/// Whether the pressure at the source is zero, come what may.
-bool on_vacuum(const Environment& ocean, double depth) {
-  for (const Boundary* wall : {&ocean.surface, &ocean.bottom})
-    if (depth == wall->depth_at(0.0) && wall->roughness.smooth() &&
-        std::holds_alternative<Vacuum>(wall->material_at(0.0)))
-      return true;
-  return false;
 }
 
 }  // namespace
@@ -150,10 +140,6 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
           for (const auto& part : parts) sum += part->bound_at(j, k);
           result.bound[k * columns + j] = scale * sum;
         }
-        for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom})
-          if (const std::int32_t k = work.boundary_rows.row(kind, j); k >= 0)  // 1 + |R| ≤ 2
-            result.bound[static_cast<std::size_t>(k) * columns + j] *=
-                work.boundary_rows.silent(kind, j) ? 0.0 : 2.0;
       }
     }
   }

@@ -90,10 +90,9 @@ void add_cartesian(const BeamSetting& setting, const BeamLaunch& launch, const R
     });
 }
 
-void add_ray_centred(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
-                     FieldSum& field) {
+void visit_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,
+                       FieldSum& field, const VisitFoot& visit) {
   const double omega = 2.0 * pi * setting.frequency;
-  const double launched = launch_factor(setting, launch);
   const bool is_hat = setting.kind == BeamKind::ray_centred_hat;
   const auto reach = [&](const RaySegment& segment) {
     const double q =
@@ -116,50 +115,61 @@ void add_ray_centred(const BeamSetting& setting, const BeamLaunch& launch, const
                         : gaussian(std::abs(foot.n), x.q, setting.spacing, least, setting.coherent);
     if (!cut.inside) return;
     const double root = launched * std::sqrt(x.speed / ray.source_speed);
-    if (setting.coherent)
-      *foot.sum += x.loss * std::polar(root * cut.amplitude, -omega * x.time);
-    else
-      *foot.sum += std::norm(x.loss) * root * root * cut.amplitude;
+    visit(foot, x,
+          setting.coherent ? x.loss * std::polar(root * cut.amplitude, -omega * x.time)
+                           : std::norm(x.loss) * root * root * cut.amplitude);
   });
 }
 
-void add_simple_gaussian(const BeamSetting& setting, const BeamLaunch& launch,
-                         const RayTrajectory& ray, FieldSum& field) {
+void add_ray_centred(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+                     FieldSum& field) {
+  visit_ray_centred(
+      setting, launch_factor(setting, launch), ray, field,
+      [](const Foot& foot, const Crossing&, std::complex<double> p) { *foot.sum += p; });
+}
+
+void add_simple_crossing(const BeamSetting& setting, double launched, const Crossing& x,
+                         std::span<const double> depths, const AddTo& add_to) {
   // Each beam is down to β where the next ray but one's half way is: exp(−A·(Δα/2)²) = β.
   constexpr double beta = 0.98;
   const double sharpness = -4.0 * std::log(beta) / (setting.spacing * setting.spacing);  // A
   const double norm = setting.spacing * std::sqrt(sharpness / pi);  // the beams' weights add to 1
   const double widest = std::sqrt(16.0 / sharpness);                // e^−16: nothing is left
   const double omega = 2.0 * pi * setting.frequency;
-  const double launched = launch_factor(setting, launch) * norm;
+  if (x.length == 0.0) return;
+  const auto add = [&](std::size_t k) {
+    const double dz = depths[k] - x.depth;
+    const double s = dz * x.sine;
+    const double length = x.length + s;
+    if (length <= 0.0) return false;
+    const double theta = std::atan2(std::abs(dz * x.cosine), length);
+    if (theta > widest) return false;
+    const double amplitude =
+        launched * norm * std::exp(-sharpness * theta * theta) / std::sqrt(length);
+    if (setting.coherent)
+      add_to(k, x.loss * std::polar(amplitude, -omega * (x.time + s / x.speed)));
+    else  // A²·W with W = norm·exp(−Aθ²)
+      add_to(k, std::norm(x.loss) * amplitude * amplitude * std::exp(sharpness * theta * theta) /
+                    norm);
+    return true;
+  };
+  const auto first = static_cast<std::size_t>(
+      std::lower_bound(depths.begin(), depths.end(), x.depth) - depths.begin());
+  for (std::size_t k = first; k < depths.size() && add(k); ++k) {
+  }
+  for (std::size_t k = first; k > 0 && add(k - 1); --k) {
+  }
+}
+
+void add_simple_gaussian(const BeamSetting& setting, const BeamLaunch& launch,
+                         const RayTrajectory& ray, FieldSum& field) {
+  const double launched = launch_factor(setting, launch);
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
-      const Crossing x = crossing_of(segment, state);
-      if (x.length == 0.0) return;
-      const std::span<const double> depths = field.column_depths(column);
       std::complex<double>* sum = field.column(column);
-      const auto add = [&](std::size_t k) {
-        const double dz = depths[k] - x.depth;
-        const double s = dz * x.sine;
-        const double length = x.length + s;
-        if (length <= 0.0) return false;
-        const double theta = std::atan2(std::abs(dz * x.cosine), length);
-        if (theta > widest) return false;
-        const double amplitude =
-            launched * std::exp(-sharpness * theta * theta) / std::sqrt(length);
-        if (setting.coherent)
-          sum[k] += x.loss * std::polar(amplitude, -omega * (x.time + s / x.speed));
-        else  // A²·W with W = norm·exp(−Aθ²)
-          sum[k] += std::norm(x.loss) * amplitude * amplitude *
-                    std::exp(sharpness * theta * theta) / norm;
-        return true;
-      };
-      const auto first = static_cast<std::size_t>(
-          std::lower_bound(depths.begin(), depths.end(), x.depth) - depths.begin());
-      for (std::size_t k = first; k < depths.size() && add(k); ++k) {
-      }
-      for (std::size_t k = first; k > 0 && add(k - 1); --k) {
-      }
+      add_simple_crossing(setting, launched, crossing_of(segment, state),
+                          field.column_depths(column),
+                          [sum](std::size_t k, std::complex<double> p) { sum[k] += p; });
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/crossing.h"
+#include "raytrace/beams/foot.h"
 
 namespace asdic::beams {
 
@@ -24,10 +25,19 @@ void add_crossing(const BeamSetting& setting, const BeamLaunch& launch, double l
 void add_ray_centred(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                      FieldSum& field);
 
+/// What it brings to each of them. \param visit  takes the foot, the ray there and what to add
+using VisitFoot = std::function<void(const Foot&, const Crossing&, std::complex<double> value)>;
+void visit_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,
+                       FieldSum& field, const VisitFoot& visit);
+
 /// Gaussian in the angle under which the miss distance is seen from the source, spread by arc
 /// length.
 void add_simple_gaussian(const BeamSetting& setting, const BeamLaunch& launch,
                          const RayTrajectory& ray, FieldSum& field);
+
+/// One crossing of it.
+void add_simple_crossing(const BeamSetting& setting, double launched, const Crossing& crossing,
+                         std::span<const double> depths, const AddTo& add_to);
 
 /// Cerveny's beams of complex curvature.
 void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,

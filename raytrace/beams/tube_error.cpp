@@ -17,11 +17,15 @@ inline double smaller(double a, double b) noexcept { return a < b ? a : b; }
 
 }  // namespace
 
-void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch) {
-  const std::size_t n = crossings.size();
+void RayAtColumns::resize(std::size_t n) {
   for (auto* array :
        {&size, &growth, &cosine, &higher, &amplitude, &power, &phase, &wave_number, &least})
     array->resize(n);
+}
+
+void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch) {
+  const std::size_t n = crossings.size();
+  resize(n);
   const double launched = beams::launch_factor(setting, launch);
   const double launched2 = launched * launched / crossings.source_speed;
   const double f = setting.frequency, omega = 2.0 * pi * f;
@@ -57,14 +61,20 @@ void TubeError::Pieces::resize(std::size_t n) {
   for (auto* array : {&error, &from, &to, &sigma}) array->resize(n);
 }
 
+void TubeError::Bounds::resize(std::size_t n) {
+  for (Pieces* pieces : {&tube, &lower, &higher}) pieces->resize(n);
+}
+
 TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
-                     std::size_t columns, std::size_t first_left_out, std::size_t last_left_out)
+                     std::size_t columns, std::size_t first_left_out, std::size_t last_left_out,
+                     const BoundaryRows* walls)
     : setting_(setting),
       depths_(depths),
       first_depth_(depths.front()),
       first_left_out_(first_left_out),
       last_left_out_(last_left_out),
-      stride_(depths.size() + 1) {
+      stride_(depths.size() + 1),
+      walls_(walls != nullptr && walls->any() ? walls : nullptr) {
   sum_.assign(columns * stride_, 0.0);
   head_.assign(columns, -1);
   const std::size_t n = depths.size();
@@ -73,13 +83,17 @@ TubeError::TubeError(const BeamSetting& setting, std::span<const double> depths,
   for (std::size_t k = 0; k < n; ++k)
     even = even && std::abs(depths[k] - (first_depth_ + double(k) * step)) < 1e-3 * step;
   if (even) per_spacing_ = 1.0 / step;
+  if (walls_ == nullptr) return;
+  for (auto& at_wall : at_walls_) at_wall.assign(columns, 0.0);
+  wall_bounds_.resize(1);
+  unfolded_.resize(1), unfolded_.crossings.resize(1);
 }
 
 /// From crossing i of the lower ray and j of the higher one on, `count` pairs.
 /// docs/theory/fields.md, eq. (1) to (3)
 template <bool hat, bool coherent>
 void TubeError::bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtColumns& b,
-                              std::size_t j, std::size_t count, double width) {
+                              std::size_t j, std::size_t count, double width, Bounds& out) const {
   const double *higher_a = a.higher.data() + i, *size_a = a.size.data() + i,
                *growth_a = a.growth.data() + i, *cosine_a = a.cosine.data() + i,
                *turned_a = a.crossings.phase.data() + i, *mirror_a = a.crossings.mirror.data() + i,
@@ -92,12 +106,12 @@ void TubeError::bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtC
                *phase_b = b.phase.data() + j, *number_b = b.wave_number.data() + j,
                *least_b = b.least.data() + j, *amplitude_b = b.amplitude.data() + j,
                *power_b = b.power.data() + j, *depth_b = b.crossings.depth.data() + j;
-  double *tube_error = tube_.error.data(), *tube_from = tube_.from.data(),
-         *tube_to = tube_.to.data(), *tube_sigma = tube_.sigma.data(),
-         *lower_error = lower_.error.data(), *lower_from = lower_.from.data(),
-         *lower_to = lower_.to.data(), *lower_sigma = lower_.sigma.data(),
-         *higher_error = higher_.error.data(), *higher_from = higher_.from.data(),
-         *higher_to = higher_.to.data(), *higher_sigma = higher_.sigma.data();
+  double *tube_error = out.tube.error.data(), *tube_from = out.tube.from.data(),
+         *tube_to = out.tube.to.data(), *tube_sigma = out.tube.sigma.data(),
+         *lower_error = out.lower.error.data(), *lower_from = out.lower.from.data(),
+         *lower_to = out.lower.to.data(), *lower_sigma = out.lower.sigma.data(),
+         *higher_error = out.higher.error.data(), *higher_from = out.higher.from.data(),
+         *higher_to = out.higher.to.data(), *higher_sigma = out.higher.sigma.data();
   ASDIC_INDEPENDENT
   for (std::size_t k = 0; k < count; ++k) {
     const double za = depth_a[k], zb = depth_b[k], dz = zb - za;
@@ -158,22 +172,28 @@ void TubeError::bound_of_kind(const RayAtColumns& a, std::size_t i, const RayAtC
 }
 
 void TubeError::bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& b, std::size_t j,
-                      std::size_t count, double width) {
+                      std::size_t count, double width, Bounds& out) const {
   const bool hat = setting_.kind == BeamKind::hat, coherent = setting_.coherent;
-  if (hat && coherent) return bound_of_kind<true, true>(a, i, b, j, count, width);
-  if (hat) return bound_of_kind<true, false>(a, i, b, j, count, width);
-  if (coherent) return bound_of_kind<false, true>(a, i, b, j, count, width);
-  bound_of_kind<false, false>(a, i, b, j, count, width);
+  if (hat && coherent) return bound_of_kind<true, true>(a, i, b, j, count, width, out);
+  if (hat) return bound_of_kind<true, false>(a, i, b, j, count, width, out);
+  if (coherent) return bound_of_kind<false, true>(a, i, b, j, count, width, out);
+  bound_of_kind<false, false>(a, i, b, j, count, width, out);
 }
 
 /// A ray without a neighbour: all that it brings is unsure.
-double TubeError::put_alone(const RayAtColumns& ray, std::size_t i, double width, double level) {
+TubeError::Piece TubeError::alone(const RayAtColumns& ray, std::size_t i,
+                                  double width) const noexcept {
   const bool hat = setting_.kind == BeamKind::hat;
   const double across = larger(ray.size[i] * width, ray.least[i]), z = ray.crossings.depth[i];
   const double reach = hat ? across / ray.cosine[i] : 0.0;
   const double share = hat ? 1.0 : ray.size[i] * width / (across * root_of_two_pi);
-  return put(ray.crossings.column[i], share * ray.amplitude[i], z - reach, z + reach,
-             hat ? 0.0 : across / ray.cosine[i], level);
+  return {share * ray.amplitude[i], z - reach, z + reach, hat ? 0.0 : across / ray.cosine[i]};
+}
+
+double TubeError::put_alone(const RayAtColumns& ray, std::size_t i, double width, double level) {
+  const Piece piece = alone(ray, i, width);
+  const double share = put(ray.crossings.column[i], piece, level);
+  return walls_ == nullptr ? share : share + put_alone_at_walls(piece, ray, i, level);
 }
 
 double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, double width,
@@ -186,15 +206,16 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
   };
   double share = 0.0;
   if (simple(a) && simple(b)) {  // each column once, in order
-    for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(n);
-    bound(lower, 0, higher, 0, n, width);
-    for (std::size_t i = 0; i < n; ++i) share += put_tube(i, i, level[i]);
+    bounds_.resize(n);
+    bound(lower, 0, higher, 0, n, width, bounds_);
+    for (std::size_t i = 0; i < n; ++i)
+      share += put_tube(i, i, level[i], {lower, higher, i, i, width});
     for (std::size_t i = n; i < a.size(); ++i) share += put_alone(lower, i, width, level[i]);
     for (std::size_t i = n; i < b.size(); ++i) share += put_alone(higher, i, width, level[i]);
     return share;
   }
   // The first crossing of a column belongs to the neighbour's first, the second to its second, …
-  for (Pieces* pieces : {&tube_, &lower_, &higher_}) pieces->resize(1);
+  bounds_.resize(1);
   next_.assign(b.size(), -1);
   for (std::size_t j = b.size(); j-- > 0;) {
     next_[j] = head_[b.column[j]];
@@ -209,8 +230,8 @@ double TubeError::add(const RayAtColumns& lower, const RayAtColumns& higher, dou
     }
     const auto k = static_cast<std::size_t>(j);
     head_[column] = next_[k];
-    bound(lower, i, higher, k, 1, width);
-    share += put_tube(column, 0, level[column]);
+    bound(lower, i, higher, k, 1, width, bounds_);
+    share += put_tube(column, 0, level[column], {lower, higher, i, k, width});
   }
   for (std::size_t j = 0; j < b.size(); ++j) {
     std::int32_t& left = head_[b.column[j]];
@@ -228,17 +249,15 @@ double TubeError::add_end(const RayAtColumns& ray, double width, std::span<const
   return share;
 }
 
-double TubeError::put_tube(std::size_t column, std::size_t n, double level) {
-  const auto one = [&](const Pieces& p) {
-    return put(column, p.error[n], p.from[n], p.to[n], p.sigma[n], level);
-  };
-  double share = one(tube_);
-  if (lower_.error[n] > 0.0 || higher_.error[n] > 0.0) share += one(lower_) + one(higher_);
-  return share;
+double TubeError::put_tube(std::size_t column, std::size_t n, double level, const Pair& pair) {
+  double share = put(column, bounds_.tube[n], level);
+  if (bounds_.lower.error[n] > 0.0 || bounds_.higher.error[n] > 0.0)
+    share += put(column, bounds_.lower[n], level) + put(column, bounds_.higher[n], level);
+  return walls_ == nullptr ? share : share + put_tube_at_walls(column, n, level, pair);
 }
 
-double TubeError::put(std::size_t column, double error, double from, double to, double sigma,
-                      double level) {
+double TubeError::put(std::size_t column, const Piece& piece, double level) {
+  const auto& [error, from, to, sigma] = piece;
   double receivers;
   if (sigma == 0.0) {
     receivers = put_between(column, error, from, to);
@@ -274,12 +293,14 @@ double TubeError::put_between(std::size_t column, double error, double from, dou
   const std::size_t from_left_out = std::max(first, first_left_out_),
                     to_left_out = std::min(last, last_left_out_);
   const std::size_t left_out = to_left_out > from_left_out ? to_left_out - from_left_out : 0;
-  return static_cast<double>(last - first - left_out);
+  const std::size_t apart = walls_ != nullptr ? on_walls(column, first, last) : 0;
+  return static_cast<double>(last - first - std::min(left_out + apart, last - first));
 }
 
 void TubeError::finish() {
   for (std::size_t i = 0; i < sum_.size(); i += stride_)
     for (std::size_t k = 1; k < stride_; ++k) sum_[i + k] += sum_[i + k - 1];
+  if (walls_ != nullptr) finish_walls();
 }
 
 }  // namespace asdic

@@ -75,13 +75,6 @@ class ArrivalSearch {
       SearchWatch watch{.progress = progress};
       found = marching_eigenrays(tracer(), 0.0, source_depth, receivers_, limits, &watch);
       if (watch.stopped) throw Interrupted();
-      if (const LevelRays level = level_rays(case_.environment, case_.frequency, 0.0, source_depth);
-          level.angle > 0.0)
-        notes.push_back(
-            "the source at " + std::to_string(source_depth) +
-            " m is on a kink where the sound speed is least: of the rays within " +
-            std::to_string(degrees(level.angle)) + " deg of the horizontal, which stay within " +
-            std::to_string(1e3 * level.height) + " mm of that depth, the level one stands for all");
       if (watch.unfinished > 0)
         notes.push_back("source at " + std::to_string(source_depth) +
                         " m: rays part without end in " + std::to_string(watch.unfinished) +
@@ -89,10 +82,30 @@ class ArrivalSearch {
                         " parts of the fan; faint paths are missing there");
     }
     for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
+    tell_of(source_depth, notes);
     return found;
   }
 
  private:
+  /// What is special about a source's place.
+  void tell_of(double depth, std::vector<std::string>& notes) const {
+    if (on_vacuum(case_.environment, depth))
+      notes.push_back("the source at " + std::to_string(depth) +
+                      " m is on a boundary with a vacuum, which reflects all it sends with the "
+                      "opposite sign: paths come in pairs whose sum is nothing");
+    const LevelRays level = level_paths(case_.environment, case_.frequency, 0.0, depth);
+    const bool heard = std::any_of(receivers_.begin(), receivers_.end(), [&](const auto& at) {
+      return std::abs(at.depth - depth) <= level.height;
+    });
+    if (level.angle > 0.0 && heard)
+      notes.push_back("the source at " + std::to_string(depth) +
+                      " m is on a kink where the sound speed is least: rays within " +
+                      std::to_string(degrees(level.angle)) +
+                      " deg of the horizontal stay within a quarter of a wavelength, " +
+                      std::to_string(level.height) +
+                      " m, of that depth, and at receivers there the level one stands for all");
+  }
+
   /// Leaves out what the source does not shine at and what is too weak, and gives the source's kind
   /// and pattern to the rest.
   void finish(Arrivals& arrivals, double range) const {

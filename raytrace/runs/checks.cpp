@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <variant>
 
 #include "core/error.h"
 
@@ -52,6 +53,14 @@ void check_receivers(const PropagationCase& run_case) {
                       .got = std::to_string(grid.depths.size()) + " depths and " +
                              std::to_string(grid.ranges.size()) + " ranges",
                       .expected = "as many depths as ranges on an irregular grid"});
+}
+
+bool on_vacuum(const Environment& ocean, double depth) noexcept {
+  for (const Boundary* wall : {&ocean.surface, &ocean.bottom})
+    if (depth == wall->depth_at(0.0) && wall->roughness.smooth() &&
+        std::holds_alternative<Vacuum>(wall->material_at(0.0)))
+      return true;
+  return false;
 }
 
 RayTracer tracer_of(const PropagationCase& run_case) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 
 namespace asdic {
@@ -19,5 +20,15 @@ struct LevelRays {
 /// \param frequency [Hz]   \param range, depth  of the source [m]
 [[nodiscard]] LevelRays level_rays(const Environment& environment, double frequency, double range,
                                    double depth) noexcept;
+
+/// The same for paths to receivers no further from the source's depth: rays that stay within λ/4 of
+/// it are one arrival there, the level one. (Fans are denser: receivers a little further off, and
+/// oceans whose axis moves with range, tell more of them apart.)
+[[nodiscard]] LevelRays level_paths(const Environment& environment, double frequency, double range,
+                                    double depth) noexcept;
+
+/// Leaves of the paths to one receiver within LevelRays::height of the source's depth only the
+/// level one of those that are not told apart, if it is among them.
+void merge_level_paths(const LevelRays& level, Arrivals& arrivals);
 
 }  // namespace asdic

@@ -88,6 +88,9 @@ struct ColumnSearch {
         columns_(columns),
         max_turns_(max_turns),
         level_(level_rays(tracer.environment(), tracer.frequency(), source_range, source_depth)),
+        level_height_(
+            level_paths(tracer.environment(), tracer.frequency(), source_range, source_depth)
+                .height),
         test_(tracer.environment(), columns),
         roots_(tracer, source_range, source_depth, limits, columns) {}
 
@@ -118,7 +121,7 @@ struct ColumnSearch {
     const RootFinder::Found found = [&](std::uint32_t receiver, Arrival&& path) {
       out.push_back({receiver, std::move(path)});
     };
-    if (level(a, b)) return roots_.search_level(a, b, level_.height, max_turns_, found);
+    if (level(a, b)) return roots_.search_level(a, b, level_height_, max_turns_, found);
     roots_.search(a, b, max_turns_, found);
   }
 
@@ -134,6 +137,7 @@ struct ColumnSearch {
   std::span<const ReceiverColumn> columns_;
   int max_turns_;
   LevelRays level_;
+  double level_height_;  // of receivers that have the level one
   NeighbourTest test_;
   RootFinder roots_;
   RayTrajectory trajectory_;
@@ -184,7 +188,13 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
     if (offset < least_range) raise(hit.path, offset / least_range);
     found[hit.receiver].push_back(std::move(hit.path));
   }
-  for (Arrivals& arrivals : found) sort_and_drop_doubles(arrivals);
+  const LevelRays level =
+      level_paths(tracer.environment(), tracer.frequency(), source_range, source_depth);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (level.angle > 0.0 && std::abs(receivers[i].depth - source_depth) <= level.height)
+      merge_level_paths(level, found[i]);
+    sort_and_drop_doubles(found[i]);
+  }
   return found;
 }
 

@@ -6,6 +6,8 @@
 
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_run.h"
+#include "raytrace/runs/arrivals_run.h"
+#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 // Fields of sources and at receivers where rays have something special to them: kinks of the sound
@@ -170,16 +172,16 @@ TEST(FieldsAtSpecialPlaces, OnBoundariesAreTheSumsOfArrivals) {
 
 // A duct whose axis is a kink, over a slope, source and receiver on the axis: no end of paths, and
 // of rays between any two of them. The search ends, with the paths that leave the axis by more than
-// a thousandth of a wavelength in pairs up and down, and the level one; and heeds its watch.
+// a quarter of a wavelength in pairs up and down, and the level one; and heeds its watch.
 TEST(ArrivalsAtSpecialPlaces, AlongAKinkOfLeastSpeedHaveAnEnd) {
   PropagationCase run_case = node_between_slopes();
   run_case.environment.water = SoundSpeedProfile::table(
       std::vector{0.0, 80.0, 200.0}, std::vector{1500.0, 1480.0, 1500.0}, Interpolation::c_linear);
   run_case.source_depths = {80.0};
   run_case.receivers.depths = {80.0};
-  const LevelRays level = level_rays(run_case.environment, run_case.frequency, 0.0, 80.0);
+  const LevelRays level = level_paths(run_case.environment, run_case.frequency, 0.0, 80.0);
   const Arrivals all = arrivals_at_the_receiver(run_case);
-  EXPECT_LT(all.size(), 1000U);
+  EXPECT_LT(all.size(), 100U);
   EXPECT_EQ(std::count_if(all.begin(), all.end(),
                           [](const Arrival& a) { return a.launch_elevation == 0.0; }),
             1);
@@ -196,6 +198,65 @@ TEST(ArrivalsAtSpecialPlaces, AlongAKinkOfLeastSpeedHaveAnEnd) {
   (void)marching_eigenrays(tracer, 0.0, 80.0, receiver, {}, &watch);
   EXPECT_TRUE(watch.stopped);
   EXPECT_LT(asked, 64);
+}
+
+// Both solvers find one and the same finite set from a kinked axis, at it, within λ/4 of it and
+// away from it, and a run says once which path stands for others: of n whole cycles R = 2cnα(1/g₁ +
+// 1/g₂).
+TEST(ArrivalsAtSpecialPlaces, FromAKinkOfLeastSpeedAreTheSameByBothSolvers) {
+  PropagationCase run_case = kinked_duct();
+  run_case.receivers = {.depths = {50.0, 50.5, 100.0}, .ranges = {2000.0, 10000.0}};
+  for (const double frequency : {250.0, 3000.0}) {
+    run_case.frequency = frequency;
+    run_case.receivers.depths[1] = 50.0 + 100.0 / frequency;
+    const PropagationResult layered = run_arrivals(run_case, {}, {.weakest_db = 300.0});
+    ASSERT_EQ(layered.notes.size(), 1U);
+    EXPECT_NE(layered.notes[0].find("kink"), std::string::npos);
+    const RayTracer tracer(run_case.environment, frequency);
+    const auto marched = marching_eigenrays(tracer, 0.0, 50.0, points_of(run_case.receivers),
+                                            {.lowest = run_case.beams.lowest,
+                                             .highest = run_case.beams.highest,
+                                             .max_surface_bounces = 2048,
+                                             .max_bottom_bounces = 2048,
+                                             .max_turns = 4096,
+                                             .faintest = 1e-3});
+    const LevelRays level = level_paths(run_case.environment, frequency, 0.0, 50.0);
+    for (std::size_t i = 0; i < marched.size(); ++i) {
+      const auto sane = [](const Arrival& a) { return std::abs(a.reflection) > 2e-3; };
+      Arrivals a, b;
+      std::copy_if(layered.arrivals[i].begin(), layered.arrivals[i].end(), std::back_inserter(a),
+                   sane);
+      std::copy_if(marched[i].begin(), marched[i].end(), std::back_inserter(b), sane);
+      ASSERT_EQ(a.size(), b.size()) << frequency << ' ' << i;
+      for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k].delay, b[k].delay, 1e-8);
+      const auto cycles =
+          static_cast<std::ptrdiff_t>(run_case.receivers.ranges[i % 2] /
+                                      (2.0 * 1495.0 * level.angle * (50.0 / 5.0 + 150.0 / 10.0)));
+      if (i >= 4) continue;  // away from the axis
+      EXPECT_LE(
+          std::count_if(a.begin(), a.end(), [](const Arrival& x) { return x.bounces.empty(); }),
+          4 * cycles + 5)  // up and down, of whole cycles and half a cycle more; the level one
+          << frequency << ' ' << i;
+    }
+  }
+}
+
+// A source on the surface: the paths are there, and a note that their sum is nothing.
+TEST(ArrivalsAtSpecialPlaces, OfASourceOnTheSurfaceCancelAndSaySo) {
+  PropagationCase run_case = kinked_duct();
+  run_case.source_depths = {0.0};
+  run_case.receivers = {.depths = {100.0}, .ranges = {5000.0}};
+  const PropagationResult result = run_arrivals(run_case);
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_NE(result.notes[0].find("vacuum"), std::string::npos);
+  std::complex<double> sum = 0.0;
+  double strongest = 0.0;
+  for (const Arrival& a : result.arrivals[0]) {
+    sum += a.amplitude * std::polar(1.0, -2.0 * pi * run_case.frequency * a.delay);
+    strongest = std::max(strongest, std::abs(a.amplitude));
+  }
+  EXPECT_GT(result.arrivals[0].size(), 4U);
+  EXPECT_LT(std::abs(sum), 1e-5 * strongest);
 }
 
 }  // namespace
