@@ -95,11 +95,13 @@ double March::cross_by_series(double line) {
   course_.begin(*cell_, y_, here_);
   course_.expand(1.02 * guess(down));
   const double last = course_.reach(), sense = down ? 1.0 : -1.0;
-  if (sense * (course_.at(last).depth - line) < 0.0) return never;
-  step_ = falling_root(0.0, last, last / 1.03, [&](double h) {
+  const auto left = [&](double h) {
     const ValueSlope z = course_.sink(h);
     return ValueSlope{sense * (line - y_.depth - z.value), -sense * z.slope};
-  });
+  };
+  const ValueSlope beyond = left(last);
+  if (beyond.value > 0.0) return never;
+  step_ = falling_root(0.0, last, last - beyond.value / beyond.slope, left);
   next_ = course_.end(step_);
   next_.depth = line;
   there_ = local(*cell_, next_);

@@ -1,10 +1,10 @@
 #include "raytrace/tracing/power_series.h"
 
-#include <algorithm>
 #include <cmath>
 #include <experimental/simd>
-#include <tuple>
 #include <utility>
+
+#include "raytrace/tracing/power_series_terms.h"
 
 namespace asdic::tracing {
 namespace {
@@ -17,8 +17,6 @@ Four load(const std::array<double, 4>& from) noexcept {
 void store(const Four& value, std::array<double, 4>& to) noexcept {
   value.copy_to(to.data(), std::experimental::element_aligned);
 }
-
-constexpr std::size_t most = std::tuple_size_v<Series> - 1;
 
 /// Coefficient k of a product. The terms with the latest coefficients come last: all others wait
 /// for nothing.
@@ -62,11 +60,11 @@ template <std::size_t k>
 /// The ray's place and direction, and the water along it, as series: c, its gradient, and ∂²c/∂n²
 /// made of its second derivatives.
 struct Water {
-  Series r, z, tr, tz;
-  Series c, c_r, c_z, c_nn;
+  Series z, tr, tz;
+  Series c, c_z, c_nn;
 };
 
-/// c, c_r, c_z to order k, from the place to order k.
+/// c and c_z to order k, from the place to order k.
 struct CubicWater {
   const Cell& cell;
   SoundSpeed2D s;
@@ -86,23 +84,6 @@ struct CubicWater {
     }
     across[k] = product<k>(w.tr, w.tr);
     w.c_nn[k] = product<k>(c_zz, across);
-  }
-};
-
-struct BilinearWater {
-  SoundSpeed2D s;
-
-  template <std::size_t k>
-  void next(Water& w) noexcept {
-    w.c[k] = s.c_r * w.r[k] + s.c_z * w.z[k] + s.c_rz * product<k>(w.r, w.z);
-    w.c_r[k] = s.c_rz * w.z[k];
-    w.c_z[k] = s.c_rz * w.r[k];
-    if constexpr (k == 0) {
-      w.c[0] = s.c;
-      w.c_r[0] = s.c_r;
-      w.c_z[0] = s.c_z;
-    }
-    w.c_nn[k] = -2.0 * s.c_rz * product<k>(w.tr, w.tz);
   }
 };
 
@@ -135,33 +116,18 @@ struct MunkWater {
   }
 };
 
-/// h at which |a|·hⁿ = tolerance.
-double within(double a, int n, double tolerance) noexcept {
-  return a == 0.0 ? 1e300 : std::pow(tolerance / std::abs(a), 1.0 / n);
-}
-
-/// Terms of everything one by one, until the last two are small enough where the series is wanted:
-/// what is left out is smaller. Flat: the water knows no range.
-template <bool flat, class Law>
+/// Terms of everything one by one. The water knows no range.
+template <class Law>
 class Expansion {
  public:
   Expansion(const Law& law, const Row& row, double wanted, PowerSeries& y) noexcept
-      : row_(row), wanted_(wanted), y_(y), law_(law) {
-    q_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q]));
-    plane_weight_ = 10.0 / (1.0 + std::abs(y.place[0][PowerSeries::q_plane]));
+      : row_(row), y_(y), end_(wanted, y), law_(law) {
     take(0);
   }
 
   void run() noexcept {
-    run(std::make_index_sequence<most>{});
-    if (y_.order < 6) return;
-    // The quintic of a segment leaves out a₆·t³(t − h)³ and more: a₆·h⁶/64 at most.
-    const auto& a = y_.place[6];
-    const double sixth = std::max({std::abs(a[0]), std::abs(a[1]), 0.1 * q_weight_ * std::abs(a[2]),
-                                   0.1 * plane_weight_ * std::abs(a[3])}) /
-                         64.0;
-    const double h3 = y_.reach * y_.reach * y_.reach;
-    if (sixth * h3 * h3 > quintic_tolerance) y_.reach = within(sixth, 6, quintic_tolerance);
+    run(std::make_index_sequence<most_terms>{});
+    end_.shorten(y_);
   }
 
  private:
@@ -173,7 +139,6 @@ class Expansion {
   /// Coefficient i, laid out as the sums take it.
   void take(std::size_t i) noexcept {
     const auto &place = y_.place[i], &motion = y_.motion[i];
-    w_.r[i] = place[PowerSeries::range];
     w_.z[i] = place[PowerSeries::depth];
     w_.tr[i] = motion[PowerSeries::tr];
     w_.tz[i] = motion[PowerSeries::tz];
@@ -184,11 +149,7 @@ class Expansion {
   template <std::size_t k>
   [[gnu::always_inline]] bool next() noexcept {
     law_.template next<k>(w_);
-    double c_n = product<k>(w_.c_z, w_.tr), c_s = product<k>(w_.c_z, w_.tz);
-    if constexpr (!flat) {
-      c_n -= product<k>(w_.c_r, w_.tz);
-      c_s += product<k>(w_.c_r, w_.tr);
-    }
+    const double c_n = product<k>(w_.c_z, w_.tr), c_s = product<k>(w_.c_z, w_.tz);
     rates_[k] = {c_n, c_n, c_s, c_s};
     bends_[k] = {0.0, 0.0, -w_.c_nn[k], -w_.c_nn[k]};
     constexpr double share = 1.0 / static_cast<double>(k + 1);
@@ -201,32 +162,15 @@ class Expansion {
     y_.nepers[k + 1] = share * row_.alpha_top * w_.c[k];
     if (row_.alpha_slope != 0.0)
       y_.nepers[k + 1] += share * row_.alpha_slope * product<k>(w_.c, w_.z);
-    before_ = last_;
-    const auto &a = y_.place[k + 1], &d = y_.motion[k + 1];
-    last_ = std::max(std::max({std::abs(a[0]), std::abs(a[1]), q_weight_ * std::abs(a[2]),
-                               plane_weight_ * std::abs(a[3])}),
-                     1e3 * std::max(std::abs(d[0]), std::abs(d[1])));
-    const double before_it = before_ * power_;
-    power_ *= wanted_;
-    y_.order = k + 1;
-    if (k >= 3 && last_ * power_ + 0.1 * before_it <= position_tolerance) {
-      y_.reach = wanted_;
-      return false;
-    }
-    if constexpr (k + 1 == most)
-      y_.reach = std::min(within(last_, most, position_tolerance),
-                          within(0.1 * before_, most - 1, position_tolerance));
-    return true;
+    return end_.goes_on<k>(y_);
   }
 
   alignas(32) FourSeries turned_;  // (t_z, −t_r, P, P)
   alignas(32) FourSeries rates_;   // (c_n, c_n, c_s, c_s)
   alignas(32) FourSeries bends_;   // (0, 0, −c_nn, −c_nn)
   const Row& row_;
-  double wanted_;
   PowerSeries& y_;
-  double q_weight_ = 1.0, plane_weight_ = 1.0;
-  double power_ = 1.0, last_ = 0.0, before_ = 0.0;  // the last two terms, weighted, without powers
+  SeriesEnd end_;
   Law law_;
   Water w_;
 };
@@ -242,11 +186,11 @@ void PowerSeries::expand(const Cell& cell, const RayState& y, const Local& here,
   Row row = *cell.row;  // α over the depth from here
   row.alpha_top = row.alpha(y.depth);
   if (cell.law == Law::bilinear)
-    Expansion<false, BilinearWater>({s}, row, wanted, *this).run();
+    expand_bilinear(s, row, wanted, *this);
   else if (cell.law == Law::munk)
-    Expansion<true, MunkWater>({*cell.munk, y.depth, {}, {}, {}, {}}, row, wanted, *this).run();
+    Expansion<MunkWater>({*cell.munk, y.depth, {}, {}, {}, {}}, row, wanted, *this).run();
   else
-    Expansion<true, CubicWater>({cell, s, {}, {}, {}}, row, wanted, *this).run();
+    Expansion<CubicWater>({cell, s, {}, {}, {}}, row, wanted, *this).run();
 }
 
 std::array<double, 4> PowerSeries::values(const FourSeries& a, double h) const noexcept {
