@@ -39,6 +39,10 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
       silent[j] = wall(kind).roughness.smooth() &&
                   std::holds_alternative<Vacuum>(wall(kind).material_at(grid.ranges[j]));
     const bool surface = kind == BoundaryKind::surface;
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      if (rows[j] >= 0 && silent[j] == 0) heard_[surface ? 0 : 1] = true;
+    if (std::equal(rows.begin() + 1, rows.end(), rows.begin()))
+      same_row_[surface ? 0 : 1] = rows.front();
     (surface ? silent_surface_ : silent_bottom_) = std::move(silent);
     (surface ? surface_ : bottom_) = std::move(rows);
   }

@@ -31,9 +31,17 @@ class BoundaryRows {
   BoundaryRows(const Environment& environment, double frequency, const ReceiverGrid& grid);
 
   [[nodiscard]] bool any() const noexcept { return !surface_.empty() || !bottom_.empty(); }
+  /// Whether a column's receiver on this boundary is not silent.
+  [[nodiscard]] bool heard(BoundaryKind kind) const noexcept {
+    return heard_[kind == BoundaryKind::surface ? 0 : 1];
+  }
+  /// The row that is on the boundary in all columns; −1: none is.
+  [[nodiscard]] std::int32_t row_of_all(BoundaryKind kind) const noexcept {
+    return same_row_[kind == BoundaryKind::surface ? 0 : 1];
+  }
   /// The row of a column's receiver on a boundary; −1: none.
   [[nodiscard]] std::int32_t row(BoundaryKind kind, std::size_t column) const noexcept {
-    const auto& rows = kind == BoundaryKind::surface ? surface_ : bottom_;
+    const auto& rows = of(kind);
     return rows.empty() ? -1 : rows[column];
   }
   /// Whether the sum of both is nothing whatever arrives: a smooth boundary with a vacuum.
@@ -50,6 +58,9 @@ class BoundaryRows {
   }
 
  private:
+  [[nodiscard]] const std::vector<std::int32_t>& of(BoundaryKind kind) const noexcept {
+    return kind == BoundaryKind::surface ? surface_ : bottom_;
+  }
   [[nodiscard]] const Boundary& wall(BoundaryKind kind) const noexcept {
     return kind == BoundaryKind::surface ? environment_.surface : environment_.bottom;
   }
@@ -58,6 +69,8 @@ class BoundaryRows {
   std::span<const double> ranges_;
   std::vector<std::int32_t> surface_, bottom_;               // [columns], or empty
   std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise
+  bool heard_[2] = {false, false};
+  std::int32_t same_row_[2] = {-1, -1};
 };
 
 /// The twins of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams

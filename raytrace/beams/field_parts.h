@@ -98,7 +98,9 @@ class PlainPart {
 class FastPart {
  public:
   FastPart(const FieldWork& work, std::span<float> memory, const LayeredCrossings* layered)
-      : work_(work), layered_(layered) {
+      : work_(work),
+        layered_(layered),
+        walls_(work.boundary_rows.any() ? &work.boundary_rows : nullptr) {
     const ReceiverGrid& grid = work.run_case.receivers;
     BeamSetting setting = work.setting;
     const std::size_t one = ColumnSum::room(grid.depths.size(), grid.ranges.size());
@@ -124,9 +126,7 @@ class FastPart {
     const BeamLaunch launch = cross(i, here_);
     for (std::size_t h = 0; h < sum_.size(); ++h) {
       if (h == 1 && i % 2 != 0) continue;
-      sum_[h].add(launch, here_.crossings);
-      if (work_.boundary_rows.any())
-        sum_[h].add_twins(launch, here_.crossings, work_.boundary_rows);
+      sum_[h].add(launch, here_.crossings, walls_);
     }
     if (work_.also.bound && i > 0)
       work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
@@ -136,6 +136,11 @@ class FastPart {
     last_ = i;
   }
   void finish() { tubes_->finish(); }
+  /// Of the whole sum.
+  void silence() {
+    for (ColumnSum& sum : sum_)
+      if (walls_ != nullptr) sum.silence(*walls_);
+  }
   /// Adds what another part has, but for the bound.
   void absorb(const FastPart& other) {
     for (std::size_t h = 0; h < sum_.size(); ++h) sum_[h].absorb(other.sum_[h]);
@@ -163,6 +168,7 @@ class FastPart {
 
   const FieldWork& work_;
   const LayeredCrossings* layered_;
+  const BoundaryRows* walls_;
   LayeredCrossings::Workspace workspace_;
   RayAtColumns here_, before_;
   std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_

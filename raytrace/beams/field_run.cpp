@@ -108,6 +108,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   const ReceiverGrid& grid = work.run_case.receivers;
   const std::size_t rows = grid.rows(), columns = grid.ranges.size();
   for (std::size_t p = 1; p < parts.size(); ++p) parts[0]->absorb(*parts[p]);
+  if constexpr (requires(Part part) { part.silence(); }) parts[0]->silence();
   FanField result;
   const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
     field.resize(grid.size());
