@@ -28,7 +28,9 @@ struct WallMeeting {
 /// vacuum. R at the angle that Snell's law gives the ray there. docs/theory/fields.md
 class BoundaryRows {
  public:
-  BoundaryRows(const Environment& environment, double frequency, const ReceiverGrid& grid);
+  /// \param coherent  pressures are added, else intensities
+  BoundaryRows(const Environment& environment, double frequency, const ReceiverGrid& grid,
+               bool coherent);
 
   [[nodiscard]] bool any() const noexcept { return !surface_.empty() || !bottom_.empty(); }
   /// Whether a column's receiver on this boundary is not silent.
@@ -44,7 +46,8 @@ class BoundaryRows {
     const auto& rows = of(kind);
     return rows.empty() ? -1 : rows[column];
   }
-  /// Whether the sum of both is nothing whatever arrives: a smooth boundary with a vacuum.
+  /// Whether the sum of both is nothing whatever arrives: of pressures, at a smooth boundary with a
+  /// vacuum.
   [[nodiscard]] bool silent(BoundaryKind kind, std::size_t column) const noexcept {
     return (kind == BoundaryKind::surface ? silent_surface_ : silent_bottom_)[column] != 0;
   }
@@ -83,6 +86,9 @@ class BeamTwins {
   BeamTwins& operator=(const BeamTwins&) = delete;
   void add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
            FieldSum& field);
+  /// Leaves nothing where there is nothing to be had (BoundaryRows::silent), also of rays that turn
+  /// just before the boundary.
+  void silence(FieldSum& field) const;
 
  private:
   void add_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,

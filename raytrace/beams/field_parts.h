@@ -76,6 +76,12 @@ class PlainPart {
       for (std::size_t n = 0; n < field_[h].sum.size(); ++n)
         field_[h].sum[n] += other.field_[h].sum[n];
   }
+  /// Of the whole sum.
+  void silence() {
+    const BeamKind kind = work_.setting.kind;
+    if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred) return;
+    for (std::size_t h = 0; h < (work_.also.half ? 2 : 1); ++h) twins_.silence(field_[h]);
+  }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     const FieldSum& field = field_[half ? 1 : 0];
     return field.sum[column * field.rows() + row];
