@@ -17,7 +17,7 @@ constexpr double least_reflection = 1e-3;  // below it the incident wave is not 
 }  // namespace
 
 BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
-                           const ReceiverGrid& grid)
+                           const ReceiverGrid& grid, bool coherent)
     : environment_(environment), frequency_(frequency), ranges_(grid.ranges) {
   for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom}) {
     std::vector<std::int32_t> rows(grid.ranges.size(), -1);
@@ -36,9 +36,13 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
     if (!any) continue;
     std::vector<std::int8_t> silent(rows.size());
     for (std::size_t j = 0; j < rows.size(); ++j)
-      silent[j] = wall(kind).roughness.smooth() &&
+      silent[j] = coherent && wall(kind).roughness.smooth() &&
                   std::holds_alternative<Vacuum>(wall(kind).material_at(grid.ranges[j]));
     const bool surface = kind == BoundaryKind::surface;
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      if (rows[j] >= 0 && silent[j] == 0) heard_[surface ? 0 : 1] = true;
+    if (std::equal(rows.begin() + 1, rows.end(), rows.begin()))
+      same_row_[surface ? 0 : 1] = rows.front();
     (surface ? silent_surface_ : silent_bottom_) = std::move(silent);
     (surface ? surface_ : bottom_) = std::move(rows);
   }
@@ -117,6 +121,12 @@ void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const 
           beams::add_crossing(setting, launch, launched, ray.source_speed, x, depth, put);
       }
     });
+}
+
+void BeamTwins::silence(FieldSum& field) const {
+  for (const AtWall& wall : walls_)
+    for (std::size_t i = 0; i < wall.column.size(); ++i)
+      if (rows_.silent(wall.kind, wall.column[i])) field.column(wall.column[i])[wall.row[i]] = 0.0;
 }
 
 void BeamTwins::add_ray_centred(const BeamSetting& setting, double launched,

@@ -28,15 +28,26 @@ struct WallMeeting {
 /// vacuum. R at the angle that Snell's law gives the ray there. docs/theory/fields.md
 class BoundaryRows {
  public:
-  BoundaryRows(const Environment& environment, double frequency, const ReceiverGrid& grid);
+  /// \param coherent  pressures are added, else intensities
+  BoundaryRows(const Environment& environment, double frequency, const ReceiverGrid& grid,
+               bool coherent);
 
   [[nodiscard]] bool any() const noexcept { return !surface_.empty() || !bottom_.empty(); }
+  /// Whether a column's receiver on this boundary is not silent.
+  [[nodiscard]] bool heard(BoundaryKind kind) const noexcept {
+    return heard_[kind == BoundaryKind::surface ? 0 : 1];
+  }
+  /// The row that is on the boundary in all columns; −1: none is.
+  [[nodiscard]] std::int32_t row_of_all(BoundaryKind kind) const noexcept {
+    return same_row_[kind == BoundaryKind::surface ? 0 : 1];
+  }
   /// The row of a column's receiver on a boundary; −1: none.
   [[nodiscard]] std::int32_t row(BoundaryKind kind, std::size_t column) const noexcept {
-    const auto& rows = kind == BoundaryKind::surface ? surface_ : bottom_;
+    const auto& rows = of(kind);
     return rows.empty() ? -1 : rows[column];
   }
-  /// Whether the sum of both is nothing whatever arrives: a smooth boundary with a vacuum.
+  /// Whether the sum of both is nothing whatever arrives: of pressures, at a smooth boundary with a
+  /// vacuum.
   [[nodiscard]] bool silent(BoundaryKind kind, std::size_t column) const noexcept {
     return (kind == BoundaryKind::surface ? silent_surface_ : silent_bottom_)[column] != 0;
   }
@@ -50,6 +61,9 @@ class BoundaryRows {
   }
 
  private:
+  [[nodiscard]] const std::vector<std::int32_t>& of(BoundaryKind kind) const noexcept {
+    return kind == BoundaryKind::surface ? surface_ : bottom_;
+  }
   [[nodiscard]] const Boundary& wall(BoundaryKind kind) const noexcept {
     return kind == BoundaryKind::surface ? environment_.surface : environment_.bottom;
   }
@@ -58,6 +72,8 @@ class BoundaryRows {
   std::span<const double> ranges_;
   std::vector<std::int32_t> surface_, bottom_;               // [columns], or empty
   std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise
+  bool heard_[2] = {false, false};
+  std::int32_t same_row_[2] = {-1, -1};
 };
 
 /// The twins of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams
@@ -70,6 +86,9 @@ class BeamTwins {
   BeamTwins& operator=(const BeamTwins&) = delete;
   void add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
            FieldSum& field);
+  /// Leaves nothing where there is nothing to be had (BoundaryRows::silent), also of rays that turn
+  /// just before the boundary.
+  void silence(FieldSum& field) const;
 
  private:
   void add_ray_centred(const BeamSetting& setting, double launched, const RayTrajectory& ray,

@@ -153,39 +153,23 @@ void ColumnSum::add_plainly(const Crossings& x, std::size_t i) {
                       [&](std::size_t k, std::complex<double> p) { add_number(column + k, p); });
 }
 
-void ColumnSum::add_twins(const BeamLaunch& launch, const Crossings& x, const BoundaryRows& rows) {
-  const double width = std::max({launch.higher, launch.lower, setting_.spacing});
-  const bool is_hat = setting_.kind == BeamKind::hat;
-  for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom})
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const std::int32_t row = rows.row(kind, x.column[i]);
-      if (row < 0) continue;
-      const auto k = static_cast<std::size_t>(row);
-      const double dz = depths_[k] - x.depth[i];
-      const double across = std::abs(x.q[i] + x.dq_ds[i] * x.sine[i] * dz) * width;
-      const double reach =
-          is_hat ? across : 4.0 * std::max(across, pi * x.speed[i] / setting_.frequency);
-      if (std::abs(dz * x.cosine[i]) > reach) continue;
-      Crossing there = crossing_at(x, i);
-      there.loss *= rows.twin(kind, x.column[i], there);
-      const std::size_t at = x.column[i] * stride_ + k;
-      beams::add_crossing(setting_, launch, launched_, x.source_speed, there, depths_.subspan(k, 1),
-                          [&](std::size_t, std::complex<double> p) { add_number(at, p); });
-    }
-}
-
-void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings) {
+void ColumnSum::add(const BeamLaunch& launch, const Crossings& crossings,
+                    const BoundaryRows* walls) {
+  const auto add_one = [&](Half half) {
+    add_half(launch, crossings, half);
+    if (walls != nullptr) add_twins(crossings, *walls);
+  };
   if (launch.higher == launch.lower) {
     setting_.spacing = launch.higher == 0.0 ? spacing_of_fan_ : launch.higher;
     launch_ = launch;
-    return add_half(launch, crossings, Half::both);
+    return add_one(Half::both);
   }
   setting_.spacing = launch.higher;
   launch_ = launch, launch_.lower = 0.0;
-  add_half(launch, crossings, Half::higher);
+  add_one(Half::higher);
   setting_.spacing = launch.lower;
   launch_ = launch, launch_.higher = 0.0;
-  add_half(launch, crossings, Half::lower);
+  add_one(Half::lower);
 }
 
 void ColumnSum::add_half(const BeamLaunch& launch, const Crossings& crossings, Half half) {

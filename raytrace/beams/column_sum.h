@@ -25,11 +25,14 @@ class ColumnSum {
     return 2 * columns * stride_of(rows);
   }
 
-  /// Adds one beam.
-  void add(const BeamLaunch& launch, const Crossings& crossings);
+  /// Adds one beam. \param walls  receivers on the boundaries, which its twin serves too; null:
+  /// none
+  void add(const BeamLaunch& launch, const Crossings& crossings,
+           const BoundaryRows* walls = nullptr);
 
-  /// Adds what its twins bring to receivers on the boundaries; after add() of the same beam.
-  void add_twins(const BeamLaunch& launch, const Crossings& crossings, const BoundaryRows& rows);
+  /// Leaves nothing at receivers where there is nothing to be had (BoundaryRows::silent): add()
+  /// left the twins out there.
+  void silence(const BoundaryRows& walls);
 
   /// Adds what another sum of the same receivers has.
   void absorb(const ColumnSum& other);
@@ -78,6 +81,9 @@ class ColumnSum {
   /// The half of a hat that is being added.
   enum class Half : std::int8_t { both, higher, lower };
   void add_half(const BeamLaunch& launch, const Crossings& crossings, Half half);
+  void add_twins(const Crossings& crossings, const BoundaryRows& walls);
+  void add_twin(const Crossings& crossings, std::size_t i, BoundaryKind kind, std::size_t row,
+                const BoundaryRows& walls);
 
   BeamSetting setting_;
   double spacing_of_fan_ = 0.0;

@@ -76,6 +76,12 @@ class PlainPart {
       for (std::size_t n = 0; n < field_[h].sum.size(); ++n)
         field_[h].sum[n] += other.field_[h].sum[n];
   }
+  /// Of the whole sum.
+  void silence() {
+    const BeamKind kind = work_.setting.kind;
+    if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred) return;
+    for (std::size_t h = 0; h < (work_.also.half ? 2 : 1); ++h) twins_.silence(field_[h]);
+  }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     const FieldSum& field = field_[half ? 1 : 0];
     return field.sum[column * field.rows() + row];
@@ -98,7 +104,9 @@ class PlainPart {
 class FastPart {
  public:
   FastPart(const FieldWork& work, std::span<float> memory, const LayeredCrossings* layered)
-      : work_(work), layered_(layered) {
+      : work_(work),
+        layered_(layered),
+        walls_(work.boundary_rows.any() ? &work.boundary_rows : nullptr) {
     const ReceiverGrid& grid = work.run_case.receivers;
     BeamSetting setting = work.setting;
     const std::size_t one = ColumnSum::room(grid.depths.size(), grid.ranges.size());
@@ -124,9 +132,7 @@ class FastPart {
     const BeamLaunch launch = cross(i, here_);
     for (std::size_t h = 0; h < sum_.size(); ++h) {
       if (h == 1 && i % 2 != 0) continue;
-      sum_[h].add(launch, here_.crossings);
-      if (work_.boundary_rows.any())
-        sum_[h].add_twins(launch, here_.crossings, work_.boundary_rows);
+      sum_[h].add(launch, here_.crossings, walls_);
     }
     if (work_.also.bound && i > 0)
       work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
@@ -136,6 +142,11 @@ class FastPart {
     last_ = i;
   }
   void finish() { tubes_->finish(); }
+  /// Of the whole sum.
+  void silence() {
+    for (ColumnSum& sum : sum_)
+      if (walls_ != nullptr) sum.silence(*walls_);
+  }
   /// Adds what another part has, but for the bound.
   void absorb(const FastPart& other) {
     for (std::size_t h = 0; h < sum_.size(); ++h) sum_[h].absorb(other.sum_[h]);
@@ -163,6 +174,7 @@ class FastPart {
 
   const FieldWork& work_;
   const LayeredCrossings* layered_;
+  const BoundaryRows* walls_;
   LayeredCrossings::Workspace workspace_;
   RayAtColumns here_, before_;
   std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_

@@ -108,6 +108,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   const ReceiverGrid& grid = work.run_case.receivers;
   const std::size_t rows = grid.rows(), columns = grid.ranges.size();
   for (std::size_t p = 1; p < parts.size(); ++p) parts[0]->absorb(*parts[p]);
+  parts[0]->silence();
   FanField result;
   const auto collect = [&](bool half, std::vector<std::complex<double>>& field) {
     field.resize(grid.size());
@@ -177,7 +178,8 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                       const FieldCheck& also) {
   std::vector<double> tube_share(also.bound ? fan.elevation.size() - 1 : 0);
   double end_share[2] = {0.0, 0.0};
-  const BoundaryRows boundary_rows(run_case.environment, run_case.frequency, run_case.receivers);
+  const BoundaryRows boundary_rows(run_case.environment, run_case.frequency, run_case.receivers,
+                                   run_case.field == FieldKind::coherent);
   const FieldWork work{run_case,
                        tracer,
                        source_depth,

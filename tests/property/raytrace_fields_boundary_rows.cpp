@@ -62,7 +62,8 @@ TEST(BoundAtBoundaries, HoldsAndIsOfUse) {
           run_case.beams.kind = kind;
           run_case.field = sum;
           const RayTracer tracer(run_case.environment, run_case.frequency);
-          const BoundaryRows walls(run_case.environment, run_case.frequency, run_case.receivers);
+          const BoundaryRows walls(run_case.environment, run_case.frequency, run_case.receivers,
+                                   sum == FieldKind::coherent);
           const std::size_t columns = run_case.receivers.ranges.size();
           const auto fan = [&](int beams) {
             return even_fan(run_case.beams.lowest, run_case.beams.highest, beams);
