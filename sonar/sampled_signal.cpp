@@ -10,7 +10,7 @@ namespace {
 /// 16 taps: A = 2.285·15·2π(1 − ½) + 8 = 115 dB, β = 0.1102(A − 8.7).
 using Taps = InterpolationTaps<double, 16>;
 constexpr double kaiser_beta = 11.8;
-constexpr std::size_t pad = Taps::taps;   // zeros at either end
+constexpr std::size_t pad = Taps::taps;  // zeros at either end
 
 }  // namespace
 
