@@ -110,7 +110,8 @@ void AllRoundSum::add(const HeardAllRound& heard) {
 
 void AllRoundSum::add_sound(std::complex<double> power, const Slownesses& s,
                             std::vector<Sound>& sounds) const {
-  const double weight = std::abs(power);
+  // Own powers and those between beams of real patterns are real: no root then.
+  const double weight = power.imag() == 0.0 ? std::abs(power.real()) : std::abs(power);
   if (!(weight > 0.0)) return;
   const auto alike = [&](const Sound& sound) {
     const Slownesses& t = sound.first;

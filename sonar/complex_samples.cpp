@@ -7,20 +7,15 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "core/units.h"
-#include "sonar/interpolation_taps.h"
+#include "sonar/place_weights.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
 
 namespace asdic {
 namespace {
-
-/// Of a signal 1.35 times oversampled (DelayKernel), 24 taps under a window of −97 dB:
-/// A = 2.285·23·2π(1 − 1/1.35) + 8, β = 0.1102(A − 8.7).
-using Taps = InterpolationTaps<float, 24>;
-constexpr double kaiser_beta = 9.73;
-static_assert(DelayKernel::oversampling >= 1.35);
 
 /// Samples of the record that are interpolated at one time: their taps stay in the cache.
 constexpr std::size_t block = 128;
@@ -28,9 +23,9 @@ constexpr std::size_t block = 128;
 /// Where the samples of a block lie between those of the baseband, and what turns them.
 struct Places {
   std::size_t count = 0;
-  std::ptrdiff_t lowest = 0, highest = 0;  // of the baseband's samples under all taps
-  std::array<std::size_t, block> first;    // of those under a sample's taps, after the lowest
-  std::array<Taps::Weights, block> weights;
+  std::ptrdiff_t lowest = 0, highest = 0;   // of the baseband's samples under all taps
+  std::array<std::size_t, block> first;     // of those under a sample's taps, after the lowest
+  std::array<const float*, block> weights;  // [taps] each
   std::array<std::complex<float>, block> turn;
 };
 
@@ -68,7 +63,7 @@ void add_transposed(const float* sums, std::size_t stride, std::size_t phones, f
 /// Adds a block's samples of some phones, side by side in lanes: Σ w_k·x_k, turned.
 /// \param fours  of phones side by side, of which `phones` from `channel` on are there
 /// \param samples  of the record, from the block's first on   \param row  from phone to phone
-template <std::size_t fours>
+template <std::size_t fours, std::size_t taps>
 void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phones,
                  const Places& at, float* samples, std::size_t row) {
   constexpr std::size_t stride = 8 * fours;
@@ -89,11 +84,11 @@ void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phon
     std::array<Four, fours> sum{};
     const float* from = reinterpret_cast<const float*>(under.data()) + at.first[i] * stride;
 #pragma GCC unroll 24
-    for (std::size_t k = 0; k < Taps::taps; ++k)
+    for (std::size_t k = 0; k < taps; ++k)
       for (std::size_t q = 0; q < fours; ++q) {
         Four x;
         load(from + k * stride + 8 * q, x);
-        sum[q] += at.weights[i][static_cast<Eigen::Index>(k)] * x;
+        sum[q] += at.weights[i][k] * x;
       }
     const float c = at.turn[i].real(), s = at.turn[i].imag();
     const Four across = {-s, s, -s, s, -s, s, -s, s};
@@ -197,45 +192,57 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
   });
 }
 
-/// The same out of the baseband's samples, where its whole band lies within the recorded one.
-void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
-                                       std::span<float> samples) const {
-  static const Taps taps(kaiser_beta);
-  const Recording& recording = plan_->recording;
+namespace {
+
+/// Adds what is between a baseband's samples to the record's. \param to  samples of its period
+template <int n_taps>
+void interpolate_all(const Baseband& baseband, const Recording& recording, double epoch,
+                     std::size_t to, double scale, std::span<float> samples) {
+  const PlaceWeights<n_taps> weights(baseband.samples, to);
   const double beside = baseband.carrier - recording.carrier;
-  const double from_start = beside * recording.start - recording.carrier * epoch_;
-  const double step = baseband.sample_rate / recording.sample_rate;
+  const double from_start = beside * recording.start - recording.carrier * epoch;
   const std::complex<double> turn_step = std::polar(1.0, 2.0 * pi * beside / recording.sample_rate);
   const Silence silence(baseband);
   const auto add = [&](std::size_t begin) {
-    const auto below = [&](std::size_t i) {  // of the baseband's samples the one before a place
-      return static_cast<std::ptrdiff_t>(static_cast<double>(begin + i) * step);
-    };
     Places at;
+    std::array<typename PlaceWeights<n_taps>::Weights, block> own;
     at.count = std::min(block, recording.samples - begin);
-    at.lowest = below(0) - Taps::before;
-    at.highest = below(at.count - 1) - Taps::before + Taps::taps - 1;
+    const auto first = weights.place(begin), last = weights.place(begin + at.count - 1);
+    at.lowest = static_cast<std::ptrdiff_t>(first.below) - weights.before;
+    at.highest = static_cast<std::ptrdiff_t>(last.below) - weights.before + n_taps - 1;
     if (silence.between(at.lowest, at.highest, baseband.samples)) return;
     const double cycles = from_start + beside * static_cast<double>(begin) / recording.sample_rate;
     std::complex<double> turn = std::polar(scale, 2.0 * pi * (cycles - std::round(cycles)));
+    auto place = first;
     for (std::size_t i = 0; i < at.count; ++i) {
-      const std::ptrdiff_t before = below(i);
-      at.first[i] = static_cast<std::size_t>(before - Taps::before - at.lowest);
-      at.weights[i] = taps.at(
-          static_cast<float>(static_cast<double>(begin + i) * step - static_cast<double>(before)));
+      at.first[i] = place.below - first.below;
+      at.weights[i] = weights.at(place, own[i]);
       at.turn[i] = std::complex<float>(turn);
       turn *= turn_step;
+      weights.next(place);
     }
     const std::size_t row = 2 * recording.samples;
     for (std::size_t n = 0; n < baseband.channels;) {
       const std::size_t left = baseband.channels - n, phones = std::min<std::size_t>(left, 16);
-      const auto part = phones > 8 ? interpolate<4> : phones > 4 ? interpolate<2> : interpolate<1>;
+      const auto part = phones > 8   ? interpolate<4, n_taps>
+                        : phones > 4 ? interpolate<2, n_taps>
+                                     : interpolate<1, n_taps>;
       part(baseband, n, phones, at, samples.data() + n * row + 2 * begin, row);
       n += phones;
     }
   };
   oneapi::tbb::parallel_for(std::size_t{0}, (recording.samples + block - 1) / block,
                             [&](std::size_t b) { add(b * block); });
+}
+
+}  // namespace
+
+/// The same out of the baseband's samples, where its whole band lies within the recorded one.
+void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
+                                       std::span<float> samples) const {
+  const auto add =
+      baseband.oversampling < oversampling_for_12_taps ? interpolate_all<24> : interpolate_all<12>;
+  add(baseband, plan_->recording, epoch_, plan_->passband_length, scale, samples);
 }
 
 /// Whether the whole band of the synthesis lies within the recorded one.

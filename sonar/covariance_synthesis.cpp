@@ -1,13 +1,14 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <span>
 
 #include "core/normal.h"
+#include "sonar/place_weights.h"
 #include "sonar/pulse_spectrum.h"
 #include "sonar/reverberation_covariance.h"
 #include "sonar/spectrum_product.h"
@@ -18,9 +19,6 @@ namespace asdic {
 namespace {
 
 using Scratch = FftBuffer<std::complex<float>>;
-using Normals = Eigen::Map<const Eigen::MatrixXcf>;
-using Factor = Eigen::Map<const Eigen::MatrixXcf>;
-using Rows = Eigen::Matrix<std::complex<float>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of a pulse whose energy outside is below −80 dB: bins on either side. At most the plan's.
 std::size_t bins_of(std::span<const std::complex<float>> spectrum) {
@@ -50,38 +48,73 @@ struct DelayGrid {
   }
 };
 
-/// Adds one stretch's impulses x = F·z·√(I/rate) to the grids of all components.
+constexpr std::size_t drawn = 64;  // samples at one time: normals, factor, sums stay in the cache
+constexpr std::size_t lanes = 16;  // which their rows are filled up to
+
+/// Sets the impulses of all components to F·z. \param factor  [rank × components]
+/// \param z  [rank × (real, imaginary) × row]   \param grids  [components × stride], at the first
+/// of `n` samples, n ≤ row
+void multiply(std::span<const std::complex<float>> factor, const std::vector<float>& z,
+              std::size_t row, std::size_t n, std::size_t components, std::complex<float>* grids,
+              std::size_t stride) {
+  const std::size_t rank = factor.size() / components;
+  std::array<float, drawn> re, im;
+  for (std::size_t c = 0; c < components; ++c) {
+    std::fill_n(re.begin(), row, 0.0F);
+    std::fill_n(im.begin(), row, 0.0F);
+    for (std::size_t j = 0; j < rank; ++j) {
+      const float a = factor[j * components + c].real(), b = factor[j * components + c].imag();
+      const float *const x = &z[2 * j * row], *const y = x + row;
+      if (b == 0.0F)  // as where an array lies flat and hears all bearings
+        for (std::size_t i = 0; i < row; ++i) {
+          re[i] += a * x[i];
+          im[i] += a * y[i];
+        }
+      else
+        for (std::size_t i = 0; i < row; ++i) {
+          re[i] += a * x[i] - b * y[i];
+          im[i] += a * y[i] + b * x[i];
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) grids[c * stride + i] = {re[i], im[i]};
+  }
+}
+
+/// Sets one stretch's impulses x = F·z·√(I/rate) of all components.
 /// \param grids  [components × stride]
 void draw_stretch(const ReverberationCovariance& of, std::size_t index, const CovarianceDraw& draw,
                   const DelayGrid& grid, std::complex<float>* grids, std::size_t stride) {
-  constexpr std::size_t block = 64;  // samples: normals, factor and product stay in the cache
   const ReverberationCovariance::Stretch& stretch = of.stretches[index];
   const std::size_t rank = stretch.rank, components = of.components;
   const std::size_t begin = grid.at(static_cast<double>(stretch.begin) * of.bin);
   const std::size_t end = grid.at(static_cast<double>(stretch.end) * of.bin);
   if (rank == 0 || begin == end) return;
-  const Factor factor(of.columns.data() + stretch.first * components,
-                      static_cast<Eigen::Index>(components), static_cast<Eigen::Index>(rank));
-  std::vector<float> normals(2 * rank * block);
-  std::vector<float> scale(block);
-  for (std::size_t start = begin; start < end; start += block) {
-    const std::size_t n = std::min(block, end - start);
+  const auto factor = std::span(of.columns).subspan(stretch.first * components, rank * components);
+  const std::size_t row = std::min(drawn, (end - begin + lanes - 1) / lanes * lanes);
+  std::vector<float> normals(2 * rank * std::min(drawn, end - begin)), z(2 * rank * row);
+  for (std::size_t start = begin; start < end; start += drawn) {
+    const std::size_t n = std::min(drawn, end - start);
     fill_normal(std::span(normals).first(2 * rank * n), draw.seed, Draw::covariance_weight,
                 draw.ping, index, 2 * rank * (start - begin));
     for (std::size_t i = 0; i < n; ++i) {
       const auto bin = static_cast<std::size_t>(grid.delay(start + i) / of.bin);
       // E|z|² = 1: half of it real.
-      scale[i] = static_cast<float>(
+      const auto scale = static_cast<float>(
           std::sqrt(0.5 * of.intensity[std::min(bin, of.intensity.size() - 1)] / grid.rate));
-      for (std::size_t j = 0; j < 2 * rank; ++j) normals[2 * rank * i + j] *= scale[i];
+      const float* const normal = &normals[2 * rank * i];
+      for (std::size_t j = 0; j < rank; ++j) {
+        z[2 * j * row + i] = scale * normal[2 * j];
+        z[(2 * j + 1) * row + i] = scale * normal[2 * j + 1];
+      }
     }
-    const Normals z(reinterpret_cast<const std::complex<float>*>(normals.data()),
-                    static_cast<Eigen::Index>(rank), static_cast<Eigen::Index>(n));
-    Eigen::Map<Rows, 0, Eigen::OuterStride<>>(
-        grids + start, static_cast<Eigen::Index>(components), static_cast<Eigen::Index>(n),
-        Eigen::OuterStride<>(static_cast<Eigen::Index>(stride)))
-        .noalias() = factor * z;
+    multiply(factor, z, row, n, components, grids + start, stride);
   }
+}
+
+/// A multiple of 16 at least so long: FFTW takes twice as long for odd ones.
+std::size_t grid_length(double least) {
+  return lanes *
+         fast_fft_length(static_cast<std::size_t>(std::ceil(least / static_cast<double>(lanes))));
 }
 
 }  // namespace
@@ -126,9 +159,13 @@ Baseband Synthesizer::silence(const ReverberationCovariance& covariance,
   const double bins = static_cast<double>(covariance_spectra(covariance.band)->size()) /
                       static_cast<double>(colours);
   const double period = static_cast<double>(plan.length) / plan.rate;
-  const std::size_t length = fast_fft_length(static_cast<std::size_t>(
-      std::ceil(std::max(bins * DelayKernel::oversampling, least_rate * period))));
-  return silence_of(phones, std::min(length, plan.length), std::move(memory));
+  // A finer grid, of which half as many taps are enough, where that is far from the record's rate.
+  const double oversampling = 4.0 * bins < static_cast<double>(plan.passband_length)
+                                  ? oversampling_for_12_taps
+                                  : DelayKernel::oversampling;
+  const std::size_t length =
+      std::min(plan.length, grid_length(std::max(bins * oversampling, least_rate * period)));
+  return silence_of(phones, length, static_cast<double>(length) / bins, std::move(memory));
 }
 
 void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
@@ -141,7 +178,7 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   // White noise of any rate above the pulse's band is as good as another: it stands on the coarsest
   // grid of the period. An impulse stands in the pulse's middle.
   const std::size_t fine = baseband.samples;
-  const std::size_t length = std::min(fine, fast_fft_length(bins + 1));
+  const std::size_t length = std::min(fine, grid_length(static_cast<double>(bins + 1)));
   const double period = static_cast<double>(plan.length) / plan.rate;
   const double rate = static_cast<double>(length) / period;
   const DelayGrid grid{

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "sonar/phase_turn.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
 #include "sonar/turning.h"
@@ -29,12 +30,8 @@ struct GridSpan {
 
 constexpr std::size_t block = Turning::block;
 
-/// A sample of a return of amplitude 1: the pulse's envelope, and what turns it.
-struct ShapeSample {
-  std::complex<double> pulse;
-  std::complex<float> turn;
-};
-using Shape = std::vector<ShapeSample>;
+/// A return of amplitude 1, sample by sample.
+using Shape = std::vector<std::complex<float>>;
 
 /// A return as it is heard at a few lags about the array's reference point,
 /// g(t − λ_k), g(τ) = A·c(u(τ))·e^{i2π(f·u(τ) − f_c·τ)}: between Chebyshev points λ_k of the
@@ -146,15 +143,27 @@ class CurvedSynthesis {
     return w;
   }
 
-  /// c(u) and e^{i2π(f·u − f_c·τ)} of one sample after the other, lag by lag.
+  /// c(u)·e^{i2π(f·u − f_c·τ)} of one sample after the other, lag by lag.
   [[nodiscard]] Shape shape(const DelayCurve& curve, const Waveforms& w) const {
     Shape found;
     found.reserve(w.lags.size() * w.span.size());
+    std::array<double, block> cycles, re, im;
     for (const double lag : w.lags)
-      for (std::ptrdiff_t i = w.span.begin; i < w.span.end; ++i) {
-        const double t = time(i) - lag;
-        const double u = curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
-        found.push_back({pulse_.at(u), turned(pulse_.centre_frequency() * u - plan_.carrier * t)});
+      for (std::ptrdiff_t i = w.span.begin; i < w.span.end;) {
+        const auto count = static_cast<std::size_t>(
+            std::min<std::ptrdiff_t>(w.span.end - i, static_cast<std::ptrdiff_t>(block)));
+        for (std::size_t j = 0; j < count; ++j) {
+          const double t = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
+          const double u = curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
+          cycles[j] = plan_.carrier * t - pulse_.centre_frequency() * u;
+          const std::complex<double> c = pulse_.at(u);
+          re[j] = c.real();
+          im[j] = c.imag();
+        }
+        for (std::size_t j = 0; j < count; ++j) turn_back(cycles[j], re[j], im[j]);
+        for (std::size_t j = 0; j < count; ++j)
+          found.emplace_back(static_cast<float>(re[j]), static_cast<float>(im[j]));
+        i += static_cast<std::ptrdiff_t>(count);
       }
     return found;
   }
@@ -171,7 +180,7 @@ class CurvedSynthesis {
         key.add(piece.heard[i]).add(piece.sent[i]);
     if (auto kept = memory_->find<Shape>(key)) return kept;
     auto made = std::make_shared<Shape>(shape(curve, w));
-    const std::size_t bytes = made->capacity() * sizeof(ShapeSample);
+    const std::size_t bytes = made->capacity() * sizeof(Shape::value_type);
     return memory_->keep(key, std::move(made), bytes);
   }
 
@@ -179,9 +188,14 @@ class CurvedSynthesis {
     w.values.resize(w.lags.size() * w.span.size());
     if (w.values.empty()) return;
     const auto kept = recalled(r.curve, w);
-    std::transform(kept->begin(), kept->end(), w.values.begin(), [&](const ShapeSample& s) {
-      return std::complex<float>(r.straight.amplitude * s.pulse) * s.turn;
-    });
+    const float re = static_cast<float>(r.straight.amplitude.real()),
+                im = static_cast<float>(r.straight.amplitude.imag());
+    const float* from = reinterpret_cast<const float*>(kept->data());
+    float* to = reinterpret_cast<float*>(w.values.data());
+    for (std::size_t i = 0; i < 2 * kept->size(); i += 2) {
+      to[i] = re * from[i] - im * from[i + 1];
+      to[i + 1] = re * from[i + 1] + im * from[i];
+    }
   }
 
   /// ℓ_k(λ): Lagrange's polynomials in barycentric form.
@@ -235,9 +249,13 @@ class CurvedSynthesis {
           for (std::size_t j = 0; j < 2 * count; ++j) sum[j] += weight[k] * value[j];
         }
         turning.turn(sum);
-        for (std::size_t j = 0; j < count; ++j) {
-          row[at] += std::complex<float>(sum[2 * j], sum[2 * j + 1]);
-          if (++at == plan_.length) at = 0;
+        for (std::size_t j = 0; j < count;) {  // up to where the period begins again
+          const std::size_t until = std::min(count, j + plan_.length - at);
+          float* out = reinterpret_cast<float*>(row + at);
+          at += until - j;
+          for (std::size_t k = 2 * j; k < 2 * until; ++k) *out++ += sum[k];
+          if (at == plan_.length) at = 0;
+          j = until;
         }
         i += static_cast<std::ptrdiff_t>(count);
       }

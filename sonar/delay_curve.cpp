@@ -50,15 +50,18 @@ DelayCurve::DelayCurve(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 }
 
 double DelayCurve::sent_at(double heard, const Vec3& phone) const noexcept {
+  const bool elsewhere = !(phone.x() == 0.0 && phone.y() == 0.0 && phone.z() == 0.0);
   const auto piece = std::find_if(pieces_.begin(), std::prev(pieces_.end()), [&](const Piece& p) {
     return heard - p.last_slowness.dot(phone) <= p.heard.back();
   });
-  // Over the array the slowness changes by parts of 1e-5: that of t does for t − s·x.
-  const double share =
-      (heard - piece->heard.front()) / (piece->heard.back() - piece->heard.front());
-  const double lag = piece->first_slowness.dot(phone) +
-                     share * (piece->last_slowness - piece->first_slowness).dot(phone);
-  const double t = heard - lag;
+  double t = heard;
+  if (elsewhere) {
+    // Over the array the slowness changes by parts of 1e-5: that of t does for t − s·x.
+    const double share =
+        (heard - piece->heard.front()) / (piece->heard.back() - piece->heard.front());
+    t -= piece->first_slowness.dot(phone) +
+         share * (piece->last_slowness - piece->first_slowness).dot(phone);
+  }
   // u = u₀ + (t − t₀)·(d₁ + (t − t₁)·(d₂ + (t − t₂)·d₃))
   const auto& d = differences_[static_cast<std::size_t>(piece - pieces_.begin())];
   const auto& at = piece->heard;
@@ -91,7 +94,10 @@ std::vector<PulseMoment> pulse_moments(const MovingPath& path) {
     const double length = ends[i] - ends[i - 1];
     if (length < 1e-6) continue;
     for (const double share : lobatto) {
-      const auto moment = path.moment(ends[i - 1] + share * length);
+      const double sent = ends[i - 1] + share * length;
+      const auto moment = sent == first->sent  ? first
+                          : sent == last->sent ? last
+                                               : path.moment(sent);
       if (!moment) return {};
       moments.push_back(*moment);
     }

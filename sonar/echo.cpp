@@ -178,9 +178,48 @@ class EchoFinder {
     const bool turns =
         !(path.source_turns.empty() && path.target_turns.empty() && path.array_turns.empty());
     if (phase < negligible_phase && !turns) return;
-    const std::vector<PulseMoment> moments = pulse_moments(path);
+    const std::vector<PulseMoment> moments = moments_of(path, pair, offset);
     for (std::size_t i = 0; i < echoes.size(); ++i)
       echoes[i].curve = delay_curve(moments, echoes[i].heard, seen[i].offset, highest, aperture);
+  }
+
+  /// What was found for one pair of paths, and how many sets of eigenrays that asked for.
+  struct Moments {
+    std::vector<PulseMoment> along;
+    int legs = 0;
+  };
+
+  /// pulse_moments(), out of what is kept for equal ways and paths.
+  std::vector<PulseMoment> moments_of(const MovingPath& path, const PathPair& pair,
+                                      const Vec3& offset) const {
+    const auto& transmitter =
+        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
+    const PathLimits limits = limits_of(scenario_.propagation);
+    ExactKey key = context_.paths.key(Kept::pulse_moments);
+    key.add_all(context_.ping_time, context_.frequency, path.pulse_duration, transmitter.offset,
+                offset, limits.max_surface_bounces, limits.max_bottom_bounces,
+                limits.max_launch_angle, limits.max_vertices, limits.faintest);
+    key.add_all(path.source_turns, path.target_turns, path.array_turns);
+    for (const Track* track :
+         {&scenario_.platforms[static_cast<std::size_t>(transmitter.platform)].track,
+          &target_.track, &array_track_}) {
+      key.add_all(track->start.position, track->start.velocity, track->waypoints.size());
+      for (const Waypoint& point : track->waypoints) key.add_all(point.time, point.position);
+    }
+    add_path(key, pair.there.path);
+    add_path(key, pair.home.path);
+    PropagationMemory& memory = context_.paths.memory();
+    Reuse* const reuse = context_.reuse;
+    if (const auto known = memory.find<Moments>(key)) {
+      if (reuse != nullptr) reuse->legs_reused += known->legs;
+      return known->along;
+    }
+    const auto legs = [&] { return reuse ? reuse->legs_reused + reuse->legs_searched : 0; };
+    const int before = legs();
+    Moments found{.along = pulse_moments(path)};
+    found.legs = legs() - before;
+    memory.keep(key, std::make_shared<Moments>(found), found.along.size() * sizeof(PulseMoment));
+    return found.along;
   }
 
   MovingPath follow(const PathPair& pair, const Vec3& offset, double highest) const {

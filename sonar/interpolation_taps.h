@@ -48,8 +48,9 @@ class InterpolationTaps {
   /// \param fraction  of the place after the sample below it, in [0, 1)
   [[nodiscard]] Weights at(Real fraction) const noexcept {
     const Real y = Real(2) * fraction - Real(1);
-    Weights sum = coefficient_[degree];
-    for (std::size_t i = degree; i-- > 0;) sum = sum * y + coefficient_[i];
+    // Not a copy first: that would go by way of memory, in halves that are waited for.
+    Weights sum = coefficient_[degree] * y + coefficient_[degree - 1];
+    for (std::size_t i = degree - 1; i-- > 0;) sum = sum * y + coefficient_[i];
     return sum;
   }
 

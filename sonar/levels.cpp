@@ -1,7 +1,7 @@
 #include "sonar/levels.h"
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sonar/noise_spectrum.h"
@@ -29,20 +29,36 @@ void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<fl
         into.size() - 1,
         static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
   };
-  for (std::size_t begin = 0, end = 0; begin < heard.recorded; begin = end) {
-    const std::size_t step = step_of(begin);
-    for (end = begin + 1; end < heard.recorded && step_of(end) == step;) ++end;
-    double power = 0.0;
+  const double step_samples = heard.sample_rate * series_.time_step;
+  std::array<float, 1024> squares;  // of the channels' real and imaginary parts, added up
+  constexpr std::size_t block = squares.size() / 2;
+  std::size_t begin = 0, end = 0, step = 0;  // samples of a step
+  double power = 0.0;                        // of those so far
+  for (std::size_t first = 0; first < heard.recorded; first += block) {
+    const std::size_t count = std::min(block, heard.recorded - first);
+    squares.fill(0.0F);
     for (std::size_t n = 0; n < heard.channels; ++n) {
-      const auto* parts = reinterpret_cast<const float*>(heard.channel(n).data() + begin);
-      power += static_cast<double>(
-          Eigen::Map<const Eigen::ArrayXf>(parts, static_cast<Eigen::Index>(2 * (end - begin)))
-              .square()
-              .sum());
+      const auto* parts = reinterpret_cast<const float*>(heard.channel(n).data() + first);
+      for (std::size_t j = 0; j < 2 * count; ++j) squares[j] += parts[j] * parts[j];
     }
-    // mean square of a tone is half its envelope's square
-    into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power /
-                                     static_cast<double>(heard.channels * (end - begin)));
+    for (std::size_t i = first; i < first + count;) {
+      if (i == end) {  // the next step
+        begin = i;
+        step = step_of(begin);
+        end = std::clamp(static_cast<std::size_t>(static_cast<double>(step + 1) * step_samples),
+                         begin + 1, heard.recorded);
+        while (end > begin + 1 && step_of(end - 1) != step) --end;
+        while (end < heard.recorded && step_of(end) == step) ++end;
+        power = 0.0;
+      }
+      const std::size_t until = std::min(end, first + count);
+      for (; i < until; ++i)
+        power += static_cast<double>(squares[2 * (i - first)] + squares[2 * (i - first) + 1]);
+      // mean square of a tone is half its envelope's square
+      if (i == end)
+        into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power /
+                                         static_cast<double>(heard.channels * (end - begin)));
+    }
   }
 }
 

@@ -225,7 +225,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     scattered.push_back(reverberation(emission, static_cast<int>(a), record, phones,
                                       band ? band->points() : std::span<const BandPoint>()));
     record.timings.rays += watch.lap();
-    if (a == 0) record.patches = scattered.back().rows(most_patch_rows).rows;
+    if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled) {
       const ReverberationCovariance* dense = scattered.back().covariance();

@@ -20,10 +20,12 @@ enum class Kept : std::uint64_t {
   slice,
   legs,
   followed_legs,
+  pulse_moments,
   boundary_fan,
   synthesis,
   waveform,
   expected_reverberation,
+  patch_rows,
   reverberation_covariance,
   covariance_spectra,
   noise_factors

@@ -58,6 +58,11 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
 
 }  // namespace
 
+void add_path(ExactKey& key, const Arrival& path) {
+  key.add_all(path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
+              path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
+}
+
 PathLimits limits_of(const PropagationSettings& settings) noexcept {
   return {.max_surface_bounces = settings.max_surface_bounces,
           .max_bottom_bounces = settings.max_bottom_bounces,
@@ -143,14 +148,7 @@ Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequen
 Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits, Reuse* reuse) const {
   ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
-  for (const Arrival& path : known)  // angle and history: all that a path is followed by
-    key.add(path.launch_elevation)
-        .add(path.horizontal_slowness)
-        .add(path.surface_bounces)
-        .add(path.bottom_bounces)
-        .add(path.upper_turns)
-        .add(path.lower_turns)
-        .add(path.caustics);
+  for (const Arrival& path : known) add_path(key, path);
   return recall_or(key, reuse, [&] {
     const double range = separation(from, to).range;
     std::optional<RayTracer> tracer;

@@ -83,6 +83,9 @@ class PropagationPaths {
   std::shared_ptr<PropagationMemory> memory_;
 };
 
+/// Adds all that a path is followed by to a key: its angle and history.
+void add_path(ExactKey& key, const Arrival& path);
+
 /// What a scenario searches for.
 [[nodiscard]] PathLimits limits_of(const PropagationSettings& settings) noexcept;
 

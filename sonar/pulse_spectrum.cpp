@@ -102,7 +102,8 @@ double bandwidth_of_energy(const PulseSpectrum& spectrum, double share) {
 double bandwidth_for_error(const PulseSpectrum& spectrum, double error) {
   const std::size_t n = spectrum.bins.size();
   const std::size_t k = outermost_pair(n / 2, error, [&](std::size_t i) {
-    return (std::abs(spectrum.bins[i]) + std::abs(spectrum.bins[n - i])) * spectrum.bin_width;
+    const double one = std::norm(spectrum.bins[i]), other = std::norm(spectrum.bins[n - i]);
+    return (std::sqrt(one) + std::sqrt(other)) * spectrum.bin_width;
   });
   return 2 * k > n / 2 ? infinity : 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
 }

@@ -128,7 +128,22 @@ double PingReverberation::expected_db(double t) const {
          db_from_power(expected_->power(context_.pulse, t));
 }
 
-PatchRows PingReverberation::rows(std::size_t most) const {
+PatchRows PingReverberation::rows(std::size_t most, PropagationMemory* memory) const {
+  if (fields_.empty()) return {};
+  auto key = memory == nullptr
+                 ? std::nullopt
+                 : ExpectedReverberation::key(fields_, context_.pulse.duration(), Kept::patch_rows);
+  if (!key) return find_rows(most);
+  key->add(most).add(
+      scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db);
+  for (const ScatteringField& field : fields_) key->add_all(field.boundary, field.thickness);
+  if (const auto known = memory->find<PatchRows>(*key)) return *known;
+  PatchRows found = find_rows(most);
+  memory->keep(*key, std::make_shared<PatchRows>(found), found.rows.size() * sizeof(PatchRow));
+  return found;
+}
+
+PatchRows PingReverberation::find_rows(std::size_t most) const {
   PathPairs pairs;
   const double source_level =
       scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;

@@ -76,8 +76,8 @@ class PingReverberation final : public ReturnSource {
   /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
   [[nodiscard]] double expected_db(double t) const;
 
-  /// \param most  rows
-  [[nodiscard]] PatchRows rows(std::size_t most) const;
+  /// \param most  rows   \param memory  of what is kept; null: none
+  [[nodiscard]] PatchRows rows(std::size_t most, PropagationMemory* memory = nullptr) const;
 
   [[nodiscard]] const std::vector<ScatteringField>& fields() const noexcept { return fields_; }
 
@@ -116,6 +116,7 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] std::vector<Block> sector_blocks() const;
   /// Half of 1/B, or as much as the limit of returns asks for [s].
   [[nodiscard]] double sector_bin(const ScatteringField& field) const;
+  [[nodiscard]] PatchRows find_rows(std::size_t most) const;
   [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
 
   const Scenario& scenario_;

@@ -7,7 +7,7 @@ namespace asdic {
 /// A complex signal between its samples: band-limited interpolation, windowed sinc.
 ///
 /// The signal must lie within ± a quarter of its sample rate (twice oversampled); a Kaiser window
-/// over 24 samples then leaves an error below −110 dB. Zero outside the samples. Source: Kaiser &
+/// over 16 samples then leaves an error below −110 dB. Zero outside the samples. Source: Kaiser &
 /// Schafer, IEEE Trans. ASSP 28, 105 (1980).
 class SampledSignal {
  public:

@@ -30,11 +30,11 @@ Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
 Baseband Synthesizer::silence(std::size_t phones, std::vector<std::complex<float>> memory) const {
-  return silence_of(phones, plan_->length, std::move(memory));
+  return silence_of(phones, plan_->length, DelayKernel::oversampling, std::move(memory));
 }
 
 /// \param length  samples of the synthesis' period
-Baseband Synthesizer::silence_of(std::size_t phones, std::size_t length,
+Baseband Synthesizer::silence_of(std::size_t phones, std::size_t length, double oversampling,
                                  std::vector<std::complex<float>> memory) const {
   const Plan& plan = *plan_;
   const double rate = plan.rate * static_cast<double>(length) / static_cast<double>(plan.length);
@@ -46,6 +46,7 @@ Baseband Synthesizer::silence_of(std::size_t phones, std::size_t length,
                   .channels = phones,
                   .samples = length,
                   .recorded = std::min(length, static_cast<std::size_t>(record * rate) + 1),
+                  .oversampling = oversampling,
                   .values = std::move(memory)};
   result.values.assign(phones * length, 0.0F);
   return result;

@@ -41,6 +41,7 @@ struct Baseband {
   double start = 0.0;        ///< [s]
   std::size_t channels = 0, samples = 0;
   std::size_t recorded = 0;                 ///< samples of a row that lie within the record
+  double oversampling = 1.35;               ///< sample_rate over the width of its band, at least
   std::vector<std::complex<float>> values;  ///< [channels × samples]
 
   [[nodiscard]] std::span<const std::complex<float>> channel(std::size_t n) const {
@@ -120,7 +121,7 @@ class Synthesizer {
   [[nodiscard]] bool interpolates() const noexcept;
   void add_by_fft(const Baseband& baseband, double scale, std::span<float> samples) const;
   void add_by_interpolation(const Baseband& baseband, double scale, std::span<float> samples) const;
-  [[nodiscard]] Baseband silence_of(std::size_t phones, std::size_t length,
+  [[nodiscard]] Baseband silence_of(std::size_t phones, std::size_t length, double oversampling,
                                     std::vector<std::complex<float>> memory) const;
   [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
       const BandNodes& band) const;

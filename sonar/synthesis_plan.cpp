@@ -143,11 +143,12 @@ Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppl
 
 std::vector<float> Synthesizer::Plan::deconvolution_of(std::size_t samples,
                                                        std::ptrdiff_t highest) const {
-  std::vector<float> found;
-  for (std::ptrdiff_t k = -highest; k <= highest; ++k) {
+  std::vector<float> found(static_cast<std::size_t>(2 * highest + 1));
+  const auto middle = static_cast<std::size_t>(highest);
+  for (std::size_t k = 0; k <= middle; ++k) {  // even
     const double frequency = static_cast<double>(k) / static_cast<double>(samples);
-    found.push_back(
-        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(samples))));
+    found[middle + k] = found[middle - k] =
+        static_cast<float>(1.0 / (kernel.spectrum(frequency) * static_cast<double>(samples)));
   }
   return found;
 }
