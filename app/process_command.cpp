@@ -92,6 +92,7 @@ std::vector<std::string> told(const Options& o, const ProcessingSettings& s) {
       "beamformer=" + o.beamformer,
       "shading=" + o.shading,
       "normaliser=" + o.normaliser,
+      fmt::format("across_beams={}", s.detector.normaliser.across_beams),
       fmt::format("false_alarm_probability={}", s.detector.normaliser.false_alarm_probability),
       fmt::format("guard_cells={}", s.detector.normaliser.guard_cells),
       fmt::format("reference_cells={}", s.detector.normaliser.reference_cells),
@@ -186,6 +187,8 @@ void add_detection_options(CLI::App& command, Options& o) {
   command.add_option("--normaliser", o.normaliser, "estimate of the background")
       ->capture_default_str()
       ->check(CLI::IsMember({"cell-averaging", "split-window"}));
+  command.add_flag("!--time-only", normaliser.across_beams,
+                   "compare a peak with its own beam alone, not with the beams around");
   command.add_option("--guard-cells", normaliser.guard_cells, "left out on either side")
       ->capture_default_str()
       ->type_name("N")

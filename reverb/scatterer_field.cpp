@@ -6,6 +6,8 @@
 namespace asdic {
 namespace {
 
+constexpr double strip = 0.1;  // in which one anchor's sea goes over into the next, of a pitch
+
 double unit(std::uint32_t word) noexcept { return (word + 0.5) * 0x1p-32; }
 
 std::uint64_t bits(double metres) noexcept {  // a place to the decimetre
@@ -105,12 +107,35 @@ double texture_amplitude(const ScattererStatistics& statistics, const Vec2& plac
   return std::sqrt(gamma_of_mean_one(*statistics.k_shape, draw));
 }
 
-Anchor anchor_of(const Vec2& first, const Vec2& now, double time, const Vec2& current, double pitch,
-                 std::uint64_t boundary) noexcept {
+std::vector<Anchor> anchors_of(const Vec2& first, const Vec2& now, double time, const Vec2& current,
+                               double pitch, std::uint64_t boundary, bool blended) {
   const Vec2 moved = (now - first - current * time) / pitch;
-  const Vec2 in_water = first + pitch * Vec2(std::round(moved.x()), std::round(moved.y()));
-  return {.place = in_water + current * time,
-          .identity = mixed(mixed(boundary, bits(in_water.x())), bits(in_water.y()))};
+  const Vec2 nearest(std::round(moved.x()), std::round(moved.y()));
+  std::vector<Anchor> anchors;
+  const auto add = [&](const Vec2& point, double share) {
+    const Vec2 in_water = first + pitch * point;
+    anchors.push_back({.place = in_water + current * time,
+                       .identity = mixed(mixed(boundary, bits(in_water.x())), bits(in_water.y())),
+                       .share = share});
+  };
+  // On each axis the nearest point and, within half a strip of the border, the next one over it.
+  Vec2 beyond = Vec2::Zero(), near = Vec2::Ones(), far = Vec2::Zero();
+  for (int axis = 0; axis < 2 && blended; ++axis) {
+    const double off = moved[axis] - nearest[axis];
+    const double inside = (0.5 - std::abs(off)) / (0.5 * strip);  // of the border, 1 at the edge
+    if (inside >= 1.0) continue;
+    const double angle = 0.25 * pi * (1.0 - inside);  // π/4 on the border: halves
+    beyond[axis] = off < 0.0 ? -1.0 : 1.0;
+    near[axis] = std::cos(angle);
+    far[axis] = std::sin(angle);
+  }
+  for (const bool north : {false, true})
+    for (const bool east : {false, true}) {
+      const double share = (east ? far.x() : near.x()) * (north ? far.y() : near.y());
+      if (share > 0.0)
+        add(nearest + Vec2(east ? beyond.x() : 0.0, north ? beyond.y() : 0.0), share);
+    }
+  return anchors;
 }
 
 }  // namespace asdic

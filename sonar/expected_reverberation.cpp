@@ -61,7 +61,7 @@ std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, dou
           const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
           for (std::uint32_t i = 0; i < count; ++i) {
             field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs);
-            const double share = double(stands_for) / count, area = field.ring_area(ring);
+            const double share = double(stands_for) / count, area = field.heard_area(ring);
             double loudest = 0.0;
             for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
             for (const PathPair& pair : pairs.found) {
@@ -168,11 +168,11 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   for (const ScatteringField& f : fields) {
     // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
     const auto& [sheet, grid, field, weights, boundary, depth, thickness, by_covariance, bearings,
-                 divided_below] = f;
+                 divided_below, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
     key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, bearings,
-                divided_below);
+                divided_below, share);
   }
   return key;
 }

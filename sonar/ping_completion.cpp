@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "sonar/ping.h"
@@ -48,24 +49,44 @@ void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* c
   record.timings.noise += watch.lap();
 }
 
-/// Nothing is heard on the transmitter's own platform until the pulse has left.
+/// Nothing is heard on a platform while one of its transmitters sends: this ping's own or, in a
+/// stream, that of any other ping that falls into this part of it.
 void PingSimulator::blank(PingRecord& record) const {
   const Recording& recording = record.recording;
-  const double sent = pulse(record.transmitter).duration() - recording.start;
-  const auto deaf = static_cast<std::ptrdiff_t>(
-      recording.components() *
-      std::min(recording.samples,
-               static_cast<std::size_t>(std::ceil(std::max(0.0, sent * recording.sample_rate)))));
-  const int carrier = scenario_.transmitters[static_cast<std::size_t>(record.transmitter)].platform;
-  const std::size_t row = recording.samples * recording.components();
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-    if (scenario_.arrays[a].platform != carrier) continue;
-    const std::size_t first = first_channel(scenario_, static_cast<int>(a));
-    for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
-      const auto begin = record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
-      std::fill(begin, begin + deaf, 0.0F);
+  const std::size_t width = recording.components(), row = recording.samples * width;
+  const auto sample = [&](double since) {  // the first one from then on
+    return static_cast<std::ptrdiff_t>(
+        std::ceil(std::clamp((since - recording.start) * recording.sample_rate, 0.0,
+                             static_cast<double>(recording.samples))));
+  };
+  const auto silence = [&](int transmitter, double since) {
+    const std::ptrdiff_t begin = sample(since), end = sample(since + pulse(transmitter).duration());
+    const int carrier = scenario_.transmitters[static_cast<std::size_t>(transmitter)].platform;
+    for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+      if (scenario_.arrays[a].platform != carrier) continue;
+      const std::size_t first = first_channel(scenario_, static_cast<int>(a));
+      for (std::size_t n = 0; n < scenario_.arrays[a].phones.size(); ++n) {
+        const auto channel =
+            record.pressure.begin() + static_cast<std::ptrdiff_t>((first + n) * row);
+        std::fill(channel + begin * static_cast<std::ptrdiff_t>(width),
+                  channel + end * static_cast<std::ptrdiff_t>(width), 0.0F);
+      }
     }
+  };
+  silence(record.transmitter, 0.0);
+  if (!scenario_.pings.continuous) return;  // such a record hears no other ping
+  double longest = 0.0;
+  for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
+    longest = std::max(longest, pulse(static_cast<int>(t)).duration());
+  const double heard = static_cast<double>(recording.samples) / recording.sample_rate;
+  const auto since = [&](const Transmission& sent) { return sent.time - record.start_time; };
+  const auto own = transmissions_.begin() + (record.ping - 1);
+  for (auto sent = own; sent != transmissions_.begin() && since(*std::prev(sent)) > -longest;) {
+    --sent;
+    silence(sent->transmitter, since(*sent));
   }
+  for (auto sent = std::next(own); sent != transmissions_.end() && since(*sent) < heard; ++sent)
+    silence(sent->transmitter, since(*sent));
 }
 
 }  // namespace asdic

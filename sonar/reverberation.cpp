@@ -45,13 +45,13 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
                                                PathPairs& pairs) const {
   const ScattererMotion& motion = field.field.motion;
   const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
-  field.sheet.pairs_at(scatterer.place, pairs, &expected_->limits, field.ring_area(key.ring),
+  field.sheet.pairs_at(scatterer.place, pairs, &expected_->limits, field.heard_area(key.ring),
                        (scatterer.depth_share - 0.5) * field.thickness);
   Met met;
   if (pairs.found.empty()) return met;
   const Vec2 in_water = scatterer.place - motion.current * context_.time;
   met.strength =
-      std::sqrt(scatterer.area * pairs.found.front().area) *
+      field.share * std::sqrt(scatterer.area * pairs.found.front().area) *
       texture_amplitude(field.field.statistics, in_water, field.boundary, scenario_.seed);
   met.velocity = {motion.current.x(), motion.current.y(), 0.0};
   if (motion.kind == ScattererMotion::Kind::bragg)
@@ -167,9 +167,14 @@ PatchRows PingReverberation::find_rows(std::size_t most) const {
                       .level_db = source_level + db_from_power(std::norm(pair.amplitude) * share *
                                                                ring_of * pair.area)});
   };
+  // Of a boundary whose sea is that of several anchors: the nearest one's rings tell all of it.
+  const auto nearest_anchors = [&](const ScatteringField& field) {
+    return &field == fields_.data() || (&field - 1)->boundary != field.boundary;
+  };
   // Every how many rings: from the number of pairs of one ring in 32.
   std::vector<PatchRow> counted;
   for (const ScatteringField& field : fields_) {
+    if (!nearest_anchors(field)) continue;
     const auto sectors = field.sample_sectors();
     for (std::uint32_t ring = 0; ring < field.grid.rings; ring += 32)
       for (const int sector : sectors) add(field, ring, sector, 1.0, counted);
@@ -178,6 +183,7 @@ PatchRows PingReverberation::find_rows(std::size_t most) const {
   const std::size_t all = 32 * counted.size();
   result.every = static_cast<int>(std::max<std::size_t>(1, (all + most - 1) / most));
   for (const ScatteringField& field : fields_) {
+    if (!nearest_anchors(field)) continue;
     const auto sectors = field.sample_sectors();
     const double share = 1.0 / static_cast<double>(sectors.size());
     for (std::uint32_t ring = 0; ring < field.grid.rings;

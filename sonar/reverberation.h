@@ -149,7 +149,12 @@ class ReverberationModel {
     std::uint64_t id;
     double thickness = 0.0;
   };
-  [[nodiscard]] ScatteringField meet(Part part, const ReverberationContext& context) const;
+  /// Adds the fields of a part that a ping hears, one for every anchor.
+  void meet(Part part, const ReverberationContext& context,
+            std::vector<ScatteringField>& fields) const;
+  /// Whether it can be heard that pairs of ends with other anchors hear other seas: of weights that
+  /// outlast a ping, or if one ping is heard from several platforms.
+  [[nodiscard]] bool seas_compared(const ScattererField& field) const;
   [[nodiscard]] std::vector<Part> parts() const;
   /// Of a ring: as many as are told apart, but no more scatterers in all rings than twice the most
   /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]

@@ -123,13 +123,22 @@ GroundLevel off(const GroundLevel& level, double thickness, double depth) {
 
 }  // namespace
 
-ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& context) const {
+bool ReverberationModel::seas_compared(const ScattererField& field) const {
+  return field.statistics.coherence_time > 0.0 ||
+         std::any_of(scenario_.arrays.begin(), scenario_.arrays.end(),
+                     [&](const ReceiverArray& array) {
+                       return array.platform != scenario_.arrays.front().platform;
+                     });
+}
+
+void ReverberationModel::meet(Part part, const ReverberationContext& context,
+                              std::vector<ScatteringField>& fields) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   const ScattererField& field = part.field;
   SheetEnds ends = ends_of(scenario_, context);
 
-  // Around the middle of the two platforms, on a lattice through that of the first two: pairs whose
-  // middles have one lattice point in common hear one sea.
+  // Around points next to the middle of the two platforms, on a lattice through that of the first
+  // two: pairs whose middles are near each other hear one sea.
   const auto middle = [&](int transmitter, int array, double time) -> Vec2 {
     const auto platform = [&](int i) -> Vec2 {
       return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
@@ -138,12 +147,11 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
                   platform(scenario_.arrays[static_cast<std::size_t>(array)].platform));
   };
   const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
-  const Anchor anchor =
-      anchor_of(middle(0, 0, 0.0), middle(context.transmitter, context.array, context.time),
-                context.time, field.motion.current, reach / 8.0, part.id);
+  const std::vector<Anchor> anchors =
+      anchors_of(middle(0, 0, 0.0), middle(context.transmitter, context.array, context.time),
+                 context.time, field.motion.current, reach / 8.0, part.id, seas_compared(field));
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
   const double moved = way_of_receiver(ends);
-  const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
   const double apart = (source - receiver).norm() + moved;
 
   BoundaryFans::Settings fan = {.sectors = settings.azimuths,
@@ -167,25 +175,29 @@ ScatteringField ReverberationModel::meet(Part part, const ReverberationContext& 
     if (context.reuse != nullptr && !known) context.reuse->reverberation = false;
     return paths_to_level;
   };
-  auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
-  return {.sheet = ScatteringSheet(std::move(out), std::move(back), std::move(part.law), ends,
-                                   context.pattern),
-          .grid = {.anchor = anchor.place,
-                   .identity = anchor.identity,
-                   .spacing = spacing_,
-                   .azimuths = sectors(reach),
-                   .per_cell = settings.scatterers_per_cell,
-                   .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
-                   .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
-          .field = field,
-          .weights = part.weights,
-          .boundary = part.id,
-          .depth = depth(ends.source.position),
-          .thickness = part.thickness,
-          .bearings = settings.azimuths,
-          // Who lies this far off an end is nearer to it than half its range only within:
-          .divided_below =
-              2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm())};
+  const auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
+  for (const Anchor& anchor : anchors) {
+    const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
+    fields.push_back(
+        {.sheet = ScatteringSheet(out, back, part.law, ends, context.pattern),
+         .grid = {.anchor = anchor.place,
+                  .identity = anchor.identity,
+                  .spacing = spacing_,
+                  .azimuths = sectors(reach),
+                  .per_cell = settings.scatterers_per_cell,
+                  .first_bearing = paths_.layered() ? 0.0 : paths_.transect_bearing(),
+                  .rings = static_cast<std::uint32_t>(std::ceil((reach + beside) / spacing_))},
+         .field = field,
+         .weights = part.weights,
+         .boundary = part.id,
+         .depth = depth(ends.source.position),
+         .thickness = part.thickness,
+         .bearings = settings.azimuths,
+         // Who lies this far off an end is nearer to it than half its range only within:
+         .divided_below =
+             2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm()),
+         .share = anchor.share});
+  }
 }
 
 std::vector<ScatteringSheet::Law> ReverberationModel::laws() const {
@@ -254,7 +266,7 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
   std::vector<ScatteringField> fields;
-  for (Part& part : parts()) fields.push_back(meet(std::move(part), context));
+  for (Part& part : parts()) meet(std::move(part), context, fields);
   auto known = expected(fields, context);
   auto by_covariance = covariance(fields, *known, context);
   return {scenario_, context, std::move(fields), std::move(known), std::move(by_covariance)};

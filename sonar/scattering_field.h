@@ -20,8 +20,13 @@ struct ScatteringField {
   bool by_covariance = false;       ///< heard by it, not one scatterer after the other
   int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
+  double share = 1.0;  ///< of its pressure that is heard; the rest is of other anchors' fields
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]
+  /// That area as it counts in what is heard: times share² [m²].
+  [[nodiscard]] double heard_area(std::uint32_t ring) const noexcept {
+    return share * share * ring_area(ring);
+  }
   /// Of a sector's middle, clockwise from north [rad].
   [[nodiscard]] double bearing(int sector) const noexcept;
   /// The middle of a cell [m].

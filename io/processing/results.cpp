@@ -42,8 +42,8 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
                     filters = like.dopplers.size();
   write_scale(file, group + "/time", "map_time", like.maps.time,
               "middle of the column, after the start of the ping", "s");
-  if (first->map_range.size() == columns) {
-    file.write<double>(group + "/range", first->map_range, {columns});
+  if (const auto& range = first->map_range.of_time; range.size() == columns) {
+    file.write<double>(group + "/range", range, {columns});
     describe(file, group + "/range", "of an echo at that time, by the sound paths", "m");
     file.attach_scales(group + "/range", {group + "/time"});
   }
@@ -67,6 +67,17 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
     column("beam_cosine", like.grid.cosine, "of the angle between look and axis", "");
   write_scale(file, group + "/doppler_factor", "filter", like.dopplers,
               "that the filter is matched to");
+  const auto surface = [&](const std::string& name, const std::vector<double>& values,
+                           const std::string& what) {
+    if (values.size() != beams * columns) return;
+    file.write<double>(group + "/" + name, values, {beams, columns});
+    describe(file, group + "/" + name, what, "m");
+    file.attach_scales(group + "/" + name, {group + "/beam", group + "/time"});
+  };
+  surface("beam_range", first->map_range.of_beam,
+          "of an echo at that time out of that beam, sender and array apart, by the sound paths");
+  surface("mirror_range", first->map_range.of_mirror,
+          "the same on the other side of the line, to its left");
   const ArrayShape& shape = first->array.shape;
   constexpr const char* kinds[] = {"point", "line", "plane", "volume"};
   file.set_attribute(group, "array_kind", kinds[static_cast<int>(shape.kind)]);

@@ -16,8 +16,7 @@ struct ProcessedPing {
   ProcessedArray array;
   PingScore score;
   std::vector<TrueTarget> truth;
-  std::vector<double>
-      map_range;  ///< [columns of the maps] of the first ping of an array; else empty [m]
+  MapRanges map_range;  ///< of the maps' columns, for the first ping of an array; else empty
 };
 
 /// A track with what it was made of.

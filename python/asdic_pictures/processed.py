@@ -52,6 +52,7 @@ class Maps:
     kind: str                 # point, line, plane, volume
     time: np.ndarray          # [column] [s]
     range: np.ndarray | None  # [column] [m], NaN where no path has that delay
+    beam_range: list          # sender and array apart: [row, column] [m] of each side of the array
     angle: np.ndarray         # [row] of the picture: cosine (line), degrees of bearing (others)
     beam_db: np.ndarray       # [row, column]
     doppler: np.ndarray       # [filter]
@@ -81,6 +82,8 @@ def maps(data, ping) -> Maps | None:
     attributes = data.file[group].attrs
     kind = data._text(attributes, "array_kind")
     beams = np.maximum(data.read(f"{group}/beam_time_db", int(row[0])), -60.0)
+    apart = [data.read(f"{group}/{name}") for name in ("beam_range", "mirror_range")
+             if data.has(f"{group}/{name}")]
     axis, upright = None, False
     if kind == "line":
         angle = data.read(f"{group}/beam_cosine")
@@ -94,12 +97,15 @@ def maps(data, ping) -> Maps | None:
         angle = np.arange(2.5, 360.0, 5.0) if kind != "point" else np.array([180.0])
         cell = np.minimum((bearing / 360.0 * len(angle)).astype(int), len(angle) - 1)
         rows = np.full((len(angle), beams.shape[1]), np.nan)
+        ranges = [np.full(rows.shape, np.nan) for _ in apart]
         for k in range(len(angle)):
             if np.any(cell == k):
                 rows[k] = beams[cell == k].max(axis=0)
-        beams = rows
+                for mine, all_of_them in zip(ranges, apart):
+                    mine[k] = all_of_them[np.flatnonzero(cell == k)[0]]
+        beams, apart = rows, ranges
     span = data.read(f"{group}/range") if data.has(f"{group}/range") else None
-    return Maps(kind, data.read(f"{group}/time"), span, angle, beams,
+    return Maps(kind, data.read(f"{group}/time"), span, apart, angle, beams,
                 data.read(f"{group}/doppler_factor"),
                 np.maximum(data.read(f"{group}/doppler_time_db", int(row[0])), -60.0), upright, axis)
 

@@ -16,10 +16,8 @@ def nothing_to_show(data, ping):
     m = processed.maps(data, ping)
     if m.kind == "point" or m.upright:
         return "the array tells no bearing"
-    if m.range is None or np.isfinite(m.range).sum() < 2:
-        apart = np.linalg.norm(data.phones(ping).mean(axis=0) - data.platform(ping))
-        if apart > 10.0:
-            return f"{apart:.0f} m from the sender: a delay is another range in every bearing"
+    known = m.beam_range or ([] if m.range is None else [m.range])
+    if sum(np.isfinite(span).sum() for span in known) < 2:
         return "no path has the delays of the record"
     return None
 
@@ -31,28 +29,71 @@ def rising(span):
     return np.isfinite(span) & (known > np.concatenate([[-np.inf], highest[:-1]]))
 
 
+def on_ranges(span, values, ranges):
+    """[range] of one beam: what it holds where its own range, rising or not, is nearest"""
+    good = rising(span)
+    if good.sum() < 2:
+        return np.full(len(ranges), np.nan)
+    mine, held = span[good], values[good]
+    after = np.clip(np.searchsorted(mine, ranges), 1, len(mine) - 1)
+    nearest = after - (ranges - mine[after - 1] < mine[after] - ranges)
+    inside = (ranges >= mine[0]) & (ranges <= mine[-1])
+    return np.where(inside, held[nearest], np.nan)
+
+
 def draw(data, ping):
+    """One map; of a line whose sender is elsewhere one for each of its sides, which differ then."""
     m, t = processed.maps(data, ping), processed.detections(data, ping)
-    good = rising(m.range)
-    span = m.range[good] / 1000.0
-    fig, axes = style.figure(TITLE, 6.4)
-    mesh = axes.pcolormesh(m.angle, span, m.beam_db[:, good].T, cmap=style.MAP, vmin=LIMITS[0],
-                           vmax=LIMITS[1], shading="nearest", rasterized=True)
-    processed.angle_axis(axes, m, vertical=False)
-    handles = processed.mark(axes, m.angle_of(t), t["range"] / 1000.0, t, data.target_names)
+    sides = m.beam_range or [None]
+    fig, panels = style.figure(TITLE, 6.4, ncols=len(sides), sharey=True, squeeze=False)
+    handles, farthest = [], max((np.nanmax(s) for s in m.beam_range), default=0.0)
+    for k, (axes, span) in enumerate(zip(panels[0], sides)):
+        if span is None:
+            good = rising(m.range)
+            ranges, power = m.range[good], m.beam_db[:, good].T
+        else:
+            ranges = np.linspace(0.0, farthest, 400)
+            power = np.array([on_ranges(s, p, ranges) for s, p in zip(span, m.beam_db)]).T
+        mesh = axes.pcolormesh(m.angle, ranges / 1000.0, power, cmap=style.MAP, vmin=LIMITS[0],
+                               vmax=LIMITS[1], shading="nearest", rasterized=True)
+        processed.angle_axis(axes, m, vertical=False)
+        found = t["range"] if len(sides) == 1 else ranges_on(t, m, k)
+        marks = processed.mark(axes, m.angle_of(t), found / 1000.0, t, data.target_names)
+        marks += true_places(axes, data, ping, m, None if len(sides) == 1 else k)
+        handles += [h for h in marks if h.get_label() not in [g.get_label() for g in handles]]
+        style.image_frame(axes)
+        axes.set_ylim(max(ranges[0] / 1000.0, 0.0), ranges[-1] / 1000.0)
+        if len(sides) > 1:
+            axes.set_xlabel(axes.get_xlabel() + (", to its right", ", to its left")[k])
+    first = panels[0, 0]
+    first.set_ylabel("horizontal range / km")
+    style.colour_bar(fig, mesh, panels[0, :] if len(sides) > 1 else first,
+                     "power over the background / dB")
+    style.subtitle(first, f"{data.heading(ping)}  ·  ranges by the sound paths" if len(sides) == 1
+                   else data.heading(ping))
+    style.legend_below(first, dark(handles), ncol=3, below=0.16)
+    return fig
+
+
+def ranges_on(t, m, side):
+    """[detection] range of the place that lies right (0) or left (1) of the line; NaN: none"""
+    axis = np.degrees(np.arctan2(m.axis[0], m.axis[1]))
+    there = {name: (np.sin(np.radians(t[f"{name}bearing_deg"] - axis)) >= 0.0) == (side == 0)
+             for name in ("", "mirror_")}
+    return np.where(there[""], t["range"], np.where(there["mirror_"], t["mirror_range"], np.nan))
+
+
+def true_places(axes, data, ping, m, side):
+    """Stars where the targets are at the ping; of two sides (right 0, left 1) on theirs. → handles"""
+    handles = []
     centre = data.phones(ping).mean(axis=0)
     for index, name, place, present in data.targets(ping):
-        if not present:
-            continue
         off = place - centre
+        if not present or (side is not None and
+                           (off @ np.array([m.axis[1], -m.axis[0], 0.0]) > 0.0) != (side == 0)):
+            continue
         look = off / np.linalg.norm(off)
         handles += axes.plot(m.angle_of_travel(-look), [np.hypot(off[0], off[1]) / 1000.0],
                              **style.truth(index, "*", 13, f"{style.name(name)}: true place at the ping"),
                              zorder=6)
-    style.image_frame(axes)
-    axes.set_ylim(max(span[0], 0.0), span[-1])
-    axes.set_ylabel("horizontal range / km")
-    style.colour_bar(fig, mesh, axes, "power over the background / dB")
-    style.subtitle(axes, f"{data.heading(ping)}  ·  ranges by the sound paths")
-    style.legend_below(axes, dark(handles), ncol=3, below=0.16)
-    return fig
+    return handles

@@ -5,17 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <tuple>
 
 #include "raytrace/propagation.h"
+#include "sonar/processing/beam_surroundings.h"
+#include "sonar/processing/echo_pointing.h"
 #include "sonar/processing/peak_cluster.h"
+#include "sonar/processing/threshold_probes.h"
 
 namespace asdic {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+/// In even noise false alarms come where the background is found at half its value and the beams
+/// around find 1 ± 0.2 of it: three times as much is seen by some hundredths of them.
+constexpr float louder_beside = 3.0F;
 
 /// Offset of a parabola's top through three logarithms of power, within half a step.
 double top_of(double before, double here, double after) {
@@ -44,8 +48,11 @@ class Search {
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
         channels_(channel_spectra(baseband)),
-        cut_(fast_fft_length(static_cast<std::size_t>(
-            std::ceil(1.5 * replica.duration() / dopplers.front() * baseband.sample_rate) + 64))) {}
+        around_(shape_, grid_.looks, wavelength_),
+        heard_(settings.normaliser.across_beams ? bank_.filters() : 0, grid_.looks.size(),
+               bank_.samples(), bank_.sample_rate() / replica.noise_bandwidth()),
+        pointing_(baseband, phones, sound_speed, replica, shape_, weights_, grid_.spacing,
+                  dopplers.front()) {}
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
     const BeamSpectra beams =
@@ -55,8 +62,10 @@ class Search {
                                  weights_);
     DetectorResult result;
     prepare_maps(result.maps);
-    place_probes(probes);
-    const std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
+    probes_ = place_probes(probes, bank_, doppler_cell(replica_), grid_, phones_, weights_,
+                           2.0 * pi / wavelength_);
+    std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
+    if (settings_.normaliser.across_beams) compare_across_beams(peaks);
     result.peaks = peaks.size();
     for (const PlacedProbe& probe : probes_)
       result.thresholds_db.push_back(std::isfinite(probe.threshold) ? level_of(probe.threshold)
@@ -108,38 +117,9 @@ class Search {
     std::vector<float> doppler_time;  // [filters × columns]
   };
 
-  struct PlacedProbe {
-    std::size_t beam = 0, filter = 0, sample = 0;
-    bool inside = false;
-    double threshold = infinity;  // |y|²
-  };
-
   /// \return level of an echo of power |y|² [dB re 1 µPa]
   static double level_of(double power) {
     return db_from_power(0.5 * power) - db_from_amplitude(micropascal);
-  }
-
-  void place_probes(std::span<const Probe> probes) {
-    const double last = static_cast<double>(bank_.samples()) - 1.0;
-    for (const Probe& probe : probes) {
-      PlacedProbe placed;
-      const double sample = std::round((probe.time - bank_.time(0.0)) * bank_.sample_rate());
-      placed.inside = sample >= 0.0 && sample <= last;
-      if (placed.inside) placed.sample = static_cast<std::size_t>(sample);
-      double most = -1.0, least = infinity;
-      for (std::size_t b = 0; b < grid_.looks.size(); ++b) {
-        const double heard =
-            beam_pattern(phones_, weights_, grid_.looks[b], probe.look, wavenumber(1.0));
-        if (heard > most) most = heard, placed.beam = b;
-      }
-      for (std::size_t f = 0; f < bank_.filters(); ++f)
-        if (const double off = std::abs(bank_.doppler(f) - probe.doppler); off < least)
-          least = off, placed.filter = f;
-      // Beyond the bank's last filter as far as that still answers.
-      const double step = bank_.filters() > 1 ? bank_.doppler(1) - bank_.doppler(0) : 0.0;
-      placed.inside = placed.inside && least <= 0.5 * step + doppler_cell(replica_);
-      probes_.push_back(placed);
-    }
   }
 
   void prepare_maps(DetectionMaps& maps) const {
@@ -171,9 +151,12 @@ class Search {
         for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
         estimator_(work.power, work.background, work.threshold, work.scratch);
         pick(b, f, work, found[b]);
+        if (settings_.normaliser.across_beams) heard_.set(f, b, work.power);
         for (PlacedProbe& probe : probes_)  // each has one beam and one filter
-          if (probe.inside && probe.beam == b && probe.filter == f)
+          if (probe.inside && probe.beam == b && probe.filter == f) {
+            probe.background = work.background[probe.sample];
             probe.threshold = work.threshold[probe.sample];
+          }
         for (std::size_t column = 0; column < columns; ++column) {
           float most = 0.0F;
           for (std::size_t i = column * n / columns; i < (column + 1) * n / columns; ++i)
@@ -211,6 +194,22 @@ class Search {
     }
   }
 
+  /// Where the beams around hear more at that time than the beam itself around that time, by more
+  /// than even noise ever makes it, theirs is the background.
+  void compare_across_beams(std::vector<Peak>& peaks) {
+    std::vector<float> scratch;
+    const auto compare = [&](auto& at) {
+      const float beside = heard_.background(around_, at.filter, at.beam, at.sample, scratch);
+      if (!(beside > louder_beside * at.background)) return;
+      at.threshold *= beside / at.background;
+      at.background = beside;
+    };
+    for (Peak& peak : peaks) compare(peak);
+    for (PlacedProbe& probe : probes_)
+      if (probe.inside) compare(probe);
+    std::erase_if(peaks, [](const Peak& peak) { return !(peak.power > peak.threshold); });
+  }
+
   /// Between the samples, filters and beams.
   Detection refine(const Peak& peak, const BeamSpectra& beams) const {
     FftBuffer<std::complex<float>> out(bank_.work());
@@ -234,104 +233,12 @@ class Search {
     d.time = bank_.time(static_cast<double>(i) + sample_offset);
     const double step = last > 0 ? bank_.doppler(1) - bank_.doppler(0) : 0.0;
     d.doppler = bank_.doppler(peak.filter) + filter_offset * step;
-    point(d, grid_.looks[peak.beam]);
-    const double power = std::max(static_cast<double>(peak.power), power_at(d));
+    pointing_.point(d, grid_.looks[peak.beam]);
+    const double power = std::max(static_cast<double>(peak.power), pointing_.power_at(d));
     d.snr_db = db_from_power(power / static_cast<double>(peak.background));
     d.excess_db = db_from_power(power / static_cast<double>(peak.threshold));
     d.level_db = level_of(power);
     return d;
-  }
-
-  /// The phones' own outputs at a time and factor, delays taken out as the beam does. Only the
-  /// stretch of the record that the replica covers is transformed: the rest would add nothing.
-  std::vector<std::complex<double>> snapshot(double time, double doppler, const Vec3& look) const {
-    const double rate = baseband_.sample_rate, spacing = rate / static_cast<double>(cut_);
-    // The cut begins an eighth of its length before the echo, as far as the record goes.
-    const double before = 0.125 * static_cast<double>(cut_);
-    const auto wanted = std::lround((time - baseband_.start) * rate - before);
-    const auto first_sample = static_cast<std::ptrdiff_t>(wanted);
-    const auto half = static_cast<std::ptrdiff_t>(cut_ / 2);
-    const double room = 0.25 * replica_.bandwidth();
-    const auto bin = [&](double f) {
-      return static_cast<std::ptrdiff_t>(std::floor((f * doppler - baseband_.carrier) / spacing));
-    };
-    const std::ptrdiff_t first = std::max(bin(replica_.lowest_frequency() - room), 1 - half);
-    const std::ptrdiff_t last = std::min(bin(replica_.highest_frequency() + room), half - 1);
-    std::vector<std::complex<double>> weights;
-    for (std::ptrdiff_t k = first; k <= last; ++k)
-      weights.push_back(std::conj(
-          replica_.spectrum(baseband_.carrier + static_cast<double>(k) * spacing, doppler)));
-    const double scale = doppler / (replica_.energy() * static_cast<double>(cut_));
-    const ComplexFft<float> fft(cut_);
-    FftBuffer<std::complex<float>> work(cut_);
-    std::vector<std::complex<double>> sums;
-    for (std::size_t n = 0; n < phones_.size(); ++n) {
-      const auto row = baseband_.channel(n);
-      for (std::size_t i = 0; i < cut_; ++i) {
-        const std::ptrdiff_t at = first_sample + static_cast<std::ptrdiff_t>(i);
-        work[i] = at >= 0 && at < std::ssize(row) ? row[static_cast<std::size_t>(at)]
-                                                  : std::complex<float>(0.0F);
-      }
-      fft.forward(work.data());
-      // From bin to bin the phase of the delay turns by a constant step.
-      const double lag = time - baseband_.start - static_cast<double>(first_sample) / rate -
-                         look.dot(phones_[n]) / sound_speed_;  // [s]
-      const double turns = spacing * lag;
-      const std::complex<double> step = std::polar(1.0, 2.0 * pi * turns);
-      std::complex<double> turn =
-          std::polar(1.0, 2.0 * pi * std::remainder(turns * static_cast<double>(first), 1.0));
-      std::complex<double> sum = 0.0;
-      for (std::ptrdiff_t k = first; k <= last; ++k) {
-        const auto at = static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(cut_) : k);
-        sum += weights[static_cast<std::size_t>(k - first)] * std::complex<double>(work[at]) * turn;
-        turn *= step;
-      }
-      sums.push_back(sum * scale);
-    }
-    return sums;
-  }
-
-  [[nodiscard]] double wavenumber(double doppler) const { return 2.0 * pi / wavelength_ * doppler; }
-
-  /// Power of the conventional beam exactly there.
-  double power_at(const Detection& d) const {
-    const auto x = snapshot(d.time, d.doppler, d.look);
-    std::complex<double> sum = 0.0;
-    for (std::size_t n = 0; n < phones_.size(); ++n)
-      sum += weights_[n] * x[n] *
-             std::polar(1.0, -2.0 * pi * baseband_.carrier * d.look.dot(phones_[n]) / sound_speed_);
-    return std::norm(sum);
-  }
-
-  void point(Detection& d, const Vec3& beam) const {
-    d.cosine = none;
-    d.bearing = none;
-    d.elevation = none;
-    d.look = beam;
-    if (shape_.kind == ArrayKind::point) return;
-    auto x = snapshot(d.time, d.doppler, beam);
-    // The envelopes are aligned by the beam's delays; the carrier's phases are still the wave's.
-    // What is left of the delays' differences turns at the pulse's frequency.
-    const double k = wavenumber(d.doppler), carrier = 2.0 * pi * baseband_.carrier / sound_speed_;
-    for (std::size_t n = 0; n < phones_.size(); ++n)
-      x[n] *= std::polar(1.0, (k - carrier) * beam.dot(phones_[n] - shape_.centre));
-    d.look = refine_direction(x, phones_, shape_, weights_, beam, grid_.spacing, k);
-    const double elevation = std::asin(std::clamp(-d.look.z(), -1.0, 1.0));
-    const double bearing = std::atan2(d.look.x(), d.look.y());
-    if (shape_.kind == ArrayKind::line) {
-      d.cosine = d.look.dot(shape_.axis);
-      if (shape_.upright())
-        d.elevation =
-            std::asin(std::clamp(shape_.axis.z() < 0.0 ? d.cosine : -d.cosine, -1.0, 1.0));
-      else
-        d.bearing = bearing;
-      return;
-    }
-    d.bearing = bearing;
-    if (shape_.bent)
-      d.cosine = d.look.dot(shape_.axis);
-    else
-      d.elevation = elevation;
   }
 
   const Baseband& baseband_;
@@ -346,8 +253,10 @@ class Search {
   MatchedFilterBank bank_;
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
+  BeamSurroundings around_;
+  CellPowers heard_;
+  EchoPointing pointing_;
   std::vector<PlacedProbe> probes_;
-  std::size_t cut_;  // samples of baseband that a snapshot looks at
 };
 
 }  // namespace

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
-#include <tuple>
 
 #include "raytrace/environment.h"
 #include "raytrace/ray_path.h"
 #include "sonar/geometry.h"
-#include "sonar/processing/delay_table.h"
 
 namespace asdic {
 namespace {
-
-constexpr std::size_t most_tables = 256;
-constexpr double farthest_apart = 30.0;  // ends of a pair that counts as one place, per delay [m/s]
 
 /// The path of a kind among eigenrays; of two, the one nearer in angle.
 const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double elevation) {
@@ -69,12 +62,6 @@ Unplaced Localiser::reason(const Detection& detection, const SonarPlaces& places
   return elevation_known && !settings_.depth ? Unplaced::ray_ends : Unplaced::no_path;
 }
 
-struct Localiser::Tables {
-  using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
-  std::map<Key, std::shared_ptr<const DelayTable>> made;
-  std::mutex lock;
-};
-
 /// One detection with one bearing.
 struct Localiser::Query {
   const Detection& detection;
@@ -86,8 +73,9 @@ struct Localiser::Query {
 };
 
 Localiser::Localiser(const PropagationPaths& paths, const LocaliserSettings& settings)
-    : paths_(paths), settings_(settings), tables_(std::make_unique<Tables>()) {}
-Localiser::~Localiser() = default;
+    : paths_(paths),
+      settings_(settings),
+      tables_(paths, settings.frequency, settings.limits, settings.ranges) {}
 
 std::optional<Location> Localiser::at_depth(const Query& query, double depth) const {
   const Vec3 from = query.places.source.position, back = query.heard_at;
@@ -120,35 +108,14 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
     found.set_slopes(xi_out, xi_home, out.bearing - query.bearing, query.detection.doppler);
     return found;
   }
-  // The farthest that sound of 1600 m/s comes, rounded so that tables serve many detections.
   const double offset = std::hypot((from - back).x(), (from - back).y());
-  const double longest = std::exp2(
-      std::ceil(2.0 * std::log2(0.5 * 1600.0 * query.detection.time + offset + 1.0)) / 2.0);
-  std::vector<double> ranges(settings_.ranges);
-  for (std::size_t i = 0; i < ranges.size(); ++i)
-    ranges[i] = longest * static_cast<double>(i + 1) / static_cast<double>(ranges.size());
-  const auto table = [&](const Vec3& platform, double bearing) {
-    const bool layered = paths_.layered();
-    const Plane plane = paths_.plane(platform, bearing);
-    // In a layered ocean all planes are one. Places that move by less than a metre share a table.
-    const Tables::Key key(layered ? 0.0 : std::round(plane.origin), layered ? 1.0 : plane.cos_beta,
-                          platform.z(), depth, longest);
-    {
-      const std::scoped_lock lock(tables_->lock);
-      if (const auto known = tables_->made.find(key); known != tables_->made.end())
-        return known->second;
-    }
-    auto made = std::make_shared<const DelayTable>(*paths_.solver(plane), platform.z(), depth,
-                                                   ranges, settings_.frequency, settings_.limits);
-    const std::scoped_lock lock(tables_->lock);
-    if (tables_->made.size() >= most_tables) tables_->made.clear();
-    return tables_->made.emplace(key, std::move(made)).first->second;
-  };
-  const auto home = table(back, query.bearing);
+  const double longest = DelayTables::longest(query.detection.time, offset);
+  const auto home = tables_.from(back, query.bearing, depth, longest);
   // The other leg's plane turns with the range unless both ends are in one place: its table is that
   // of the plane towards the point where a straight ray would put it.
   const Vec3 guess = point(0.5 * 1500.0 * query.detection.time);
-  const auto out = table(from, offset < 1.0 ? query.bearing : separation(from, guess).bearing);
+  const auto out = tables_.from(
+      from, offset < 1.0 ? query.bearing : separation(from, guess).bearing, depth, longest);
 
   struct Candidate {
     const DelayTable::Branch *out, *home;

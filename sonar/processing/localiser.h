@@ -1,10 +1,10 @@
 #pragma once
-#include <map>
-#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sonar/processing/array_shape.h"
+#include "sonar/processing/delay_tables.h"
 #include "sonar/processing/detection.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/track.h"
@@ -21,6 +21,9 @@ struct LocaliserSettings {
   std::size_t ranges = 300;     ///< of the table
   std::optional<double> speed;  ///< straight rays of this speed instead of the ray model [m/s]
 };
+
+/// Ends of a pair that counts as one place are this far apart at most, per delay [m/s].
+inline constexpr double farthest_apart = 30.0;
 
 /// Who sent and who heard one ping. Times count from the ping's start.
 struct SonarPlaces {
@@ -42,7 +45,6 @@ struct SonarPlaces {
 class Localiser {
  public:
   Localiser(const PropagationPaths& paths, const LocaliserSettings& settings);
-  ~Localiser();
 
   /// \param elevation_sigma  of the measured elevation, where there is one [rad]
   /// \return as Detection::locations
@@ -51,8 +53,14 @@ class Localiser {
   /// Why locate() found none.
   [[nodiscard]] Unplaced reason(const Detection& detection, const SonarPlaces& places) const;
 
+  /// The range from the array that an echo out of one bearing has at each of some times: of the
+  /// loudest pair of paths with that delay, to a straight line between the table's nodes. For maps.
+  /// \param times  rising, after the ping's start [s]   \return [times] [m]; NaN where no pair of
+  /// paths takes so long
+  [[nodiscard]] std::vector<double> ranges(double bearing, std::span<const double> times,
+                                           const SonarPlaces& places) const;
+
  private:
-  struct Tables;
   struct Query;
   [[nodiscard]] std::optional<Location> at_depth(const Query& query, double depth) const;
   [[nodiscard]] std::optional<Location> along_ray(const Query& query) const;
@@ -60,7 +68,7 @@ class Localiser {
 
   const PropagationPaths& paths_;
   LocaliserSettings settings_;
-  std::unique_ptr<Tables> tables_;
+  mutable DelayTables tables_;
 };
 
 }  // namespace asdic

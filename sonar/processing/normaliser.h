@@ -17,6 +17,7 @@ struct NormaliserSettings {
   double guard_cells = 2.0;               ///< left out on either side: the echo itself
   double reference_cells = 12.0;          ///< averaged on either side
   double false_alarm_probability = 1e-6;  ///< of a cell
+  bool across_beams = true;  ///< compared with the beams around as well (BeamSurroundings)
 };
 
 /// Threshold over the mean of `cells` independent exponential cells (Rayleigh envelope) for a

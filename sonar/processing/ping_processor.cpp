@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "sonar/geometry.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/transmission.h"
 
@@ -160,16 +161,37 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   return done;
 }
 
-std::vector<double> PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
-                                             std::span<const double> times) const {
+MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
+                                   std::span<const double> times) const {
   const Localiser& localiser =
       *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(sender) : 0];
-  std::vector<double> ranges(times.size(), std::numeric_limits<double>::quiet_NaN());
+  MapRanges ranges;
+  if (times.empty()) return ranges;
   SonarPlaces places = processed.places;
-  places.shape.kind = ArrayKind::point;  // no direction is needed
-  tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
-    const auto found = localiser.locate({.time = times[i]}, places, 1.0);
-    if (!found.empty()) ranges[i] = found[0].range;
+  const double apart = separation(places.source.position, places.array.position).range;
+  if (apart <= 0.1 * farthest_apart * times.back()) {
+    places.shape.kind = ArrayKind::point;  // no direction is needed
+    ranges.of_time.assign(times.size(), std::numeric_limits<double>::quiet_NaN());
+    tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
+      const auto found = localiser.locate({.time = times[i]}, places, 1.0);
+      if (!found.empty()) ranges.of_time[i] = found[0].range;
+    });
+    return ranges;
+  }
+  if (places.shape.kind == ArrayKind::point || places.shape.upright()) return ranges;
+  const std::vector<Vec3>& looks = processed.result.grid.looks;
+  const bool two_sides = places.shape.kind == ArrayKind::line;
+  ranges.of_beam.resize(looks.size() * times.size());
+  if (two_sides) ranges.of_mirror.resize(looks.size() * times.size());
+  tbb::parallel_for(std::size_t{0}, looks.size(), [&](std::size_t b) {
+    const auto row = [&](const Vec3& look, std::vector<double>& into) {
+      const std::vector<double> found =
+          localiser.ranges(std::atan2(look.x(), look.y()), times, places);
+      std::copy(found.begin(), found.end(),
+                into.begin() + static_cast<std::ptrdiff_t>(b * times.size()));
+    };
+    row(looks[b], ranges.of_beam);
+    if (two_sides) row(mirrored(places.shape, looks[b]), ranges.of_mirror);
   });
   return ranges;
 }

@@ -38,6 +38,15 @@ struct ArrayRecording {
   std::vector<std::complex<float>> envelope;  ///< or baseband
 };
 
+/// What a time on a map is in range from the array [m]; NaN where no pair of paths takes so long.
+struct MapRanges {
+  std::vector<double> of_time;  ///< [times] sender and array in one place: the same in all bearings
+  /// [beams × times] of a pair that lies apart, where the array tells bearings: on the beam's side
+  /// of a line (its right)
+  std::vector<double> of_beam;
+  std::vector<double> of_mirror;  ///< and on the other side of a line; else empty
+};
+
 struct ProcessedArray {
   int ping = 1, array = 0;
   ArrayShape shape;
@@ -67,10 +76,10 @@ class PingProcessor {
   [[nodiscard]] std::vector<Contact> contacts(const ProcessedArray& processed, double ping_time,
                                               int side) const;
 
-  /// The range that an echo from abeam (or from the elevation 0) has at each of some times, by the
-  /// sound paths; NaN where there is none. \param times  after the ping's start [s]
-  [[nodiscard]] std::vector<double> ranges_at(const ProcessedArray& processed, int transmitter,
-                                              std::span<const double> times) const;
+  /// The ranges that an echo has at each of some times, by the sound paths.
+  /// \param times  rising, after the ping's start [s]
+  [[nodiscard]] MapRanges ranges_at(const ProcessedArray& processed, int transmitter,
+                                    std::span<const double> times) const;
 
   /// Tolerances by which detections are told from false alarms.
   [[nodiscard]] Resolution resolution(const ProcessedArray& processed) const;

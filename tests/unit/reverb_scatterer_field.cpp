@@ -88,21 +88,59 @@ TEST(ScattererPlaces, LieInTheirCells) {
   EXPECT_NEAR(area, pi * (160.0 * 160.0 - 140.0 * 140.0), 1e-6);
 }
 
-TEST(ScattererAnchor, StaysThenMovesByAWholePitch) {
+constexpr double pitch = 100.0;
+
+std::vector<Anchor> around(const Vec2& moved, bool blended = true) {
   const Vec2 first(10.0, 20.0);
-  const Anchor start = anchor_of(first, first, 0.0, Vec2::Zero(), 100.0, 1);
-  EXPECT_EQ(start.place, first);
-  const Anchor near = anchor_of(first, first + Vec2(49.0, -49.0), 5.0, Vec2::Zero(), 100.0, 1);
-  EXPECT_EQ(near.identity, start.identity);
-  EXPECT_EQ(near.place, first);
-  const Anchor far = anchor_of(first, first + Vec2(51.0, 0.0), 5.0, Vec2::Zero(), 100.0, 1);
-  EXPECT_NE(far.identity, start.identity);
-  EXPECT_EQ(far.place, first + Vec2(100.0, 0.0));
+  return anchors_of(first, first + moved, 0.0, Vec2::Zero(), pitch, 1, blended);
+}
+
+TEST(ScattererAnchor, StaysThenMovesByAWholePitch) {
+  const Anchor start = around(Vec2::Zero()).front();
+  EXPECT_EQ(start.place, Vec2(10.0, 20.0));
+  for (const bool blended : {false, true}) {
+    const Anchor near = around({44.0, -44.0}, blended).front();
+    EXPECT_EQ(near.identity, start.identity);
+    EXPECT_EQ(near.place, start.place);
+    EXPECT_EQ(near.share, 1.0);
+    const Anchor far = around({56.0, 0.0}, blended).front();
+    EXPECT_NE(far.identity, start.identity);
+    EXPECT_EQ(far.place, Vec2(110.0, 20.0));
+  }
+  EXPECT_EQ(around({49.0, -49.0}, false).size(), 1U);
   // Who drifts with the water stays where she is in it.
+  const Vec2 first(10.0, 20.0);
   const Anchor drifting =
-      anchor_of(first, first + Vec2(400.0, 0.0), 200.0, Vec2(2.0, 0.0), 100.0, 1);
+      anchors_of(first, first + Vec2(400.0, 0.0), 200.0, Vec2(2.0, 0.0), pitch, 1, true).front();
   EXPECT_EQ(drifting.identity, start.identity);
   EXPECT_EQ(drifting.place, first + Vec2(400.0, 0.0));
+}
+
+/// ⟨p p′*⟩ of the seas that two pairs of ends hear: Σ share·share′ over the anchors they share.
+double common_sea(const Vec2& here, const Vec2& there) {
+  double sum = 0.0;
+  for (const Anchor& a : around(here))
+    for (const Anchor& b : around(there))
+      if (a.identity == b.identity) sum += a.share * b.share;
+  return sum;
+}
+
+// Power 1 everywhere, and pairs d apart along an axis have cos(½π·d/strip) or more of their sea in
+// common, strip = 10 m, wherever they are: on a border, in a corner, where a strip begins. (The law
+// of a partition cos α, sin α: cos(α − α′) inside the strip.)
+TEST(ScattererAnchor, OneSeaGoesOverIntoTheNext) {
+  for (const Vec2& middle : {Vec2(0, 0), Vec2(50, 0), Vec2(-50, 50), Vec2(150, -250)})
+    for (double x = -6.0; x < 6.0; x += 0.37)
+      for (double y = -6.0; y < 6.0; y += 0.41) {
+        const Vec2 here = middle + Vec2(x, y);
+        EXPECT_NEAR(common_sea(here, here), 1.0, 1e-12);
+        for (const double d : {0.5, 2.0}) {
+          EXPECT_GE(common_sea(here, here + Vec2(d, 0.0)), std::cos(0.05 * pi * d) - 1e-12);
+          EXPECT_GE(common_sea(here, here + Vec2(0.0, d)), std::cos(0.05 * pi * d) - 1e-12);
+        }
+      }
+  EXPECT_EQ(common_sea({40.0, 0.0}, {60.0, 0.0}), 0.0);
+  EXPECT_EQ(around({50.0, 50.0}).size(), 4U);
 }
 
 TEST(BottomScattering, LawsAtKnownAngles) {

@@ -205,6 +205,48 @@ TEST(Blanking, SilencesTheTransmittersOwnPlatformWhileItTransmits) {
   }
 }
 
+// The ship sends from 0 to 0.2 s and the buoy from 0.13 s on; the ship's second transmitter at 0.15
+// s: until 0.35 s the ship's array is deaf, until 0.33 s the buoy's, and neither for the other's
+// pulse. White noise is nowhere else exactly 0.
+TEST(Blanking, LastsInAStreamAsLongAsAnyTransmitterOfThePlatformSends) {
+  Scenario s = two_platforms();
+  s.noise.spectral_level_db = 80.0;
+  s.pings.blanking = true;
+  s.pings.continuous = true;
+  s.pings.recording_duration = 0.5;
+  s.arrays.push_back(line_array(2, 0.5, 0.0, 0.0));  // on the ship
+  s.transmitters.push_back(s.transmitters[0]);
+  s.transmitters[1].platform = 1;
+  s.transmitters[1].first_ping_time = 0.13;
+  s.transmitters.push_back(s.transmitters[0]);
+  s.transmitters[2].first_ping_time = 0.15;
+  for (const Samples kind : {Samples::pressure, Samples::baseband}) {
+    s.pings.samples = kind;
+    const std::size_t width = kind == Samples::baseband ? 2 : 1;
+    std::vector<std::vector<bool>> silent(5);
+    double rate = 0.0;
+    EXPECT_EQ(run_pings(PingSimulator(s),
+                        [&](PingRecord&& record) {
+                          rate = record.recording.sample_rate;
+                          const std::size_t n = record.recording.samples;
+                          for (std::size_t c = 0; c < 5; ++c)
+                            for (std::size_t i = 0; i < n; ++i) {
+                              const float* p = record.pressure.data() + (c * n + i) * width;
+                              silent[c].push_back(
+                                  std::all_of(p, p + width, [](float x) { return x == 0.0F; }));
+                            }
+                        }),
+              3);
+    for (std::size_t c = 0; c < 5; ++c)
+      for (std::size_t i = 0; i < silent[c].size(); ++i) {
+        const double t = double(i) / rate, begin = c < 3 ? 0.13 : 0.0, end = c < 3 ? 0.33 : 0.35;
+        if (std::min(std::abs(t - begin), std::abs(t - end)) > 1.5 / rate) {
+          ASSERT_EQ(silent[c][i], t > begin && t < end) << "channel " << c << " at " << t;
+        }
+      }
+  }
+}
+
 // 1500 m of it horizontal, 200 m down: spherical spreading in open water.
 TEST(DirectBlast, ComesStraightAndWithItsOwnDoppler) {
   Scenario s = two_platforms();

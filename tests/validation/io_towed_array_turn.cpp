@@ -17,9 +17,9 @@ namespace {
 constexpr double speed = 1495.0, centre = 500.0, wavelength = speed / centre, spacing = 1.5;
 
 const PingSimulator& simulator() {
-  static const PingSimulator quiet(
-      read_scenario(ASDIC_SCENARIOS "/towed_array_turn.toml",
-                    std::vector<std::string>{"noise.spectral_level_db=20"}));
+  static const PingSimulator quiet(read_scenario(
+      ASDIC_SCENARIOS "/towed_array_turn.toml",
+      std::vector<std::string>{"noise.spectral_level_db=20", "reverberation.enabled=false"}));
   return quiet;
 }
 

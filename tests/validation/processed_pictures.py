@@ -186,12 +186,31 @@ heading_deg = 90.0
                       '"east line"', out.stderr)
 
 
-    def test_apart_from_the_sender_a_delay_is_no_range(self):
+    def test_apart_from_the_sender_a_delay_is_another_range_in_every_bearing(self):
+        """300 m from the sender, both sides: where a delay and a beam meet, sound takes that long
+        there and back by straight rays of 1500 m/s, to a table's step of ranges (10 ms)."""
         self.ARRAYS = self.ARRAYS.replace("kind", "offset = [300.0, 0.0, 0.0]\nkind").replace(
             "offset = [0.0, -300.0, 0.0]\n", "")
-        drawn, said = self.plot(self.make_several(), "--array", "north line")
-        self.assertNotIn("range_bearing", drawn)
-        self.assertIn("300 m from the sender: a delay is another range in every bearing", said)
+        path = self.make_several()
+        drawn, _ = self.plot(path, "--array", "north line")
+        self.assertIn("range_bearing", drawn)
+        with PingFile(path) as data:
+            data.select_array(1)
+            m = processed.maps(data, 0)
+            self.assertIsNone(m.range)
+            self.assertEqual(len(m.beam_range), 2)
+            centre = data.phones(0).mean(axis=0)
+            for side, span in zip((1.0, -1.0), m.beam_range):
+                across = side * np.array([m.axis[1], -m.axis[0], 0.0])
+                for row, cosine in enumerate(m.angle):
+                    look = cosine * m.axis + np.sqrt(max(0.0, 1.0 - cosine**2)) * across
+                    known = np.isfinite(span[row])
+                    place = centre + span[row][known, None] * look
+                    place[:, 2] = 400.0
+                    way = (np.linalg.norm(place - data.platform(0), axis=1)
+                           + np.linalg.norm(place - centre, axis=1))
+                    self.assertGreater(known.sum(), 100)
+                    self.assertLess(np.abs(way / 1500.0 - m.time[known]).max(), 0.01)
 
 
 class WhatTheyShow(Case):

@@ -1,0 +1,40 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
+
+#include "sonar/processing/delay_table.h"
+#include "sonar/propagation_paths.h"
+
+namespace asdic {
+
+/// The delay tables that detections ask for, kept for those that come after. Shared by threads;
+/// what comes out does not depend on what is kept.
+class DelayTables {
+ public:
+  /// \param ranges  of a table
+  DelayTables(const PropagationPaths& paths, double frequency, const PathLimits& limits,
+              std::size_t ranges)
+      : paths_(paths), frequency_(frequency), limits_(limits), ranges_(ranges) {}
+
+  /// The farthest that sound of 1600 m/s comes in a delay, from one of two ends so far apart [m];
+  /// rounded up so that tables serve many detections.
+  [[nodiscard]] static double longest(double delay, double apart) noexcept;
+  /// \param platform  where the paths begin   \param depth  where they end [m]
+  /// \param longest  of the ranges [m]
+  [[nodiscard]] std::shared_ptr<const DelayTable> from(const Vec3& platform, double bearing,
+                                                       double depth, double longest);
+
+ private:
+  using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
+
+  const PropagationPaths& paths_;
+  double frequency_;
+  PathLimits limits_;
+  std::size_t ranges_;
+  std::map<Key, std::shared_ptr<const DelayTable>> made_;
+  std::mutex lock_;
+};
+
+}  // namespace asdic
