@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -149,7 +150,7 @@ class Search {
       for (std::size_t f = 0; f < bank_.filters(); ++f) {
         bank_.filter(f, beams.beam(b), work.out.data());
         for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
-        estimator_(work.power, work.background, work.threshold, work.scratch);
+        compare_over_time(grid_.looks[b], work);
         pick(b, f, work, found[b]);
         if (settings_.normaliser.across_beams) heard_.set(f, b, work.power);
         for (PlacedProbe& probe : probes_)  // each has one beam and one filter
@@ -175,6 +176,27 @@ class Search {
     std::vector<Peak> peaks;
     for (const auto& of_beam : found) peaks.insert(peaks.end(), of_beam.begin(), of_beam.end());
     return peaks;
+  }
+
+  /// Background and threshold of the samples that a look hears with all phones: one at x was there
+  /// u·x/c before the reference point, and a line towed far behind it begins and ends its record
+  /// by a part of a second late or early. Elsewhere there is no background, and nothing to find.
+  void compare_over_time(const Vec3& look, Work& work) const {
+    const auto samples = static_cast<double>(work.power.size());
+    double first = 0.0, end = samples;
+    for (const Vec3& phone : phones_) {
+      const double early = look.dot(phone) / sound_speed_ * bank_.sample_rate();
+      first = std::max(first, std::ceil(early));
+      end = std::min(end, samples + std::floor(early));
+    }
+    const auto i = static_cast<std::size_t>(std::min(first, samples));
+    const auto count = static_cast<std::size_t>(std::max(end - static_cast<double>(i), 0.0));
+    std::fill(work.background.begin(), work.background.end(),
+              std::numeric_limits<float>::infinity());
+    std::fill(work.threshold.begin(), work.threshold.end(), std::numeric_limits<float>::infinity());
+    estimator_(std::span(work.power).subspan(i, count),
+               std::span(work.background).subspan(i, count),
+               std::span(work.threshold).subspan(i, count), work.scratch);
   }
 
   void pick(std::size_t beam, std::size_t filter, const Work& work, std::vector<Peak>& into) const {
