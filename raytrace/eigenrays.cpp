@@ -12,9 +12,9 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "raytrace/layered/followed_branch.h"
+#include "raytrace/layered/level_path.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
-#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
@@ -46,10 +46,6 @@ void raise(Arrival& path, double share, const Column& column) {
 /// Distance below which two roots of one branch are one [m of range per slope].
 constexpr double same_root = 1e-9;
 
-bool earlier(const Arrival& a, const Arrival& b) {
-  return a.delay != b.delay ? a.delay < b.delay : a.launch_elevation < b.launch_elevation;
-}
-
 /// By delay; a root found twice (on the end that two stretches share) counts once.
 void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) {
   const auto same = [](const Arrival& a, const Arrival& b) {
@@ -75,41 +71,6 @@ void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) 
     order[i] = i;
   }
   arrivals.erase(std::unique(arrivals.begin(), arrivals.end(), same), arrivals.end());
-}
-
-/// The ray along a depth where the speed has no gradient, which r(σ) cannot tell: it stays there,
-/// and its beam obeys d²q/dr² = −(c″/c)·q.
-Arrival horizontal_ray(const Environment& ocean, double depth, double range, double frequency) {
-  const SoundSpeed water = ocean.water.at(depth);
-  // q = sin(kr)/k about a minimum of c, sinh(kr)/k about a maximum
-  // (on a kink it is straight: k = 0)
-  const double k = water.dc_dz == 0.0 ? std::sqrt(std::abs(water.d2c_dz2) / water.c) : 0.0;
-  Arrival path;
-  path.q = k * range < 1e-6
-               ? range
-               : (water.d2c_dz2 > 0.0 ? std::sin(k * range) : std::sinh(k * range)) / k;
-  path.caustics = water.d2c_dz2 > 0.0 ? static_cast<int>(k * range / pi) : 0;
-  path.spreading = 1.0 / std::sqrt(range * std::abs(path.q));
-  path.delay = range / water.c;
-  path.path_length = range;
-  path.horizontal_slowness = 1.0 / water.c;
-  path.absorption_db =
-      1e-3 *
-      (absorption_db_per_km(ocean.absorption, frequency) + ocean.attenuation_db_per_km.at(0.0)) *
-      range;
-  path.amplitude =
-      path.spreading * amplitude_from_db(-path.absorption_db) * caustic_phase(path.caustics);
-  return path;
-}
-
-/// The rays that are one path for a receiver at this depth; none if it is not near the source's.
-LevelRays level_at(const Environment& ocean, double frequency, double source_depth,
-                   double receiver_depth) {
-  const double apart = std::abs(source_depth - receiver_depth);
-  constexpr double furthest = 1000.0;  // LevelRays::height is c/4f
-  if (apart * frequency > furthest) return {};
-  const LevelRays level = level_paths(ocean, frequency, 0.0, source_depth);
-  return apart <= level.height ? level : LevelRays{};
 }
 
 FanLimits fan_of(const PathLimits& limits) {
@@ -296,24 +257,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
     sort_and_drop_doubles(found[i], order);
   }
 
-  // What cannot be told from the ray along the level: of a smooth extremum of c rays that stay
-  // within centimetres of it, this one seen through rounding; of a kink of least speed those of
-  // LevelRays.
-  const bool smooth =
-      source_depth == receiver_depth && environment_.water.at(source_depth).dc_dz == 0.0;
-  const LevelRays level = smooth ? LevelRays{.angle = 1e-5}
-                                 : level_at(environment_, frequency, source_depth, receiver_depth);
-  for (std::size_t i = 0; level.angle > 0.0 && i < found.size(); ++i) {
-    if (!(ranges[i] > 0.0)) continue;
-    found[i].push_back(horizontal_ray(environment_, source_depth, ranges[i], frequency));
-    if (smooth)
-      std::erase_if(found[i], [&](const Arrival& a) {
-        return a.launch_elevation != 0.0 && std::abs(a.launch_elevation) < level.angle;
-      });
-    else
-      merge_level_paths(level, found[i]);
-    std::sort(found[i].begin(), found[i].end(), earlier);
-  }
+  put_level_paths(environment_, frequency, source_depth, receiver_depth, ranges, found);
   return found;
 }
 
