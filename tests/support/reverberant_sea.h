@@ -24,6 +24,14 @@ inline Scenario even_sea() {
   return s;
 }
 
+/// That sea without its surface, a pulse of 0.12 s.
+inline Scenario quiet_sea() {
+  Scenario s = even_sea();
+  s.reverberation.surface_scatters = false;
+  s.pulse = {.duration = 0.12};
+  return s;
+}
+
 /// The reverberation alone of a scenario's pings, from its first transmitter to its first array.
 class ReverberantSea {
  public:
