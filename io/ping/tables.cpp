@@ -27,7 +27,7 @@ std::vector<GrowingTable::Column> patch_columns() {
   return {{"ping", "number of the ping", "", Type::int32},
           {"boundary", "0 surface, 1 bottom, 2 volume", "", Type::int8},
           {"bearing_deg", "of the sector, clockwise from north; NaN: the whole ring", "degree"},
-          {"range", "of the cell's centre from the source", "m"},
+          {"range", "of the cell's centre from the point of the lattice that cells hang on", "m"},
           {"area", "of the ring, or of this sector and its mirror image", "m2"},
           {"delay", "there and back", "s"},
           {"grazing_in_deg", "angle at which sound comes to the surface", "degree"},
