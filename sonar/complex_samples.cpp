@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "sonar/interpolation_taps.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
@@ -195,6 +196,7 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
       out[2 * i + 1] += value.imag();
     }
   });
+  leave_if_called_off();
 }
 
 /// The same out of the baseband's samples, where its whole band lies within the recorded one.
@@ -236,6 +238,7 @@ void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
   };
   oneapi::tbb::parallel_for(std::size_t{0}, (recording.samples + block - 1) / block,
                             [&](std::size_t b) { add(b * block); });
+  leave_if_called_off();
 }
 
 /// Whether the whole band of the synthesis lies within the recorded one.

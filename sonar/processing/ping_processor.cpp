@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "raytrace/called_off.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/transmission.h"
 
@@ -157,6 +158,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     d.locations = localiser.locate(d, places, done.elevation_sigma);
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
+  leave_if_called_off();
   return done;
 }
 
@@ -171,6 +173,7 @@ std::vector<double> PingProcessor::ranges_at(const ProcessedArray& processed, in
     const auto found = localiser.locate({.time = times[i]}, places, 1.0);
     if (!found.empty()) ranges[i] = found[0].range;
   });
+  leave_if_called_off();
   return ranges;
 }
 
