@@ -3,6 +3,7 @@
 #include <tbb/info.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -110,7 +111,7 @@ void add_ping_command(CLI::App& program, Action& action) {
       ->check(above_zero());
   command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
   add_threads_option(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer(
