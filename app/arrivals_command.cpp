@@ -180,7 +180,7 @@ void add_arrivals_command(CLI::App& program, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--target", options->target, "this target alone, from 0; default: all")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--ping", options->ping, "positions of this ping")
       ->capture_default_str()
       ->type_name("N")

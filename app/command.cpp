@@ -67,10 +67,23 @@ CLI::Validator above_zero() {
       "ABOVE 0");
 }
 
-CLI::Validator whole_number(int low, int high, const std::string& noun) {
+CLI::Validator not_negative() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0.0;
+        const char* const last = text.data() + text.size();
+        const auto [end, error] = std::from_chars(text.data(), last, value);
+        const bool good =
+            error == std::errc{} && end == last && value >= 0.0 && std::isfinite(value);
+        return good ? std::string() : "found " + text + ", expected a number of at least 0";
+      },
+      "AT LEAST 0");
+}
+
+CLI::Validator whole_number(std::int64_t low, std::int64_t high, const std::string& noun) {
   return CLI::Validator(
       [low, high, noun](const std::string& text) {
-        int value = 0;
+        std::int64_t value = 0;
         const char* const last = text.data() + text.size();
         const auto [end, error] = std::from_chars(text.data(), last, value);
         const bool good = error == std::errc{} && end == last && value >= low && value <= high;

@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -43,9 +44,12 @@ void add_threads_option(CLI::App& command, std::optional<int>& threads);
 
 /// A check for numbers above zero that says just that.
 [[nodiscard]] CLI::Validator above_zero();
+/// The same of at least zero.
+[[nodiscard]] CLI::Validator not_negative();
 /// Checks that an option is a whole number from low to high: "found 70000, expected a port from 0
 /// to 65535". \param noun  "a port"
-[[nodiscard]] CLI::Validator whole_number(int low, int high, const std::string& noun);
+[[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high,
+                                          const std::string& noun);
 
 /// An option that takes a length: 60km, 500m, or plain metres. Negative ones are refused.
 /// \throws InputError naming the option, while the command line is parsed

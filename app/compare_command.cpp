@@ -173,7 +173,7 @@ void add_threshold(CLI::App& command, const std::string& name, std::optional<dou
                    const std::string& unit, const std::string& help) {
   command.add_option(name, store, help)
       ->type_name(unit)
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->group("Thresholds (exit status 1 when one is exceeded)");
 }
 
@@ -234,13 +234,13 @@ void add_compare_command(CLI::App& program, Action& action) {
                    "arrivals: neighbouring beams of one path are that close; 0 joins none [us]")
       ->capture_default_str()
       ->type_name("US")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command
       ->add_option("--pair-deg", options->rays.angle_deg,
                    "rays: pair those within this launch angle [deg]")
       ->capture_default_str()
       ->type_name("DEG")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   add_thresholds(*command, options->limits);
   command->add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
   command->add_option("--picture", options->picture, "draw both and their difference")

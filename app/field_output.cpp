@@ -81,6 +81,8 @@ std::string field_text(const FieldResult& result, double wall) {
     text += fmt::format("loss       {} to {} dB, median {} dB; no sound at {:.3g} %\n",
                         number(tl.front(), 1), number(tl.back(), 1),
                         number(compare::quantile(tl, 0.5), 1), silent_pct(data, tl.size()));
+  else
+    text += "loss       no sound at 100 %\n";
   for (const std::string& note : result.notes) text += "note: " + note + '\n';
   return text + fmt::format("{}: {}, {}\n", result.output.string(),
                             byte_count(double(std::filesystem::file_size(result.output))),

@@ -4,6 +4,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "app/console.h"
 
 namespace asdic::app {
 namespace {
@@ -26,17 +30,24 @@ void on_both(void (*handler)(int)) {
   on(SIGTERM, handler);
 }
 
+/// In place of a progress bar's line, which is drawn anew below.
+void say(const std::string& line) {
+  std::fputs(((stderr_is_terminal() ? "\r\x1b[K" : "") + line + '\n').c_str(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt(std::string told) {
   signalled = false;
   on_both(on_signal);
-  watcher_ = std::jthread([this](const std::stop_token& over) {
+  watcher_ = std::jthread([this, told = std::move(told)](const std::stop_token& over) {
     std::unique_lock lock(mutex_);
     while (!over.stop_requested() && !signalled)
       over_.wait_for(lock, over, std::chrono::milliseconds(10), [] { return signalled.load(); });
     if (!signalled) return;
     on_both(SIG_DFL);  // after SIGINT a SIGTERM ends the program as well
+    if (!told.empty()) say(told);
     stop_.request_stop();
   });
 }

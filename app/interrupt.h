@@ -2,6 +2,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 namespace asdic::app {
@@ -12,7 +13,8 @@ namespace asdic::app {
 /// The handler only sets an atomic; a thread that watches it requests the stop.
 class Interrupt {
  public:
-  Interrupt();
+  /// \param told  a line on standard error when the first comes; "": none
+  explicit Interrupt(std::string told = {});
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;

@@ -3,6 +3,7 @@
 #include <tbb/info.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -54,7 +55,10 @@ int ping(const Options& options) {
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  const Interrupt interrupt;
+  const Interrupt interrupt(fmt::format(
+      "asdic: stopping when the pings in hand are done; Ctrl-C again ends at once, then {}.part "
+      "holds those before",
+      output.string()));
   const PingSimulator simulator(std::move(scenario));
   const int count = simulator.pings();
   PingReport report(simulator.scenario());
@@ -107,7 +111,7 @@ void add_ping_command(CLI::App& program, Action& action) {
       ->check(above_zero());
   command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
   add_threads_option(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command->footer(

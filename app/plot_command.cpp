@@ -35,13 +35,24 @@ std::string folder_beside(const std::filesystem::path& file) {
                               : file.string() + "_pictures";
 }
 
-int plot(const Options& options) {
+/// \throws InputError for what cannot hold anything to draw
+void check_drawable(const std::filesystem::path& file) {
+  const auto wrong = [&](const std::string& got) {
+    return InputError({.where = file.string(),
+                       .got = got,
+                       .expected = "a file to draw: HDF5 of asdic ping, study, merge, field, "
+                                   "arrivals or rays, or .shd, .arr, .ray"});
+  };
   std::error_code error;
-  if (!std::filesystem::exists(options.file, error))
-    throw InputError({.where = options.file,
-                      .got = "no such file",
-                      .expected = "a file to draw: HDF5 of asdic ping, study, merge, field, "
-                                  "arrivals or rays, or .shd, .arr, .ray"});
+  if (!std::filesystem::exists(file, error)) throw wrong("no such file");
+  if (!std::filesystem::is_regular_file(file, error) || is_hdf5(file)) return;
+  if (std::filesystem::file_size(file, error) == 0) throw wrong("an empty file");
+  const std::string type = file.extension().string();
+  if (type != ".shd" && type != ".arr" && type != ".ray") throw wrong("a file that is not HDF5");
+}
+
+int plot(const Options& options) {
+  check_drawable(options.file);
   const TemporaryFolder folder;
   std::filesystem::path file = options.file;
   std::string pictures = options.folder;

@@ -208,10 +208,8 @@ void add_detection_options(CLI::App& command, Options& o) {
                   "nothing is detected before, after the ping's start; default: the pulse's "
                   "duration [s]")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--until", o.until, "nor after [s]")
-      ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
+  command.add_option("--until", o.until, "nor after [s]")->type_name("S")->check(not_negative());
 }
 
 void add_place_options(CLI::App& command, Options& o) {

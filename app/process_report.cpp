@@ -13,6 +13,7 @@ namespace {
 
 struct Totals {
   int detections = 0, hits = 0, misses = 0, false_alarms = 0;
+  int of_targets = 0, direct = 0, of_other_pings = 0;  ///< the detections that are no false alarms
 };
 
 Totals totals(const ProcessedRun& run) {
@@ -22,6 +23,11 @@ Totals totals(const ProcessedRun& run) {
     sum.hits += ping.score.hits;
     sum.misses += ping.score.misses;
     sum.false_alarms += ping.score.false_alarms;
+    for (const int owner : ping.score.owner) {
+      sum.of_targets += owner >= 0 ? 1 : 0;
+      sum.direct += owner == direct_sound ? 1 : 0;
+      sum.of_other_pings += owner == another_ping ? 1 : 0;
+    }
   }
   return sum;
 }
@@ -99,6 +105,20 @@ std::string tracks_text(const ProcessedRun& run, const Scenario& scenario) {
   return "\n" + table.text();
 }
 
+/// Pings of which more was over the threshold than is kept.
+std::string limit_text(const ProcessedRun& run, const Scenario& scenario) {
+  constexpr std::size_t most = DetectorSettings{}.most_detections;
+  std::string text;
+  for (const ProcessedPing& ping : run.pings)
+    if (ping.array.result.detections.size() >= most)
+      text += fmt::format(
+          "ping {}, array {}: {} peaks over the threshold; only the {} loudest detections among "
+          "them are kept\n",
+          ping.array.ping, scenario.arrays[static_cast<std::size_t>(ping.array.array)].name,
+          ping.array.result.peaks, most);
+  return text;
+}
+
 /// JSON has no NaN: null.
 nlohmann::ordered_json value(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
@@ -113,12 +133,15 @@ std::string process_report(const ProcessedRun& run, const Scenario& scenario, do
   std::size_t pings = 0;
   for (std::size_t k = 0; k < run.pings.size(); ++k)
     pings += k == 0 || run.pings[k].array.ping != run.pings[k - 1].array.ping ? 1 : 0;
-  text += fmt::format(
-      "{}: {}, {} of targets that could be heard, {} missed, {}; {}; {}\n", count_of(pings, "ping"),
-      count_of(static_cast<std::size_t>(sum.detections), "detection"), sum.hits, sum.misses,
-      count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"),
-      count_of(run.tracks.size(), "track"), duration(seconds));
-  return text;
+  std::string whose = fmt::format("{} of targets", sum.of_targets);
+  if (sum.direct > 0) whose += fmt::format(", {} of the direct sound", sum.direct);
+  if (sum.of_other_pings > 0) whose += fmt::format(", {} of other pings", sum.of_other_pings);
+  text += fmt::format("{}: {} ({}, {}); targets that could be heard: {} found, {} missed; {}; {}\n",
+                      count_of(pings, "ping"),
+                      count_of(static_cast<std::size_t>(sum.detections), "detection"), whose,
+                      count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
+                      sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
+  return text + limit_text(run, scenario);
 }
 
 std::string process_json(const ProcessedRun& run, const Scenario& scenario,
@@ -167,10 +190,16 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                         : ordered_json(scenario.targets[static_cast<std::size_t>(t.target)].name)},
          {"error_m", value(t.error.back())}});
   }
-  const ordered_json json = {
-      {"file", file},         {"detections", sum.detections},     {"hits", sum.hits},
-      {"misses", sum.misses}, {"false_alarms", sum.false_alarms}, {"pings", pings},
-      {"tracks", tracks}};
+  const ordered_json json = {{"file", file},
+                             {"detections", sum.detections},
+                             {"of_targets", sum.of_targets},
+                             {"direct", sum.direct},
+                             {"of_other_pings", sum.of_other_pings},
+                             {"hits", sum.hits},
+                             {"misses", sum.misses},
+                             {"false_alarms", sum.false_alarms},
+                             {"pings", pings},
+                             {"tracks", tracks}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/console.h"
 #include "sonar/geometry.h"
@@ -12,7 +13,8 @@ namespace asdic::app {
 namespace {
 
 std::string position(const Vec3& p) {
-  return fmt::format("{:g} m east, {:g} m north, {:g} m deep", p.x(), p.y(), p.z());
+  return fmt::format("{:g} m east, {:g} m north, {:g} m {}", p.x(), p.y(), std::abs(p.z()),
+                     p.z() < 0.0 ? "above the surface" : "deep");
 }
 
 std::string motion(const Vec3& v) {

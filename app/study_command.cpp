@@ -17,7 +17,10 @@ int study_run(const StudyOptions& options) {
   StudyOrder order = order_of(options);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order.threads));
-  const Interrupt interrupt;
+  const Interrupt interrupt(
+      "asdic: stopping: the rows that are made are kept, those in hand are left; Ctrl-C again ends "
+      "at "
+      "once");
   order.run.stop = interrupt.token();
   const study::Realiser realiser(order.study);
   const study::Work work = study::work_of(

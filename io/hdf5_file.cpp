@@ -52,6 +52,7 @@ std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::p
   if (!std::filesystem::is_regular_file(path, error)) throw wrong("something that is no file");
   auto impl = std::make_unique<Impl>();
   impl->path = path;
+  if (std::filesystem::file_size(path, error) == 0) throw wrong("an empty file");
   if (H5Fis_hdf5(path.c_str()) == 0) throw wrong("a file that is not HDF5");
   impl->file = H5Fopen(path.c_str(), change ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
   if (impl->file < 0) throw wrong("a file that cannot be opened (" + hdf5::last_message() + ")");

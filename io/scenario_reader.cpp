@@ -29,6 +29,9 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
 
   TomlTable root(document);
   static_cast<void>(root.has("include"));
+  if (document.find("study") != nullptr)
+    throw root.fault("study", "a scenario; asdic study makes the realisations of a study",
+                     "a study");
   if (root.has("run") && !root.has("platform"))
     throw root.fault("platform",
                      "a sonar: [platform], [pulse], [array], …; for the propagation "

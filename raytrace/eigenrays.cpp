@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "raytrace/layered/followed_branch.h"
 #include "raytrace/layered/level_path.h"
 #include "raytrace/layered/path_builder.h"
@@ -158,6 +159,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth,
     search(0);
   else
     tbb::parallel_for(std::size_t{0}, work.size(), search);
+  leave_if_called_off();
   return found;
 }
 

@@ -140,6 +140,21 @@ std::string file_key(const TomlValue& fields, const std::string& where) {
   return "a file";
 }
 
+constexpr std::string_view a_depth_between = "a depth between the surface";
+
+/// By which key a command moves a platform: "platform.position"; "" if it moves none.
+std::string platform_motion(const TomlValue& fields) {
+  const TomlValue* platform = fields.find("platform");
+  if (platform == nullptr) return "";
+  if (const auto* several = std::get_if<TomlValue::Array>(&platform->data)) {
+    if (several->empty()) return "";
+    platform = &several->front();
+  }
+  for (const char* key : {"position", "waypoints", "velocity", "speed", "heading_deg"})
+    if (platform->find(key) != nullptr) return std::string("platform.") + key;
+  return "";
+}
+
 }  // namespace
 
 Refusal refusal_of(const InputError& error, const std::string& scenario, const TomlValue& fields,
@@ -162,6 +177,12 @@ Refusal refusal_of(const InputError& error, const std::string& scenario, const T
   const std::string own = "what the scenario has";  // which nobody is told
   if (!is_key) return {"scenario", refusal_text("the scenario", own, fault.expected)};
   const ClientKey there = client_key(key, fields, document);
+  // A client that moves a platform moves what that carries.
+  const bool carried = key.starts_with("transmitter") || key.starts_with("array");
+  if (!there.given && carried && fault.expected.starts_with(a_depth_between))
+    if (const std::string moved = platform_motion(fields); !moved.empty())
+      return {"scenario", refusal_text(moved, "a place that puts " + key + " outside the water",
+                                       fault.expected + " for that")};
   const bool told = there.given || (there.under && fault.got == "nothing");
   return {"scenario", refusal_text(there.name, told ? fault.got : own, fault.expected)};
 }

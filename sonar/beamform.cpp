@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "raytrace/called_off.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -72,6 +73,7 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
     std::copy_n(baseband.channel(c).data(), n, row);
     fft.forward(row);
   });
+  leave_if_called_off();
 
   BeamPower result{.sample_rate = baseband.sample_rate,
                    .start = baseband.start,
@@ -108,6 +110,7 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
     for (std::size_t i = 0; i < result.samples; ++i)
       result.power[b * result.samples + i] = std::norm(beam[i]);
   });
+  leave_if_called_off();
   return result;
 }
 

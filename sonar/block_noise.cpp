@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/normal.h"
+#include "raytrace/called_off.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -211,6 +212,7 @@ void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t re
         }
       }
     });
+    leave_if_called_off();
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "raytrace/called_off.h"
 #include "sonar/spectrum_product.h"
 
 namespace asdic {
@@ -119,6 +120,7 @@ std::vector<std::complex<float>> BlockSynthesis::spectra(
     plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], on, scratch.data(),
                              std::span(found).subspan(i * bins, bins));
   });
+  leave_if_called_off();
   return found;
 }
 
@@ -159,6 +161,7 @@ Baseband BlockSynthesis::run() {
       block.clear();
       source_.make(b, block);
     });
+    leave_if_called_off();
     returns_.take(std::span(blocks_).first(batch.end - batch.begin));
     if (in_windows && !(in_windows = find_windows())) spectra_ = spectra(plan_.whole());
     if (keep)
@@ -215,6 +218,7 @@ void BlockSynthesis::lay_into_kept() {
                 {.begin = t.begin, .end = t.end, .colour = t.colour, .nodes = band.nodes},
                 phones_[t.channel], kept(t.channel, t.colour, band.first_node));
     });
+  leave_if_called_off();
 }
 
 void BlockSynthesis::lay_and_transform(Baseband& result) {
@@ -247,6 +251,7 @@ void BlockSynthesis::lay_and_transform(Baseband& result) {
       }
     }
   });
+  leave_if_called_off();
 }
 
 /// Whatever has been laid down or summed up, to time.
@@ -256,6 +261,7 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
   if (keep)
     tbb::parallel_for(std::size_t{0}, phones_.size() * colours_ * nodes,
                       [&](std::size_t i) { fft.forward(kept_.data() + i * stride_); });
+  leave_if_called_off();
   tbb::enumerable_thread_specific<Scratch> workspaces;
   tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
     Scratch& row = workspaces.local();
@@ -268,6 +274,7 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
     fft.inverse(row.data());
     std::copy_n(row.data(), plan_.length, values);
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

@@ -8,6 +8,8 @@
 #include "sonar/block_synthesis.h"
 #include "sonar/spectrum_product.h"
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -111,6 +113,7 @@ void BlockSynthesis::lay_in_windows(Baseband& result) {
       }
     }
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

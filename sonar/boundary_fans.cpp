@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -115,6 +117,7 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
           tilts(*level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
                 plane.cos_beta, *fan.planes[i].paths);
   });
+  leave_if_called_off();
   return fan;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "sonar/place_weights.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
@@ -190,6 +191,7 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
       out[2 * i + 1] += value.imag();
     }
   });
+  leave_if_called_off();
 }
 
 namespace {
@@ -233,6 +235,7 @@ void interpolate_all(const Baseband& baseband, const Recording& recording, doubl
   };
   oneapi::tbb::parallel_for(std::size_t{0}, (recording.samples + block - 1) / block,
                             [&](std::size_t b) { add(b * block); });
+  leave_if_called_off();
 }
 
 }  // namespace

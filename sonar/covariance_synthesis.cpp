@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/normal.h"
+#include "raytrace/called_off.h"
 #include "sonar/place_weights.h"
 #include "sonar/pulse_spectrum.h"
 #include "sonar/reverberation_covariance.h"
@@ -192,6 +193,7 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   tbb::parallel_for(std::size_t{0}, covariance.stretches.size(), [&](std::size_t s) {
     draw_stretch(covariance, s, draw, grid, grids.data(), stride);
   });
+  leave_if_called_off();
   const ComplexFft<float> coarse(length), fft(fine);
   struct Workspace {
     Scratch sum, values;
@@ -214,6 +216,7 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
     std::complex<float>* of_phone = baseband.values.data() + phone * fine;
     for (std::size_t i = 0; i < fine; ++i) of_phone[i] += values[i];
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "sonar/phase_turn.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
@@ -71,6 +72,7 @@ class CurvedSynthesis {
       const auto batch = returns.subspan(begin, end - begin);
       oneapi::tbb::parallel_for(std::size_t{0}, batch.size(),
                                 [&](std::size_t i) { evaluate(batch[i], shared[i]); });
+      leave_if_called_off();
       oneapi::tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
         for (std::size_t i = 0; i < batch.size(); ++i) {
           const int own = batch[i].straight.channel;
@@ -81,6 +83,7 @@ class CurvedSynthesis {
             add_shared(batch[i], shared[i], channel);
         }
       });
+      leave_if_called_off();
     }
   }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -23,6 +25,7 @@ std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
     for (std::size_t i = b * together; i < std::min(visited, (b + 1) * together); ++i)
       f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
+  leave_if_called_off();
   std::size_t total = 0;
   for (const auto& part : parts) total += part.size();
   std::vector<Item> all;

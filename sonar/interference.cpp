@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "raytrace/called_off.h"
 #include "sonar/fractional_delay.h"
 #include "sonar/interference_stretch.h"
 
@@ -187,6 +188,7 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
           if (complex) row[out + 1] += static_cast<float>(sum[static_cast<std::size_t>(i)].imag());
         }
       });
+      leave_if_called_off();
     }
   }
 }

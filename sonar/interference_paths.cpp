@@ -7,6 +7,7 @@
 #include <complex>
 #include <utility>
 
+#include "raytrace/called_off.h"
 #include "sonar/geometry.h"
 #include "sonar/interference_stretch.h"
 #include "sonar/moving_paths.h"
@@ -147,6 +148,7 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
     nodes[i] = heard_at(ship, array, clock.time((from + static_cast<std::int64_t>(i)) * clock.node),
                         across_the_band);
   });
+  leave_if_called_off();
   std::vector<Stretch> all;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;

@@ -9,6 +9,7 @@
 
 #include "core/normal.h"
 #include "core/units.h"
+#include "raytrace/called_off.h"
 
 namespace asdic {
 
@@ -34,6 +35,7 @@ void add_white_noise(std::span<float> all, std::size_t channels, double variance
       for (std::size_t i = 0; i < n; ++i) row[first + i] += rms * normals[i];
     }
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

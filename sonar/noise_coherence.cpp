@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -244,6 +246,7 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
         found[s].push_back(packed(left));
     }
   });
+  leave_if_called_off();
   std::vector<const Packed*> all;
   for (const auto& some : found)
     for (const Packed& one : some) all.push_back(&one);

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -68,6 +70,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       group_[first[b] + i] = static_cast<std::uint32_t>(band * (channels_ + 1) + listener);
     }
   });
+  leave_if_called_off();
   sort(n);
 
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 8192), [&](const auto& some) {
@@ -89,6 +92,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       }
     }
   });
+  leave_if_called_off();
   largest_slowness = 0.0;
   for (std::size_t i = 0; i < n; ++i)
     largest_slowness =
@@ -116,6 +120,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
         expansion_[b].weights(doppler_[i], std::span(weights).subspan(row, band.nodes));
       }
     });
+    leave_if_called_off();
   }
 }
 

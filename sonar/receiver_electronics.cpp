@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "raytrace/called_off.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -79,6 +80,7 @@ void ReceiverElectronics::respond(Baseband& sound) const {
     fft.inverse(bins.data());
     std::copy_n(bins.data(), sound.samples, row);
   });
+  leave_if_called_off();
 }
 
 /// After which the response of all channels has died away to 10⁻⁵ [s]. The poles of a band-pass
@@ -148,6 +150,7 @@ void ReceiverElectronics::respond(std::span<float> heard, const Recording& recor
       if (width == 2) row[i * width + 1] = x[before + i].imag();
     }
   });
+  leave_if_called_off();
   carried = std::move(inputs);
 }
 
@@ -161,6 +164,7 @@ void ReceiverElectronics::convert(std::span<float> samples, const Recording& rec
     for (float& p : samples.subspan(channel * row, row))
       p = static_cast<float>(step * std::clamp(std::round(double{p} / step), lowest, highest));
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

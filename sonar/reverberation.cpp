@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raytrace/called_off.h"
 #include "sonar/moving_paths.h"
 
 namespace asdic {
@@ -113,6 +114,7 @@ Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sector
     for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
       add_sector(fields_[b.field], static_cast<int>(sector), parts[i]);
   });
+  leave_if_called_off();
   Returns all;
   for (const ReturnBlock& part : parts)
     all.insert(all.end(), part.returns.begin(), part.returns.end());

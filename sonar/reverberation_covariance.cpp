@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/called_off.h"
 #include "sonar/stretch_covariance.h"
 
 namespace asdic {
@@ -93,6 +94,7 @@ std::vector<Heard> hear(std::span<const ScatteringField* const> fields, const Au
       for (std::size_t i = part * together; i < end; ++i)
         hear_circle(circles, i, limits, pairs, parts[part]);
     });
+    leave_if_called_off();
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -206,6 +208,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(heard[order[i]]);
     stretch.rank = sum.factor(factors[s]);
   });
+  leave_if_called_off();
   for (std::size_t s = 0; s < stretches.size(); ++s) {
     stretches[s].first = components == 0 ? 0 : columns.size() / components;
     columns.insert(columns.end(), factors[s].begin(), factors[s].end());

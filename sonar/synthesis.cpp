@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "sonar/synthesis_plan.h"
 
 namespace asdic {
@@ -116,6 +117,7 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
     const float* __restrict in = scratch.samples.data();
     for (std::size_t i = 0; i < samples; ++i) out[i] += in[i];
   });
+  leave_if_called_off();
 }
 
 }  // namespace asdic

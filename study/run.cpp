@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <atomic>
 #include <exception>
@@ -14,9 +15,19 @@ namespace {
 struct InHand {
   std::uint64_t index = 0;
   Row row;
+  bool made = false;  ///< false: called off, or at fault
   std::exception_ptr fault;
 };
 using Parcel = std::shared_ptr<InHand>;
+
+/// Makes the row, unless it is called off meanwhile: the parallel loops in it then end early, and
+/// who runs them throws (raytrace/called_off.h), which goes no further than the group.
+void make_row(const Realise& realise, const std::stop_token& stop, InHand& parcel) {
+  tbb::task_group group;
+  const std::stop_callback call_off(stop, [&group] { group.cancel(); });
+  const auto status = group.run_and_wait([&] { parcel.row = realise(parcel.index); });
+  parcel.made = status != tbb::canceled;
+}
 
 }  // namespace
 
@@ -38,7 +49,7 @@ std::uint64_t run(const Realise& realise, const NextIndex& next, const RowSink& 
     try {
       // A thread that waits inside of a realisation must not begin another one meanwhile: it would
       // find its own scratch memory in use.
-      tbb::this_task_arena::isolate([&] { parcel->row = realise(parcel->index); });
+      tbb::this_task_arena::isolate([&] { make_row(realise, options.stop, *parcel); });
     } catch (...) {
       parcel->fault = std::current_exception();
       over = true;
@@ -51,6 +62,7 @@ std::uint64_t run(const Realise& realise, const NextIndex& next, const RowSink& 
       fault = parcel->fault;
       return;
     }
+    if (!parcel->made) return;
     if (!sink(std::move(parcel->row))) over = true;
     ++done;
   };

@@ -17,7 +17,7 @@ using NextIndex = std::function<std::optional<std::uint64_t>()>;
 using RowSink = std::function<bool(Row&& row)>;
 
 struct RunOptions {
-  std::stop_token stop{};     ///< finishes the realisations in hand
+  std::stop_token stop{};     ///< calls off the realisations in hand: they have no row
   std::size_t in_flight = 0;  ///< at most at a time; 0: four for each thread
 };
 

@@ -41,7 +41,7 @@ struct StudyRun {
   bool assemble_only = false;     ///< makes no rows: a file of those that are there
   std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
   Session session{};
-  std::stop_token stop{};
+  std::stop_token stop{};                           ///< leaves the realisations in hand
   std::function<void(const Progress&)> progress{};  ///< a few times a second
 };
 

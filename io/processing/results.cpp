@@ -115,14 +115,18 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
   }
 }
 
-/// The replica's ambiguity surface, out to the edges of its main ridge.
+/// The replica's ambiguity surface, out to the edges of its main ridge and, beside that, to six
+/// cells of delay: so a sweep's, which is far narrower than the sweep is long, is resolved.
 void write_ambiguity(Hdf5File& file, const Replica& replica) {
   std::vector<double> delays, dopplers;
-  for (int i = -120; i <= 120; ++i) delays.push_back(replica.duration() * i / 120.0);
   const double span =
       std::min(0.05, std::max(4.0 / (replica.centre_frequency() * replica.duration()),
                               2.0 * doppler_cell(replica)));
   for (int i = -60; i <= 60; ++i) dopplers.push_back(1.0 + span * i / 60.0);
+  const double ridge = std::max(std::abs(doppler_answer(replica, dopplers.front()).delay),
+                                std::abs(doppler_answer(replica, dopplers.back()).delay));
+  const double reach = std::min(replica.duration(), ridge + 6.0 / replica.noise_bandwidth());
+  for (int i = -120; i <= 120; ++i) delays.push_back(reach * i / 120.0);
   const std::vector<double> surface = ambiguity(replica, delays, dopplers);
   std::vector<float> values;
   for (const double x : surface) values.push_back(static_cast<float>(x));

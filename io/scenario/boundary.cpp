@@ -42,13 +42,11 @@ WaterAtBoundary water_at(const Environment& ocean, double range, double depth) {
 std::vector<BoundaryMaterial> materials_of_file(TomlTable& table, const OceanReading& reading) {
   if (!read_csv_of(table, reading.folder).has("speed")) return {};
   const bool elastic = read_csv_of(table, reading.folder).has("shear_speed");
-  const Quantity speed{.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5, .above = true};
   const Quantity loss{.noun = "attenuation", .unit = "dB per wavelength", .low = 0.0, .high = 50.0};
-  std::vector<std::pair<std::string, Quantity>> wanted = {
-      {"range", range_quantity},
-      {"speed", speed},
-      {"density", {.noun = "density", .unit = "kg/m3", .low = 0.0, .high = 5e4, .above = true}},
-      {"attenuation_db_per_wavelength", loss}};
+  std::vector<std::pair<std::string, Quantity>> wanted = {{"range", range_quantity},
+                                                          {"speed", material_speed},
+                                                          {"density", material_density},
+                                                          {"attenuation_db_per_wavelength", loss}};
   if (elastic) {
     wanted.push_back({"shear_speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5}});
     wanted.push_back({"shear_attenuation_db_per_wavelength", loss});

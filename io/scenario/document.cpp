@@ -45,6 +45,10 @@ void merge_include(TomlValue& root, const std::filesystem::path& folder) {
 
 TomlValue read_document(std::string_view text, const std::filesystem::path& path,
                         std::span<const std::string> overrides) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw InputError({.where = path.string(),
+                      .got = "an empty file",
+                      .expected = "a scenario (docs/formats/scenario.md)"});
   TomlValue document = parse_toml(text, path.string());
   for (const std::string& assignment : overrides)  // which file to include comes first …
     if (assignment.starts_with("include=")) apply_override(document, assignment);

@@ -10,11 +10,6 @@
 namespace asdic::scenario {
 namespace {
 
-constexpr Quantity density_quantity{
-    .noun = "density", .unit = "kg/m3", .low = 0.0, .high = 5e4, .above = true};
-constexpr Quantity wave_speed{
-    .noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5, .above = true};
-
 const double db_per_neper = 20.0 / std::log(10.0);
 
 /// One way to say how much a wave loses, and what it comes to.
@@ -67,8 +62,8 @@ double read_loss(TomlTable& table, const std::string& prefix, double speed, doub
 
 FluidHalfSpace read_fluid(TomlTable& table, double frequency) {
   FluidHalfSpace fluid;
-  fluid.speed = table.number("speed", wave_speed, fluid.speed);
-  fluid.density = table.number("density", density_quantity, fluid.density);
+  fluid.speed = table.number("speed", material_speed, fluid.speed);
+  fluid.density = table.number("density", material_density, fluid.density);
   fluid.attenuation_db_per_wavelength =
       read_loss(table, "", fluid.speed, frequency, fluid.attenuation_db_per_wavelength);
   return fluid;
@@ -77,10 +72,10 @@ FluidHalfSpace read_fluid(TomlTable& table, double frequency) {
 ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading) {
   ElasticHalfSpace solid;
   const double f = reading.frequency;
-  solid.speed = table.number("speed", wave_speed, solid.speed);
+  solid.speed = table.number("speed", material_speed, solid.speed);
   solid.shear_speed = table.number(
       "shear_speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5}, solid.shear_speed);
-  solid.density = table.number("density", density_quantity, solid.density);
+  solid.density = table.number("density", material_density, solid.density);
   solid.attenuation_db_per_wavelength =
       read_loss(table, "", solid.speed, f, solid.attenuation_db_per_wavelength);
   solid.shear_attenuation_db_per_wavelength =
@@ -99,8 +94,8 @@ ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading) {
 FluidHalfSpace read_grain_size(TomlTable& table, const WaterAtBoundary& water) {
   const double size = table.number(
       "grain_size", {.noun = "mean grain size", .unit = "phi", .low = -1.0, .high = 9.0});
-  const double speed = table.number("water_speed", wave_speed, water.speed);
-  const double density = table.number("water_density", density_quantity, water.density);
+  const double speed = table.number("water_speed", material_speed, water.speed);
+  const double density = table.number("water_density", material_density, water.density);
   return sediment_of_grain_size(size, speed, density);
 }
 

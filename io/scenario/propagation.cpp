@@ -9,6 +9,15 @@
 namespace asdic {
 namespace {
 
+/// What the propagation model is to do. \throws InputError where nothing says so
+TomlTable run_of(TomlTable& root) {
+  if (!root.has("run"))
+    throw root.fault("run",
+                     "a [run] with [run.receivers]: what the propagation model is to do "
+                     "(docs/formats/scenario.md)");
+  return root.table("run");
+}
+
 /// A file with an ocean and a run, and no sonar.
 PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesystem::path& folder,
                                  std::vector<std::string>& notes) {
@@ -17,7 +26,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   PropagationCase run;
   run.title = root.text("title", "");
   run.source_depths.clear();
-  TomlTable table = root.table("run");
+  TomlTable table = run_of(root);
   run.frequency = table.number(
       "frequency", {.noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true});
   TomlTable environment = root.table("environment");
@@ -43,7 +52,7 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   run.frequency = Pulse(scenario.pulse).centre_frequency();
   run.source_depths = {platform.z()};
   TomlTable root(document);
-  scenario::read_run(root.table("run"), run);
+  scenario::read_run(run_of(root), run);
   return run;
 }
 

@@ -1,6 +1,7 @@
 #include "io/text/toml_table.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "io/text/quote.h"
@@ -32,6 +33,15 @@ std::string dotted(const std::string& path) {
 std::string element(const std::string& key, std::size_t index) {
   return key + "[" + std::to_string(index) + "]";
 }
+
+/// A string such as "12 m/s" or "12".
+bool holds_number(const TomlValue& value) {
+  const auto* text = std::get_if<std::string>(&value.data);
+  if (text == nullptr) return false;
+  double number = 0.0;
+  return std::from_chars(text->data(), text->data() + text->size(), number).ec == std::errc{};
+}
+constexpr const char* bare_number = ", as a number without quotes and unit";
 
 }  // namespace
 
@@ -116,7 +126,7 @@ double TomlTable::checked(const TomlValue& value, const std::string& key,
   else if (const auto* real = std::get_if<double>(&value.data))
     number = *real;
   else
-    throw fault_at(value, key, quantity.expected());
+    throw fault_at(value, key, quantity.expected() + (holds_number(value) ? bare_number : ""));
   if (quantity.holds(number)) return number;
   const bool show_unit = std::isfinite(number) && !quantity.unit.empty();
   throw fault_at(value, key, quantity.expected(),
@@ -178,7 +188,8 @@ std::vector<double> TomlTable::checked_numbers(const TomlValue& value, const std
                                                const Quantity& quantity,
                                                const std::string& expected) const {
   const auto* array = std::get_if<TomlValue::Array>(&value.data);
-  if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
+  if (array == nullptr) throw fault_at(value, key, expected);
+  if (array->empty()) throw fault_at(value, key, expected + ", one at least");
   std::vector<double> result;
   for (std::size_t i = 0; i < array->size(); ++i)
     result.push_back(checked((*array)[i], element(key, i), quantity));

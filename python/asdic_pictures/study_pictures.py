@@ -36,10 +36,13 @@ def heading(axes, study: Study) -> None:
 
 
 def banded(table: SummaryTable) -> list:
-    """Names of the columns that have an interval beside them, but for those of an axis's bins."""
+    """Names of the columns that have an interval beside them, but for those of an axis's bins and
+    those in which nothing is known anywhere.
+    """
     names = [c.name for c in table.columns]
     first = names.index("count") + 1 if "count" in names else 0
-    return [n for n in names[first:] if f"{n}_low" in table and f"{n}_high" in table]
+    return [n for n in names[first:] if f"{n}_low" in table and f"{n}_high" in table
+            and np.isfinite(table[n].values).any()]
 
 
 def band(axes, table: SummaryTable, x: str, y: str, colour: str, label: str | None = None) -> None:
@@ -235,6 +238,8 @@ def draw_sensitivity(study: Study) -> dict:
     measures, inputs = table["measure"], table["input"]
     if not measures.labels or not inputs.labels:
         return {}
+    constant = [k for k, name in enumerate(measures.labels) for c in study.columns
+                if c.name == name and np.unique(c.values[np.isfinite(c.values)]).size < 2]
     height = max(3.9, 1.8 + 0.45 * len(measures.labels))
     if len(inputs.labels) > MOST_BESIDE:  # one above the other: there would be no room for numbers
         fig, axes = style.figure("Which input matters", 1.8 * height, nrows=2, sharex=True)
@@ -244,6 +249,8 @@ def draw_sensitivity(study: Study) -> dict:
                                 (axes[1], "rank_correlation", "rank correlation", -1.0)):
         grid = np.full((len(measures.labels), len(inputs.labels)), np.nan)
         grid[measures.values.astype(int), inputs.values.astype(int)] = table[name].values
+        grid[constant] = np.nan  # nothing depends on anything
+        grid = np.maximum(grid, low)  # an estimate of no share falls below 0 by chance
         image = a.imshow(grid, cmap="RdBu_r" if low < 0 else style.MAP, vmin=low, vmax=1.0,
                          aspect="auto")
         for (row, column), value in np.ndenumerate(grid):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.patches import Rectangle
 
 from . import sea, style
 
@@ -45,8 +46,15 @@ def loss_bar(fig, mesh, axes, label="transmission loss / dB"):
 
 
 def frame(axes, field, source: int) -> None:
-    """Axes of a map: range, depth, boundaries, the source."""
+    """Axes of a map: range, depth, boundaries, the source. Grey where no sound arrives, white where
+    there are no receivers.
+    """
     style.image_frame(axes)
+    if not field.irregular:
+        across, down = edges(field.range) / 1e3, edges(field.depth)
+        axes.add_patch(Rectangle((across[0], down[0]), across[-1] - across[0], down[-1] - down[0],
+                                 fc=axes.get_facecolor(), lw=0, zorder=-1))
+        axes.set_facecolor("white")
     depths = np.concatenate([field.depth, field.source_depths])
     sea.depth_axis(axes, *sea.extent(field.sea, depths))
     first, last = field.range.min() / 1e3, field.range.max() / 1e3

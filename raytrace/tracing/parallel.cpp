@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "raytrace/called_off.h"
+
 namespace asdic::tracing {
 
 std::size_t most_workers() {
@@ -15,6 +17,7 @@ void parallel(int n, const std::function<void(std::size_t worker, int i)>& body)
     tbb::parallel_for(0, n, [&](int i) {
       body(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()), i);
     });
+    leave_if_called_off();
   });
 }
 

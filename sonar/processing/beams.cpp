@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "raytrace/called_off.h"
 
 namespace asdic {
 
@@ -20,6 +21,7 @@ BeamSpectra channel_spectra(const Baseband& baseband) {
     std::copy_n(baseband.channel(c).data(), baseband.samples, result.beam(c));
     fft.forward(result.beam(c));
   });
+  leave_if_called_off();
   return result;
 }
 
@@ -69,6 +71,7 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
       steer((n + 1) / 2, n, -spacing * static_cast<double>(half));
     }
   });
+  leave_if_called_off();
   return result;
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/called_off.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -120,6 +121,7 @@ Baseband to_baseband(std::span<const float> pressure, std::size_t channels, doub
                   2.0 / static_cast<double>(plan.padded), work.envelope,
                   result.values.data() + c * plan.length);
   });
+  leave_if_called_off();
   return result;
 }
 
@@ -150,6 +152,7 @@ Baseband to_baseband(std::span<const std::complex<float>> envelope, std::size_t 
         turn, 1.0 / static_cast<double>(plan.padded), work.envelope,
         result.values.data() + c * plan.length);
   });
+  leave_if_called_off();
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -158,6 +159,7 @@ MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const dou
                                                dopplers_[f])));
     }
   });
+  leave_if_called_off();
 }
 
 void MatchedFilterBank::transform(std::span<const std::complex<float>> row,

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -94,6 +96,7 @@ struct Blocks {
         std::copy_n(work.data(), length, spectra.data() + (c * count + j) * length);
       }
     });
+    leave_if_called_off();
   }
   [[nodiscard]] std::complex<double> at(std::size_t c, std::size_t j, std::size_t k) const {
     return std::complex<double>(spectra[(c * count + j) * length + k]);
@@ -177,6 +180,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
       }
     }
   });
+  leave_if_called_off();
   const ComplexFft<float> back(blocks.length), fft(baseband.samples);
   tbb::parallel_for(std::size_t{0}, beams, [&](std::size_t b) {
     FftBuffer<std::complex<float>> work(blocks.length);
@@ -193,6 +197,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
     }
     fft.forward(row);
   });
+  leave_if_called_off();
   return result;
 }
 

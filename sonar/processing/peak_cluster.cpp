@@ -8,6 +8,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "raytrace/called_off.h"
+
 namespace asdic {
 namespace {
 
@@ -54,6 +56,7 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
       row[i + reach_] = static_cast<float>(scale * most);
     }
   });
+  leave_if_called_off();
 }
 
 double LeakTable::at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexcept {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "raytrace/called_off.h"
 #include "sonar/geometry.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/transmission.h"
@@ -158,6 +159,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     d.locations = localiser.locate(d, places, done.elevation_sigma);
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
+  leave_if_called_off();
   return done;
 }
 
@@ -193,6 +195,7 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
     row(looks[b], ranges.of_beam);
     if (two_sides) row(mirrored(places.shape, looks[b]), ranges.of_mirror);
   });
+  leave_if_called_off();
   return ranges;
 }
 

@@ -42,9 +42,9 @@ BoundaryMaterial any_material() {
     case 1:
       return Rigid{};
     case 2:
-      return FluidHalfSpace{between(100.0, 7000.0), between(1.0, 9000.0), between(0.0, 5.0)};
+      return FluidHalfSpace{between(200.0, 7000.0), between(100.0, 9000.0), between(0.0, 5.0)};
     case 3:
-      return ElasticHalfSpace{between(1500.0, 7000.0), between(0.0, 1500.0), between(1.0, 9000.0),
+      return ElasticHalfSpace{between(1500.0, 7000.0), between(0.0, 1500.0), between(100.0, 9000.0),
                               between(0.0, 5.0), between(0.0, 5.0)};
     default: {
       ReflectionTable table{

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 
 #include <thread>
 
@@ -85,13 +86,15 @@ TEST(SameBits, WhenInterruptedAndTakenUpAgain) {
   const TemporaryDirectory folder;
   make(some, run_of(folder / "whole.h5", {0, 311}), 2);
   const auto path = folder / "resumed.h5";
+  const auto in_hand = 4 * static_cast<std::uint64_t>(tbb::info::default_concurrency());
   std::uint64_t there = 0;
   for (const std::uint64_t rows : {50U, 51U, 200U}) {
     const StudyOutcome outcome = make_some(some, run_of(path, {0, 311}), rows);
     EXPECT_FALSE(outcome.written);
     EXPECT_FALSE(std::filesystem::exists(path));
     EXPECT_EQ(outcome.before, there);
-    EXPECT_GE(outcome.before + outcome.made, rows);
+    // those in hand are left
+    EXPECT_GE(outcome.before + outcome.made + in_hand, rows);
     there = outcome.before + outcome.made;
   }
   const StudyOutcome last = make(some, run_of(path, {0, 311}), 7);

@@ -25,6 +25,8 @@ TEST_P(Faults, AreOneLine) {
   support::TemporaryDirectory folder;
   static_cast<void>(folder.write("small.toml", support::small_scenario));
   static_cast<void>(folder.write("empty.h5", ""));
+  static_cast<void>(folder.write("empty.toml", ""));
+  static_cast<void>(folder.write("study.toml", "[study]\nscenario = \"small.toml\"\n"));
   static_cast<void>(folder.write("text.h5", "not HDF5 at all"));
   const auto run = asdic(folder, GetParam().words);
   EXPECT_EQ(run.status, GetParam().status);
@@ -48,6 +50,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"ping small.toml --pings many", 2, {"many"}},
         Fault{"ping small.toml --threads 0", 2, {"--threads"}},
         Fault{"ping small.toml --seed -1", 2, {"--seed"}},
+        Fault{"ping small.toml --seed abc",
+              2,
+              {"--seed: found abc, expected a seed from 0 to 9223372036854775807"}},
+        Fault{"pnig small.toml",
+              2,
+              {"pnig: found no such command (did you mean \"ping\"?), expected one of ping, "}},
+        Fault{"ping small.toml --ping 3",
+              2,
+              {"not expected: --ping (did you mean \"--pings\"?), 3;", "asdic ping --help"}},
         Fault{"rays small.toml --range 60miles",
               2,
               {"--range", "found \"60miles\"", "expected a length"}},
@@ -80,24 +91,37 @@ INSTANTIATE_TEST_SUITE_P(
               2,
               {"--set target.0.rnage: found an unknown key", "(did you mean \"range\"?)"}},
         Fault{"validate small.toml --set target.0.velcoity=3", 2, {"did you mean \"velocity\"?"}},
+        Fault{"validate small.toml --set environment.wind_speed='\"12 m/s\"'",
+              2,
+              {"wind_speed: found \"12 m/s\", expected a wind speed from 0 to 60 m/s, as a number "
+               "without quotes and unit"}},
+        Fault{"validate small.toml --set array.kind=towed --set array.behind=[]",
+              2,
+              {"array.behind: found an array of 0, expected an array of numbers", "one at least"}},
         Fault{
             "arrivals small.toml --set array.phones=0", 2, {"array.phones", "found", "expected"}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Files, Faults,
-    ::testing::Values(Fault{"info none.h5", 2, {"none.h5", "found no such file", "expected"}},
-                      Fault{"info empty.h5", 2, {"empty.h5", "found", "expected"}},
-                      Fault{"plot text.h5", 2, {"text.h5", "found", "expected"}},
-                      Fault{"export --wav text.h5", 2, {"text.h5", "found", "expected"}},
-                      Fault{"ping small.toml -o nowhere/a.h5", 2, {"--output", "nowhere"}},
-                      Fault{"ping small.toml -o .", 2, {"--output", "folder"}},
-                      Fault{"ping small.toml -o small.toml", 2, {"--output", "the input itself"}},
-                      Fault{"ping small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
-                      Fault{"rays small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
-                      Fault{"arrivals small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
-                      Fault{"rays small.toml > /dev/full", 1, {"standard output"}},
-                      Fault{"arrivals small.toml --json > /dev/full", 1, {"standard output"}},
-                      Fault{"--help > /dev/full", 1, {"standard output"}}));
+    ::testing::Values(
+        Fault{"info none.h5", 2, {"none.h5", "found no such file", "expected"}},
+        Fault{"info empty.h5", 2, {"empty.h5: found an empty file, expected"}},
+        Fault{"plot empty.h5", 2, {"empty.h5: found an empty file", "asdic ping, st"}},
+        Fault{"ping empty.toml", 2, {"empty.toml: found an empty file, expected a s"}},
+        Fault{"plot small.toml", 2, {"small.toml: found a file that is not HDF5"}},
+        Fault{"ping study.toml", 2, {"study.toml:1: study: found a study, expected"}},
+        Fault{"field small.toml", 2, {"run: found nothing, expected a [run]"}},
+        Fault{"plot text.h5", 2, {"text.h5", "found", "expected"}},
+        Fault{"export --wav text.h5", 2, {"text.h5", "found", "expected"}},
+        Fault{"ping small.toml -o nowhere/a.h5", 2, {"--output", "nowhere"}},
+        Fault{"ping small.toml -o .", 2, {"--output", "folder"}},
+        Fault{"ping small.toml -o small.toml", 2, {"--output", "the input itself"}},
+        Fault{"ping small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
+        Fault{"rays small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
+        Fault{"arrivals small.toml -o /proc/a.h5", 1, {"/proc/a.h5"}},
+        Fault{"rays small.toml > /dev/full", 1, {"standard output"}},
+        Fault{"arrivals small.toml --json > /dev/full", 1, {"standard output"}},
+        Fault{"--help > /dev/full", 1, {"standard output"}}));
 
 // Whatever a command reads: a file that is not there is told so, with what it should have been.
 INSTANTIATE_TEST_SUITE_P(

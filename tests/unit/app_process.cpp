@@ -33,6 +33,10 @@ TEST_F(Process, FindsTheTargetAndSaysWhereItIs) {
   const auto json = nlohmann::json::parse(done.out);
   EXPECT_EQ(json.at("hits"), 2);
   EXPECT_EQ(json.at("misses"), 0);
+  // every detection is somebody's, or a false alarm
+  EXPECT_EQ(json.at("detections"), json.at("of_targets").get<int>() + json.at("direct").get<int>() +
+                                       json.at("of_other_pings").get<int>() +
+                                       json.at("false_alarms").get<int>());
   const auto& target = json.at("pings").at(0).at("targets").at(0);
   EXPECT_TRUE(target.at("hit"));
   // A cell of a 0.1 s tone under Hann's window is 0.05 s, 39 m.
@@ -61,6 +65,7 @@ TEST_F(Process, CanLeaveTheFileAlone) {
   const auto done = asdic(folder_, "process small.h5 --no-file");
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("rock"));
+  EXPECT_THAT(done.out, HasSubstr("targets that could be heard: 2 found, 0 missed"));
   EXPECT_TRUE(support::content(folder_ / "small.h5") == before);
 }
 

@@ -199,7 +199,8 @@ TEST(PingFile, OtherFilesAreInputErrors) {
   };
   EXPECT_THAT(message(folder / "none.h5"), HasSubstr("none.h5: found no such file, expected an"));
   EXPECT_THAT(message(folder.write("text.h5", "hello")), HasSubstr("a file that is not HDF5"));
-  EXPECT_THAT(message(folder.write("empty.h5", "")), HasSubstr("a file that is not HDF5"));
+  EXPECT_THAT(message(folder.write("empty.h5", "")),
+              HasSubstr("found an empty file, expected an HDF5 file"));
   {
     PingFileWriter writer(folder / "p.h5", scenario, provenance);
     writer.append(small_record(scenario, 1));

@@ -79,6 +79,25 @@ TEST(ScenarioOcean, EveryMaterial) {
   EXPECT_EQ(table.phase, (std::vector<double>{0.0, 0.0, 0.0}));
 }
 
+// g/cm3 and km/s, as handbooks have them, make no bottom.
+TEST(ScenarioOcean, AMaterialInOtherUnitsIsRefused) {
+  const auto refused = [](const std::string& keys, const std::string& message) {
+    try {
+      static_cast<void>(bottom(keys));
+      ADD_FAILURE() << keys;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message)) << keys;
+    }
+  };
+  for (const std::string kind : {"kind = \"fluid\"\n", "kind = \"elastic\"\n"}) {
+    refused(kind + "density = 1.5",
+            "environment.bottom.density: found 1.5 kg/m3, expected a density from 100 to 20000 "
+            "kg/m3");
+    refused(kind + "speed = 1.56",
+            "environment.bottom.speed: found 1.56 m/s, expected a speed from 200 to 10000 m/s");
+  }
+}
+
 TEST(ScenarioOcean, AReflectionTableFromAFile) {
   const support::TemporaryDirectory folder;
   const auto path =

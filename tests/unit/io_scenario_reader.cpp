@@ -305,7 +305,7 @@ const Fault faults[] = {
      "depths, 3"},
     {"EmptyArray", "[1510.0, 1500.0, 1540.0]", "[]",
      "s.toml:6: environment.sound_speed.speed: found an array of 0, expected an array of numbers, "
-     "each a speed from 200 to 10000 m/s"},
+     "each a speed from 200 to 10000 m/s, one at least"},
     {"ShortSteepProfile", "[0.0, 100.0, 5000.0]", "[0.0, 10.0, 20.0]",
      "s.toml:5: environment.sound_speed.depth: found levels from 0 to 20 m, by which the speed at "
      "5000 m would be 3080 m/s, expected levels that reach from the surface to the bottom at "

@@ -285,6 +285,21 @@ TEST(RefusalOf, SaysTheKeyAndWhatIsExpected) {
   }
 }
 
+// A platform that is moved takes along what it carries: the client said where to, not the offset.
+TEST(RefusalOf, NamesThePlatformThatWasMoved) {
+  const InputError fault({.where = "secret/deep.toml:12: transmitter.offset",
+                          .got = "depth 4150 m at 0 s",
+                          .expected = "a depth between the surface (0 m) and the bottom (3200 m)"});
+  const TomlValue moved = parse_toml("platform = { position = [0, 0, 4000] }", "command");
+  EXPECT_STREQ(refusal_of(fault, "secret/deep.toml", moved, {}).what(),
+               "platform.position: found a place that puts transmitter.offset outside the water, "
+               "expected a depth between the surface (0 m) and the bottom (3200 m) for that");
+  const TomlValue other = parse_toml("wind_speed = 3", "command");
+  EXPECT_STREQ(refusal_of(fault, "secret/deep.toml", other, {}).what(),
+               "transmitter.offset: found what the scenario has, expected a depth between the "
+               "surface (0 m) and the bottom (3200 m)");
+}
+
 // Keys of a scenario as commands have them.
 TEST(ClientKeys, AreThoseOfTheCommand) {
   const TomlValue fields = parse_toml(R"(

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace asdic {
+
+/// True in a task whose group was cancelled, such as a realisation in hand when a study is stopped
+/// (study/run.h).
+[[nodiscard]] bool called_off() noexcept;
+
+/// To be asked after every parallel loop a realisation may run: one that is called off ends early,
+/// without a word and with its results half made. \throws Interrupted
+void leave_if_called_off();
+
+}  // namespace asdic
