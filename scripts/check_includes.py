@@ -3,6 +3,7 @@
 
 core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
+And what a realisation of a study runs in parallel is left when it is called off (raytrace/called_off.h).
 """
 import pathlib
 import re
@@ -38,6 +39,10 @@ def faults():
                         yield f"{name}: <{header}> belongs in .cpp files of {', '.join(homes)}"
                 if header.startswith("fftw3"):
                     fftw_files.add(str(name))
+    for path in sorted((ROOT / "sonar").rglob("*.cpp")):
+        text = path.read_text()
+        if path.name != "detector.cpp" and text.count("leave_if_called_off()") < text.count("tbb::parallel_for("):
+            yield f"{path.relative_to(ROOT)}: leave_if_called_off() must follow every parallel loop"
     if len(fftw_files) > 1:
         yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
 

@@ -138,6 +138,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
                       .look = -echo.travel});
   done.result =
       detect(baseband, phones, done.sound_speed, pulse, factors, detector, probes, proceed);
+  leave_if_called_off();  // for the detector's own loop, too
 
   // The transmitter as it was for that ping.
   const std::vector<Transmission> sent = transmissions(scenario_);
@@ -178,6 +179,7 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
       const auto found = localiser.locate({.time = times[i]}, places, 1.0);
       if (!found.empty()) ranges.of_time[i] = found[0].range;
     });
+    leave_if_called_off();
     return ranges;
   }
   if (places.shape.kind == ArrayKind::point || places.shape.upright()) return ranges;
