@@ -32,27 +32,42 @@ double log_power(std::complex<float> x) {
   return std::log(static_cast<double>(std::norm(x)) + std::numeric_limits<double>::min());
 }
 
+Vec3 mean_of(std::span<const Vec3> phones) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& phone : phones) sum += phone;
+  return sum / static_cast<double>(std::max<std::size_t>(phones.size(), 1));
+}
+
+std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
+  std::vector<Vec3> moved;
+  for (const Vec3& phone : phones) moved.push_back(phone - middle);
+  return moved;
+}
+
+/// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
+/// them, also on a line that is towed far behind the point that delays refer to.
 class Search {
  public:
   Search(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
          const Replica& replica, std::span<const double> dopplers, const DetectorSettings& settings)
       : baseband_(baseband),
-        phones_(phones),
+        middle_(mean_of(phones)),
+        phones_(about(middle_, phones)),
         sound_speed_(sound_speed),
         replica_(replica),
         settings_(settings),
         wavelength_(sound_speed / replica.centre_frequency()),
-        shape_(shape_of(phones, wavelength_)),
+        shape_(shape_of(phones_, wavelength_)),
         grid_(
             beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation)),
-        weights_(shading(phones, settings.hann_shading)),
+        weights_(shading(phones_, settings.hann_shading)),
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
         channels_(channel_spectra(baseband)),
         around_(shape_, grid_.looks, wavelength_),
         heard_(settings.normaliser.across_beams ? bank_.filters() : 0, grid_.looks.size(),
                bank_.samples(), bank_.sample_rate() / replica.noise_bandwidth()),
-        pointing_(baseband, phones, sound_speed, replica, shape_, weights_, grid_.spacing,
+        pointing_(baseband, phones_, sound_speed, replica, shape_, weights_, grid_.spacing,
                   dopplers.front()) {}
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
@@ -63,7 +78,9 @@ class Search {
                                  weights_);
     DetectorResult result;
     prepare_maps(result.maps);
-    probes_ = place_probes(probes, bank_, doppler_cell(replica_), grid_, phones_, weights_,
+    std::vector<Probe> at_middle(probes.begin(), probes.end());
+    for (Probe& probe : at_middle) probe.time -= lead(probe.look);
+    probes_ = place_probes(at_middle, bank_, doppler_cell(replica_), grid_, phones_, weights_,
                            2.0 * pi / wavelength_);
     std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
     if (settings_.normaliser.across_beams) compare_across_beams(peaks);
@@ -78,8 +95,9 @@ class Search {
     std::map<std::size_t, Vec3> look;  // of kept peaks
     std::map<std::pair<std::size_t, std::size_t>, double> known;
     const auto keep = [&](std::size_t i) {
-      result.detections.push_back(refine(peaks[i], beams));
-      look[i] = result.detections.back().look;
+      Detection& kept = result.detections.emplace_back(refine(peaks[i], beams));
+      look[i] = kept.look;
+      kept.time += lead(kept.look);
     };
     const auto beam_leak = [&](std::size_t kept, std::size_t beam) {
       const auto [at, fresh] = known.try_emplace({kept, beam}, 0.0);
@@ -117,6 +135,9 @@ class Search {
     BackgroundEstimator::Scratch scratch;
     std::vector<float> doppler_time;  // [filters × columns]
   };
+
+  /// By how much the middle hears what comes from there before the point that delays refer to [s]
+  double lead(const Vec3& look) const { return look.dot(middle_) / sound_speed_; }
 
   /// \return level of an echo of power |y|² [dB re 1 µPa]
   static double level_of(double power) {
@@ -158,9 +179,18 @@ class Search {
             probe.background = work.background[probe.sample];
             probe.threshold = work.threshold[probe.sample];
           }
+        const auto early =
+            static_cast<std::ptrdiff_t>(std::lround(lead(grid_.looks[b]) * bank_.sample_rate()));
+        const auto at_middle = [&](std::size_t i) {  // the sample there of one at the reference
+          return static_cast<std::size_t>(std::clamp(static_cast<std::ptrdiff_t>(i) - early,
+                                                     std::ptrdiff_t{0},
+                                                     static_cast<std::ptrdiff_t>(n)));
+        };
         for (std::size_t column = 0; column < columns; ++column) {
           float most = 0.0F;
-          for (std::size_t i = column * n / columns; i < (column + 1) * n / columns; ++i)
+          for (std::size_t i = at_middle(column * n / columns),
+                           end = at_middle((column + 1) * n / columns);
+               i < end; ++i)
             if (work.background[i] > 0.0F)
               most = std::max(most, work.power[i] / work.background[i]);
           float& by_beam = maps.beam_time[b * columns + column];
@@ -178,9 +208,9 @@ class Search {
     return peaks;
   }
 
-  /// Background and threshold of the samples that a look hears with all phones: one at x was there
-  /// u·x/c before the reference point, and a line towed far behind it begins and ends its record
-  /// by a part of a second late or early. Elsewhere there is no background, and nothing to find.
+  /// Background and threshold of the samples that a look hears with all phones: one at x hears
+  /// u·x/c before the middle, so that the ends of a long line begin and end their record too late
+  /// or too early. Elsewhere there is no background, and nothing to find.
   void compare_over_time(const Vec3& look, Work& work) const {
     const auto samples = static_cast<double>(work.power.size());
     double first = 0.0, end = samples;
@@ -205,7 +235,7 @@ class Search {
       const float p = work.power[i];
       if (!(p > work.threshold[i])) continue;
       if ((i > 0 && work.power[i - 1] > p) || (i + 1 < n && work.power[i + 1] >= p)) continue;
-      const double time = bank_.time(static_cast<double>(i));
+      const double time = bank_.time(static_cast<double>(i)) + lead(grid_.looks[beam]);
       if (time < settings_.first_time || time > settings_.last_time) continue;
       into.push_back({.beam = beam,
                       .filter = filter,
@@ -264,7 +294,8 @@ class Search {
   }
 
   const Baseband& baseband_;
-  std::span<const Vec3> phones_;
+  Vec3 middle_;
+  std::vector<Vec3> phones_;  // from there
   double sound_speed_;
   const Replica& replica_;
   const DetectorSettings& settings_;
