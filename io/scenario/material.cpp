@@ -10,6 +10,8 @@
 namespace asdic::scenario {
 namespace {
 
+constexpr double fastest_gas = 500.0;  // of sound in it: air above ice or water is no slip [m/s]
+
 const double db_per_neper = 20.0 / std::log(10.0);
 
 /// One way to say how much a wave loses, and what it comes to.
@@ -63,7 +65,9 @@ double read_loss(TomlTable& table, const std::string& prefix, double speed, doub
 FluidHalfSpace read_fluid(TomlTable& table, double frequency) {
   FluidHalfSpace fluid;
   fluid.speed = table.number("speed", material_speed, fluid.speed);
-  fluid.density = table.number("density", material_density, fluid.density);
+  Quantity density = material_density;
+  if (fluid.speed < fastest_gas) density.low = 0.1;
+  fluid.density = table.number("density", density, fluid.density);
   fluid.attenuation_db_per_wavelength =
       read_loss(table, "", fluid.speed, frequency, fluid.attenuation_db_per_wavelength);
   return fluid;

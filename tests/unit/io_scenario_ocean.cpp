@@ -96,6 +96,8 @@ TEST(ScenarioOcean, AMaterialInOtherUnitsIsRefused) {
     refused(kind + "speed = 1.56",
             "environment.bottom.speed: found 1.56 m/s, expected a speed from 200 to 10000 m/s");
   }
+  const BoundaryMaterial air = bottom("kind = \"fluid\"\nspeed = 343.0\ndensity = 1.2");
+  EXPECT_DOUBLE_EQ(std::get<FluidHalfSpace>(air).density, 1.2) << "a gas is light";
 }
 
 TEST(ScenarioOcean, AReflectionTableFromAFile) {
