@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sonar/processing/truth.h"
 #include "sonar/pulse.h"
 
 namespace asdic::study {
@@ -51,39 +52,6 @@ std::vector<Replica> replicas_of(const PingSimulator& simulator, const Recording
   return made;
 }
 
-std::vector<TrueEcho> echoes_of(const PingRecord& record, int array) {
-  std::vector<TrueEcho> made;
-  for (const EchoPath& echo : record.echoes)
-    if (echo.array == array)
-      made.push_back({.target = echo.target,
-                      .time = echo.heard.delay,
-                      .struck = echo.struck,
-                      .doppler = echo.heard.doppler,
-                      .level_db = echo.level_db,
-                      .travel = echo.heard.slowness.normalized()});
-  return made;
-}
-
-/// Where the targets were when the loudest of their echoes struck them.
-std::vector<TrueTarget> targets_of(const Scenario& scenario, const PingRecord& record,
-                                   const std::vector<TrueEcho>& echoes) {
-  std::vector<TrueTarget> made;
-  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
-    const Target& target = scenario.targets[i];
-    double loudest = -infinity, time = 0.0;
-    for (const TrueEcho& echo : echoes)
-      if (echo.target == static_cast<int>(i) && echo.level_db > loudest) {
-        loudest = echo.level_db;
-        time = echo.struck;
-      }
-    made.push_back({.target = static_cast<int>(i),
-                    .name = target.name,
-                    .present = record.ping >= target.first_ping && record.ping <= target.last_ping,
-                    .position = target.track.at(record.start_time + time).position});
-  }
-  return made;
-}
-
 }  // namespace
 
 ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecord& record,
@@ -95,11 +63,12 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
     chosen.detector.first_time = recording.start + simulator.pulse(record.transmitter).duration();
   const PingProcessor processor(scenario, replicas_of(simulator, recording), chosen);
   const ProcessedArray processed = processor.process(recording_of(scenario, record, array));
-  const std::vector<TrueEcho> echoes = echoes_of(record, array);
+  const std::vector<TrueEcho> echoes = true_echoes(record, array);
   const double end =
       recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
   const PingScore score =
-      score_detections(processed.result.detections, echoes, targets_of(scenario, record, echoes),
+      score_detections(processed.result.detections, echoes,
+                       true_targets(scenario, record.ping, record.start_time, echoes),
                        processed.shape, processed.places.array, processor.resolution(processed),
                        chosen.detector.first_time, std::min(chosen.detector.last_time, end));
   ReceiverAnswers answers{.false_alarms = score.false_alarms};

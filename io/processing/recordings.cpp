@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "io/scenario_reader.h"
 #include "sonar/geometry.h"
+#include "sonar/processing/truth.h"
 
 namespace asdic {
 namespace {
@@ -229,22 +230,7 @@ std::vector<TrueEcho> PingRecordings::echoes(std::size_t row, int array) const {
 
 std::vector<TrueTarget> PingRecordings::targets(std::size_t row,
                                                 const std::vector<TrueEcho>& echoes) const {
-  std::vector<TrueTarget> result;
-  for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
-    const Target& target = scenario_.targets[i];
-    double loudest = -infinity, time = 0.0;
-    for (const TrueEcho& echo : echoes)
-      if (echo.target == static_cast<int>(i) && echo.level_db > loudest) {
-        loudest = echo.level_db;
-        time = echo.struck;
-      }
-    result.push_back(
-        {.target = static_cast<int>(i),
-         .name = target.name,
-         .present = numbers_[row] >= target.first_ping && numbers_[row] <= target.last_ping,
-         .position = target.track.at(times_[row] + time).position});
-  }
-  return result;
+  return true_targets(scenario_, numbers_[row], times_[row], echoes);
 }
 
 }  // namespace asdic

@@ -4,6 +4,7 @@
 #include "sonar/ping.h"
 #include "sonar/processing/ping_processor.h"
 #include "sonar/processing/scoring.h"
+#include "sonar/processing/truth.h"
 
 namespace asdic::support {
 
@@ -23,36 +24,6 @@ inline ArrayRecording recording_of(const Scenario& scenario, const PingRecord& r
   const auto begin = record.pressure.begin() + std::ptrdiff_t(first * samples);
   r.pressure.assign(begin, begin + std::ptrdiff_t(phones * samples));
   return r;
-}
-
-inline std::vector<TrueEcho> echoes_of(const PingRecord& record, int array = 0) {
-  std::vector<TrueEcho> echoes;
-  for (const EchoPath& e : record.echoes)
-    if (e.array == array)
-      echoes.push_back({.target = e.target,
-                        .time = e.heard.delay,
-                        .struck = e.struck,
-                        .doppler = e.heard.doppler,
-                        .level_db = e.level_db,
-                        .travel = e.heard.slowness.normalized()});
-  return echoes;
-}
-
-/// Where the targets were when the loudest of their echoes struck them.
-inline std::vector<TrueTarget> targets_of(const Scenario& scenario, const PingRecord& record,
-                                          const std::vector<TrueEcho>& echoes) {
-  std::vector<TrueTarget> targets;
-  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
-    double loudest = -infinity, time = 0.0;
-    for (const TrueEcho& e : echoes)
-      if (e.target == int(i) && e.level_db > loudest) loudest = e.level_db, time = e.struck;
-    targets.push_back(
-        {.target = int(i),
-         .name = scenario.targets[i].name,
-         .present = true,
-         .position = scenario.targets[i].track.at(record.start_time + time).position});
-  }
-  return targets;
 }
 
 inline std::vector<Replica> replicas_of(const PingSimulator& simulator) {

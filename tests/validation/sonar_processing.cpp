@@ -43,8 +43,8 @@ Outcome run(const PingSimulator& simulator, const PingRecord& record, Processing
   const PingProcessor processor(scenario, support::replicas_of(simulator), settings);
   Outcome out;
   out.processed = processor.process(support::recording_of(scenario, record));
-  out.echoes = support::echoes_of(record);
-  out.targets = support::targets_of(scenario, record, out.echoes);
+  out.echoes = true_echoes(record, 0);
+  out.targets = true_targets(scenario, record.ping, record.start_time, out.echoes);
   out.score = score_detections(out.processed.result.detections, out.echoes, out.targets,
                                out.processed.shape, out.processed.places.array,
                                processor.resolution(out.processed), settings.detector.first_time,

@@ -42,14 +42,14 @@ Heard hear(const Scenario& s, Beamformer beamformer, double depth = 100.0) {
   settings.detector.first_time = 0.5;
   settings.detector.beamformer = beamformer;
   const PingProcessor processor(s, support::replicas_of(simulator), settings);
-  std::vector<TrueEcho> echoes = support::echoes_of(record);
+  std::vector<TrueEcho> echoes = true_echoes(record, 0);
   Heard out;
   out.processed = processor.process(support::recording_of(s, record), {}, echoes);
   for (std::size_t i = 0; i < echoes.size(); ++i)
     echoes[i].threshold_db = out.processed.result.thresholds_db[i];
   out.score =
       score_detections(out.processed.result.detections, echoes,
-                       support::targets_of(s, record, echoes), out.processed.shape,
+                       true_targets(s, record.ping, record.start_time, echoes), out.processed.shape,
                        out.processed.places.array, processor.resolution(out.processed), 0.5, 6.0);
   return out;
 }
@@ -100,7 +100,7 @@ TEST(ProcessedTruth, DoesNotExplainABurstByAWhisper) {
   const PingSimulator simulator(s);
   const PingRecord record = simulator.simulate(1);
   const PingProcessor processor(s, support::replicas_of(simulator), {.target_depth = 100.0});
-  std::vector<TrueEcho> echoes = support::echoes_of(record);
+  std::vector<TrueEcho> echoes = true_echoes(record, 0);
   const ProcessedArray done = processor.process(support::recording_of(s, record), {}, echoes);
   ASSERT_EQ(done.result.thresholds_db.size(), 1U);
   ASSERT_GE(done.result.detections.size(), 1U);
@@ -114,8 +114,8 @@ TEST(ProcessedTruth, DoesNotExplainABurstByAWhisper) {
     changed[0].level_db -= weaker_db;
     changed[0].threshold_db = done.result.thresholds_db[0];
     return score_detections(done.result.detections, changed,
-                            support::targets_of(s, record, changed), done.shape, done.places.array,
-                            processor.resolution(done), 0.5, 6.0);
+                            true_targets(s, record.ping, record.start_time, changed), done.shape,
+                            done.places.array, processor.resolution(done), 0.5, 6.0);
   };
   EXPECT_EQ(score(0.0).hits, 1);
   const PingScore whisper = score(40.0);

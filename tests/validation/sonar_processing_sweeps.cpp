@@ -53,7 +53,7 @@ TEST(ProcessedSweepPulse, OneEchoIsOneDetection) {
     const PingProcessor processor(s, support::replicas_of(simulator), settings);
     ASSERT_GE(processor.dopplers(0).size(), 3U);
     const ProcessedArray done = processor.process(support::recording_of(s, record));
-    const std::vector<TrueEcho> echoes = support::echoes_of(record);
+    const std::vector<TrueEcho> echoes = true_echoes(record, 0);
     ASSERT_EQ(echoes.size(), 1U);
     ASSERT_EQ(done.result.detections.size(), 1U);
     const Detection& d = done.result.detections[0];
