@@ -9,6 +9,7 @@
 #include "raytrace/ground_paths.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/ray_path.h"
+#include "support/test_id.h"
 
 namespace asdic {
 namespace {
@@ -46,13 +47,7 @@ class EveryProfile : public testing::TestWithParam<NamedProfile> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Layered, EveryProfile, testing::ValuesIn(profiles()),
-                         [](const auto& test) {
-                           std::string id = test.param.first;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.first); });
 
 // dr/dσ of every branch agrees with a central difference: it is what amplitudes and caustics come
 // from. The difference of ranges that are right to 1e-10 (the quadrature) is wrong by 1e-10·r/h,

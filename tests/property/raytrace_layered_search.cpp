@@ -12,6 +12,7 @@
 #include "raytrace/layered/leg_series.h"
 #include "raytrace/layered/reflection_lanes.h"
 #include "support/fan_intervals.h"
+#include "support/test_id.h"
 
 // The fast search (rays in vector lanes, series of legs, batches of roots) against the plain sums
 // of raytrace/layered/column.h, ray by ray.
@@ -50,9 +51,7 @@ constexpr Law rules[] = {Interpolation::c_linear, Interpolation::n2_linear, Inte
 
 class EveryRule : public testing::TestWithParam<Law> {};
 INSTANTIATE_TEST_SUITE_P(Layered, EveryRule, testing::ValuesIn(rules), [](const auto& test) {
-  std::string id(test.param ? name(*test.param) : "munk");
-  std::erase_if(id, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
-  return id;
+  return support::test_id(test.param ? std::string(name(*test.param)) : "munk");
 });
 
 struct PlainRange {

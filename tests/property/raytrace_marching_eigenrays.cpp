@@ -11,6 +11,7 @@
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/oceans.h"
 #include "support/plain_rays.h"
+#include "support/test_id.h"
 
 namespace asdic {
 namespace {
@@ -23,13 +24,7 @@ class EveryOcean : public testing::TestWithParam<support::CurvedOcean> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Marching, EveryOcean, testing::ValuesIn(support::curved_oceans()),
-                         [](const auto& test) {
-                           std::string id = test.param.name;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 /// The arrival of the same history whose delay is nearest.
 const Arrival* twin(const Arrival& wanted, const Arrivals& among) {

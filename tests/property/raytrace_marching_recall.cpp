@@ -6,6 +6,7 @@
 
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/oceans.h"
+#include "support/test_id.h"
 
 namespace asdic {
 namespace {
@@ -34,13 +35,7 @@ bool has_twin(const Arrival& wanted, const Arrivals& among) {
 // amplitude and less, may lie between two rays of a fan that see nothing of them.
 class OneOfMany : public testing::TestWithParam<support::CurvedOcean> {};
 INSTANTIATE_TEST_SUITE_P(Marching, OneOfMany, testing::ValuesIn(support::curved_oceans()),
-                         [](const auto& test) {
-                           std::string id = test.param.name;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 TEST_P(OneOfMany, IsServedAsWellAlone) {
   const support::CurvedOcean& ocean = GetParam();

@@ -10,6 +10,7 @@
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/root_finder.h"
 #include "support/oceans.h"
+#include "support/test_id.h"
 
 namespace asdic {
 namespace {
@@ -28,11 +29,8 @@ std::vector<support::CurvedOcean> oceans() {
 }
 
 class RayFamilies : public testing::TestWithParam<support::CurvedOcean> {};
-INSTANTIATE_TEST_SUITE_P(Marching, RayFamilies, testing::ValuesIn(oceans()), [](const auto& test) {
-  std::string id = test.param.name;
-  std::erase_if(id, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
-  return id;
-});
+INSTANTIATE_TEST_SUITE_P(Marching, RayFamilies, testing::ValuesIn(oceans()),
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 // A grid of receivers is served by families; a receiver alone is one too few for them, so that each
 // of its roots is a traced ray, to 1e-6 m: the plain way. The polynomials are right to a micrometre

@@ -10,6 +10,7 @@
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/deep_ocean.h"
 #include "support/oceans.h"
+#include "support/test_id.h"
 
 // None missed: the search against 200 000 rays, every two neighbours of one history that pass the
 // receiver on either side of it. (The rays' own correctness: raytrace_layered_search.cpp,
@@ -41,13 +42,7 @@ std::vector<LayeredCase> layered_cases() {
 
 class RecallSlow : public testing::TestWithParam<LayeredCase> {};
 INSTANTIATE_TEST_SUITE_P(Search, RecallSlow, testing::ValuesIn(layered_cases()),
-                         [](const auto& test) {
-                           std::string id = test.param.name;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 TEST_P(RecallSlow, TwoHundredThousandRaysFindNoMoreInALayeredOcean) {
   const auto& [name, ocean, source, receiver, bounces] = GetParam();

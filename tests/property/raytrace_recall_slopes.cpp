@@ -11,6 +11,7 @@
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/sloping_seas.h"
+#include "support/test_id.h"
 
 // None missed over slopes of 10–60 km: the search against 200 000 rays, every two neighbours that
 // pass a receiver on either side after the same bounces. What neighbours of different families only
@@ -93,13 +94,7 @@ class SlopingRecallSlow : public testing::TestWithParam<support::SlopingSea> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Search, SlopingRecallSlow, testing::ValuesIn(support::sloping_seas()),
-                         [](const auto& test) {
-                           std::string id = test.param.name;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 TEST_P(SlopingRecallSlow, TwoHundredThousandRaysFindNoMore) {
   const support::SlopingSea& slope = GetParam();

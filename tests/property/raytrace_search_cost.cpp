@@ -9,6 +9,7 @@
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/deep_ocean.h"
 #include "support/oceans.h"
+#include "support/test_id.h"
 
 // What a search costs grows with what it finds: counted in rays, segments, stretches and roots,
 // which are the same on every machine.
@@ -46,13 +47,7 @@ std::vector<ReceiverPoint> column(double range, std::size_t n) {
 
 class SearchCostOf : public testing::TestWithParam<support::CurvedOcean> {};
 INSTANTIATE_TEST_SUITE_P(Marching, SearchCostOf, testing::ValuesIn(support::curved_oceans()),
-                         [](const auto& test) {
-                           std::string id = test.param.name;
-                           std::erase_if(id, [](char c) {
-                             return !std::isalnum(static_cast<unsigned char>(c));
-                           });
-                           return id;
-                         });
+                         [](const auto& test) { return support::test_id(test.param.name); });
 
 // One fan serves all: a ray is traced for the fan, or for a root, of which each takes two or three
 // and, under swell, has the fan split around it, or as one of five for a family of roots (next to

@@ -120,6 +120,15 @@ TEST(Swerling, OneAndThreeLastAScanTwoAndFourAPing) {
   EXPECT_EQ(fluctuation(fluctuating(Fluctuation::none, 1), 0, 0, {}), 1.0);
 }
 
+/// What comes back of the first target.
+TargetEchoes heard(const Scenario& s) {
+  const PropagationPaths paths(s.environment, s.transect);
+  const BeamPattern pattern(s.transmitters[0], 1.5);
+  return target_echoes(
+      {.paths = paths, .scenario = s, .pattern = pattern, .frequency = 1000.0, .ping_time = 0.0},
+      0);
+}
+
 // Straight rays in open water: the echo of a highlight comes when sound has gone to that place
 // itself and back. Over 3 km a body of 60 m bends the fronts by L²/(8rc)·2 = 0.2 ms·10⁻³ at most:
 // d²/(2rc) a way, 30²/(2·3000·1500) = 0.1 ms off its axis; along the line of sight nothing.
@@ -131,11 +140,7 @@ TEST(Highlights, AnswerFromTheirPlaces) {
                 .heading = radians(30.0),
                 .highlights = {{.offset = {30.0, 0.0, 0.0}, .strength_db = 10.0},
                                {.offset = {-30.0, 1.0, 2.0}, .strength_db = 4.0}}}};
-  const PropagationPaths paths(s.environment, s.transect);
-  const BeamPattern pattern(s.transmitters[0], 1.5);
-  const TargetEchoes found = target_echoes(
-      {.paths = paths, .scenario = s, .pattern = pattern, .frequency = 1000.0, .ping_time = 0.0},
-      0);
+  const TargetEchoes found = heard(s);
   ASSERT_EQ(found.echoes.size(), 2U);
   for (const EchoPath& echo : found.echoes) {
     const Highlight& one = s.targets[0].highlights[std::size_t(echo.highlight)];
@@ -168,11 +173,7 @@ TEST(Highlights, OfAMovingBodyAreMetWhereTheyAreByThen) {
       {.name = "submarine",
        .track = {.start = {.position = {0.0, 3000.0, 100.0}, .velocity = {0.0, -15.0, 0.0}}},
        .highlights = {{.offset = {50.0, 0.0, 0.0}}, {.offset = {-50.0, 0.0, 0.0}}}}};
-  const PropagationPaths paths(s.environment, s.transect);
-  const BeamPattern pattern(s.transmitters[0], 1.5);
-  const TargetEchoes found = target_echoes(
-      {.paths = paths, .scenario = s, .pattern = pattern, .frequency = 1000.0, .ping_time = 0.0},
-      0);
+  const TargetEchoes found = heard(s);
   ASSERT_EQ(found.echoes.size(), 2U);
   for (const EchoPath& echo : found.echoes) {
     const double ahead = s.targets[0].highlights[std::size_t(echo.highlight)].offset.x();
