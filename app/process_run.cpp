@@ -39,8 +39,7 @@ double error_of(const ProcessedTrack& made, const TrackPoint& p, const Processed
       p.detection >= 0 ? ping.array.result.detections[static_cast<std::size_t>(p.detection)].time
                        : 2.0 * (p.time - ping.ping_time);
   const Kinematics& array = ping.array.places.array;
-  return std::abs(p.position.y() -
-                  separation(array.position + heard * array.velocity, truth).range);
+  return std::abs(p.position.y() - separation(array.after(heard), truth).range);
 }
 
 void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,

@@ -9,6 +9,9 @@ namespace asdic {
 struct Kinematics {
   Vec3 position = Vec3::Zero();  ///< [m]
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
+
+  /// The place `time` [s] later, straight on [m].
+  [[nodiscard]] Vec3 after(double time) const { return position + time * velocity; }
 };
 
 struct Waypoint {

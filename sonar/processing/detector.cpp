@@ -32,12 +32,6 @@ double log_power(std::complex<float> x) {
   return std::log(static_cast<double>(std::norm(x)) + std::numeric_limits<double>::min());
 }
 
-Vec3 mean_of(std::span<const Vec3> phones) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& phone : phones) sum += phone;
-  return sum / static_cast<double>(std::max<std::size_t>(phones.size(), 1));
-}
-
 std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
   std::vector<Vec3> moved;
   for (const Vec3& phone : phones) moved.push_back(phone - middle);
@@ -51,12 +45,12 @@ class Search {
   Search(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
          const Replica& replica, std::span<const double> dopplers, const DetectorSettings& settings)
       : baseband_(baseband),
-        middle_(mean_of(phones)),
-        phones_(about(middle_, phones)),
         sound_speed_(sound_speed),
         replica_(replica),
         settings_(settings),
         wavelength_(sound_speed / replica.centre_frequency()),
+        middle_(shape_of(phones, wavelength_).centre),
+        phones_(about(middle_, phones)),
         shape_(shape_of(phones_, wavelength_)),
         grid_(
             beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation)),
@@ -294,12 +288,12 @@ class Search {
   }
 
   const Baseband& baseband_;
-  Vec3 middle_;
-  std::vector<Vec3> phones_;  // from there
   double sound_speed_;
   const Replica& replica_;
   const DetectorSettings& settings_;
   double wavelength_;
+  Vec3 middle_;
+  std::vector<Vec3> phones_;  // from there
   ArrayShape shape_;
   BeamGrid grid_;
   std::vector<double> weights_;

@@ -238,7 +238,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
         across = std::max(std::sqrt(std::max(1.0 - d.cosine * d.cosine, 0.0)),
                           std::sqrt(wavelength / processed.shape.length));
       c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
-      const Vec3 heard = processed.places.array.position + d.time * processed.places.array.velocity;
+      const Vec3 heard = processed.places.array.after(d.time);
       c.array = heard.head<2>();
       c.array_velocity = processed.places.array.velocity.head<2>();
       c.source = processed.places.source.position.head<2>();

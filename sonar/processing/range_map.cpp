@@ -14,7 +14,7 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   if (times.empty()) return found;
   const double depth = settings_.depth.value_or(settings_.shallow);
   const Vec3 from = places.source.position, across = direction(bearing, 0.0);
-  const Vec3 heard = places.array.position + times.back() * places.array.velocity;
+  const Vec3 heard = places.array.after(times.back());
   const double apart =
       std::max(separation(from, places.array.position).range, separation(from, heard).range);
   const double longest = DelayTables::longest(times.back(), apart);

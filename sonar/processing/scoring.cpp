@@ -99,7 +99,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
       const Detection& own = detections[static_cast<std::size_t>(row.detection)];
-      const Vec3 heard_at = array.position + own.time * array.velocity;
+      const Vec3 heard_at = array.after(own.time);
       const Separation truth = separation(heard_at, target.position);
       for (const Location& place : own.locations) {
         const Vec3 off = place.position - target.position;
