@@ -6,7 +6,7 @@ namespace asdic {
 /// (study/run.h).
 [[nodiscard]] bool called_off() noexcept;
 
-/// To be asked after every parallel loop a realisation may run: one that is called off ends early,
+/// Asked after every parallel loop (raytrace/parallel.h): one that is called off ends early,
 /// without a word and with its results half made. \throws Interrupted
 void leave_if_called_off();
 

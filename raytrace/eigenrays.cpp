@@ -7,15 +7,13 @@
 #include <numeric>
 #include <optional>
 
-#include <tbb/parallel_for.h>
-
 #include "core/error.h"
 #include "core/units.h"
-#include "raytrace/called_off.h"
 #include "raytrace/layered/followed_branch.h"
 #include "raytrace/layered/level_path.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/parallel.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {
@@ -158,8 +156,7 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth,
   if (work.size() == 1)
     search(0);
   else
-    tbb::parallel_for(std::size_t{0}, work.size(), search);
-  leave_if_called_off();
+    in_parallel(work.size(), search);
   return found;
 }
 

@@ -3,7 +3,7 @@
 
 core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
-And what a realisation of a study runs in parallel is left when it is called off (raytrace/called_off.h).
+Parallel loops are raytrace/parallel.h's, which are left when the realisation they belong to is called off.
 """
 import pathlib
 import re
@@ -34,15 +34,13 @@ def faults():
                     elif ORDER.index(top) > ORDER.index(folder):
                         yield f"{name}: includes {header}, but {folder} comes before {top}"
                     continue
+                if header.endswith("tbb/parallel_for.h") and str(name) != "raytrace/parallel.cpp":
+                    yield f"{name}: <{header}> belongs in raytrace/parallel.cpp; loops are in_parallel() of raytrace/parallel.h"
                 for prefix, homes in HOMES.items():
                     if header.startswith(prefix) and (folder not in homes or (path.suffix == ".h" and folder != "app")):
                         yield f"{name}: <{header}> belongs in .cpp files of {', '.join(homes)}"
                 if header.startswith("fftw3"):
                     fftw_files.add(str(name))
-    for path in sorted((ROOT / "sonar").rglob("*.cpp")):
-        text = path.read_text()
-        if path.name != "detector.cpp" and text.count("leave_if_called_off()") < text.count("tbb::parallel_for("):
-            yield f"{path.relative_to(ROOT)}: leave_if_called_off() must follow every parallel loop"
     if len(fftw_files) > 1:
         yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
 

@@ -1,7 +1,6 @@
 #include "sonar/beamform.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -68,12 +67,11 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
   const ComplexFft<float> fft(n);
   const std::size_t stride = FftBuffer<std::complex<float>>::row_stride(n);
   FftBuffer<std::complex<float>> spectra(channels * stride);
-  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
+  in_parallel(channels, [&](std::size_t c) {
     std::complex<float>* row = spectra.data() + c * stride;
     std::copy_n(baseband.channel(c).data(), n, row);
     fft.forward(row);
   });
-  leave_if_called_off();
 
   BeamPower result{.sample_rate = baseband.sample_rate,
                    .start = baseband.start,
@@ -82,7 +80,7 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
                    .power = {}};
   result.power.resize(looks.size() * result.samples);
   tbb::enumerable_thread_specific<FftBuffer<std::complex<float>>> workspaces;
-  tbb::parallel_for(std::size_t{0}, looks.size(), [&](std::size_t b) {
+  in_parallel(looks.size(), [&](std::size_t b) {
     auto& beam = workspaces.local();
     beam.reserve(n);
     std::fill_n(beam.data(), n, 0.0F);
@@ -110,7 +108,6 @@ BeamPower beamform(const Baseband& baseband, std::span<const Vec3> phones,
     for (std::size_t i = 0; i < result.samples; ++i)
       result.power[b * result.samples + i] = std::norm(beam[i]);
   });
-  leave_if_called_off();
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "sonar/block_noise.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +8,7 @@
 #include <cmath>
 
 #include "core/normal.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -188,7 +187,7 @@ void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t re
     for (std::int64_t b = from; b <= to; ++b)
       if (((b % 2) + 2) % 2 == parity) blocks.push_back(b);
     const std::size_t tasks = (blocks.size() + blocks_at_once - 1) / blocks_at_once;
-    tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+    in_parallel(tasks, [&](std::size_t task) {
       Scratch& s = scratch.local();
       const std::span some =
           std::span(blocks)
@@ -212,7 +211,6 @@ void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t re
         }
       }
     });
-    leave_if_called_off();
   }
 }
 

@@ -1,13 +1,12 @@
 #include "sonar/block_synthesis.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/spectrum_product.h"
 
 namespace asdic {
@@ -114,13 +113,12 @@ std::vector<std::complex<float>> BlockSynthesis::spectra(
   const std::size_t bins = 2 * static_cast<std::size_t>(on.highest_bin) + 1;
   std::vector<std::complex<float>> found(colours_ * nodes * bins);
   tbb::enumerable_thread_specific<Scratch> workspaces;
-  tbb::parallel_for(std::size_t{0}, colours_ * nodes, [&](std::size_t i) {
+  in_parallel(colours_ * nodes, [&](std::size_t i) {
     Scratch& scratch = workspaces.local();
     scratch.reserve(grid_stride(on.length));
     plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], on, scratch.data(),
                              std::span(found).subspan(i * bins, bins));
   });
-  leave_if_called_off();
   return found;
 }
 
@@ -156,12 +154,10 @@ Baseband BlockSynthesis::run() {
   if (keep) kept_ = FftBuffer<std::complex<float>>(grids * stride_);
   for (const Batch& batch : all) {
     blocks_.resize(std::max(blocks_.size(), batch.end - batch.begin));
-    tbb::parallel_for(batch.begin, batch.end, [&](std::size_t b) {
-      ReturnBlock& block = blocks_[b - batch.begin];
-      block.clear();
-      source_.make(b, block);
+    in_parallel(batch.end - batch.begin, [&](std::size_t i) {
+      blocks_[i].clear();
+      source_.make(batch.begin + i, blocks_[i]);
     });
-    leave_if_called_off();
     returns_.take(std::span(blocks_).first(batch.end - batch.begin));
     if (in_windows && !(in_windows = find_windows())) spectra_ = spectra(plan_.whole());
     if (keep)
@@ -211,20 +207,19 @@ void BlockSynthesis::lay_into_kept() {
       }
   }
   for (const std::vector<Task>& turn : turns)
-    tbb::parallel_for(std::size_t{0}, turn.size(), [&](std::size_t i) {
+    in_parallel(turn.size(), [&](std::size_t i) {
       const Task& t = turn[i];
       const OrderedReturns::Band& band = returns_.bands[t.band];
       grid_.lay(returns_, band,
                 {.begin = t.begin, .end = t.end, .colour = t.colour, .nodes = band.nodes},
                 phones_[t.channel], kept(t.channel, t.colour, band.first_node));
     });
-  leave_if_called_off();
 }
 
 void BlockSynthesis::lay_and_transform(Baseband& result) {
   const ComplexFft<float> fft(plan_.length);
   tbb::enumerable_thread_specific<Scratch> workspaces;
-  tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+  in_parallel(phones_.size(), [&](std::size_t channel) {
     Scratch& grids = workspaces.local();
     std::complex<float>* sum = result.values.data() + channel * plan_.length;
     for (const OrderedReturns::Band& band : returns_.bands) {
@@ -251,7 +246,6 @@ void BlockSynthesis::lay_and_transform(Baseband& result) {
       }
     }
   });
-  leave_if_called_off();
 }
 
 /// Whatever has been laid down or summed up, to time.
@@ -259,11 +253,10 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
   const ComplexFft<float> fft(plan_.length);
   const std::size_t nodes = returns_.nodes.size();
   if (keep)
-    tbb::parallel_for(std::size_t{0}, phones_.size() * colours_ * nodes,
-                      [&](std::size_t i) { fft.forward(kept_.data() + i * stride_); });
-  leave_if_called_off();
+    in_parallel(phones_.size() * colours_ * nodes,
+                [&](std::size_t i) { fft.forward(kept_.data() + i * stride_); });
   tbb::enumerable_thread_specific<Scratch> workspaces;
-  tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+  in_parallel(phones_.size(), [&](std::size_t channel) {
     Scratch& row = workspaces.local();
     row.reserve(stride_);
     std::complex<float>* values = result.values.data() + channel * plan_.length;
@@ -274,7 +267,6 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
     fft.inverse(row.data());
     std::copy_n(row.data(), plan_.length, values);
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

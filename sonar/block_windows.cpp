@@ -1,14 +1,12 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "raytrace/parallel.h"
 #include "sonar/block_synthesis.h"
 #include "sonar/spectrum_product.h"
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -59,7 +57,7 @@ void BlockSynthesis::lay_in_windows(Baseband& result) {
   };
   const ComplexFft<float> fft(length);
   tbb::enumerable_thread_specific<Workspace> workspaces;
-  tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+  in_parallel(phones_.size(), [&](std::size_t channel) {
     auto& [grids, sum] = workspaces.local();
     sum.reserve(stride);
     std::complex<float>* row = result.values.data() + channel * plan_.length;
@@ -113,7 +111,6 @@ void BlockSynthesis::lay_in_windows(Baseband& result) {
       }
     }
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

@@ -1,13 +1,12 @@
 #include "sonar/boundary_fans.h"
 
+#include "raytrace/parallel.h"
+
 #include <tbb/collaborative_call_once.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -105,7 +104,7 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                   .first_bearing = paths_.transect_bearing(),
                   .sectors = n};
   const double origin = paths_.plane(place, 0.0).origin;
-  tbb::parallel_for(std::size_t{0}, fan.planes.size(), [&](std::size_t i) {
+  in_parallel(fan.planes.size(), [&](std::size_t i) {
     const Plane plane{.origin = origin,
                       .cos_beta = std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / n)};
     const auto solver = paths_.solver(plane);
@@ -117,7 +116,6 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
           tilts(*level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
                 plane.cos_beta, *fan.planes[i].paths);
   });
-  leave_if_called_off();
   return fan;
 }
 

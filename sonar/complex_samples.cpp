@@ -1,5 +1,4 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/place_weights.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
@@ -166,7 +165,7 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
     FftBuffer<std::complex<float>> baseband, samples;
   };
   tbb::enumerable_thread_specific<Workspace> workspaces;
-  tbb::parallel_for(std::size_t{0}, baseband.channels, [&](std::size_t channel) {
+  in_parallel(baseband.channels, [&](std::size_t channel) {
     Workspace& scratch = workspaces.local();
     scratch.baseband.reserve(plan.length);
     scratch.samples.reserve(plan.passband_length);
@@ -191,7 +190,6 @@ void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
       out[2 * i + 1] += value.imag();
     }
   });
-  leave_if_called_off();
 }
 
 namespace {
@@ -233,9 +231,7 @@ void interpolate_all(const Baseband& baseband, const Recording& recording, doubl
       n += phones;
     }
   };
-  oneapi::tbb::parallel_for(std::size_t{0}, (recording.samples + block - 1) / block,
-                            [&](std::size_t b) { add(b * block); });
-  leave_if_called_off();
+  in_parallel((recording.samples + block - 1) / block, [&](std::size_t b) { add(b * block); });
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +7,7 @@
 #include <span>
 
 #include "core/normal.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/place_weights.h"
 #include "sonar/pulse_spectrum.h"
 #include "sonar/reverberation_covariance.h"
@@ -190,16 +189,15 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
       .end = std::min(length, static_cast<std::size_t>(plan.last_position / plan.rate * rate) + 1)};
   const std::size_t stride = Scratch::row_stride(length);
   Scratch grids(covariance.components * stride);
-  tbb::parallel_for(std::size_t{0}, covariance.stretches.size(), [&](std::size_t s) {
+  in_parallel(covariance.stretches.size(), [&](std::size_t s) {
     draw_stretch(covariance, s, draw, grid, grids.data(), stride);
   });
-  leave_if_called_off();
   const ComplexFft<float> coarse(length), fft(fine);
   struct Workspace {
     Scratch sum, values;
   };
   tbb::enumerable_thread_specific<Workspace> workspaces;
-  tbb::parallel_for(std::size_t{0}, phones, [&](std::size_t phone) {
+  in_parallel(phones, [&](std::size_t phone) {
     auto& [sum, values] = workspaces.local();
     sum.reserve(length);
     values.reserve(fine);
@@ -216,7 +214,6 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
     std::complex<float>* of_phone = baseband.values.data() + phone * fine;
     for (std::size_t i = 0; i < fine; ++i) of_phone[i] += values[i];
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

@@ -1,12 +1,10 @@
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/phase_turn.h"
 #include "sonar/synthesis.h"
 #include "sonar/synthesis_plan.h"
@@ -70,10 +68,8 @@ class CurvedSynthesis {
         bytes += shared.back().lags.size() * shared.back().span.size() * sizeof(float) * 2;
       }
       const auto batch = returns.subspan(begin, end - begin);
-      oneapi::tbb::parallel_for(std::size_t{0}, batch.size(),
-                                [&](std::size_t i) { evaluate(batch[i], shared[i]); });
-      leave_if_called_off();
-      oneapi::tbb::parallel_for(std::size_t{0}, phones_.size(), [&](std::size_t channel) {
+      in_parallel(batch.size(), [&](std::size_t i) { evaluate(batch[i], shared[i]); });
+      in_parallel(phones_.size(), [&](std::size_t channel) {
         for (std::size_t i = 0; i < batch.size(); ++i) {
           const int own = batch[i].straight.channel;
           if (own != Return::all_channels && own != static_cast<int>(channel)) continue;
@@ -83,7 +79,6 @@ class CurvedSynthesis {
             add_shared(batch[i], shared[i], channel);
         }
       });
-      leave_if_called_off();
     }
   }
 

@@ -1,12 +1,10 @@
 #include "sonar/expected_reverberation.h"
 
-#include <tbb/parallel_for.h>
+#include "raytrace/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -20,12 +18,11 @@ std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
   const std::size_t visited = (rings + step - 1) / step;
   const std::size_t tasks = (visited + together - 1) / together;
   std::vector<std::vector<Item>> parts(tasks);
-  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t b) {
+  in_parallel(tasks, [&](std::size_t b) {
     PathPairs scratch;
     for (std::size_t i = b * together; i < std::min(visited, (b + 1) * together); ++i)
       f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
-  leave_if_called_off();
   std::size_t total = 0;
   for (const auto& part : parts) total += part.size();
   std::vector<Item> all;

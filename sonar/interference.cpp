@@ -1,13 +1,11 @@
 #include "sonar/interference.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/fractional_delay.h"
 #include "sonar/interference_stretch.h"
 
@@ -126,7 +124,7 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
       const std::int64_t chunks =
           floor_div(clock.first + clock.samples - 1, chunk) - floor_div(clock.first, chunk) + 1;
       const auto per_phone = static_cast<std::size_t>(chunks);
-      tbb::parallel_for(std::size_t{0}, phones.size() * per_phone, [&](std::size_t task) {
+      in_parallel(phones.size() * per_phone, [&](std::size_t task) {
         const std::size_t n = task / per_phone;
         // Whole chunks of the absolute grid, of which the record may want a part.
         const std::int64_t sample =
@@ -188,7 +186,6 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
           if (complex) row[out + 1] += static_cast<float>(sum[static_cast<std::size_t>(i)].imag());
         }
       });
-      leave_if_called_off();
     }
   }
 }

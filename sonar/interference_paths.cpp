@@ -1,5 +1,4 @@
 // What a scenario's ships send, and the paths along which arrays hear it.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -7,7 +6,7 @@
 #include <complex>
 #include <utility>
 
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/geometry.h"
 #include "sonar/interference_stretch.h"
 #include "sonar/moving_paths.h"
@@ -144,11 +143,10 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
   const auto count = static_cast<std::size_t>(to - from + 2);
   const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
   std::vector<std::vector<Heard>> nodes(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+  in_parallel(count, [&](std::size_t i) {
     nodes[i] = heard_at(ship, array, clock.time((from + static_cast<std::int64_t>(i)) * clock.node),
                         across_the_band);
   });
-  leave_if_called_off();
   std::vector<Stretch> all;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;

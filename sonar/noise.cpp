@@ -1,7 +1,5 @@
 #include "sonar/noise.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -9,7 +7,7 @@
 
 #include "core/normal.h"
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 
 namespace asdic {
 
@@ -26,7 +24,7 @@ void add_white_noise(std::span<float> all, std::size_t channels, double variance
   assert(channels > 0 && all.size() % channels == 0);
   const std::size_t samples = all.size() / channels;
   const auto rms = static_cast<float>(std::sqrt(variance));
-  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t channel) {
+  in_parallel(channels, [&](std::size_t channel) {
     float* row = all.data() + channel * samples;
     std::array<float, 1024> normals;
     for (std::size_t first = 0; first < samples; first += normals.size()) {
@@ -35,7 +33,6 @@ void add_white_noise(std::span<float> all, std::size_t channels, double variance
       for (std::size_t i = 0; i < n; ++i) row[first + i] += rms * normals[i];
     }
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

@@ -1,14 +1,12 @@
 #include "sonar/noise_coherence.h"
 
-#include <tbb/parallel_for.h>
+#include "raytrace/parallel.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -222,7 +220,7 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
                     stretches = std::max<std::size_t>(1, (last + stretch - 1) / stretch);
   const std::size_t pairs = phones_ * (phones_ + 1) / 2;
   std::vector<std::vector<Packed>> found(stretches);
-  tbb::parallel_for(std::size_t{0}, stretches, [&](std::size_t s) {
+  in_parallel(stretches, [&](std::size_t s) {
     Node left = node(s * stretch);
     found[s].push_back(packed(left));
     std::vector<Node> waiting;  // right ends, the nearest last
@@ -246,7 +244,6 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
         found[s].push_back(packed(left));
     }
   });
-  leave_if_called_off();
   std::vector<const Packed*> all;
   for (const auto& some : found)
     for (const Packed& one : some) all.push_back(&one);

@@ -1,11 +1,8 @@
 #include "sonar/ordered_returns.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
+#include "raytrace/parallel.h"
 
 #include <cmath>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -56,7 +53,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   const auto middle_of = [&](const Return& r) {
     return r.delay + 0.5 * pulse_duration_ / r.doppler;
   };
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+  in_parallel(blocks.size(), [&](std::size_t b) {
     const Returns& returns = blocks[b].returns;
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const Return& r = returns[i];
@@ -70,11 +67,10 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       group_[first[b] + i] = static_cast<std::uint32_t>(band * (channels_ + 1) + listener);
     }
   });
-  leave_if_called_off();
   sort(n);
 
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 8192), [&](const auto& some) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i) {
+  in_parallel_stretches(n, 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       const std::uint64_t source = source_[order_[i]], in_block = source & 0xFFFFFFFFU;
       const ReturnBlock& block = blocks[source >> 32];
       const Return& r = block.returns[in_block];
@@ -92,7 +88,6 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       }
     }
   });
-  leave_if_called_off();
   largest_slowness = 0.0;
   for (std::size_t i = 0; i < n; ++i)
     largest_slowness =
@@ -113,14 +108,13 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const Band& band = bands[b];
     if (band.nodes == 1) continue;
-    const tbb::blocked_range<std::size_t> all(band.ends.front(), band.ends.back(), 1024);
-    tbb::parallel_for(all, [&](const auto& some) {
-      for (std::size_t i = some.begin(); i < some.end(); ++i) {
-        const std::size_t row = band.first_weight + (i - band.ends.front()) * band.nodes;
-        expansion_[b].weights(doppler_[i], std::span(weights).subspan(row, band.nodes));
+    const std::size_t from = band.ends.front();
+    in_parallel_stretches(band.ends.back() - from, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t row = band.first_weight + i * band.nodes;
+        expansion_[b].weights(doppler_[from + i], std::span(weights).subspan(row, band.nodes));
       }
     });
-    leave_if_called_off();
   }
 }
 

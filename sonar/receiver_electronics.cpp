@@ -1,13 +1,11 @@
 #include "sonar/receiver_electronics.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include "core/random.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -59,7 +57,7 @@ std::complex<double> ReceiverElectronics::response(std::size_t channel,
 void ReceiverElectronics::respond(Baseband& sound) const {
   if (flat_) return;
   assert(sound.channels == channels_.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, sound.channels, [&](std::size_t channel) {
+  in_parallel(sound.channels, [&](std::size_t channel) {
     std::complex<float>* row = sound.values.data() + channel * sound.samples;
     if (!channels_[channel].band_pass) {
       const std::complex<float> gain(channels_[channel].gain);
@@ -80,7 +78,6 @@ void ReceiverElectronics::respond(Baseband& sound) const {
     fft.inverse(bins.data());
     std::copy_n(bins.data(), sound.samples, row);
   });
-  leave_if_called_off();
 }
 
 /// After which the response of all channels has died away to 10⁻⁵ [s]. The poles of a band-pass
@@ -112,7 +109,7 @@ void ReceiverElectronics::respond(std::span<float> heard, const Recording& recor
   assert(heard.size() == channels_.size() * part * width);
   assert(carried.size() == channels_.size() * before * width);
   Carried inputs(channels_.size() * before * width);
-  oneapi::tbb::parallel_for(std::size_t{0}, channels_.size(), [&](std::size_t channel) {
+  in_parallel(channels_.size(), [&](std::size_t channel) {
     float* row = heard.data() + channel * part * width;
     FftBuffer<std::complex<float>> x(length);
     const auto value = [&](std::size_t i) {
@@ -150,13 +147,12 @@ void ReceiverElectronics::respond(std::span<float> heard, const Recording& recor
       if (width == 2) row[i * width + 1] = x[before + i].imag();
     }
   });
-  leave_if_called_off();
   carried = std::move(inputs);
 }
 
 void ReceiverElectronics::convert(std::span<float> samples, const Recording& recording) const {
   const std::size_t row = recording.samples * recording.components();
-  oneapi::tbb::parallel_for(std::size_t{0}, channels_.size(), [&](std::size_t channel) {
+  in_parallel(channels_.size(), [&](std::size_t channel) {
     if (!channels_[channel].converter) return;
     const auto& [bits, full_scale] = *channels_[channel].converter;
     const double step = std::ldexp(full_scale, 1 - bits);  // 2·full scale / 2^bits
@@ -164,7 +160,6 @@ void ReceiverElectronics::convert(std::span<float> samples, const Recording& rec
     for (float& p : samples.subspan(channel * row, row))
       p = static_cast<float>(step * std::clamp(std::round(double{p} / step), lowest, highest));
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

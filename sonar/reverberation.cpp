@@ -1,12 +1,10 @@
 #include "sonar/reverberation.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/moving_paths.h"
 
 namespace asdic {
@@ -108,13 +106,12 @@ std::vector<DopplerSpan> PingReverberation::dopplers() const {
 
 Returns PingReverberation::collect(const std::vector<Block>& blocks, bool sectors) const {
   std::vector<ReturnBlock> parts(blocks.size());
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+  in_parallel(blocks.size(), [&](std::size_t i) {
     const Block& b = blocks[i];
     if (!sectors) return add_rings(fields_[b.field], b.begin, b.end, parts[i]);
     for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
       add_sector(fields_[b.field], static_cast<int>(sector), parts[i]);
   });
-  leave_if_called_off();
   Returns all;
   for (const ReturnBlock& part : parts)
     all.insert(all.end(), part.returns.begin(), part.returns.end());

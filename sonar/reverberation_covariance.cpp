@@ -1,11 +1,9 @@
 #include "sonar/reverberation_covariance.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/stretch_covariance.h"
 
 namespace asdic {
@@ -88,13 +86,12 @@ std::vector<Heard> hear(std::span<const ScatteringField* const> fields, const Au
   for (const ScatteringField* field : fields) {
     const Circles circles(*field, bin, bearings);
     std::vector<std::vector<Heard>> parts((circles.count() + together - 1) / together);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    in_parallel(parts.size(), [&](std::size_t part) {
       PathPairs pairs;
       const std::size_t end = std::min(circles.count(), (part + 1) * together);
       for (std::size_t i = part * together; i < end; ++i)
         hear_circle(circles, i, limits, pairs, parts[part]);
     });
-    leave_if_called_off();
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -202,13 +199,12 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   for (std::size_t i = 0; i < heard.size(); ++i) order[next[of[i]]++] = i;
 
   std::vector<std::vector<std::complex<float>>> factors(stretches.size());
-  tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
+  in_parallel(stretches.size(), [&](std::size_t s) {
     Stretch& stretch = stretches[s];
     StretchSum sum(steering, all_round);
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(heard[order[i]]);
     stretch.rank = sum.factor(factors[s]);
   });
-  leave_if_called_off();
   for (std::size_t s = 0; s < stretches.size(); ++s) {
     stretches[s].first = components == 0 ? 0 : columns.size() / components;
     columns.insert(columns.end(), factors[s].begin(), factors[s].end());

@@ -1,7 +1,6 @@
 #include "sonar/synthesis.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +8,7 @@
 #include <utility>
 
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/synthesis_plan.h"
 
 namespace asdic {
@@ -92,7 +91,7 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
                                                2.0 * pi * (cycles - std::round(cycles)));
   const auto all = static_cast<std::ptrdiff_t>(plan.passband_length);
 
-  tbb::parallel_for(std::size_t{0}, baseband.channels, [&](std::size_t channel) {
+  in_parallel(baseband.channels, [&](std::size_t channel) {
     PassbandScratch& scratch = workspaces.local();
     scratch.baseband.reserve(plan.length);
     scratch.bins.reserve(real_fft.bins());
@@ -117,7 +116,6 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
     const float* __restrict in = scratch.samples.data();
     for (std::size_t i = 0; i < samples; ++i) out[i] += in[i];
   });
-  leave_if_called_off();
 }
 
 }  // namespace asdic

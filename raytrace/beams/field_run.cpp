@@ -1,7 +1,5 @@
 #include "raytrace/beams/field_run.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "core/error.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_parts.h"
+#include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
 
 namespace asdic {
@@ -94,7 +93,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+  in_parallel(parts.size(), [&](std::size_t p) {
     parts[p].emplace(work, std::span<float>(memory.get() + p * room, room), more...);
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
@@ -114,7 +113,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
     field.resize(grid.size());
     // a few columns at a time, since the field has its ranges side by side
     constexpr std::size_t block = 8;
-    tbb::parallel_for(std::size_t{0}, (columns + block - 1) / block, [&](std::size_t b) {
+    in_parallel((columns + block - 1) / block, [&](std::size_t b) {
       const std::size_t from = b * block, to = std::min(from + block, columns);
       double scale[block];
       for (std::size_t j = from; j < to; ++j)

@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,6 +7,7 @@
 #include "raytrace/like_bellhop/results.h"
 #include "raytrace/like_bellhop/sinks.h"
 #include "raytrace/like_bellhop/trace.h"
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace like_bellhop {
@@ -146,7 +145,7 @@ class Run {
     for (std::size_t first = fan_.first; first < fan_.last; first += rays_at_once) {
       const std::size_t count = std::min(rays_at_once, fan_.last - first);
       trace_rays(depth, first, count);
-      tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+      in_parallel(blocks.size(), [&](std::size_t b) {
         for (std::size_t i = 0; i < count; ++i) {
           sinks[b].begin(first + i, rays_[i].declination);
           lay(case_.beams, beam(rays_[i]), blocks[b], sinks[b]);
@@ -165,7 +164,7 @@ class Run {
   void trace_rays(double depth, std::size_t first, std::size_t count) {
     const auto curvature =
         case_.beams.cerveny ? case_.beams.cerveny->curvature : CervenyBeams::Curvature::standard;
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    in_parallel(count, [&](std::size_t i) {
       const double angle = fan_.declinations[first + i];
       trace(ocean_, depth, angle, launch_amplitude(case_, depth, source_speed_, angle), curvature,
             rays_[i]);

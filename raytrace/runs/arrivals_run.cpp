@@ -1,7 +1,6 @@
 #include "raytrace/runs/arrivals_run.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "core/units.h"
+#include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/drawn_path.h"
 #include "raytrace/runs/rays_run.h"
@@ -149,7 +149,7 @@ std::vector<RayPath> drawn(const PropagationCase& run_case, const RayTracer& tra
   for (const double range : run_case.receivers.ranges)  // with a little room for rounding
     limits.max_range = std::max(limits.max_range, range + 1.0);
   tbb::enumerable_thread_specific<RayTrajectory> trajectories;
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+  in_parallel(all.size(), [&](std::size_t i) {
     RayTrajectory& ray = trajectories.local();
     TraceLimits this_one = limits;  // up to the bounce after the last
     this_one.max_surface_bounces = all[i]->surface_bounces + 1;

@@ -1,12 +1,12 @@
 #include "raytrace/runs/rays_run.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/drawn_path.h"
 
@@ -53,7 +53,7 @@ PropagationResult run_rays(const PropagationCase& run_case, const Progress& prog
   tbb::enumerable_thread_specific<RayTrajectory> trajectories;
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
-  tbb::parallel_for(std::size_t{0}, sources * rays, [&](std::size_t i) {
+  in_parallel(sources * rays, [&](std::size_t i) {
     if (stopped) return;
     RayTrajectory& ray = trajectories.local();
     tracer.trace(0.0, run_case.source_depths[i / rays], elevations[i % rays], limits, ray);

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "raytrace/tracing/parallel.h"
+#include "raytrace/parallel.h"
 #include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
@@ -43,23 +43,22 @@ class FanSplitting {
       Work work;
       std::deque<Ray> rays;  // the middle of each depth of splitting
     };
-    std::vector<std::unique_ptr<Memory>> memories(tracing::most_workers());
+    std::vector<std::unique_ptr<Memory>> memories(most_workers());
     const auto memory_of = [&](std::size_t worker) -> Memory& {
       if (!memories[worker]) memories[worker] = std::make_unique<Memory>(Memory{make_work(), {}});
       return *memories[worker];
     };
     std::vector<Ray> ends(first_intervals + 1);  // each serves the intervals on both sides
-    tracing::parallel(first_intervals + 1, [&](std::size_t worker, int i) {
-      memory_of(worker).work.trace(first_angle(i), ends[static_cast<std::size_t>(i)]);
+    in_parallel_by_worker(first_intervals + 1, [&](std::size_t worker, std::size_t i) {
+      memory_of(worker).work.trace(first_angle(static_cast<int>(i)), ends[i]);
     });
     std::vector<std::vector<Result>> results(first_intervals);
     std::vector<int> left(first_intervals, most_rays);
     std::atomic<int> done = 0;
     std::atomic<bool> stopped = false;
-    tracing::parallel(first_intervals, [&](std::size_t worker, int i) {
+    in_parallel_by_worker(first_intervals, [&](std::size_t worker, std::size_t slot) {
       if (stopped) return;
       Memory& memory = memory_of(worker);
-      const auto slot = static_cast<std::size_t>(i);
       const auto stop = [&] {  // asked now and then within an interval too, which may take long
         if (watch != nullptr && watch->progress &&
             !watch->progress(double(done.load()) / first_intervals))

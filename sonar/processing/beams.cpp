@@ -1,12 +1,10 @@
 #include "sonar/processing/beams.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <cmath>
 #include <string>
 
 #include "core/error.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 
 namespace asdic {
 
@@ -17,11 +15,10 @@ BeamSpectra channel_spectra(const Baseband& baseband) {
                      .values = {}};
   result.values = FftBuffer<std::complex<float>>(result.beams * result.stride);
   const ComplexFft<float> fft(baseband.samples);
-  tbb::parallel_for(std::size_t{0}, baseband.channels, [&](std::size_t c) {
+  in_parallel(baseband.channels, [&](std::size_t c) {
     std::copy_n(baseband.channel(c).data(), baseband.samples, result.beam(c));
     fft.forward(result.beam(c));
   });
-  leave_if_called_off();
   return result;
 }
 
@@ -41,7 +38,7 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
   result.values = FftBuffer<std::complex<float>>(result.beams * result.stride);
   const std::size_t n = channels.bins;
   const double spacing = baseband.sample_rate / static_cast<double>(n);
-  tbb::parallel_for(std::size_t{0}, looks.size(), [&](std::size_t b) {
+  in_parallel(looks.size(), [&](std::size_t b) {
     std::complex<float>* beam = result.beam(b);
     for (std::size_t c = 0; c < channels.beams; ++c) {
       if (weights[c] == 0.0) continue;
@@ -71,7 +68,6 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
       steer((n + 1) / 2, n, -spacing * static_cast<double>(half));
     }
   });
-  leave_if_called_off();
   return result;
 }
 

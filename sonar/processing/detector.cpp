@@ -1,7 +1,6 @@
 #include "sonar/processing/detector.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "raytrace/parallel.h"
 #include "raytrace/propagation.h"
 #include "sonar/processing/beam_surroundings.h"
 #include "sonar/processing/echo_pointing.h"
@@ -154,7 +154,7 @@ class Search {
     const std::size_t n = bank_.samples(), columns = maps.time.size();
     std::vector<std::vector<Peak>> found(beams.beams);
     tbb::enumerable_thread_specific<Work> works;
-    tbb::parallel_for(std::size_t{0}, beams.beams, [&](std::size_t b) {
+    in_parallel(beams.beams, [&](std::size_t b) {
       if (proceed && !proceed()) throw Interrupted();
       Work& work = works.local();
       work.out.reserve(bank_.work());

@@ -1,7 +1,6 @@
 #include "sonar/processing/listening_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/fft.h"
 
 namespace asdic {
@@ -109,7 +108,7 @@ Baseband to_baseband(std::span<const float> pressure, std::size_t channels, doub
     FftBuffer<std::complex<float>> bins, envelope;
   };
   tbb::enumerable_thread_specific<Work> works;
-  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
+  in_parallel(channels, [&](std::size_t c) {
     Work& work = works.local();
     work.real.reserve(plan.padded);
     work.bins.reserve(fft.bins());
@@ -121,7 +120,6 @@ Baseband to_baseband(std::span<const float> pressure, std::size_t channels, doub
                   2.0 / static_cast<double>(plan.padded), work.envelope,
                   result.values.data() + c * plan.length);
   });
-  leave_if_called_off();
   return result;
 }
 
@@ -139,7 +137,7 @@ Baseband to_baseband(std::span<const std::complex<float>> envelope, std::size_t 
     FftBuffer<std::complex<float>> bins, envelope;
   };
   tbb::enumerable_thread_specific<Work> works;
-  tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
+  in_parallel(channels, [&](std::size_t c) {
     Work& work = works.local();
     work.bins.reserve(plan.padded);
     work.envelope.reserve(plan.length);
@@ -152,7 +150,6 @@ Baseband to_baseband(std::span<const std::complex<float>> envelope, std::size_t 
         turn, 1.0 / static_cast<double>(plan.padded), work.envelope,
         result.values.data() + c * plan.length);
   });
-  leave_if_called_off();
   return result;
 }
 

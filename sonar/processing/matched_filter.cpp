@@ -1,7 +1,5 @@
 #include "sonar/processing/matched_filter.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {
@@ -148,7 +146,7 @@ MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const dou
                         .expected = "one whose echo lies within the band"});
   }
   weights_.resize(dopplers_.size() * bins_);
-  tbb::parallel_for(std::size_t{0}, dopplers_.size(), [&](std::size_t f) {
+  in_parallel(dopplers_.size(), [&](std::size_t f) {
     const double energy = replica.energy() / dopplers_[f];
     const double scale = 1.0 / (static_cast<double>(like.samples) * energy);
     for (std::size_t k = 0; k < bins_; ++k) {
@@ -159,7 +157,6 @@ MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const dou
                                                dopplers_[f])));
     }
   });
-  leave_if_called_off();
 }
 
 void MatchedFilterBank::transform(std::span<const std::complex<float>> row,

@@ -1,13 +1,11 @@
 #include "sonar/processing/mvdr.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "raytrace/parallel.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -83,7 +81,7 @@ struct Blocks {
           std::sin(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(length))));
     spectra.resize(b.channels * count * length);
     const ComplexFft<float> fft(length);
-    tbb::parallel_for(std::size_t{0}, b.channels, [&](std::size_t c) {
+    in_parallel(b.channels, [&](std::size_t c) {
       FftBuffer<std::complex<float>> work(length);
       const auto row = b.channel(c);
       for (std::size_t j = 0; j < count; ++j) {
@@ -96,7 +94,6 @@ struct Blocks {
         std::copy_n(work.data(), length, spectra.data() + (c * count + j) * length);
       }
     });
-    leave_if_called_off();
   }
   [[nodiscard]] std::complex<double> at(std::size_t c, std::size_t j, std::size_t k) const {
     return std::complex<double>(spectra[(c * count + j) * length + k]);
@@ -143,7 +140,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
   result.values = FftBuffer<std::complex<float>>(beams * result.stride);
   // Spectra of the beams' blocks: [beams × count × length].
   std::vector<std::complex<float>> heard(beams * blocks.count * blocks.length);
-  tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t g) {
+  in_parallel(groups, [&](std::size_t g) {
     const std::size_t begin = g * group, end = std::min(begin + group, blocks.count);
     const std::size_t wing = (snapshots - group) / 2;
     const std::size_t from = begin > wing ? begin - wing : 0;
@@ -180,9 +177,8 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
       }
     }
   });
-  leave_if_called_off();
   const ComplexFft<float> back(blocks.length), fft(baseband.samples);
-  tbb::parallel_for(std::size_t{0}, beams, [&](std::size_t b) {
+  in_parallel(beams, [&](std::size_t b) {
     FftBuffer<std::complex<float>> work(blocks.length);
     std::complex<float>* row = result.beam(b);
     for (std::size_t j = 0; j < blocks.count; ++j) {
@@ -197,7 +193,6 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
     }
     fft.forward(row);
   });
-  leave_if_called_off();
   return result;
 }
 

@@ -1,14 +1,12 @@
 #include "sonar/processing/peak_cluster.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "raytrace/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
-
-#include "raytrace/called_off.h"
 
 namespace asdic {
 namespace {
@@ -32,7 +30,8 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
   const auto n = fast_fft_length(static_cast<std::size_t>(std::ceil(bank.sample_rate() / spacing)));
   const double fine = bank.sample_rate() / static_cast<double>(n);
   static_cast<void>(ComplexFft<double>(n));
-  tbb::parallel_for(std::ptrdiff_t{1} - filters_, filters_, [&](std::ptrdiff_t k) {
+  in_parallel(static_cast<std::size_t>(2 * filters_ - 1), [&](std::size_t row_number) {
+    const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(row_number) + 1 - filters_;
     const double doppler = 1.0 + step * static_cast<double>(k);
     const double low = replica.lowest_frequency() - 0.25 * replica.bandwidth(),
                  high = replica.highest_frequency() + 0.25 * replica.bandwidth();
@@ -56,7 +55,6 @@ LeakTable::LeakTable(const Replica& replica, const MatchedFilterBank& bank)
       row[i + reach_] = static_cast<float>(scale * most);
     }
   });
-  leave_if_called_off();
 }
 
 double LeakTable::at(std::ptrdiff_t samples, std::ptrdiff_t filters) const noexcept {

@@ -1,14 +1,12 @@
 #include "sonar/processing/ping_processor.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/error.h"
-#include "raytrace/called_off.h"
+#include "raytrace/parallel.h"
 #include "sonar/geometry.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/transmission.h"
@@ -138,7 +136,6 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
                       .look = -echo.travel});
   done.result =
       detect(baseband, phones, done.sound_speed, pulse, factors, detector, probes, proceed);
-  leave_if_called_off();  // for the detector's own loop, too
 
   // The transmitter as it was for that ping.
   const std::vector<Transmission> sent = transmissions(scenario_);
@@ -153,14 +150,13 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   places.pattern = &pattern;
   const Localiser& localiser =
       *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(recording.transmitter) : 0];
-  tbb::parallel_for(std::size_t{0}, done.result.detections.size(), [&](std::size_t i) {
+  in_parallel(done.result.detections.size(), [&](std::size_t i) {
     Detection& d = done.result.detections[i];
     d.ping = recording.ping;
     d.array = recording.array;
     d.locations = localiser.locate(d, places, done.elevation_sigma);
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
-  leave_if_called_off();
   return done;
 }
 
@@ -175,11 +171,10 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
   if (apart <= 0.1 * farthest_apart * times.back()) {
     places.shape.kind = ArrayKind::point;  // no direction is needed
     ranges.of_time.assign(times.size(), std::numeric_limits<double>::quiet_NaN());
-    tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
+    in_parallel(times.size(), [&](std::size_t i) {
       const auto found = localiser.locate({.time = times[i]}, places, 1.0);
       if (!found.empty()) ranges.of_time[i] = found[0].range;
     });
-    leave_if_called_off();
     return ranges;
   }
   if (places.shape.kind == ArrayKind::point || places.shape.upright()) return ranges;
@@ -187,7 +182,7 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
   const bool two_sides = places.shape.kind == ArrayKind::line;
   ranges.of_beam.resize(looks.size() * times.size());
   if (two_sides) ranges.of_mirror.resize(looks.size() * times.size());
-  tbb::parallel_for(std::size_t{0}, looks.size(), [&](std::size_t b) {
+  in_parallel(looks.size(), [&](std::size_t b) {
     const auto row = [&](const Vec3& look, std::vector<double>& into) {
       const std::vector<double> found =
           localiser.ranges(std::atan2(look.x(), look.y()), times, places);
@@ -197,7 +192,6 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
     row(looks[b], ranges.of_beam);
     if (two_sides) row(mirrored(places.shape, looks[b]), ranges.of_mirror);
   });
-  leave_if_called_off();
   return ranges;
 }
 

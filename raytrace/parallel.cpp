@@ -1,0 +1,29 @@
+#include "raytrace/parallel.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include "raytrace/called_off.h"
+
+namespace asdic {
+
+void in_parallel_called(std::size_t count, const std::function<void(std::size_t i)>& body) {
+  tbb::parallel_for(std::size_t{0}, count, body);
+  leave_if_called_off();
+}
+
+std::size_t most_workers() {
+  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
+}
+
+void in_parallel_by_worker(std::size_t count,
+                           const std::function<void(std::size_t worker, std::size_t i)>& body) {
+  // isolated: a thread that waits here takes no other work, so its worker is not taken twice
+  tbb::this_task_arena::isolate([&] {
+    in_parallel(count, [&](std::size_t i) {
+      body(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()), i);
+    });
+  });
+}
+
+}  // namespace asdic
