@@ -76,6 +76,11 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;
   way.leg.channel = channel;
+  const auto& transmitter = scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
+  if (transmitter.platform == array.platform)
+    std::erase_if(way.leg.arrivals, [](const Arrival& path) {
+      return path.surface_bounces + path.bottom_bounces == 0;
+    });
   const double c_source = context.paths.speed_at(source.position);
   for (const Arrival& path : way.leg.arrivals) {
     const MetPath met = moving.meet(source.position, 0.0, track, offset, way, path);

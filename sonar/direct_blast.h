@@ -12,7 +12,9 @@ struct DirectBlast {
 };
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact
-/// Doppler factor. The array has to be at least 1 m from the transmitter: levels refer to 1 m.
+/// Doppler factor. An array on the transmitter's own platform hears what surface and bottom mirror
+/// (the fathometer's returns), not what comes straight: levels refer to 1 m, and a sonar is deaf
+/// while it sends. Any other has to be at least 1 m from the transmitter.
 [[nodiscard]] DirectBlast direct_blast(const EchoContext& context);
 
 }  // namespace asdic

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sonar/geometry.h"
 
@@ -31,10 +32,13 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
         a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
       continue;
     const double turned = std::abs(a.launch_elevation - path.launch_elevation);
-    const double changed =
-        std::abs(a.horizontal_slowness / path.horizontal_slowness - 1.0);  // of ξ, over ξ
+    const double changed =  // of ξ, over ξ; straight up and down there is none
+        std::abs(a.horizontal_slowness - path.horizontal_slowness) /
+        std::max(path.horizontal_slowness, std::numeric_limits<double>::min());
     const bool one_way = (a.launch_elevation < 0.0) == (path.launch_elevation < 0.0);
-    if (!(turned < near || (layered && one_way && changed < near_level))) continue;
+    // Without a turn r(ξ) of a history grows with ξ: there is one such path only.
+    const bool only_one = layered && one_way && path.upper_turns + path.lower_turns == 0;
+    if (!(turned < near || only_one || (layered && one_way && changed < near_level))) continue;
     const double difference = layered ? changed + (one_way ? 0.0 : 1.0) : turned;
     if (difference < least) {
       least = difference;

@@ -85,7 +85,7 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
   return record;
 }
 
-/// Echoes, source → target × target → array, and the ping itself on its way to arrays elsewhere.
+/// Echoes, source → target × target → array, and the ping itself on its way to the array.
 std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
                                                     PingRecord& record) const {
   std::vector<EchoPath> heard;
@@ -102,9 +102,9 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   const auto platform_of = [](const auto& list, int i) {
     return list[static_cast<std::size_t>(i)].platform;
   };
-  if (scenario_.propagation.direct_blast &&
-      platform_of(scenario_.transmitters, context.transmitter) !=
-          platform_of(scenario_.arrays, context.array)) {
+  const bool own = platform_of(scenario_.transmitters, context.transmitter) ==
+                   platform_of(scenario_.arrays, context.array);
+  if (own ? scenario_.propagation.fathometer : scenario_.propagation.direct_blast) {
     DirectBlast blast = direct_blast(context);
     for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
     heard.insert(heard.end(), blast.heard.begin(), blast.heard.end());

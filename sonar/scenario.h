@@ -23,7 +23,8 @@ struct PropagationSettings {
   int max_bottom_bounces = 3;
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
-  bool wide_band = false;        ///< echoes' losses and patterns at every frequency of the pulse
+  bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries
+  bool wide_band = false;   ///< echoes' losses and patterns at every frequency of the pulse
   bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
 };
 

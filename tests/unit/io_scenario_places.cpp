@@ -41,6 +41,14 @@ TEST(Places, EverythingIsInTheWaterOfItsOwnPlace) {
   EXPECT_NE(fault(hill({"target.0.position=[3030, 9000, 2500]"})), "good");
 }
 
+// What a slope mirrors back does not lie in the vertical plane through transmitter and array.
+TEST(Places, AFathometerIsHeardOverLevelGroundOnly) {
+  EXPECT_TRUE(small_scenario({"propagation.fathometer=true"}).propagation.fathometer);
+  EXPECT_EQ(fault(hill({"propagation.fathometer=true"})),
+            "--set propagation.fathometer: found true, expected false where the ocean varies along "
+            "a transect: a mirror that slopes is not in the plane of transmitter and array");
+}
+
 // A straight track over the top, in 70 m of water at both ends.
 TEST(Places, TracksAreLookedAtAllAlong) {
   const auto at_depth = [](int depth) {

@@ -285,5 +285,62 @@ TEST(DirectBlast, IsNotHeardWhereItIsNotWanted) {
   EXPECT_TRUE(PingSimulator(s).simulate(1).legs.empty());
 }
 
+// Truth: between two mirrors a wave that goes up and down is that of images; the ship moves along
+// and down with v, so that image and array close in on each other: t = 2h/(c + w) one way, factor
+// (1 + w/c)/(1 − w/c) of a single bounce off what lies below, to first order in the sideways part.
+TEST(Fathometer, HearsWhatSurfaceAndBottomMirror) {
+  Scenario s = two_platforms();
+  s.arrays[0].platform = 0;
+  s.propagation.fathometer = true;
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  constexpr double c = 1500.0, below = 4900.0, above = 100.0, w = 2.0, along = 10.0;
+  s.platforms[0].track.start.velocity = {along, 0.0, w};
+  s.pings.recording_duration = 8.0;
+
+  const PropagationPaths paths(s.environment, s.transect);
+  const BeamPattern pattern(s.transmitters[0], 1.5);
+  const EchoContext context{
+      .paths = paths, .scenario = s, .pattern = pattern, .frequency = 1000.0, .ping_time = 0.0};
+  DirectBlast blast = direct_blast(context);
+  std::sort(blast.heard.begin(), blast.heard.end(),
+            [](const EchoPath& a, const EchoPath& b) { return a.heard.delay < b.heard.delay; });
+  ASSERT_EQ(blast.heard.size(), 4U);  // surface, bottom, and both in either order
+  // Each image is that of the sender when it sent; the array is where it is when it hears:
+  // (c t)² = (v t)² + (d ± w t)², d the sum of the ways up and down at rest.
+  const auto delay = [&](double d, double closing) {
+    const double a = c * c - along * along - closing * closing, b = -d * closing;
+    return (b + std::sqrt(b * b + a * d * d)) / a;
+  };
+  const double up = delay(2.0 * above, -w), down = delay(2.0 * below, w);
+  EXPECT_NEAR(blast.heard[0].heard.delay, up, 1e-9);
+  EXPECT_NEAR(blast.heard[1].heard.delay, down, 1e-9);
+  EXPECT_NEAR(std::abs(blast.heard[0].heard.amplitude), 1.0 / (c * up), 1e-9);
+  EXPECT_NEAR(std::abs(blast.heard[1].heard.amplitude), 1.0 / (c * down), 1e-9);
+  EXPECT_LT(blast.heard[0].heard.amplitude.real(), 0.0);  // the surface turns the sign
+  EXPECT_GT(blast.heard[1].heard.amplitude.real(), 0.0);
+  // t = c⁻¹|…| of the image, derived by the time of sending: the exact factor along each path.
+  const auto factor = [&](double d, double closing) {
+    const double t = delay(d, closing), h = 1e-3;
+    // sent h later the sender's image is nearer by `closing` h, and the array by as much again
+    return 1.0 / (1.0 + (delay(d - 2.0 * closing * h, closing) - t) / h);
+  };
+  EXPECT_NEAR(blast.heard[0].heard.doppler, factor(2.0 * above, -w), 1e-9);
+  EXPECT_NEAR(blast.heard[1].heard.doppler, factor(2.0 * below, w), 1e-9);
+}
+
+// The straight way is left out, however far the array is towed behind.
+TEST(Fathometer, LeavesOutTheStraightWay) {
+  Scenario s = two_platforms();
+  s.arrays[0].platform = 0;
+  s.arrays[0].offset = {-200.0, 0.0, 0.0};
+  s.propagation.fathometer = true;
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 2;
+  const PingRecord record = PingSimulator(s).simulate(1);
+  ASSERT_EQ(record.legs.size(), 1U);
+  EXPECT_EQ(record.legs[0].arrivals.size(), 8U);  // s, b, sb, bs, sbs, bsb, sbsb, bsbs
+  for (const Arrival& path : record.legs[0].arrivals)
+    EXPECT_GT(path.surface_bounces + path.bottom_bounces, 0);
+}
+
 }  // namespace
 }  // namespace asdic
