@@ -21,6 +21,16 @@ std::string motion(const Vec3& v) {
   return v.isZero() ? "at rest" : fmt::format("moving at {:.2f} m/s", v.norm());
 }
 
+/// ", closing at 5.00 m/s": how fast two that move come nearer.
+std::string closing_text(const Kinematics& from, const Kinematics& to) {
+  const Vec3 between = to.position - from.position, moves = to.velocity - from.velocity;
+  const double distance = between.norm();
+  if (moves.isZero() || distance == 0.0) return "";
+  const double opening = moves.dot(between) / distance;
+  return fmt::format(", {} at {:.2f} m/s", opening < 0.0 ? "closing" : "opening",
+                     std::abs(opening));
+}
+
 std::string reverberation_text(const Scenario& s, double spacing) {
   const ReverberationSettings& r = s.reverberation;
   std::string text =
@@ -64,26 +74,38 @@ std::string beam_text(const Transmitter& one) {
                                              count_of(one.table->bearings.size(), "bearing"),
                                              count_of(one.table->elevations.size(), "elevation"))
                                : count_of(one.projectors.size(), "projector");
-  return fmt::format("{:g} dB, {}, {} {:g} deg from {}\n", one.source_level_db, what,
+  return fmt::format("{:g} dB, {}, {} {:g} deg from {}", one.source_level_db, what,
                      one.table ? "turned to" : "steered to", compass_degrees(one.bearing),
                      one.frame == BearingFrame::heading ? "the heading" : "north");
+}
+
+/// ", 150 m deep" of what does not hang where its platform is; "" of what does.
+std::string depth_text(const Scenario& s, int platform, double shallowest, double deepest) {
+  const double carrier = s.platforms[static_cast<std::size_t>(platform)].track.at(0.0).position.z();
+  if (shallowest == carrier && deepest == carrier) return "";
+  if (deepest - shallowest < 0.1) return fmt::format(", {:.4g} m deep", deepest);
+  return fmt::format(", {:.4g} to {:.4g} m deep", shallowest, deepest);
 }
 
 std::string transmitter_text(const PingSimulator& simulator, std::size_t t) {
   const Scenario& s = simulator.scenario();
   const Transmitter& one = s.transmitters[t];
   const std::string who = carried(s, "projector", one, s.transmitters.size());
-  if (!one.projectors.empty() || one.table) return who + beam_text(one);
+  const double depth = transmitter_at(s, static_cast<int>(t), 0.0).position.z();
+  const std::string where = depth_text(s, one.platform, depth, depth) + "\n";
+  if (!one.projectors.empty() || one.table) return who + beam_text(one) + where;
   if (one.taper == Taper::omnidirectional)
-    return who + fmt::format("{:g} dB, omnidirectional\n", one.source_level_db);
+    return who + fmt::format("{:g} dB, omnidirectional", one.source_level_db) + where;
   double elevation = one.elevation;
   for (int ping = 1; ping <= simulator.pings(); ++ping) {
     if (simulator.transmission(ping).transmitter != static_cast<int>(t)) continue;
     elevation = simulator.transmission(ping).elevation;  // of its first ping
     break;
   }
-  return who + fmt::format("{:g} dB, elevation {:g} deg, beamwidth {:g} deg\n", one.source_level_db,
-                           degrees(elevation), degrees(one.beamwidth));
+  return who +
+         fmt::format("{:g} dB, elevation {:g} deg, beamwidth {:g} deg", one.source_level_db,
+                     degrees(elevation), degrees(one.beamwidth)) +
+         where;
 }
 
 /// What the phones' electronics do, if they are not ideal.
@@ -118,6 +140,14 @@ std::string array_text(const Scenario& s, const ReceiverArray& array) {
   } else {
     text += fmt::format(", {:g} m across", aperture);
   }
+  const auto index = static_cast<int>(&array - s.arrays.data());
+  const double hung = array_at(s, index, 0.0).position.z();
+  double shallowest = infinity, deepest = -infinity;
+  for (const Vec3& phone : phones_at(s, index, 1, 0.0)) {
+    shallowest = std::min(shallowest, hung + phone.z());
+    deepest = std::max(deepest, hung + phone.z());
+  }
+  text += depth_text(s, array.platform, shallowest, deepest);
   return text + "\n" + electronics_text(array.electronics);
 }
 
@@ -187,7 +217,8 @@ std::string sonar_text(const PingSimulator& simulator) {
     text +=
         fmt::format("target     {}: {}, {}, range {:.3f} km, bearing {:.1f} deg, {}\n", target.name,
                     strength_text(target), position(k.position), way.range / 1000.0,
-                    degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0), motion(k.velocity));
+                    degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0),
+                    motion(k.velocity) + closing_text(platform, k));
   }
   for (const Interferer& ship : s.interferers) {
     const Kinematics k = ship.track.at(0.0);

@@ -7,6 +7,7 @@
 #include "io/scenario/sections.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
+#include "io/text/toml_value.h"
 
 namespace asdic {
 
@@ -47,7 +48,12 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
     scenario.pulse = scenario::read_pulse(root.table("pulse"), folder);
   else
     scenario.pulse = scenario::read_pulse(transmitters[0].table("pulse"), folder);
-  const double frequency = Pulse(scenario.pulse).centre_frequency();
+  const Pulse pulse(scenario.pulse);
+  const double frequency = pulse.centre_frequency();
+  if (scenario.pulse.kind != PulseKind::file && 0.5 * pulse.bandwidth_40db() >= frequency)
+    scenario.notes.push_back("pulse: its band, " + to_text(pulse.bandwidth_40db()) +
+                             " Hz wide about " + to_text(frequency) +
+                             " Hz, reaches down to 0 Hz: frequencies are in Hz, not kHz");
   scenario::read_environment(root.table("environment"), folder, frequency, scenario);
   scenario::read_platforms(root.one_or_more("platform"), scenario);
   const bool has_elevation = std::any_of(

@@ -75,6 +75,16 @@ double quantile_of(const Weibull& law, const Tails& t) noexcept {
   return law.scale * std::pow(h, 1.0 / law.shape);
 }
 
+// Where each law ends.
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+std::pair<double, double> support(const Uniform& law) { return {law.low, law.high}; }
+std::pair<double, double> support(const Triangular& law) { return {law.low, law.high}; }
+std::pair<double, double> support(const Normal&) { return {-endless, endless}; }
+std::pair<double, double> support(const LogNormal&) { return {0.0, endless}; }
+std::pair<double, double> support(const Weibull&) { return {0.0, endless}; }
+
 }  // namespace
 
 Weibull Weibull::of_mean(double shape, double mean) {
@@ -113,6 +123,11 @@ CutLaw::CutLaw(ContinuousLaw law, double low, double high) noexcept
 
 double CutLaw::share() const noexcept {
   return at_low_.lower < 0.5 ? at_high_.lower - at_low_.lower : at_low_.upper - at_high_.upper;
+}
+
+std::pair<double, double> CutLaw::ends() const noexcept {
+  const auto [low, high] = std::visit([](const auto& law) { return support(law); }, law_);
+  return {std::max(low, low_), std::min(high, high_)};
 }
 
 double CutLaw::quantile(double u) const noexcept {

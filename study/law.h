@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <utility>
 #include <variant>
 
 namespace asdic::study {
@@ -52,6 +53,8 @@ class CutLaw {
   [[nodiscard]] const ContinuousLaw& law() const noexcept { return law_; }
   [[nodiscard]] double low() const noexcept { return low_; }
   [[nodiscard]] double high() const noexcept { return high_; }
+  /// Where what is drawn ends: at a limit or where the law itself does; infinite where neither.
+  [[nodiscard]] std::pair<double, double> ends() const noexcept;
 
  private:
   ContinuousLaw law_;

@@ -90,7 +90,7 @@ std::vector<SummaryTable> summarise(const Study& study, const Table& table) {
   const auto add = [&](std::vector<SummaryTable> more) {
     std::move(more.begin(), more.end(), std::back_inserter(all));
   };
-  for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(plan, axes, table));
+  for (const std::vector<SummaryAxis>& axes : plan.by) add(tables_by(study, axes, table));
   if (plan.roc) add(roc_tables(plan, table));
   if (plan.convergence) add(convergence_table(plan, table));
   if (plan.sensitivity) add(sensitivity_table(plan, table));

@@ -29,21 +29,27 @@ struct Axis {
   [[nodiscard]] double high(std::size_t i) const { return edges[by_value ? i : i + 1]; }
 };
 
-std::vector<double> edges_of(const SummaryAxis& asked, const std::vector<double>& sorted) {
+/// \param ends  of the law of the axis' input: as long as a study goes on, and in every study of
+/// that law, its bins are the same
+std::vector<double> edges_of(const SummaryAxis& asked, const std::vector<double>& sorted,
+                             const Span& ends) {
   if (!asked.edges.empty()) return asked.edges;
+  if (sorted.empty()) return {};
+  const double low = std::isfinite(ends.low) ? std::min(ends.low, sorted.front()) : sorted.front();
+  const double high = std::isfinite(ends.high) ? std::max(ends.high, sorted.back()) : sorted.back();
   std::vector<double> edges;
   const int bins = asked.bins > 0 ? asked.bins : default_bins;
   for (int i = 0; i <= bins; ++i) {
     const double share = static_cast<double>(i) / bins;
     edges.push_back(asked.equal_count ? sample_quantile(sorted, share)
-                                      : std::lerp(sorted.front(), sorted.back(), share));
+                                      : std::lerp(low, high, share));
   }
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   if (edges.size() < 2) edges.push_back(edges.front());
   return edges;
 }
 
-Axis make_axis(const SummaryAxis& asked, const Table& table) {
+Axis make_axis(const SummaryAxis& asked, const Table& table, const Span& ends) {
   Axis axis{.column = column_of(table, asked.column)};
   std::vector<double> sorted;
   for (std::size_t row = 0; row < table.index.size(); ++row)
@@ -54,7 +60,7 @@ Axis make_axis(const SummaryAxis& asked, const Table& table) {
   const bool few = distinct.size() <= few_values || distinct.size() * rows_a_value <= sorted.size();
   const bool bins = !asked.edges.empty() || asked.bins > 0 || asked.equal_count;
   axis.by_value = !table.columns[axis.column].labels.empty() || (few && !bins);
-  axis.edges = axis.by_value ? distinct : edges_of(asked, sorted);
+  axis.edges = axis.by_value ? distinct : edges_of(asked, sorted, ends);
   for (std::size_t row = 0; row < table.index.size(); ++row) {
     int bin = -1;
     if (counts(table, row, axis.column)) {
@@ -97,12 +103,13 @@ SummaryTable start(const std::string& name, const std::string& title, const std:
 
 }  // namespace
 
-std::vector<SummaryTable> tables_by(const SummaryPlan& plan, const std::vector<SummaryAxis>& asked,
+std::vector<SummaryTable> tables_by(const Study& study, const std::vector<SummaryAxis>& asked,
                                     const Table& table) {
+  const SummaryPlan& plan = study.summary;
   std::vector<Axis> axes;
   std::string suffix, along;
   for (const SummaryAxis& axis : asked) {
-    axes.push_back(make_axis(axis, table));
+    axes.push_back(make_axis(axis, table, ends_of(study.variables, axis.column)));
     if (axes.back().edges.empty()) return {};  // no valid row
     suffix += (axes.size() > 1 ? "_and_" : "_by_") + axis.column;
     along += (axes.size() > 1 ? " and " : " against ") + axis.column;

@@ -24,7 +24,7 @@ namespace asdic::study {
 [[nodiscard]] SummaryTable statistics_table(const SummaryPlan& plan, const Table& table);
 /// Proportions and means of all measures along one axis or over two: "pd_by_range", …,
 /// "means_by_range".
-[[nodiscard]] std::vector<SummaryTable> tables_by(const SummaryPlan& plan,
+[[nodiscard]] std::vector<SummaryTable> tables_by(const Study& study,
                                                   const std::vector<SummaryAxis>& axes,
                                                   const Table& table);
 /// Receiver operating characteristic of each target's matched filter, and the area under it.

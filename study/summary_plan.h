@@ -12,8 +12,9 @@ enum class ProportionInterval { wilson, clopper_pearson };
 struct SummaryAxis {
   std::string column;
   std::vector<double> edges;  ///< of the bins, increasing; empty: as below
-  int bins = 0;               ///< of equal width from the least to the greatest value …; 0: by
-                              ///< value where that is possible, else ten
+  int bins = 0;               ///< of equal width between the ends of the input's law, or from the
+                              ///< least to the greatest value where it has none …; 0: by value
+                              ///< where that is possible, else ten
   bool equal_count = false;   ///< … or holding equally many rows
 };
 

@@ -20,8 +20,9 @@ std::size_t dimensions(const ChoiceLaw& law) { return law.kind == ChoiceLaw::Kin
 std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
 
-std::vector<InputColumn> columns(const NumberLaw&, const Variable& v) {
-  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front()}};
+std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
+  const auto [low, high] = law.law.ends();
+  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .ends = {low, high}}};
 }
 
 std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
@@ -42,14 +43,25 @@ std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
 
 std::vector<InputColumn> columns(const TrackLaw& law, const Variable& v) {
   const std::string& key = v.keys.front();
-  std::vector<InputColumn> made{
-      {.name = v.name + "_range", .unit = "m", .meaning = key + ": horizontal, from the centre"},
-      {.name = v.name + "_bearing_deg", .unit = "degrees", .meaning = key + ": from the centre"},
-      {.name = v.name + "_depth", .unit = "m", .meaning = key + ": depth at the start"}};
+  std::vector<InputColumn> made{{.name = v.name + "_range",
+                                 .unit = "m",
+                                 .meaning = key + ": horizontal, from the centre",
+                                 .ends = law.range},
+                                {.name = v.name + "_bearing_deg",
+                                 .unit = "degrees",
+                                 .meaning = key + ": from the centre",
+                                 .ends = {degrees(law.bearing.low), degrees(law.bearing.high)}},
+                                {.name = v.name + "_depth",
+                                 .unit = "m",
+                                 .meaning = key + ": depth at the start",
+                                 .ends = law.depth}};
   if (law.speed) {
-    made.push_back({.name = v.name + "_speed", .unit = "m/s", .meaning = key + ": speed"});
     made.push_back(
-        {.name = v.name + "_course_deg", .unit = "degrees", .meaning = key + ": course"});
+        {.name = v.name + "_speed", .unit = "m/s", .meaning = key + ": speed", .ends = *law.speed});
+    made.push_back({.name = v.name + "_course_deg",
+                    .unit = "degrees",
+                    .meaning = key + ": course",
+                    .ends = {degrees(law.course.low), degrees(law.course.high)}});
   }
   return made;
 }
@@ -144,6 +156,13 @@ std::optional<double> number_of(const TomlValue& value) {
 
 std::vector<InputColumn> input_columns(const Variable& variable) {
   return std::visit([&](const auto& law) { return columns(law, variable); }, variable.law);
+}
+
+Span ends_of(std::span<const Variable> variables, std::string_view column) {
+  for (const Variable& variable : variables)
+    for (const InputColumn& input : input_columns(variable))
+      if (input.name == column) return input.ends;
+  return InputColumn{}.ends;
 }
 
 std::size_t dimensions_of(const Variable& variable, bool on_grid) {

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -76,8 +78,12 @@ struct Variable {
 struct InputColumn {
   std::string name, unit, meaning;
   std::vector<std::string> labels;
+  /// Between which its values are drawn; infinite where the law has no end.
+  Span ends{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 [[nodiscard]] std::vector<InputColumn> input_columns(const Variable& variable);
+/// Between which the values of a column are drawn; infinite where it is none of an input.
+[[nodiscard]] Span ends_of(std::span<const Variable> variables, std::string_view column);
 
 /// Coordinates of the unit cube that a variable takes. \param on_grid  choices are axes
 [[nodiscard]] std::size_t dimensions_of(const Variable& variable, bool on_grid);

@@ -96,5 +96,18 @@ TEST(Places, PingFilesHoldTheTransect) {
   EXPECT_NEAR(file.attribute_number("rays", "bearing_deg"), 45.0, 1e-12);
 }
 
+// 3 to 3.4 where kHz were meant is half a sweep of 3 Hz.
+TEST(Pulses, WhoseBandReachesZeroAreNoted) {
+  const std::string lfm = "kind=\"lfm\", duration=0.4, window=\"hann\", ";
+  EXPECT_TRUE(small_scenario({"pulse={" + lfm + "start_frequency=3000, end_frequency=3400}"})
+                  .notes.empty());
+  const auto notes =
+      small_scenario({"pulse={" + lfm + "start_frequency=3, end_frequency=3.4}"}).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("Hz wide about 3.2 Hz, reaches down to 0 Hz: frequencies are in Hz"),
+            std::string::npos)
+      << notes[0];
+}
+
 }  // namespace
 }  // namespace asdic

@@ -85,5 +85,16 @@ TEST(Laws, CutFarOutKeepsItsDigits) {
   EXPECT_NEAR(near.quantile(0.5), -far.quantile(0.5), 1e-12);
 }
 
+TEST(Laws, EndWhereNothingMoreIsDrawn) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  using Ends = std::pair<double, double>;
+  EXPECT_EQ(CutLaw(Uniform{2.0, 5.0}).ends(), Ends(2.0, 5.0));
+  EXPECT_EQ(CutLaw(Uniform{2.0, 5.0}, 3.0, 9.0).ends(), Ends(3.0, 5.0));
+  EXPECT_EQ(CutLaw(Triangular{-1.0, 0.5, 4.0}).ends(), Ends(-1.0, 4.0));
+  EXPECT_EQ(CutLaw(Normal{}, -2.0).ends(), Ends(-2.0, endless));
+  EXPECT_EQ(CutLaw(LogNormal{}).ends(), Ends(0.0, endless));
+  EXPECT_EQ(CutLaw(Weibull{}, 0.0, 20.0).ends(), Ends(0.0, 20.0));
+}
+
 }  // namespace
 }  // namespace asdic::study

@@ -154,6 +154,26 @@ TEST(Summary, AGridOfManyValuesIsTakenByValueUnlessBinsAreAsked) {
   EXPECT_EQ(named(bins, "pd_by_x").values[0].size(), 5U);
 }
 
+// Ten draws or a thousand, this study or the next: the same bins, those of the law.
+TEST(Summary, BinsOfAnInputAreThoseOfItsLaw) {
+  Study study = asking({{{.column = "x", .bins = 4}}});
+  const auto low_edges = [&](int rows) {
+    return column(named(summarise(study, made_up(rows)), "pd_by_x"), "x_low");
+  };
+  EXPECT_NE(low_edges(30)[0], -1.0);
+  study.variables = {{.name = "x", .keys = {"x"}, .law = NumberLaw{CutLaw(Uniform{-1.0, 3.0})}}};
+  EXPECT_EQ(low_edges(30), (std::vector<double>{-1.0, 0.0, 1.0, 2.0}));
+  EXPECT_EQ(low_edges(900), low_edges(30));
+  // cut off below and endless above: up to what was drawn, as without a law
+  study.variables[0].law = NumberLaw{CutLaw(Normal{0.5, 1.0}, -0.75)};
+  EXPECT_EQ(low_edges(900)[0], -0.75);
+  EXPECT_EQ(
+      column(named(summarise(study, made_up(900)), "pd_by_x"), "x_high").back(),
+      column(named(summarise(asking({{{.column = "x", .bins = 4}}}), made_up(900)), "pd_by_x"),
+             "x_high")
+          .back());
+}
+
 TEST(Summary, EqualCountsFillBinsAlike) {
   const auto tables =
       summarise(asking({{{.column = "x", .bins = 9, .equal_count = true}}}), made_up(1000));

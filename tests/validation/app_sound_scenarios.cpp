@@ -111,6 +111,11 @@ TEST(SoundScenarioCommands, ValidateSaysWhatIsThere) {
                            "600 Hz, 16 bits to 20 Pa",
                            "submarine: 6 to 20 dB by aspect"})
     EXPECT_NE(turn.find(line), std::string::npos) << line << " in\n" << turn;
+  // where things hang, and how they near one another: (5500·3 + 2500·4)/6054.7 m/s
+  const std::string bistatic = said("bistatic");
+  for (const char* line : {"beamwidth 30 deg, 600 m deep", "16 phones, 7.5 m across, 600 m deep",
+                           "closing at 4.38 m/s"})
+    EXPECT_NE(bistatic.find(line), std::string::npos) << line << " in\n" << bistatic;
   const std::string submarine = said("highlight_target");
   EXPECT_NE(submarine.find("submarine: 4 highlights, together "), std::string::npos) << submarine;
   EXPECT_NE(submarine.find("dB by aspect, Swerling 3,"), std::string::npos) << submarine;
