@@ -99,8 +99,8 @@ TEST(Places, PingFilesHoldTheTransect) {
 // 3 to 3.4 where kHz were meant is half a sweep of 3 Hz.
 TEST(Pulses, WhoseBandReachesZeroAreNoted) {
   const std::string lfm = "kind=\"lfm\", duration=0.4, window=\"hann\", ";
-  EXPECT_TRUE(small_scenario({"pulse={" + lfm + "start_frequency=300, end_frequency=340}"})
-                  .notes.empty());
+  EXPECT_TRUE(
+      small_scenario({"pulse={" + lfm + "start_frequency=300, end_frequency=340}"}).notes.empty());
   const auto notes =
       small_scenario({"pulse={" + lfm + "start_frequency=3, end_frequency=3.4}"}).notes;
   ASSERT_EQ(notes.size(), 1U);
