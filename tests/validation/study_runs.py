@@ -236,6 +236,7 @@ def by_mpi():
         check(job.returncode == 0, f"mpirun -n {ranks}: {said}")
         same("m.h5", f"mpirun -n {ranks}")
         Path("m.h5").unlink()
+    enough_by_mpi(environment)
     stopped_by_mpi(mpirun)
     silent_rank(mpirun)
     job = mpirun(3)
@@ -252,6 +253,22 @@ def by_mpi():
     job = mpirun(2)
     check(job.wait() == 0, f"after a dead rank: {job.communicate()}")
     same("m.h5", f"mpirun -n 3, a rank killed, {kept} rows kept, then -n 2")
+
+
+def enough_by_mpi(environment):
+    """A wanted width is looked at after the same realisations by ranks and by threads."""
+    Path("enough.toml").write_text(STUDY.replace("series_level = true", "").replace(
+        f"realisations = {COUNT}", "realisations = 5000"))
+    words = ["study", "enough.toml", "--until", 0.3, "-q", "-o"]
+    run(*words, "one.h5")
+    ranks = ["mpirun", "--oversubscribe", "-n", "3", *command(*words, "ranks.h5", program=ASDIC_MPI)]
+    job = subprocess.run(ranks, capture_output=True, text=True, env=environment)
+    check(job.returncode == 0, f"--until by mpirun: {job.stderr}")
+    with h5py.File("one.h5") as one:
+        check(100 <= len(one["index"]) < 5000, f"--until: {len(one['index'])} realisations")
+    different = differences("one.h5", "ranks.h5")
+    check(not different, f"--until by mpirun: {different} differ")
+    print("--until by mpirun -n 3: the same bits")
 
 
 def stopped_by_mpi(mpirun):
