@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/units.h"
+#include "sonar/pulse.h"
 #include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
 
@@ -82,6 +83,12 @@ std::string PingReport::text(double wall) const {
         "echo: the strongest path; all paths: the peak of their sum; reverberation: expected at "
         "that time; noise: in the "
         "pulse's -40 dB band; excess: all paths over both, before processing gain\n";
+    // T·B of a CW is some 2 to 6 at −40 dB; a sweep's paths overlap in the record only.
+    const Pulse pulse(scenario_.pulse);
+    if (pulse.duration() * pulse.bandwidth_40db() > 10.0)
+      result +=
+          "of a sweep the paths that add up here come apart in a matched filter, each by itself "
+          "weaker: what is heard of them asdic process says\n";
   }
   result += fmt::format(
       "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "
