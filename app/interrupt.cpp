@@ -15,19 +15,18 @@ namespace {
 std::atomic<bool> signalled = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only use such");
 
-extern "C" void on_signal(int) { signalled = true; }
-
-void on(int signal, void (*handler)(int)) {
+void on_both(void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second is not ours
+  action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  sigaction(signal, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
-void on_both(void (*handler)(int)) {
-  on(SIGINT, handler);
-  on(SIGTERM, handler);
+extern "C" void on_signal(int) {
+  signalled = true;
+  on_both(SIG_DFL);  // the second is not ours, whichever it is
 }
 
 /// In place of a progress bar's line, which is drawn anew below.
@@ -38,26 +37,29 @@ void say(const std::string& line) {
 
 }  // namespace
 
-Interrupt::Interrupt(std::string told) {
+Interrupt::Interrupt() {
   signalled = false;
   on_both(on_signal);
+}
+
+Interrupt::~Interrupt() { on_both(SIG_DFL); }
+
+bool Interrupt::requested() noexcept { return signalled; }
+
+StopOnInterrupt::StopOnInterrupt(std::string told) {
   watcher_ = std::jthread([this, told = std::move(told)](const std::stop_token& over) {
     std::unique_lock lock(mutex_);
     while (!over.stop_requested() && !signalled)
       over_.wait_for(lock, over, std::chrono::milliseconds(10), [] { return signalled.load(); });
     if (!signalled) return;
-    on_both(SIG_DFL);  // after SIGINT a SIGTERM ends the program as well
     if (!told.empty()) say(told);
     stop_.request_stop();
   });
 }
 
-Interrupt::~Interrupt() {
+StopOnInterrupt::~StopOnInterrupt() {
   watcher_.request_stop();
   watcher_.join();
-  on_both(SIG_DFL);
 }
-
-bool Interrupt::requested() noexcept { return signalled; }
 
 }  // namespace asdic::app

@@ -7,22 +7,31 @@
 
 namespace asdic::app {
 
-/// While it lives, the first SIGINT or SIGTERM asks for a stop, and the second ends the program at
-/// once. One at a time.
-///
-/// The handler only sets an atomic; a thread that watches it requests the stop.
+/// While it lives, the first SIGINT or SIGTERM is noted, and the second ends the program at once.
+/// One at a time.
 class Interrupt {
  public:
-  /// \param told  a line on standard error when the first comes; "": none
-  explicit Interrupt(std::string told = {});
+  Interrupt();
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
   [[nodiscard]] static bool requested() noexcept;
+};
+
+/// The same for what waits for a stop token: a thread watches what the handler has noted.
+class StopOnInterrupt {
+ public:
+  /// \param told  a line on standard error when the first comes; "": none
+  explicit StopOnInterrupt(std::string told = {});
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
  private:
+  Interrupt interrupt_;
   std::stop_source stop_;
   std::mutex mutex_;
   std::condition_variable_any over_;  ///< wakes the watcher before its time

@@ -55,7 +55,7 @@ int ping(const Options& options) {
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  const Interrupt interrupt(fmt::format(
+  const StopOnInterrupt interrupt(fmt::format(
       "asdic: stopping when the pings in hand are done; Ctrl-C again ends at once, then {}.part "
       "holds those before",
       output.string()));

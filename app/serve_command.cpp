@@ -70,7 +70,7 @@ int serve_scenario(const Options& options) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   serve::SessionSettings settings = settings_of(options, threads);
-  const Interrupt interrupt;
+  const StopOnInterrupt interrupt;
   serve::Server server(std::move(settings),
                        {.socket = options.socket,
                         .port = options.port,

@@ -17,7 +17,7 @@ int study_run(const StudyOptions& options) {
   StudyOrder order = order_of(options);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order.threads));
-  const Interrupt interrupt(
+  const StopOnInterrupt interrupt(
       "asdic: stopping: the rows that are made are kept, those in hand are left; Ctrl-C again ends "
       "at "
       "once");

@@ -96,7 +96,7 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
 
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(order->threads));
-  const Interrupt interrupt;
+  const StopOnInterrupt interrupt;
   order->run.stop = interrupt.token();
   order->run.silence = std::chrono::duration<double>(silence);
   const StopTeller teller(session, order->run);
