@@ -83,9 +83,10 @@ TEST(AcrossBeams, ASeaThatAnswersFromEverywhereIsNoBeamful) {
 }
 
 // A patch of sea seven cells wide (λ/extent is 0.087 of the cosine) answers for 0.1 s, ten cells of
-// time, more than 30 dB over the noise behind the filter. Its answer is Rayleigh: over its true local mean it
-// would pass 10⁻⁶ once in 10⁴ such patches. Its middle and its edges in time and bearing are none
-// either, where one of the sides, or both, tell what is there; in time alone they are a handful.
+// time, more than 30 dB over the noise behind the filter. Its answer is Rayleigh: over its true
+// local mean it would pass 10⁻⁶ once in 10⁴ such patches. Its middle and its edges in time and
+// bearing are none either, where one of the sides, or both, tell what is there; in time alone they
+// are a handful.
 TEST(AcrossBeams, APatchOfSeaIsNoHandfulOfEchoes) {
   std::size_t alone = 0, across = 0;
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
