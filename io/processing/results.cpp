@@ -90,6 +90,7 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
   file.set_attribute(group, "sound_speed_mps", first->array.sound_speed);
   file.set_attribute(group, "time_cell_s", like.time_cell);
   file.set_attribute(group, "doppler_cell", like.doppler_cell);
+  file.set_attribute(group, "delay_per_doppler_s", like.delay_per_doppler);
 
   file.create_growing<std::int32_t>(group + "/ping", {}, std::size_t{64});
   describe(file, group + "/ping", "number of the ping");

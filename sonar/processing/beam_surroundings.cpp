@@ -1,22 +1,28 @@
 #include "sonar/processing/beam_surroundings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 namespace asdic {
 namespace {
 
-constexpr double nearest = 2.0, furthest = 6.0;  // resolution cells
-constexpr std::size_t fewest = 8;
+struct Cells {
+  double nearest, furthest;  // resolution cells
+  std::size_t fewest;        // beams
+};
+constexpr Cells beside_cells{.nearest = 2.0, .furthest = 6.0, .fewest = 8};
+constexpr Cells side_cells{.nearest = 1.5, .furthest = 4.0, .fewest = 4};
+/// Of time, before and after; with the ones beside from 1 to 5: an echo fills the first.
+constexpr std::size_t off = 3;
 
 }  // namespace
 
 BeamSurroundings::BeamSurroundings(const ArrayShape& shape, std::span<const Vec3> looks,
                                    double wavelength) {
-  first_.push_back(0);
   const bool told = shape.kind != ArrayKind::point;
   for (const Vec3& look : looks) {
-    const std::size_t before = around_.size();
     for (std::size_t other = 0; told && other < looks.size(); ++other) {
       const Vec3 way = looks[other] - look;
       if (way.squaredNorm() > 1.0) continue;  // within 60°: not through the array on its other side
@@ -26,12 +32,21 @@ BeamSurroundings::BeamSurroundings(const ArrayShape& shape, std::span<const Vec3
         apart += std::pow(way.dot(shape.across) * shape.width, 2.0);
       if (shape.kind == ArrayKind::volume) apart += std::pow(way.z() * shape.height, 2.0);
       const double cells = std::sqrt(apart) / wavelength;
-      if (cells >= nearest && cells <= furthest)
-        around_.push_back(static_cast<std::uint32_t>(other));
+      const auto among = [&](const Cells& meant) {
+        return cells > meant.nearest - 1e-9 && cells < meant.furthest + 1e-9;
+      };
+      const auto number = static_cast<std::uint32_t>(other);
+      if (among(beside_cells)) beside_.beams.push_back(number);
+      if (among(side_cells)) sides_[way.dot(shape.axis) > 0.0 ? 1 : 0].beams.push_back(number);
     }
-    if (around_.size() - before < fewest) around_.resize(before);
-    first_.push_back(around_.size());
+    beside_.end_beam(beside_cells.fewest);
+    for (Lists& side : sides_) side.end_beam(side_cells.fewest);
   }
+}
+
+void BeamSurroundings::Lists::end_beam(std::size_t fewest) {
+  if (beams.size() - first.back() < fewest) beams.resize(first.back());
+  first.push_back(beams.size());
 }
 
 CellPowers::CellPowers(std::size_t filters, std::size_t beams, std::size_t samples, double cell)
@@ -54,25 +69,37 @@ void CellPowers::set(std::size_t filter, std::size_t beam, std::span<const float
   }
 }
 
-float CellPowers::near(std::size_t filter, std::size_t beam, std::size_t sample) const noexcept {
+float CellPowers::mean(std::size_t filter, std::size_t beam, std::size_t cell) const noexcept {
   const float* const row = mean_.data() + (filter * beams_ + beam) * cells_;
-  const std::size_t cell =
-      std::min(cells_ - 1, static_cast<std::size_t>(static_cast<double>(sample) / cell_));
   const std::size_t begin = cell > 0 ? cell - 1 : 0, end = std::min(cells_, cell + 2);
   float sum = 0.0F;
   for (std::size_t i = begin; i < end; ++i) sum += row[i];
   return sum / static_cast<float>(end - begin);
 }
 
-float CellPowers::background(const BeamSurroundings& around, std::size_t filter, std::size_t beam,
-                             std::size_t sample, std::vector<float>& scratch) const {
-  const auto beams = around.of(beam);
-  if (beams.empty()) return 0.0F;
-  scratch.clear();
-  for (const std::uint32_t other : beams) scratch.push_back(near(filter, other, sample));
-  const auto middle = scratch.begin() + std::ssize(scratch) / 2;
-  std::nth_element(scratch.begin(), middle, scratch.end());
-  return *middle;
+float CellPowers::background(const BeamSurroundings& surroundings, std::size_t filter,
+                             std::size_t beam, std::size_t sample,
+                             std::vector<float>& scratch) const {
+  const auto median = [&](std::span<const std::uint32_t> beams, std::size_t cell) {
+    if (beams.empty()) return 0.0F;
+    scratch.clear();
+    for (const std::uint32_t other : beams) scratch.push_back(mean(filter, other, cell));
+    const auto middle = scratch.begin() + std::ssize(scratch) / 2;
+    std::nth_element(scratch.begin(), middle, scratch.end());
+    return *middle;
+  };
+  const std::size_t cell =
+      std::min(cells_ - 1, static_cast<std::size_t>(static_cast<double>(sample) / cell_));
+  std::array<float, 6> heard{};
+  auto* next = heard.begin();
+  for (const std::size_t side : {0, 1}) {
+    const auto beams = surroundings.on_side(side, beam);
+    *next++ = median(beams, cell);
+    *next++ = cell >= off ? median(beams, cell - off) : 0.0F;
+    *next++ = cell + off < cells_ ? median(beams, cell + off) : 0.0F;
+  }
+  std::nth_element(heard.begin(), heard.begin() + 1, heard.end(), std::greater<>());
+  return std::max(median(surroundings.beside(beam), cell), heard[1]);
 }
 
 }  // namespace asdic

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,26 +8,42 @@
 
 namespace asdic {
 
-/// What the beams around a beam hear at the same time: the background of what is loud at all
-/// bearings but not for long (the sea answering from right above or below, the first reverberation
-/// of a path), to which the beam's surroundings in time are silent.
+/// What the beams around a beam hear: the background of what is loud at many bearings but not for
+/// long, to which the beam's surroundings in time are silent.
 ///
-/// The beams meant are 2 to 6 resolution cells (λ/extent) away. The median of their powers is
-/// nearly their mean (0.9 of it where each is the mean of three exponential cells), and a few loud
-/// ones among them, another echo, do not count: an ordered-statistic CFAR over bearing; Rohling,
-/// IEEE Trans. AES 19, 608 (1983). docs/theory/processing.md, "Background and threshold"
+/// Those *beside* are 2 to 6 resolution cells (λ/extent) away on either side: what they hear at the
+/// same time (the sea answering from right above or below). Those *on a side* are 1.5 to 4 cells
+/// away, further along the array's axis or less far: what they hear then, before and after (a patch
+/// of sea whose edge this is, in time or in bearing). Each time the median of their powers is
+/// taken, nearly their mean (0.9 of it where each is the mean of three exponential cells); a few
+/// loud ones among them, another echo, do not count: an ordered-statistic CFAR over bearing;
+/// Rohling, IEEE Trans. AES 19, 608 (1983). docs/theory/processing.md, "Background and threshold"
 class BeamSurroundings {
  public:
   BeamSurroundings(const ArrayShape& shape, std::span<const Vec3> looks, double wavelength);
 
   /// Indices of the beams meant; none where fewer than eight are there.
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t beam) const noexcept {
-    return {around_.data() + first_[beam], around_.data() + first_[beam + 1]};
+  [[nodiscard]] std::span<const std::uint32_t> beside(std::size_t beam) const noexcept {
+    return beside_.of(beam);
+  }
+  /// The same of either side, 0 or 1; none where fewer than four are there.
+  [[nodiscard]] std::span<const std::uint32_t> on_side(std::size_t side,
+                                                       std::size_t beam) const noexcept {
+    return sides_[side].of(beam);
   }
 
  private:
-  std::vector<std::uint32_t> around_;
-  std::vector<std::size_t> first_;  // [beams + 1]
+  struct Lists {
+    std::vector<std::uint32_t> beams;
+    std::vector<std::size_t> first{0};  // [beams + 1]
+
+    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t beam) const noexcept {
+      return {beams.data() + first[beam], beams.data() + first[beam + 1]};
+    }
+    void end_beam(std::size_t fewest);  ///< empties the last list if it is shorter
+  };
+  Lists beside_;
+  std::array<Lists, 2> sides_;
 };
 
 /// The filters' mean power in every cell of time: what a whole ping's beams hear, in brief.
@@ -36,9 +53,12 @@ class CellPowers {
   CellPowers(std::size_t filters, std::size_t beams, std::size_t samples, double cell);
 
   void set(std::size_t filter, std::size_t beam, std::span<const float> power) noexcept;
-  /// Mean power there in the cell of a sample and the one on either side.
-  [[nodiscard]] float near(std::size_t filter, std::size_t beam, std::size_t sample) const noexcept;
-  /// The background by the beams around one; 0 where there are none. \param scratch  any
+  /// Mean power there in a cell and the one on either side.
+  [[nodiscard]] float mean(std::size_t filter, std::size_t beam, std::size_t cell) const noexcept;
+  /// The background by the beams around one: what those beside it hear in that cell and the next,
+  /// or, if more, the second greatest of what either side hears then, and in the cells before and
+  /// after: one more echo in all that is forgiven. 0 where there are no such beams.
+  /// \param scratch  any
   [[nodiscard]] float background(const BeamSurroundings& around, std::size_t filter,
                                  std::size_t beam, std::size_t sample,
                                  std::vector<float>& scratch) const;

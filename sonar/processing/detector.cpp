@@ -62,7 +62,10 @@ class Search {
         heard_(settings.normaliser.across_beams ? bank_.filters() : 0, grid_.looks.size(),
                bank_.samples(), bank_.sample_rate() / replica.noise_bandwidth()),
         pointing_(baseband, phones_, sound_speed, replica, shape_, weights_, grid_.spacing,
-                  dopplers.front()) {}
+                  dopplers.front()),
+        doppler_cell_(doppler_cell(replica)),
+        ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_).delay /
+               (0.25 * doppler_cell_)) {}
 
   DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
     const BeamSpectra beams =
@@ -74,7 +77,7 @@ class Search {
     prepare_maps(result.maps);
     std::vector<Probe> at_middle(probes.begin(), probes.end());
     for (Probe& probe : at_middle) probe.time -= lead(probe.look);
-    probes_ = place_probes(at_middle, bank_, doppler_cell(replica_), grid_, phones_, weights_,
+    probes_ = place_probes(at_middle, bank_, doppler_cell_, grid_, phones_, weights_,
                            2.0 * pi / wavelength_);
     std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
     if (settings_.normaliser.across_beams) compare_across_beams(peaks);
@@ -116,9 +119,8 @@ class Search {
     result.grid = grid_;
     for (std::size_t f = 0; f < bank_.filters(); ++f) result.dopplers.push_back(bank_.doppler(f));
     result.time_cell = 1.0 / replica_.noise_bandwidth();
-    result.doppler_cell = doppler_cell(replica_);
-    const double off = 0.25 * result.doppler_cell;
-    result.delay_per_doppler = -doppler_answer(replica_, 1.0 + off).delay / off;
+    result.doppler_cell = doppler_cell_;
+    result.delay_per_doppler = ridge_;
     return result;
   }
 
@@ -284,6 +286,18 @@ class Search {
     d.snr_db = db_from_power(power / static_cast<double>(peak.background));
     d.excess_db = db_from_power(power / static_cast<double>(peak.threshold));
     d.level_db = level_of(power);
+    d.doppler_sigma = sigma_of(2.0 * doppler_cell_, power / static_cast<double>(peak.background));
+    const double middle = 0.5 * (bank_.doppler(0) + bank_.doppler(last)),
+                 half_span = bank_.doppler(last) - middle;
+    if (half_span > 0.0 && half_span <= doppler_cell_) {
+      const double known_before = half_span / std::sqrt(3.0);  // evenly likely all over the bank
+      d.doppler_sigma = std::min(d.doppler_sigma, known_before);
+      if (peak.filter == 0 || peak.filter == last) {  // no maximum: along the ridge to the middle
+        d.time -= ridge_ * (d.doppler - middle);
+        d.doppler = middle;
+        d.doppler_sigma = known_before;
+      }
+    }
     return d;
   }
 
@@ -303,10 +317,15 @@ class Search {
   BeamSurroundings around_;
   CellPowers heard_;
   EchoPointing pointing_;
+  double doppler_cell_, ridge_;  // delay_per_doppler
   std::vector<PlacedProbe> probes_;
 };
 
 }  // namespace
+
+double sigma_of(double cell, double snr) {
+  return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
+}
 
 DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
                       const Replica& replica, std::span<const double> dopplers,

@@ -39,6 +39,10 @@ struct DetectionMaps {
   std::vector<float> doppler_time;  ///< [filters × columns] the same, largest beam [1]
 };
 
+/// Standard deviation of an estimate whose resolution cell is this wide: Cramér and Rao's bound is
+/// about cell/√(2·SNR)/2; nothing is trusted to better than a tenth of a cell. \param snr  E/N₀
+[[nodiscard]] double sigma_of(double cell, double snr);
+
 struct DetectorResult {
   BeamGrid grid;
   std::vector<double> dopplers;       ///< [filters]
@@ -60,8 +64,10 @@ struct DetectorResult {
 /// maxima over the threshold are peaks. From the loudest down, a peak is a detection unless a
 /// louder one explains it: what that leaks into its cell by the pulse's ambiguity function and the
 /// beams' pattern, times a margin. Time and Doppler factor are then interpolated, and the direction
-/// is the one that fits the phones' own filter outputs best. Deterministic for any number of
-/// threads. Source: docs/theory/processing.md
+/// is the one that fits the phones' own filter outputs best. A sweep whose bank lies within one
+/// Doppler cell and whose loudest filter is the bank's first or last has no Doppler factor: told is
+/// the bank's middle, with the bank's own deviation, and the time there. Deterministic for any
+/// number of threads. Source: docs/theory/processing.md
 /// \param phones       [channels] relative to the point that delays refer to [m]
 /// \param sound_speed  at the array [m/s]
 /// \param probes       cells whose thresholds are told

@@ -50,6 +50,7 @@ std::string_view words_for(Unplaced reason) noexcept {
 
 void Location::set_slopes(double xi_out, double xi_home, double turn, double factor) {
   range_slope = 1.0 / (xi_out * std::cos(turn) + xi_home);
+  bearing_slope = -xi_out * range * std::sin(turn) * range_slope;
   rate_slope = 1.0 / (xi_out + xi_home);
   range_rate = -(factor - 1.0) * rate_slope;
 }

@@ -40,12 +40,6 @@ std::span<const double> heard_factors(const Replica& replica, std::span<const do
   return {first, last};
 }
 
-/// Standard deviation of an estimate whose resolution cell is this wide: Cramér and Rao's bound is
-/// about cell/√(2·SNR)/2; nothing is trusted to better than a tenth of a cell.
-double sigma_of(double cell, double snr) {
-  return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
-}
-
 }  // namespace
 
 PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
@@ -216,11 +210,10 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
     Contact c{.detection = static_cast<int>(i), .time = ping_time + place.struck};
     c.range = place.range;
     c.range_rate = place.range_rate;
-    const double doppler_sigma = sigma_of(2.0 * processed.result.doppler_cell, snr);
-    c.range_sigma = std::hypot(sigma_of(processed.result.time_cell, snr),
-                               processed.result.delay_per_doppler * doppler_sigma) *
-                    place.range_slope;
-    c.range_rate_sigma = doppler_sigma * place.rate_slope;
+    c.range_sigma = sigma_of(processed.result.time_cell, snr) * place.range_slope;
+    c.range_rate_sigma = d.doppler_sigma * place.rate_slope;
+    // Along the ridge the delay is late by D for an error of η, the range rate low by rate_slope.
+    c.range_per_rate = -processed.result.delay_per_doppler * place.range_slope / place.rate_slope;
     if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
       c.bearing = 0.0;
       c.bearing_sigma = 1e-3;
@@ -232,6 +225,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
         across = std::max(std::sqrt(std::max(1.0 - d.cosine * d.cosine, 0.0)),
                           std::sqrt(wavelength / processed.shape.length));
       c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
+      c.range_per_bearing = place.bearing_slope;
       const Vec3 heard = processed.places.array.after(d.time);
       c.array = heard.head<2>();
       c.array_velocity = processed.places.array.velocity.head<2>();

@@ -35,11 +35,41 @@ Eigen::Vector3d measured(const Eigen::Vector4d& state, const Contact& c,
           0.5 * (v_home.dot(home) + v_out.dot(out))};
 }
 
+/// R = M·diag(σ²)·Mᵀ, docs/theory/processing.md, eq. (12)
 Eigen::Matrix3d noise(const Contact& c) {
-  return Eigen::Vector3d(c.bearing_sigma * c.bearing_sigma, c.range_sigma * c.range_sigma,
-                         c.range_rate_sigma * c.range_rate_sigma)
-      .asDiagonal();
+  Eigen::Matrix3d mix = Eigen::Matrix3d::Identity();  // of the errors of bearing, range, range rate
+  mix(1, 0) = c.range_per_bearing;
+  mix(1, 2) = c.range_per_rate;
+  const Eigen::Vector3d sigma(c.bearing_sigma, c.range_sigma, c.range_rate_sigma);
+  return mix * sigma.cwiseAbs2().asDiagonal() * mix.transpose();
 }
+
+/// What range and range rate are more than their slopes say, ½·xᵀ·H·x for an error x of the state,
+/// by its covariance P: mean ½·tr(H_i·P), covariance ½·tr(H_i·P·H_j·P). (The bearing's is small.)
+/// Bar-Shalom, Li & Kirubarajan (2001), 10.3.2.
+struct Curvature {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+
+  Curvature(const TrackState& state, const Contact& c) {
+    const auto across = [&](const Vec2& platform) -> Eigen::Matrix2d {  // ∂²|x|/∂x∂xᵀ
+      const Vec2 way = state.mean.head<2>() - platform;
+      const double range = std::max(way.norm(), 1e-3);
+      const Vec2 beside(way.y() / range, -way.x() / range);
+      return beside * beside.transpose() / range;
+    };
+    const Eigen::Matrix2d home = across(c.array), both = 0.5 * (home + across(c.source));
+    Eigen::Matrix4d of_range = Eigen::Matrix4d::Zero(), of_rate = of_range;
+    of_range.topLeftCorner<2, 2>() = home;
+    of_rate.topRightCorner<2, 2>() = of_rate.bottomLeftCorner<2, 2>() = both;
+    const Eigen::Matrix4d range = of_range * state.covariance, rate = of_rate * state.covariance;
+    mean[1] = 0.5 * range.trace();
+    mean[2] = 0.5 * rate.trace();
+    covariance(1, 1) = 0.5 * (range * range).trace();
+    covariance(2, 2) = 0.5 * (rate * rate).trace();
+    covariance(1, 2) = covariance(2, 1) = 0.5 * (range * rate).trace();
+  }
+};
 
 /// A track while it is made.
 struct Candidate {
@@ -104,7 +134,7 @@ class Tracker {
       const auto j = static_cast<std::size_t>(columns[r]);
       Candidate& c = open_[rows[r]];
       c.state.predict(contacts[j].time, settings_.acceleration);
-      c.state.update(contacts[j], c.state.innovation(contacts[j]));
+      c.state.update(c.state.innovation(contacts[j]));
       taken[j] = 1;
       hit_[rows[r]] = 1;
       ++c.age;
@@ -211,44 +241,56 @@ double TrackState::Innovation::distance() const {
 TrackState::Innovation TrackState::innovation(const Contact& contact) const {
   Innovation result;
   const Eigen::Vector3d expected = measured(mean, contact, &result.slope);
+  const Curvature curved(*this, contact);
   result.residual = Eigen::Vector3d(std::remainder(contact.bearing - expected[0], 2.0 * pi),
-                                    contact.range - expected[1], contact.range_rate - expected[2]);
-  result.covariance = result.slope * covariance * result.slope.transpose() + noise(contact);
+                                    contact.range - expected[1], contact.range_rate - expected[2]) -
+                    curved.mean;
+  result.noise = noise(contact) + curved.covariance;
+  result.covariance = result.slope * covariance * result.slope.transpose() + result.noise;
   return result;
 }
 
-void TrackState::update(const Contact& contact, const Innovation& innovation) {
+void TrackState::update(const Innovation& innovation) {
   const Eigen::Matrix<double, 4, 3> gain =
       innovation.covariance.ldlt().solve(innovation.slope * covariance).transpose();
   mean += gain * innovation.residual;
   const Eigen::Matrix4d left = Eigen::Matrix4d::Identity() - gain * innovation.slope;
-  covariance = left * covariance * left.transpose() + gain * noise(contact) * gain.transpose();
+  covariance = left * covariance * left.transpose() + gain * innovation.noise * gain.transpose();
 }
 
 TrackState TrackState::from(const Contact& c, double max_speed) {
   TrackState state;
   state.time = c.time;
   const Vec2 home(std::sin(c.bearing), std::cos(c.bearing)), across(home.y(), -home.x());
-  state.mean.head<2>() = c.array + c.range * home;
-  const Vec2 from_source = state.mean.head<2>() - c.source;
+  const Vec2 from_source = c.array + c.range * home - c.source;
   const Vec2 out = from_source / std::max(from_source.norm(), 1e-3);
   // v·(home + out)/2 = range rate + what the platforms do to it
   const Vec2 along = 0.5 * (home + out);
-  const double radial =
-      c.range_rate + 0.5 * (c.array_velocity.dot(home) + c.source_velocity.dot(out));
+  const double slope = std::max(along.norm(), 0.1);
   const Vec2 unit = along.normalized(), beside(unit.y(), -unit.x());
-  const double speed = std::clamp(radial / std::max(along.norm(), 0.1), -max_speed, max_speed);
-  const double radial_sigma =
-      std::min(c.range_rate_sigma / std::max(along.norm(), 0.1), 0.5 * max_speed);
-  state.mean.tail<2>() =
-      c.range_rate_sigma < 0.5 * max_speed ? Vec2(speed * unit) : Vec2(Vec2::Zero());
-  const auto spread = [](const Vec2& u, double s) -> Eigen::Matrix2d {
-    return s * s * u * u.transpose();
-  };
-  state.covariance.topLeftCorner<2, 2>() =
-      spread(home, c.range_sigma) + spread(across, std::max(c.range * c.bearing_sigma, 1e-3));
-  state.covariance.bottomRightCorner<2, 2>() =
-      spread(unit, radial_sigma) + spread(beside, 0.5 * max_speed);
+  const double measured_speed =
+      (c.range_rate + 0.5 * (c.array_velocity.dot(home) + c.source_velocity.dot(out))) / slope;
+  // Speed along: measured with the variance S, before that 0 with the variance P. What of the
+  // measured one is error, by this, is one of range as well.
+  const double likely = std::pow(0.5 * max_speed, 2.0),
+               noise = std::pow(c.range_rate_sigma / slope, 2.0);
+  const double speed =
+      std::clamp(measured_speed * likely / (likely + noise), -max_speed, max_speed);
+  const double range_per_speed = c.range_per_rate * slope;
+  state.mean.head<2>() = c.array + (c.range - range_per_speed * (measured_speed - speed)) * home;
+  state.mean.tail<2>() = speed * unit;
+  // Independent errors of bearing, range, speed along and across: of place and velocity.
+  const double speed_sigma = std::sqrt(likely * noise / (likely + noise));
+  const Vec2 turned = std::max(c.range * c.bearing_sigma, 1e-3) * across +
+                      c.range_per_bearing * c.bearing_sigma * home;
+  Eigen::Matrix4d errors;
+  errors.row(0) << turned.x(), c.range_sigma * home.x(), range_per_speed * speed_sigma * home.x(),
+      0.0;
+  errors.row(1) << turned.y(), c.range_sigma * home.y(), range_per_speed * speed_sigma * home.y(),
+      0.0;
+  errors.row(2) << 0.0, 0.0, speed_sigma * unit.x(), 0.5 * max_speed * beside.x();
+  errors.row(3) << 0.0, 0.0, speed_sigma * unit.y(), 0.5 * max_speed * beside.y();
+  state.covariance = errors * errors.transpose();
   return state;
 }
 

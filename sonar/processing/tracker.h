@@ -13,6 +13,12 @@ struct Contact {
   double time = 0.0;   ///< when the sound struck it, since the start of the scenario [s]
   double bearing = 0.0, range = 0.0, range_rate = 0.0;  ///< [rad], [m], [m/s] as in Location
   double bearing_sigma = 0.0, range_sigma = 0.0, range_rate_sigma = 0.0;
+  /// Errors of bearing and range rate that are errors of range as well: dr = ε_r +
+  /// range_per_rate·ε_ṙ
+  /// + range_per_bearing·ε_β, where `range_sigma` is of ε_r alone. A sweep's delay goes with its
+  /// Doppler factor along its ridge [m per m/s]; the range of a pair that lies apart with the
+  /// bearing, along the ellipse of its delay [m/rad].
+  double range_per_rate = 0.0, range_per_bearing = 0.0;
   Vec2 array = Vec2::Zero(), array_velocity = Vec2::Zero();    ///< when it heard (east, north)
   Vec2 source = Vec2::Zero(), source_velocity = Vec2::Zero();  ///< when it sent
 };
@@ -48,17 +54,20 @@ struct TrackState {
 
   /// Constant velocity with white acceleration. \param acceleration  [m/s²·√s]
   void predict(double to, double acceleration);
-  /// Innovation, its covariance and the measurement's slope for a contact.
+  /// Innovation, its covariance and the measurement's slope for a contact; to the second order, for
+  /// a place that is known to 300 m across at 8 km is 6 m further away than it looks.
   struct Innovation {
     Eigen::Vector3d residual;
-    Eigen::Matrix3d covariance;
+    Eigen::Matrix3d noise;       ///< the contact's, and what the slope leaves out
+    Eigen::Matrix3d covariance;  ///< of the residual
     Eigen::Matrix<double, 3, 4> slope;
     [[nodiscard]] double distance() const;  ///< squared, Mahalanobis
   };
   [[nodiscard]] Innovation innovation(const Contact& contact) const;
   /// Extended Kalman filter, Joseph's form.
-  void update(const Contact& contact, const Innovation& innovation);
-  /// From one contact: its place, its range rate, and any speed across.
+  void update(const Innovation& innovation);
+  /// From one contact: its place, any speed across, and along it what its range rate tells beside
+  /// what a target may do, a deviation of half the greatest speed; the range goes with it.
   [[nodiscard]] static TrackState from(const Contact& contact, double max_speed);
 };
 

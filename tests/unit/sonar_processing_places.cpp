@@ -139,6 +139,16 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
       const double turn = std::cos(out.bearing - seen.bearing);
       EXPECT_NEAR(found[0].range_slope, 1500.0 / (1.0 + turn), 0.1);
       EXPECT_NEAR(found[0].rate_slope, 750.0, 0.1);
+      // dr/dβ along the ellipse of the delay: found at bearings 1 mrad to either side. The third
+      // derivative's share of it is of the order of 10⁻⁶ of the range a radian.
+      const auto range_at = [&](double bearing) {
+        Detection turned = heard;
+        turned.look = direction(bearing, 0.0);
+        return localiser.locate(turned, places, 0.01).at(0).range;
+      };
+      const double slope = (range_at(seen.bearing + 1e-3) - range_at(seen.bearing - 1e-3)) / 2e-3;
+      EXPECT_GT(std::abs(slope), 500.0);
+      EXPECT_NEAR(found[0].bearing_slope, slope, 1e-3 * seen.range);
     }
   }
 }
