@@ -56,8 +56,10 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
       const PathPair* other = nullptr;
       if (sheet.one_fan()) {
         for (const PathPair& p : pairs.found)
-          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair)
+          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair) {
             other = &p;
+            break;
+          }
         if (other != nullptr && pair.out_index > pair.back_index) continue;
       }
       const double root = std::sqrt(area * pair.area);
@@ -92,6 +94,9 @@ std::vector<Heard> hear(std::span<const ScatteringField* const> fields, const Au
       for (std::size_t i = part * together; i < end; ++i)
         hear_circle(circles, i, limits, pairs, parts[part]);
     });
+    std::size_t count = all.size();
+    for (const auto& part : parts) count += part.size();
+    all.reserve(count);
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -140,12 +145,15 @@ void spread(double power, double first, double last, std::vector<double>& bins) 
     return;
   }
   const double each = power / (last - first);
-  for (auto i = static_cast<std::size_t>(first); i < bins.size(); ++i) {
-    const auto low = static_cast<double>(i);
-    const double part = std::min(last, low + 1.0) - std::max(first, low);
-    if (part <= 0.0) break;
-    bins[i] += each * part;
+  auto i = static_cast<std::size_t>(first);
+  const auto end = static_cast<std::size_t>(last);  // the last one, of which it may fill nothing
+  if (i == end) {
+    bins[i] += power;
+    return;
   }
+  bins[i] += each * (static_cast<double>(i + 1) - first);
+  while (++i < end) bins[i] += each;
+  if (end < bins.size()) bins[end] += each * (last - static_cast<double>(end));
 }
 
 }  // namespace
