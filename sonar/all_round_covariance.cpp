@@ -1,5 +1,6 @@
 #include "sonar/all_round_covariance.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -183,14 +184,15 @@ void AllRoundSum::add_between(const Sound& sound, std::span<double> re, std::spa
   const std::size_t components = array_.components_;
   const auto [a, down_a, b, down_b] = sound.mean();
   const double x = sound.power.real(), y = sound.power.imag();
+  using Under = Eigen::Map<const Eigen::ArrayXd>;
+  const auto length = static_cast<Eigen::Index>(components);
+  const Under reach(array_.reach_.data(), length);
   const bool half = array_.flat_ && array_.mirrored_;  // of the rows: the others are their images
   for (std::size_t m = 0; m < (half ? (components + 1) / 2 : components); ++m) {
-    const double* const gram = &array_.gram_[m * components];
+    const Under gram(&array_.gram_[m * components], length);
     const double own = a * a * array_.reach_[m] * array_.reach_[m], twice = 2.0 * a * b;
-    for (std::size_t n = 0; n < components; ++n) {  // |ξ_a x_m − ξ_b x_n|
-      const double other = b * array_.reach_[n];
-      arguments[n] = std::sqrt(std::max(0.0, own + other * other - twice * gram[n]));
-    }
+    Eigen::Map<Eigen::ArrayXd>(arguments.data(), length) =  // |ξ_a x_m − ξ_b x_n|
+        (own + b * b * reach.square() - twice * gram).max(0.0).sqrt();
     array_.bessel_.replace(arguments);
     const std::size_t row = m * components;
     if (!array_.flat_) {
