@@ -99,6 +99,24 @@ struct EigenraySolver::LayeredOcean {
   }
 };
 
+/// The last columns that paths were followed in: ends move, their depths seldom.
+struct EigenraySolver::Columns {
+  static constexpr std::size_t most = 4;
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const WaterBetween>> of;  // the latest last
+
+  std::shared_ptr<const WaterBetween> between(double source, double receiver,
+                                              const KeptOcean& ocean) {
+    const std::lock_guard lock(mutex);
+    const auto known = std::find_if(of.begin(), of.end(), [&](const auto& water) {
+      return water->source_depth == source && water->receiver_depth == receiver;
+    });
+    if (known != of.end()) return *known;
+    if (of.size() == most) of.erase(of.begin());
+    return of.emplace_back(std::make_shared<const WaterBetween>(source, receiver, ocean));
+  }
+};
+
 /// The tracers of an environment by frequency: a sonar works at a few.
 struct EigenraySolver::Tracers {
   std::mutex mutex;
@@ -108,7 +126,8 @@ struct EigenraySolver::Tracers {
 EigenraySolver::EigenraySolver(const Environment& environment)
     : environment_(environment),
       layered_(is_layered(environment)),
-      tracers_(std::make_shared<Tracers>()) {
+      tracers_(std::make_shared<Tracers>()),
+      columns_(std::make_shared<Columns>()) {
   std::vector<double> ranges = {0.0};  // where the boundaries are nearest to each other
   for (const Boundary* boundary : {&environment.surface, &environment.bottom})
     if (boundary->shape)
@@ -179,12 +198,8 @@ std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double sourc
     const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
     receiver_depth += room_below ? depth_offset : -depth_offset;
   }
-  return followed_branch(environment_, water_->layers,
-                         {.source_depth = source_depth,
-                          .receiver_depth = receiver_depth,
-                          .range = range,
-                          .frequency = frequency},
-                         known, limits);
+  const auto water = columns_->between(source_depth, receiver_depth, water_->kept());
+  return followed_branch(environment_, *water, range, frequency, known, limits);
 }
 
 Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,

@@ -63,12 +63,14 @@ class EigenraySolver {
 
  private:
   struct Tracers;
+  struct Columns;
 
   Environment environment_;
   bool layered_;
   struct LayeredOcean;
   std::shared_ptr<const LayeredOcean> water_;  // shared by copies, as is what follows
   std::shared_ptr<Tracers> tracers_;
+  std::shared_ptr<Columns> columns_;
 };
 
 }  // namespace asdic

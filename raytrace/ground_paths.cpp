@@ -49,6 +49,8 @@ class BranchFollower {
   void follow(const MonotoneStretch& s) {
     if (level_.boundary && s.branch.arrives_upward() != (level_.boundary == BoundaryKind::surface))
       return;  // the field that falls on the boundary
+    if (s.interval != reached_of_) reached_.clear();
+    reached_of_ = s.interval;
     stretch_ = &s;
     weights_ = weights(s.branch, fan_.column().source_is_upper());
     turns_ = (s.interval->turns_above ? s.branch.top_vertices() : 0) +
@@ -68,10 +70,17 @@ class BranchFollower {
   /// dξ/dθ.
   static double slowness_per_angle(const RayParameter& r) { return -r.sigma / r.reference_speed; }
 
-  BranchPoint point(double theta) const {
+  /// A ray of the interval on its way through the column. Branches of one interval, which differ in
+  /// how often they go up and down, end at the same nodes and are halved alike: asked for once.
+  Column::All through_column(double theta) {
+    for (const Reached& known : reached_)
+      if (known.theta == theta) return known.legs;
+    return reached_.emplace_back(Reached{theta, fan_.column().all(ray(theta))}).legs;
+  }
+
+  BranchPoint point(double theta) {
     const RayParameter r = ray(theta);
-    const ColumnSums sums = fan_.column().sums(r);
-    const ColumnDetails details = fan_.column().details(r);
+    const auto [sums, details] = through_column(theta);
     const double range = weights_.of(sums.up.range, sums.middle.range, sums.down.range);
     const double slope = weights_.of(sums.up.d_range, sums.middle.d_range, sums.down.d_range) *
                          slowness_per_angle(r);
@@ -163,6 +172,12 @@ class BranchFollower {
   GroundLevel level_;
   double spacing_, max_range_, frequency_;
   std::vector<CellPath>& out_;
+  struct Reached {
+    double theta;
+    Column::All legs;
+  };
+  std::vector<Reached> reached_;  // rays of one interval
+  const FanInterval* reached_of_ = nullptr;
   const MonotoneStretch* stretch_ = nullptr;
   BranchWeights weights_;
   int turns_ = 0;

@@ -1,21 +1,51 @@
 #include "sonar/all_round_covariance.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "sonar/phase_turn.h"
 
 namespace asdic {
 
+namespace {
+
+/// J₀ and its slope a step further, by the Taylor series of y″ = −y − y′/x about x:
+/// (n + 1)(n + 2)·a_{n+2} = −((n + 1)²·a_{n+1} + x·a_n + a_{n−1})/x. From x = 1 on twelve terms of
+/// a sixteenth leave nothing, and a library's function takes ten times as long.
+void step_bessel(double x, double step, double& value, double& slope) {
+  double before = 0.0, a = value, next = slope;                        // a_{n−1}, a_n, a_{n+1}
+  double power = step, sum = value + slope * step, slope_sum = slope;  // power: stepⁿ⁺¹
+  const double per_x = 1.0 / x;
+  for (int n = 0; n < 10; ++n) {
+    const double one = n + 1, two = n + 2;
+    const double last = -(one * one * next + x * a + before) * per_x / (one * two);
+    slope_sum += two * last * power;
+    power *= step;
+    sum += last * power;
+    before = std::exchange(a, std::exchange(next, last));
+  }
+  value = sum;
+  slope = slope_sum;
+}
+
+}  // namespace
+
 BesselTable::BesselTable(double furthest) {
   const auto count = static_cast<std::size_t>(furthest * steps) + 2;
   cubics_.reserve(count);
-  double value = 1.0, slope = 0.0;
-  for (std::size_t i = 1; i <= count; ++i) {  // POSIX' Bessel functions: std's are slow
+  double value = 1.0, slope = 0.0;  // by x
+  for (std::size_t i = 1; i <= count; ++i) {
     const double x = static_cast<double>(i) / steps;
-    const double next = ::j0(x), next_slope = -::j1(x) / steps, rise = next - value;
-    cubics_.push_back(
-        {value, slope, 3.0 * rise - 2.0 * slope - next_slope, slope + next_slope - 2.0 * rise});
+    double next = value, next_slope = slope;
+    if (x <= 1.0)  // POSIX' Bessel functions: std's are slow
+      next = ::j0(x), next_slope = -::j1(x);
+    else
+      step_bessel(x - 1.0 / steps, 1.0 / steps, next, next_slope);
+    const double from = slope / steps, to = next_slope / steps, rise = next - value;
+    cubics_.push_back({value, from, 3.0 * rise - 2.0 * from - to, from + to - 2.0 * rise});
     value = next;
     slope = next_slope;
   }
@@ -48,6 +78,10 @@ AllRoundArray::AllRoundArray(std::span<const Vec3> phones, std::span<const doubl
     depth_.push_back(x.z());
     for (const Vec3& y : scaled) gram_.push_back(4.0 * pi * pi * x.head<2>().dot(y.head<2>()));
   }
+  // A uniform line, or any array that is its own image in its middle: on a grid of a millionth.
+  const double most = *std::max_element(reach_.begin(), reach_.end());
+  for (std::size_t i = 0; i < gram_.size() / 2 && mirrored_; ++i)
+    mirrored_ = std::abs(gram_[i] - gram_[gram_.size() - 1 - i]) <= 1e-12 * most * most;
   constexpr double alike = 0.05;  // [rad]
   const auto width = [](double furthest) { return furthest > 0.0 ? alike / furthest : infinity; };
   alike_level_ = width(*std::max_element(reach_.begin(), reach_.end()));
@@ -150,35 +184,49 @@ void AllRoundSum::add_between(const Sound& sound, std::span<double> re, std::spa
   const std::size_t components = array_.components_;
   const auto [a, down_a, b, down_b] = sound.mean();
   const double x = sound.power.real(), y = sound.power.imag();
-  for (std::size_t m = 0; m < components; ++m) {
-    const double* const gram = &array_.gram_[m * components];
+  using Under = Eigen::Map<const Eigen::ArrayXd>;
+  const auto length = static_cast<Eigen::Index>(components);
+  const Under reach(array_.reach_.data(), length);
+  const bool half = array_.flat_ && array_.mirrored_;  // of the rows: the others are their images
+  for (std::size_t m = 0; m < (half ? (components + 1) / 2 : components); ++m) {
+    const Under gram(&array_.gram_[m * components], length);
     const double own = a * a * array_.reach_[m] * array_.reach_[m], twice = 2.0 * a * b;
-    for (std::size_t n = 0; n < components; ++n) {  // |ξ_a x_m − ξ_b x_n|
-      const double other = b * array_.reach_[n];
-      arguments[n] = std::sqrt(std::max(0.0, own + other * other - twice * gram[n]));
-    }
-    double *const to_re = &re[m * components], *const to_im = &im[m * components];
-    if (array_.flat_ && y == 0.0) {
-      for (std::size_t n = 0; n < components; ++n) to_re[n] += x * array_.bessel_(arguments[n]);
+    Eigen::Map<Eigen::ArrayXd>(arguments.data(), length) =  // |ξ_a x_m − ξ_b x_n|
+        (own + b * b * reach.square() - twice * gram).max(0.0).sqrt();
+    array_.bessel_.replace(arguments);
+    const std::size_t row = m * components;
+    if (!array_.flat_) {
+      for (std::size_t n = 0; n < components; ++n) {
+        double part = x * arguments[n], other_part = y * arguments[n];
+        turn_back(down_a * array_.depth_[m] - down_b * array_.depth_[n], part, other_part);
+        re[row + n] += part;
+        im[row + n] += other_part;
+      }
       continue;
     }
-    for (std::size_t n = 0; n < components; ++n) {
-      const double mean = array_.bessel_(arguments[n]);
-      double part = mean * x, other_part = mean * y;
-      turn_back(down_a * array_.depth_[m] - down_b * array_.depth_[n], part, other_part);
-      to_re[n] += part;
-      to_im[n] += other_part;
-    }
+    const auto add = [&](double power, std::span<double> into) {
+      for (std::size_t n = 0; n < components; ++n) into[row + n] += power * arguments[n];
+      if (!half || 2 * m + 1 == components) return;
+      double* const image = &into[into.size() - row - components];
+      for (std::size_t n = 0; n < components; ++n)
+        image[n] += power * arguments[components - 1 - n];
+    };
+    add(x, re);
+    if (y != 0.0) add(y, im);
   }
 }
 
-void AllRoundSum::add_to(std::span<std::complex<double>> into) const {
+template <class Number>
+void AllRoundSum::add_all_to(std::span<Number> into) const {
+  constexpr bool complex = !std::is_same_v<Number, double>;
   const std::size_t components = array_.components_, distinct = array_.apart_.size();
-  const std::size_t all = components * components;
-  std::vector<double> memory(2 * distinct + 2 * all + components, 0.0);
-  const std::span<double> re(memory.data(), distinct), im(re.data() + distinct, distinct),
-      between_re(im.data() + distinct, all), between_im(between_re.data() + all, all),
-      arguments(between_im.data() + all, components);
+  const std::size_t all = components * components, parts = complex ? 2 : 1;
+  // Of components by what they differ by; of ordered pairs of them.
+  std::vector<double> memory(parts * (distinct + all) + components, 0.0);
+  const std::span<double> re(memory.data(), distinct), between_re(memory.data() + distinct, all),
+      arguments(between_re.data() + all, components);
+  const std::span<double> im(arguments.data() + components, complex ? distinct : 0),
+      between_im(im.data() + im.size(), complex ? all : 0);
   for (const Sound& sound : own_) add_own(sound, re, im);
   for (const Sound& sound : between_) add_between(sound, between_re, between_im, arguments);
   for (std::size_t m = 0; m < components; ++m)
@@ -186,11 +234,19 @@ void AllRoundSum::add_to(std::span<std::complex<double>> into) const {
       const std::size_t i = array_.which_[m * components + n];
       // a·b* of (m, n), and its conjugate of (n, m)
       const std::size_t there = m * components + n, back = n * components + m;
-      const std::complex<double> sum(re[i] + between_re[there] + between_re[back],
-                                     im[i] + between_im[there] - between_im[back]);
-      into[back] += sum;  // column by column
-      if (m != n) into[there] += std::conj(sum);
+      const double real = re[i] + between_re[there] + between_re[back];
+      if constexpr (complex) {
+        const Number sum(real, im[i] + between_im[there] - between_im[back]);
+        into[back] += sum;  // column by column
+        if (m != n) into[there] += std::conj(sum);
+      } else {
+        into[back] += real;
+        if (m != n) into[there] += real;
+      }
     }
 }
+
+void AllRoundSum::add_to(std::span<std::complex<double>> into) const { add_all_to(into); }
+void AllRoundSum::add_to(std::span<double> into) const { add_all_to(into); }
 
 }  // namespace asdic

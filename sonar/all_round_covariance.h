@@ -23,6 +23,10 @@ class BesselTable {
     const double t = x * steps - static_cast<double>(place);
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
   }
+  /// x ← J₀(x), one after the other.
+  void replace(std::span<double> x) const noexcept {
+    for (double& value : x) value = (*this)(value);
+  }
 
  private:
   static constexpr double steps = 16.0;
@@ -61,7 +65,8 @@ class AllRoundArray {
     auto operator<=>(const Apart&) const = default;
   };
   std::size_t components_;
-  bool flat_ = true;                             // all phones at the depth of the reference
+  bool flat_ = true;      // all phones at the depth of the reference
+  bool mirrored_ = true;  // (m, n) differ as their opposite numbers do, counted from the end
   double alike_level_ = 0.0, alike_down_ = 0.0;  // what differs no more is heard alike [s/m]
   std::vector<double> gram_;           // [components²] (2π)²·f_k x_m·f_l x_n, horizontal parts
   std::vector<double> reach_, depth_;  // [components] 2π·|f_k x_m|, f_k z_m
@@ -77,8 +82,10 @@ class AllRoundSum {
  public:
   explicit AllRoundSum(const AllRoundArray& array);
   void add(const HeardAllRound& heard);
-  /// Adds it to a matrix. \param into  [components²] column by column
+  /// Adds it to a Hermitian matrix. \param into  [components²] column by column
   void add_to(std::span<std::complex<double>> into) const;
+  /// The same of a sum that is real().
+  void add_to(std::span<double> into) const;
   /// Nothing but real numbers was added up.
   [[nodiscard]] bool real() const noexcept { return array_.flat_ && real_; }
 
@@ -95,6 +102,8 @@ class AllRoundSum {
   void add_own(const Sound& sound, std::span<double> re, std::span<double> im) const;
   void add_between(const Sound& sound, std::span<double> re, std::span<double> im,
                    std::span<double> arguments) const;
+  template <class Number>
+  void add_all_to(std::span<Number> into) const;
 
   const AllRoundArray& array_;
   std::vector<Sound> own_, between_;  // |a|² and |b|²; a·b*

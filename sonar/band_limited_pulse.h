@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <span>
 
 #include "core/units.h"
 #include "sonar/pulse.h"
@@ -24,6 +25,11 @@ class BandLimitedPulse {
                    const std::function<double(double)>& filter = {}, double recorded = infinity);
 
   [[nodiscard]] std::complex<double> at(double u) const noexcept { return signal_.at(u); }
+  /// Real and imaginary parts at many times. \param u  [n]
+  void at(std::span<const double> u, std::span<double> real,
+          std::span<double> imaginary) const noexcept {
+    signal_.at(u, real, imaginary);
+  }
   /// Nothing is heard further than this from the middle [s].
   [[nodiscard]] double half_duration() const noexcept { return half_duration_; }
   /// The spectrum is zero further than this from the centre frequency [Hz].

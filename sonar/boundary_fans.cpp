@@ -29,11 +29,14 @@ std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const Gro
 std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
   std::vector<PathEnds> ends;
   ends.reserve(paths.size());
-  for (const GroundPath& p : paths.all())
+  for (const GroundPath& p : paths.all()) {
+    const double sine = std::sin(p.grazing), cosine = std::cos(p.grazing);
     ends.push_back({.launch_level = std::cos(p.launch_elevation) / speed,
                     .launch_down = -std::sin(p.launch_elevation) / speed,
-                    .sine = std::sin(p.grazing),
-                    .down = p.downward * p.horizontal_slowness * std::tan(p.grazing)});
+                    .sine = sine,
+                    .cosine = cosine,
+                    .down = p.downward * p.horizontal_slowness * sine / cosine});
+  }
   return ends;
 }
 

@@ -21,6 +21,7 @@ struct PathEnds {
   double launch_level = 0.0;  ///< horizontal slowness at the launch, cos(elevation)/c [s/m]
   double launch_down = 0.0;   ///< vertical slowness there, positive down [s/m]
   double sine = 0.0;          ///< of the grazing angle
+  double cosine = 1.0;        ///< of it
   double down = 0.0;          ///< vertical slowness at the boundary, positive down [s/m]
 };
 

@@ -145,19 +145,19 @@ class CurvedSynthesis {
   [[nodiscard]] Shape shape(const DelayCurve& curve, const Waveforms& w) const {
     Shape found;
     found.reserve(w.lags.size() * w.span.size());
-    std::array<double, block> cycles, re, im;
+    std::array<double, block> heard, since, cycles, re, im;  // since: from the pulse's middle, u
     for (const double lag : w.lags)
       for (std::ptrdiff_t i = w.span.begin; i < w.span.end;) {
         const auto count = static_cast<std::size_t>(
             std::min<std::ptrdiff_t>(w.span.end - i, static_cast<std::ptrdiff_t>(block)));
+        for (std::size_t j = 0; j < count; ++j)
+          heard[j] = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
+        curve.sent_at({heard.data(), count}, {since.data(), count});
         for (std::size_t j = 0; j < count; ++j) {
-          const double t = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
-          const double u = curve.sent_at(t, Vec3::Zero()) - 0.5 * plan_.pulse_duration;
-          cycles[j] = plan_.carrier * t - pulse_.centre_frequency() * u;
-          const std::complex<double> c = pulse_.at(u);
-          re[j] = c.real();
-          im[j] = c.imag();
+          since[j] -= 0.5 * plan_.pulse_duration;
+          cycles[j] = plan_.carrier * heard[j] - pulse_.centre_frequency() * since[j];
         }
+        pulse_.at({since.data(), count}, {re.data(), count}, {im.data(), count});
         for (std::size_t j = 0; j < count; ++j) turn_back(cycles[j], re[j], im[j]);
         for (std::size_t j = 0; j < count; ++j)
           found.emplace_back(static_cast<float>(re[j]), static_cast<float>(im[j]));

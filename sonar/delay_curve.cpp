@@ -68,6 +68,23 @@ double DelayCurve::sent_at(double heard, const Vec3& phone) const noexcept {
   return piece->sent[0] + (t - at[0]) * (d[0] + (t - at[1]) * (d[1] + (t - at[2]) * d[2]));
 }
 
+void DelayCurve::sent_at(std::span<const double> heard, std::span<double> sent) const noexcept {
+  for (std::size_t begin = 0, end = 0, p = 0; begin < heard.size(); begin = end, ++p) {
+    const Piece& piece = pieces_[p];
+    end =
+        p + 1 == pieces_.size()
+            ? heard.size()
+            : static_cast<std::size_t>(
+                  std::upper_bound(heard.begin(), heard.end(), piece.heard.back()) - heard.begin());
+    const auto& d = differences_[p];
+    const auto& at = piece.heard;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double t = heard[i];
+      sent[i] = piece.sent[0] + (t - at[0]) * (d[0] + (t - at[1]) * (d[1] + (t - at[2]) * d[2]));
+    }
+  }
+}
+
 double curvature_phase(double frequency, double duration, double speed, double length,
                        double sound_speed, double aperture) noexcept {
   constexpr double curved_rays = 4.0;

@@ -2,6 +2,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sonar/returns.h"
@@ -37,6 +38,8 @@ class DelayCurve {
   /// these go on. \param heard  t, since the leading edge left [s]   \param phone  x, from the
   /// reference point [m]
   [[nodiscard]] double sent_at(double heard, const Vec3& phone) const noexcept;
+  /// The same of the reference point at many times. \param heard  [n] increasing   \param sent  [n]
+  void sent_at(std::span<const double> heard, std::span<double> sent) const noexcept;
   [[nodiscard]] double first_heard() const noexcept { return pieces_.front().heard.front(); }
   [[nodiscard]] double last_heard() const noexcept { return pieces_.back().heard.back(); }
   [[nodiscard]] const std::vector<Piece>& pieces() const noexcept { return pieces_; }

@@ -54,6 +54,21 @@ class InterpolationTaps {
     return sum;
   }
 
+  /// Of two places at once: one by itself waits for its own last product.
+  struct Two {
+    Weights first, second;
+  };
+  [[nodiscard]] Two at(Real first, Real second) const noexcept {
+    const Real y = Real(2) * first - Real(1), z = Real(2) * second - Real(1);
+    Two sum{coefficient_[degree] * y + coefficient_[degree - 1],
+            coefficient_[degree] * z + coefficient_[degree - 1]};
+    for (std::size_t i = degree - 1; i-- > 0;) {
+      sum.first = sum.first * y + coefficient_[i];
+      sum.second = sum.second * z + coefficient_[i];
+    }
+    return sum;
+  }
+
  private:
   static constexpr std::size_t degree = 11;
   std::array<Weights, degree + 1> coefficient_;

@@ -70,9 +70,17 @@ Way MovingPaths::way_at(const Vec3& from, const Track& track, const Vec3& offset
 
 Way MovingPaths::way(const Vec3& from, double start, const Track& track, const Vec3& offset,
                      std::span<const Arrival> known) const {
-  Way way = way_at(from, track, offset, start, known);
-  for (int i = 0; i < 4 && !way.leg.arrivals.empty(); ++i) {  // each round gains a factor v/c
-    const double time = start + way.leg.arrivals.front().delay;
+  const double guess = known.empty() ? start : start + known.front().delay;
+  Way way = way_at(from, track, offset, guess, known);
+  for (int i = 0; i < 4 && !way.leg.arrivals.empty(); ++i) {
+    // From paths that were known a moment before, the step is that of meet(): what it leaves is of
+    // second order. Of others each round gains a factor v/c.
+    const Arrival& first = way.leg.arrivals.front();
+    const double time = known.empty()
+                            ? start + first.delay
+                            : arrival_time(way, start, first,
+                                           slowness_vector(way.leg.bearing, first.arrival_elevation,
+                                                           paths_.speed_at(way.end.position)));
     if (std::abs(time - way.reference_time) < 1e-9) break;
     const Kinematics then = place(track, offset, time);
     if (then.position == way.end.position) {

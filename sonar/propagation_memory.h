@@ -34,7 +34,10 @@ enum class Kept : std::uint64_t {
 /// All the numbers that decide a result, bit for bit.
 class ExactKey {
  public:
-  explicit ExactKey(Kept kind, std::uint64_t ocean) : words_{static_cast<std::uint64_t>(kind)} {
+  explicit ExactKey(Kept kind, std::uint64_t ocean) {
+    constexpr std::size_t usual = 24;  // words of a key of paths
+    words_.reserve(usual);
+    words_.push_back(static_cast<std::uint64_t>(kind));
     words_.push_back(ocean);
   }
 

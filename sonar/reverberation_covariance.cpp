@@ -56,8 +56,10 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
       const PathPair* other = nullptr;
       if (sheet.one_fan()) {
         for (const PathPair& p : pairs.found)
-          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair)
+          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair) {
             other = &p;
+            break;
+          }
         if (other != nullptr && pair.out_index > pair.back_index) continue;
       }
       const double root = std::sqrt(area * pair.area);
@@ -78,21 +80,24 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
   }
 }
 
-/// All that is heard, field by field, circle by circle.
-std::vector<Heard> hear(std::span<const ScatteringField* const> fields, const AudibleLimits& limits,
-                        double bin, std::size_t bearings) {
-  constexpr std::size_t together = 32;  // circles of a task
-  std::vector<Heard> all;
+/// All that is heard, field by field, some circles after the other.
+std::vector<std::vector<Heard>> hear(std::span<const ScatteringField* const> fields,
+                                     const AudibleLimits& limits, double bin,
+                                     std::size_t bearings) {
+  constexpr std::size_t together = 32, usual = 8;  // circles of a task; pairs of a place
+  std::vector<std::vector<Heard>> all;
   for (const ScatteringField* field : fields) {
     const Circles circles(*field, bin, bearings);
-    std::vector<std::vector<Heard>> parts((circles.count() + together - 1) / together);
-    in_parallel(parts.size(), [&](std::size_t part) {
+    const std::size_t before = all.size();
+    all.resize(before + (circles.count() + together - 1) / together);
+    in_parallel(all.size() - before, [&](std::size_t part) {
       PathPairs pairs;
+      std::vector<Heard>& heard = all[before + part];
+      heard.reserve(usual * together * circles.sectors);
       const std::size_t end = std::min(circles.count(), (part + 1) * together);
       for (std::size_t i = part * together; i < end; ++i)
-        hear_circle(circles, i, limits, pairs, parts[part]);
+        hear_circle(circles, i, limits, pairs, heard);
     });
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   }
   return all;
 }
@@ -110,13 +115,13 @@ std::vector<Stretch> stretches_of(std::size_t bins) {
 }
 
 /// The largest level slowness of what is heard of whole circles [s/m].
-double fastest_of(std::span<const Heard> heard) {
-  double fastest = 0.0;
-  for (const Heard& h : heard)
-    if (h.all_round)
-      fastest =
-          std::max({fastest, h.one_slowness.head<2>().norm(), h.other_slowness.head<2>().norm()});
-  return fastest;
+double fastest_of(std::span<Heard* const> heard) {
+  double fastest2 = 0.0;
+  for (const Heard* h : heard)
+    if (h->all_round)
+      fastest2 = std::max({fastest2, h->one_slowness.head<2>().squaredNorm(),
+                           h->other_slowness.head<2>().squaredNorm()});
+  return std::sqrt(fastest2);
 }
 
 /// Bearings all round, as many as the array can tell apart and some more: the mean of
@@ -140,12 +145,15 @@ void spread(double power, double first, double last, std::vector<double>& bins) 
     return;
   }
   const double each = power / (last - first);
-  for (auto i = static_cast<std::size_t>(first); i < bins.size(); ++i) {
-    const auto low = static_cast<double>(i);
-    const double part = std::min(last, low + 1.0) - std::max(first, low);
-    if (part <= 0.0) break;
-    bins[i] += each * part;
+  auto i = static_cast<std::size_t>(first);
+  const auto end = static_cast<std::size_t>(last);  // the last one, of which it may fill nothing
+  if (i == end) {
+    bins[i] += power;
+    return;
   }
+  bins[i] += each * (static_cast<double>(i + 1) - first);
+  while (++i < end) bins[i] += each;
+  if (end < bins.size()) bins[end] += each * (last - static_cast<double>(end));
 }
 
 }  // namespace
@@ -181,7 +189,10 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   stretches = stretches_of(intensity.size());
   const Steering steering(listener.phones, listener.band.frequencies);
   components = steering.components();
-  std::vector<Heard> heard = hear(fields, limits, bin, bearings_for(listener));
+  std::vector<std::vector<Heard>> parts = hear(fields, limits, bin, bearings_for(listener));
+  std::vector<Heard*> heard;
+  for (std::vector<Heard>& part : parts)
+    for (Heard& h : part) heard.push_back(&h);
   const AllRoundArray all_round(listener.phones, listener.band.frequencies, fastest_of(heard));
 
   // In the order of stretches, and in each as they came.
@@ -190,7 +201,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   for (std::size_t s = 0; s < stretches.size(); ++s)
     for (std::size_t b = stretches[s].begin; b < stretches[s].end; ++b) stretch_of_bin[b] = s;
   for (std::size_t i = 0; i < heard.size(); ++i) {
-    const auto b = static_cast<std::size_t>(std::max(0.0, heard[i].delay) / bin);
+    const auto b = static_cast<std::size_t>(std::max(0.0, heard[i]->delay) / bin);
     of[i] = stretch_of_bin[std::min(b, intensity.size() - 1)];
     ++first[of[i] + 1];
   }
@@ -202,7 +213,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   in_parallel(stretches.size(), [&](std::size_t s) {
     Stretch& stretch = stretches[s];
     StretchSum sum(steering, all_round);
-    for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(heard[order[i]]);
+    for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(*heard[order[i]]);
     stretch.rank = sum.factor(factors[s]);
   });
   for (std::size_t s = 0; s < stretches.size(); ++s) {
@@ -217,8 +228,8 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   };
   for (std::size_t s = 1; s < stretches.size(); ++s) take_over(stretches[s], stretches[s - 1]);
   for (std::size_t s = stretches.size() - 1; s > 0; --s) take_over(stretches[s - 1], stretches[s]);
-  for (const Heard& h : heard)
-    spread(h.power / bin, (h.delay - 0.5 * h.extent) / bin, (h.delay + 0.5 * h.extent) / bin,
+  for (const Heard* h : heard)
+    spread(h->power / bin, (h->delay - 0.5 * h->extent) / bin, (h->delay + 0.5 * h->extent) / bin,
            intensity);
 }
 

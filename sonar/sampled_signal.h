@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace asdic {
@@ -16,6 +17,9 @@ class SampledSignal {
   SampledSignal(const std::vector<std::complex<double>>& samples, double first, double rate);
 
   [[nodiscard]] std::complex<double> at(double t) const noexcept;
+  /// Real and imaginary parts at many times. \param t  [n]
+  void at(std::span<const double> t, std::span<double> real,
+          std::span<double> imaginary) const noexcept;
 
   [[nodiscard]] double rate() const noexcept { return rate_; }
 

@@ -13,8 +13,15 @@ double delay_beyond(const GroundPath& path, double beyond) noexcept {
   return path.delay + (path.horizontal_slowness + bend) * beyond;
 }
 
-double grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt* tilt) noexcept {
-  return tilt ? std::asin(std::min(1.0, ends.sine * tilt->grazing)) : path.grazing;
+/// The angle between a path and the boundary itself.
+struct Grazing {
+  double angle, sine, cosine;
+};
+
+Grazing grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt* tilt) noexcept {
+  if (tilt == nullptr) return {path.grazing, ends.sine, ends.cosine};
+  const double sine = std::min(1.0, ends.sine * tilt->grazing);
+  return {std::asin(sine), sine, std::sqrt((1.0 - sine) * (1.0 + sine))};
 }
 
 }  // namespace
@@ -32,6 +39,10 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       moving_(receiver_moves_ || !ends.source.velocity.isZero()),
       one_place_(out_ == back_ && !receiver_moves_ &&
                  ends.source.position == ends.receiver.position) {
+  if (const auto* const nrl = std::get_if<NrlSurface>(&law_)) {
+    nrl_.push_back(nrl->at(ends_.frequency));
+    for (const BandPoint& point : ends_.band) nrl_.push_back(nrl->at(point.frequency));
+  }
   if (!all_round_pattern_) return;
   const auto ask = [&](const TransmitPattern& at) {
     for (const GroundPath& path : out_->planes.front().paths->all())
@@ -50,8 +61,10 @@ std::complex<double> ScatteringSheet::beam(const Leg& out, std::size_t path,
   return pattern.towards(out.bearing, out.paths[path].launch_elevation);
 }
 
-double ScatteringSheet::cross_section(const ScatterGeometry& geometry,
-                                      double frequency) const noexcept {
+double ScatteringSheet::cross_section(const ScatterGeometry& geometry, const ScatterSines& sines,
+                                      std::size_t point) const noexcept {
+  if (!nrl_.empty()) return nrl_[point](sines);
+  const double frequency = point == 0 ? ends_.frequency : ends_.band[point - 1].frequency;
   return std::visit([&](const auto& law) { return law.cross_section(geometry, frequency); }, law_);
 }
 
@@ -108,6 +121,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       (ends_.receiver.velocity.head<2>().squaredNorm() - closing * closing) /
       std::max(1.0, back.range);
   const double turn = one_place_ ? pi : std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
+  const double half_turn = one_place_ ? 1.0 : std::sin(0.5 * turn);
   constexpr double same_turn = 1e-6;  // [rad]
   if (out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
@@ -123,6 +137,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const PathEnds& a_ends = out.ends[i];
     const std::complex<double> sent = a.amplitude * beam(out, i, 0);
     if (sent == 0.0 && points == 0) continue;
+    const Grazing grazing_in = grazing_of(a, a_ends, out.tilt);
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t j = 0; j < back.paths.size(); ++j) {
       const GroundPath& b = back.paths[j];
@@ -148,16 +163,21 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       const double least = limits ? limits->at(delay) : 0.0;
       const double before = std::norm(sent) * std::norm(b.amplitude);
       if (limits && points == 0 && before * ring * strongest <= least) continue;
-      const ScatterGeometry geometry{.grazing_in = grazing_of(a, a_ends, out.tilt),
-                                     .grazing_out = grazing_of(b, b_ends, back.tilt),
-                                     .azimuth = turn};
+      const Grazing grazing_out = grazing_of(b, b_ends, back.tilt);
       double* const sigma = &pairs.sigma_[(i * back.paths.size() + j) * (1 + points)];
       if (sigma[0] < 0.0) {
-        sigma[0] = cross_section(geometry, ends_.frequency);
-        for (std::size_t k = 0; k < points; ++k)
-          sigma[k + 1] = cross_section(geometry, ends_.band[k].frequency);
-        if (one_place_)  // every law is reciprocal: the same the other way round
-          std::copy_n(sigma, 1 + points, &pairs.sigma_[(j * back.paths.size() + i) * (1 + points)]);
+        const ScatterGeometry geometry{
+            .grazing_in = grazing_in.angle, .grazing_out = grazing_out.angle, .azimuth = turn};
+        const ScatterSines sines{.sin_in = grazing_in.sine,
+                                 .cos_in = grazing_in.cosine,
+                                 .sin_out = grazing_out.sine,
+                                 .cos_out = grazing_out.cosine,
+                                 .half_turn = half_turn};
+        // Every law is reciprocal: at one place the same the other way round.
+        double* const reciprocal =
+            one_place_ ? &pairs.sigma_[(j * back.paths.size() + i) * (1 + points)] : sigma;
+        for (std::size_t k = 0; k <= points; ++k)
+          reciprocal[k] = sigma[k] = cross_section(geometry, sines, k);
       }
       double power = before * sigma[0];
       for (std::size_t k = 0; k < points; ++k) {
@@ -182,8 +202,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .amplitude = sent * b.amplitude * std::sqrt(sigma[0]),
                              .power = power,
                              .cross_section = sigma[0],
-                             .grazing_in = geometry.grazing_in,
-                             .grazing_out = geometry.grazing_out,
+                             .grazing_in = grazing_in.angle,
+                             .grazing_out = grazing_out.angle,
                              .area = out.tilt ? out.tilt->area : 1.0,
                              .leaving = out.direction,
                              .coming = coming,

@@ -144,8 +144,10 @@ class ScatteringSheet {
   };
   [[nodiscard]] std::complex<double> beam(const Leg& out, std::size_t path,
                                           std::size_t point) const noexcept;
-  [[nodiscard]] double cross_section(const ScatterGeometry& geometry,
-                                     double frequency) const noexcept;
+  /// σ of the paths that out and back are at a place. \param point  0: the centre, then those of
+  /// the band
+  [[nodiscard]] double cross_section(const ScatterGeometry& geometry, const ScatterSines& sines,
+                                     std::size_t point) const noexcept;
   [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
                         bool bearing) const noexcept;
   /// When a receiver that changes its velocity hears what comes along a path.
@@ -159,6 +161,7 @@ class ScatteringSheet {
   std::shared_ptr<const BoundaryFan> out_, back_;
   Law law_;
   SheetEnds ends_;
+  std::vector<NrlSurface::At> nrl_;  // at the centre and each point of the band; of that law alone
   const TransmitPattern& pattern_;
   bool all_round_pattern_, receiver_moves_, moving_, one_place_;
   // Of every outgoing path, if the same all round: at the centre, then at each point of the band.

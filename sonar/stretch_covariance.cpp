@@ -9,7 +9,9 @@ namespace asdic {
 namespace {
 
 /// Columns of Cholesky's factorisation of a Hermitian matrix with pivots, until no more than a
-/// share of its trace is left. \param scale  of the columns that are appended \return their number
+/// share of its trace is left. The pivot is the first of the largest: the phones of an array that
+/// is its own mirror image are alike in pairs, and the last bits would say which of two comes first
+/// and so what a ping draws. \param scale  of the columns that are appended \return their number
 template <class Matrix>
 std::size_t factorise(const Matrix& a, double left, double scale,
                       std::vector<std::complex<float>>& columns) {
@@ -19,8 +21,11 @@ std::size_t factorise(const Matrix& a, double left, double scale,
   Matrix f(n, n);
   Eigen::Index rank = 0;
   for (; rank < n && rest.sum() > enough; ++rank) {
+    constexpr double alike = 1e-9;
+    const double most = (1.0 - alike) * rest.maxCoeff();
     Eigen::Index pivot = 0;
-    const double largest = rest.maxCoeff(&pivot);
+    while (rest[pivot] < most) ++pivot;
+    const double largest = rest[pivot];
     auto column = f.col(rank);
     column = a.col(pivot);
     column.noalias() -= f.leftCols(rank) * f.row(pivot).head(rank).adjoint();
@@ -33,6 +38,14 @@ std::size_t factorise(const Matrix& a, double left, double scale,
   Eigen::Map<Eigen::MatrixXcf>(columns.data() + first, n, rank) =
       (scale * f.leftCols(rank)).template cast<std::complex<float>>();
   return static_cast<std::size_t>(rank);
+}
+
+/// F of C = sum over its mean diagonal.
+template <class Matrix>
+std::size_t factor_of(const Matrix& sum, std::vector<std::complex<float>>& columns) {
+  constexpr double left = 1e-6;
+  const double mean = sum.diagonal().real().mean();
+  return mean > 0.0 ? factorise(sum, left, 1.0 / std::sqrt(mean), columns) : 0;
 }
 
 }  // namespace
@@ -83,20 +96,19 @@ void StretchSum::take() {
 }
 
 std::size_t StretchSum::factor(std::vector<std::complex<float>>& columns) {
-  constexpr double left = 1e-6;
   take();
-  const bool real = sum_.size() == 0 && all_round_.real();
   const auto n = static_cast<Eigen::Index>(steering_.components());
+  if (sum_.size() == 0 && all_round_.real()) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
+    all_round_.add_to({sum.data(), static_cast<std::size_t>(sum.size())});
+    return factor_of(sum, columns);
+  }
   if (sum_.size() == 0)
     sum_ = Matrix::Zero(n, n);
   else
     sum_.triangularView<Eigen::StrictlyUpper>() = sum_.adjoint();
   all_round_.add_to({sum_.data(), static_cast<std::size_t>(sum_.size())});
-  const double mean = sum_.diagonal().real().mean();
-  if (!(mean > 0.0)) return 0;
-  const double scale = 1.0 / std::sqrt(mean);
-  return real ? factorise(Eigen::MatrixXd(sum_.real()), left, scale, columns)
-              : factorise(sum_, left, scale, columns);
+  return factor_of(sum_, columns);
 }
 
 }  // namespace asdic

@@ -46,8 +46,8 @@ std::size_t node_at(const std::vector<Layer>& layers, double depth) {
 
 }  // namespace
 
-Column::Column(const std::vector<Layer>& water, double source_depth, double receiver_depth)
-    : layers_(water), source_is_upper_(source_depth <= receiver_depth) {
+Column::Column(std::span<const Layer> water, double source_depth, double receiver_depth)
+    : layers_(water.begin(), water.end()), source_is_upper_(source_depth <= receiver_depth) {
   source_depth = cut_at(layers_, source_depth);
   receiver_depth = cut_at(layers_, receiver_depth);
   upper_ = node_at(layers_, std::min(source_depth, receiver_depth));

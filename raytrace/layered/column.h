@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "raytrace/environment.h"
@@ -27,7 +28,7 @@ struct ColumnDetails {
 /// them is made of the three pieces of ColumnSums.
 class Column {
  public:
-  Column(const std::vector<Layer>& water, double source_depth, double receiver_depth);
+  Column(std::span<const Layer> water, double source_depth, double receiver_depth);
 
   [[nodiscard]] ColumnSums sums(const RayParameter& ray) const noexcept;
   [[nodiscard]] ColumnDetails details(const RayParameter& ray) const noexcept;

@@ -48,10 +48,15 @@ struct Shot {
 
 }  // namespace
 
-std::optional<Arrival> followed_branch(const Environment& ocean, const std::vector<Layer>& layers,
-                                       const PathEndsInColumn& ends, const Arrival& known,
+WaterBetween::WaterBetween(double source, double receiver, const KeptOcean& kept)
+    : source_depth(source), receiver_depth(receiver), column(kept.layers, source, receiver) {
+  if (kept.series != nullptr) legs.emplace(column, *kept.series, kept.layers);
+}
+
+std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetween& water,
+                                       double range, double frequency, const Arrival& known,
                                        const PathLimits& limits) {
-  const Column column(layers, ends.source_depth, ends.receiver_depth);
+  const Column& column = water.column;
   const double turning_speed = 1.0 / known.horizontal_slowness;
   if (!(turning_speed > column.barrier_speed())) return std::nullopt;
   const SpeedGap gap = gap_around(column, turning_speed);
@@ -63,26 +68,33 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const std::vect
                                   known.lower_turns};
   if (branch.vertices == 0 && branch.starts_up == column.source_is_upper()) return std::nullopt;
   const RootStretch stretch(branch, column.source_is_upper());
-  const RootTask task{.stretch = &stretch, .range = ends.range}, *const one = &task;
+  const RootTask task{.stretch = &stretch, .range = range}, *const one = &task;
   const TaskLanes lanes(&one, 1);
 
   const double k0 = known.horizontal_slowness * c_ref;
   const double first = std::sqrt(std::max(0.0, (1.0 - k0) * (1.0 + k0)));
   const bool steep = first > steep_sigma;
   const auto shoot = [&](const RayLanes& rays, const ColumnLanes& legs) {
-    const Rays range = rays.slowness * lanes.of(legs.up.per_slowness, legs.middle.per_slowness,
-                                                legs.down.per_slowness);
+    const Rays reached = rays.slowness * lanes.of(legs.up.per_slowness, legs.middle.per_slowness,
+                                                  legs.down.per_slowness);
     const Rays d_range = lanes.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
     const Rays slope =
         steep ? Rays(-d_range / c_ref) : Rays(-rays.sigma * d_range * rays.per_c2 / rays.slowness);
-    return Shot{.miss = static_cast<double>(range[0]) - ends.range,
+    return Shot{.miss = static_cast<double>(reached[0]) - range,
                 .slope = static_cast<double>(slope[0])};
   };
 
+  LegSource source{.column = column};
+  if (water.legs) {
+    source.kept = &*water.legs;
+    source.found = water.legs->find(c_ref, first);
+  }
   double sigma = first, first_slope = 0.0;
   for (int step = 0; step < most_steps; ++step) {
     const RayLanes rays(c_ref, Rays(sigma));
-    const ColumnLanes legs = walk_all(column, rays);
+    // The first ray misses, as a rule, and the second one does not: series of times are not asked
+    // for in vain.
+    ColumnLanes legs = step == 0 && source.kept != nullptr ? source.sums(rays) : source.all(rays);
     const Shot shot = shoot(rays, legs);
     if (step == 0) first_slope = shot.slope;
     if (!(std::abs(shot.slope / first_slope - 1.0) < greatest_bend)) return std::nullopt;
@@ -91,11 +103,12 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const std::vect
         (branch.bottom_vertices() > 0 && legs.turns_below != turned_below_before))
       return std::nullopt;
     if (std::abs(shot.miss) < near_enough) {
+      if (step == 0 && source.kept != nullptr) legs = source.all(rays);
       const FanInterval interval{.reference_speed = c_ref,
                                  .turns_above = legs.turns_above,
                                  .turns_below = legs.turns_below};
       std::vector<Arrivals> found(1);
-      PathBuilder(ocean, column, ends.frequency)
+      PathBuilder(ocean, column, frequency)
           .build(interval, lanes, {rays, legs}, limits.faintest, found);
       if (found.front().empty()) return std::nullopt;
       Arrival path = std::move(found.front().front());

@@ -1,19 +1,20 @@
 #pragma once
 #include <optional>
-#include <vector>
 
 #include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
-#include "raytrace/layered/layer.h"
 
 namespace asdic {
 
-/// The ends of a path through a layered ocean.
-struct PathEndsInColumn {
-  double source_depth = 0.0, receiver_depth = 0.0;  ///< [m]
-  double range = 0.0;                               ///< between them [m]
-  double frequency = 0.0;                           ///< that sets losses [Hz]
+/// The water between two depths, for the paths between them.
+struct WaterBetween {
+  double source_depth, receiver_depth;  ///< [m]
+  Column column;
+  std::optional<OceanLegs> legs;  ///< out of the ocean's series, if it has them
+
+  /// \param kept  of the ocean
+  WaterBetween(double source, double receiver, const KeptOcean& kept);
 };
 
 /// The same path after its ends have moved by metres: Newton's method for r(σ) = range on its own
@@ -24,10 +25,10 @@ struct PathEndsInColumn {
 /// than a third on the way (an extremum of r, where a neighbour of the same history would meet it,
 /// is then at least three steps off); if it leaves the limits. docs/theory/layered-rays.md,
 /// "Following a path"
+/// \param range  between the ends [m]   \param frequency  that sets losses [Hz]
 [[nodiscard]] std::optional<Arrival> followed_branch(const Environment& ocean,
-                                                     const std::vector<Layer>& layers,
-                                                     const PathEndsInColumn& ends,
-                                                     const Arrival& known,
+                                                     const WaterBetween& water, double range,
+                                                     double frequency, const Arrival& known,
                                                      const PathLimits& limits);
 
 }  // namespace asdic

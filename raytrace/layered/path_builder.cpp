@@ -190,22 +190,16 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
 std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surface_bounces,
                                               int bottom_bounces) const noexcept {
   std::complex<double> product = 1.0;
-  if (surface_bounces > 0) {
-    const double c = column_.surface_speed();
-    product *= left_by_roughness(environment_.surface.roughness, std::sin(grazing_at(ray, c)), c,
-                                 frequency_, surface_bounces);
-    product *= integer_power(reflection_coefficient(environment_.surface.material,
-                                                    grazing_at(ray, c), water_at_surface_),
-                             surface_bounces);
-  }
-  if (bottom_bounces > 0) {
-    const double c = column_.bottom_speed();
-    product *= left_by_roughness(environment_.bottom.roughness, std::sin(grazing_at(ray, c)), c,
-                                 frequency_, bottom_bounces);
-    product *= integer_power(
-        reflection_coefficient(environment_.bottom.material, grazing_at(ray, c), water_at_bottom_),
-        bottom_bounces);
-  }
+  const auto reflect = [&](const auto& boundary, const WaterAtBoundary& water, int bounces) {
+    if (bounces == 0) return;
+    const double grazing = grazing_at(ray, water.speed);
+    if (!boundary.roughness.smooth())
+      product *= left_by_roughness(boundary.roughness, std::sin(grazing), water.speed, frequency_,
+                                   bounces);
+    product *= integer_power(reflection_coefficient(boundary.material, grazing, water), bounces);
+  };
+  reflect(environment_.surface, water_at_surface_, surface_bounces);
+  reflect(environment_.bottom, water_at_bottom_, bottom_bounces);
   return product;
 }
 

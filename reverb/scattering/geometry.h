@@ -13,6 +13,13 @@ struct ScatterGeometry {
   double azimuth = pi;       ///< change of horizontal direction [rad]: 0 forward, π backscatter
 };
 
+/// The same, where sines and cosines are known already.
+struct ScatterSines {
+  double sin_in = 0.0, cos_in = 1.0;    ///< of grazing_in
+  double sin_out = 0.0, cos_out = 1.0;  ///< of grazing_out
+  double half_turn = 1.0;               ///< sin(azimuth/2)
+};
+
 /// The limits of a model's parameter, for checking and for the manual.
 struct Range {
   double low;

@@ -62,15 +62,60 @@ struct NrlSurface {
     const double k = 2.0 * pi * frequency / sound_speed;
     const double d = bubble_depth(wind_speed);
     if (k <= 0.0 || d <= 0.0) return 0.0;
-    // F = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]}, written over one denominator
-    // because the sum of fractions cancels at small p, q.
-    const double p = k * d * std::sin(g.grazing_in), q = k * d * std::sin(g.grazing_out);
+    return 0.0019 * std::pow(d, 1.15) * std::pow(k, -0.6) *
+           bubble_directivity(k * d * std::sin(g.grazing_in), k * d * std::sin(g.grazing_out));
+  }
+
+  /// F(p, q) = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]}, written over one
+  /// denominator because the sum of fractions cancels at small p, q.
+  [[nodiscard]] static double bubble_directivity(double p, double q) noexcept {
     const double p2 = p * p, q2 = q * q;
     const double minus = (p - q) * (p - q), plus = (p + q) * (p + q);
     const double numerator = 0.5 * p2 * q2 * (6.0 + 3.0 * (p2 + q2) + (p2 - q2) * (p2 - q2));
     const double denominator = (1.0 + p2) * (1.0 + q2) * (1.0 + minus) * (1.0 + plus);
-    return 0.0019 * std::pow(d, 1.15) * std::pow(k, -0.6) * numerator / denominator;
+    return numerator / denominator;
   }
+
+  /// The law at one frequency, for many directions: cross_section() to rounding of the angles.
+  class At {
+   public:
+    At(const NrlSurface& law, double frequency) noexcept
+        : k_(2.0 * pi * frequency / law.sound_speed),
+          spectrum_(law.A_s * law.wind_speed),
+          half_gamma_(0.5 * law.gamma2),
+          h0_(law.h0) {
+      const double d = bubble_depth(law.wind_speed);
+      kd_ = k_ * d;
+      if (k_ > 0.0 && d > 0.0) bubbles_ = 0.0019 * std::pow(d, 1.15) * std::pow(k_, -0.6);
+    }
+    [[nodiscard]] double operator()(const ScatterSines& g) const noexcept {
+      return interface(g) + bubbles(g);
+    }
+
+   private:
+    [[nodiscard]] double interface(const ScatterSines& g) const noexcept {
+      if (k_ <= 0.0 || spectrum_ <= 0.0 || g.sin_in <= 0.0 || g.sin_out <= 0.0) return 0.0;
+      // cos θᵢ − cos θₛ = (sin²θₛ − sin²θᵢ)/(cos θᵢ + cos θₛ): nothing cancels near the horizon.
+      const double cosines = g.cos_in + g.cos_out;
+      const double difference = cosines > 0.5
+                                    ? (g.sin_out - g.sin_in) * (g.sin_out + g.sin_in) / cosines
+                                    : g.cos_in - g.cos_out;
+      const double q2 =
+          k_ * k_ *
+          (difference * difference + 4.0 * g.cos_in * g.cos_out * g.half_turn * g.half_turn);  // Q²
+      if (q2 <= 0.0) return 1.0;
+      const double half_beta = 2.0 * k_ * k_ * g.sin_in * g.sin_out;  // |β/2|
+      return std::min(1.0,
+                      half_beta * half_beta * spectrum_ / std::pow(h0_ * h0_ * q2, half_gamma_));
+    }
+    [[nodiscard]] double bubbles(const ScatterSines& g) const noexcept {
+      return bubbles_ * bubble_directivity(kd_ * g.sin_in, kd_ * g.sin_out);
+    }
+
+    double k_, spectrum_, half_gamma_, h0_, kd_ = 0.0;
+    double bubbles_ = 0.0;  // 0.0019·d^1.15·k^−0.6
+  };
+  [[nodiscard]] At at(double frequency) const noexcept { return {*this, frequency}; }
 
   /// e-folding depth of the bubble layer against wind speed [m]; Danesh (2013), Table 4.2.
   [[nodiscard]] static double bubble_depth(double wind) noexcept {

@@ -146,6 +146,30 @@ TYPED_TEST(EverySurfaceScattering, RisesWithWind) {
   }));
 }
 
+// The law at one frequency out of sines and cosines. Those have errors of ε = 2⁻⁵³: sines of small
+// angles a relative one, and so has Q² but for cos θᵢ − cos θₛ, of which ε·cos is left where they
+// are alike and nothing else turns the sound; Q² has the power γ₂/2 ≤ 3.
+TEST(NrlSurface, AtOneFrequencyIsTheLaw) {
+  EXPECT_TRUE(rc::check([] {
+    const auto law = any<NrlSurface>();
+    const ScatterGeometry g = any_geometry();
+    const double f = any_frequency();
+    const ScatterSines sines{.sin_in = std::sin(g.grazing_in),
+                             .cos_in = std::cos(g.grazing_in),
+                             .sin_out = std::sin(g.grazing_out),
+                             .cos_out = std::cos(g.grazing_out),
+                             .half_turn = std::sin(0.5 * g.azimuth)};
+    const double difference = std::abs(sines.cos_in - sines.cos_out);
+    const double turned =
+        4.0 * sines.cos_in * sines.cos_out * sines.half_turn * sines.half_turn;  // in Q²/k²
+    constexpr double rounding = 1e-15;
+    const double q2 = difference * difference + turned;
+    const double left = q2 > 0.0 ? 3.0 * 2.0 * difference * rounding / q2 : 0.0;
+    const double exact = law.cross_section(g, f);
+    RC_ASSERT(std::abs(law.at(f)(sines) - exact) <= (1e-13 + left) * exact);
+  }));
+}
+
 TYPED_TEST(EverySurfaceScattering, DefaultsAreWithinTheirRanges) {
   TypeParam model;
   model.describe([](std::string_view key, const double& value, Range limits) {

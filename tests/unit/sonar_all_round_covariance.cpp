@@ -35,6 +35,15 @@ struct Listening {
   }
 };
 
+/// A line whose phones are their own image in its middle.
+Listening uniform_line() {
+  Listening line(true);
+  line.phones.clear();
+  for (int i = 0; i < 7; ++i) line.phones.emplace_back(0.1 * (i - 3), 0.05 * (i - 3), 0.0);
+  line.frequencies = {1000.0};
+  return line;
+}
+
 /// A circle's sound from an elevation, by the pair and its reciprocal.
 Heard heard(double one_elevation, double other_elevation, std::complex<double> other) {
   const auto slowness = [](double elevation) {
@@ -77,18 +86,17 @@ Matrix closed(const AllRoundArray& array, std::span<const Heard> all) {
   return found;
 }
 
-// One way, and two that are heard together; phones in a plane and not. The table's 1.5e-8 and
-// differences between components on a grid of 1e-6 rad, times powers of up to 2.5. Left out what is
-// heard by both, |2ab*J₀| = 1, it must fail.
+// One way, and two that are heard together; phones in a plane, not, and in a uniform line. The
+// table's 1.5e-8 and differences between components on a grid of 1e-6 rad, times powers of up
+// to 2.5. Left out what is heard by both, |2ab*J₀| = 1, it must fail.
 TEST(AllRoundCovariance, IsTheMeanOverBearings) {
-  for (const bool flat : {true, false}) {
-    const Listening to(flat);
+  for (const Listening& to : {Listening(true), Listening(false), uniform_line()}) {
     const AllRoundArray array(to.phones, to.frequencies, Listening::fastest);
     for (const std::complex<double> other :
          {std::complex<double>(0.0, 0.0), {0.5, 0.1}, {0.35, 0.2}}) {
       const std::vector<Heard> all = {heard(0.3, 0.5, other)};
       const Matrix expected = over_bearings(to, all[0]), found = closed(array, all);
-      EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-6) << flat << other;
+      EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-6) << to.phones.size() << other;
       EXPECT_NEAR(array.power(all[0].from_all_round()), expected.diagonal().real().mean(), 5e-6);
       Heard alone = all[0];
       alone.one = std::sqrt(std::norm(alone.one) + std::norm(alone.other));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/units.h"
+#include "sonar/delay_curve.h"
 #include "sonar/delay_kernel.h"
 #include "sonar/delay_windows.h"
 #include "sonar/doppler_expansion.h"
@@ -81,6 +82,31 @@ TEST(SampledSignal, InterpolatesUpToAQuarterOfTheRate) {
   }
   EXPECT_EQ(signal.at(5.0), 0.0);
   EXPECT_EQ(signal.at(std::nan("")), 0.0);
+}
+
+// Many times at once, two by two: the same numbers, of a time outside between two inside as well.
+TEST(SampledSignal, ManyTimesAreOneByOne) {
+  std::vector<std::complex<double>> samples;
+  for (int i = 0; i < 200; ++i) samples.push_back(std::polar(1.0, 2.0 * pi * 0.245 * i));
+  const SampledSignal signal(samples, -1.0, 100.0);
+  std::vector<double> t = {-7.0, 0.1234, 5.0};
+  for (int i = 0; i < 40; ++i) t.push_back(-1.1 + 0.0571 * i);
+  std::vector<double> real(t.size()), imaginary(t.size());
+  signal.at(t, real, imaginary);
+  for (std::size_t i = 0; i < t.size(); ++i)
+    EXPECT_LT(std::abs(signal.at(t[i]) - std::complex<double>(real[i], imaginary[i])), 1e-14);
+}
+
+// Before, in, between and after two stretches.
+TEST(DelayCurve, ManyTimesAreOneByOne) {
+  const DelayCurve curve({{.heard = {1.0, 1.1, 1.3, 1.4}, .sent = {0.0, 0.11, 0.29, 0.4}},
+                          {.heard = {1.4, 1.5, 1.7, 1.8}, .sent = {0.4, 0.48, 0.72, 0.8}}});
+  std::vector<double> heard, sent(20);
+  for (int i = 0; i < 20; ++i) heard.push_back(0.9 + 0.05 * i);
+  heard[10] = 1.4;
+  curve.sent_at(heard, sent);
+  for (std::size_t i = 0; i < sent.size(); ++i)
+    EXPECT_NEAR(sent[i], curve.sent_at(heard[i], Vec3::Zero()), 1e-15) << heard[i];
 }
 
 // Windows are designed for −97 dB at the band's edge (place_weights.h), by a formula that is right
