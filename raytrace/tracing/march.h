@@ -41,6 +41,7 @@ class March {
   [[nodiscard]] bool cross_rows();
   [[nodiscard]] double cross_by_invariant(double line);
   [[nodiscard]] double cross_by_series(double line);
+  [[nodiscard]] bool stopped_before(double line, BoundaryKind kind) const;
   [[nodiscard]] bool clear_of(BoundaryKind kind, double sine, double turn) const;
   void enter(double depth);
   void enter_cell(std::size_t row, std::size_t column);
@@ -51,6 +52,7 @@ class March {
   void plan_closed(bool down, double longest);
   void plan_series(bool down, double longest);
   [[nodiscard]] double guess(bool down) const;
+  [[nodiscard]] double to_facet_ahead(BoundaryKind kind, double time) const;
   void strike(BoundaryKind kind);
   [[nodiscard]] double hit(BoundaryKind kind, std::size_t facet, double in, double out) const;
   [[nodiscard]] double hit_between(BoundaryKind kind, std::size_t facet, double in,

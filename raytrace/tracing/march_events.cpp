@@ -74,10 +74,24 @@ double March::guess(bool down) const {
   return (way + 1.0) / c;
 }
 
+/// No further than to the facet ahead and a little more, if that is where a straight ray goes [s].
+double March::to_facet_ahead(BoundaryKind kind, double time) const {
+  const double c = here_.c, tr = c * y_.xi, tz = c * y_.zeta;
+  const Facet& f = wall(kind).facets[facet(kind)];
+  const double closing = -(f.line.nr * tr + f.line.nz * tz);
+  const double way = std::max(f.line.distance(y_.range, y_.depth), 0.0) / closing;
+  const double range = y_.range + way * tr;
+  if (!(closing > 0.05) || range < f.begin || range > f.end) return time;
+  return std::min(time, (1.1 * way + 10.0) / c);
+}
+
 /// A power series tells where it is: what it has passed at the end of the step, it met before.
 void March::plan_series(bool down, double longest) {
   const Row& row = *cell_->row;
-  course_.expand(std::min(longest, 1.2 * guess(down)));
+  double wanted = std::min(longest, 1.2 * guess(down));
+  if (down && near_bottom_) wanted = to_facet_ahead(BoundaryKind::bottom, wanted);
+  if (!down && near_surface_) wanted = to_facet_ahead(BoundaryKind::surface, wanted);
+  course_.expand(wanted);
   step_ = course_.reach();
   const double sense = y_.zeta > 0.0 ? 1.0 : -1.0;
   if (y_.zeta != 0.0 && sense * course_.rise(step_).value < 0.0) {

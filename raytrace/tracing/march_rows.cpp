@@ -64,6 +64,19 @@ bool March::clear_of(BoundaryKind kind, double sine, double turn) const {
   }
 }
 
+/// Whether a straight ray meets a shaped boundary, its facets taken for their lines, before a line
+/// of the row: then that line is no place to go to at once.
+bool March::stopped_before(double line, BoundaryKind kind) const {
+  const double range = y_.range + (line - y_.depth) * y_.xi / y_.zeta;
+  const auto& facets = wall(kind).facets;
+  std::size_t i = facet(kind);
+  while (range > facets[i].end) ++i;
+  while (range < facets[i].begin) --i;
+  const double beyond =
+      line - facets[i].line.depth - facets[i].slope * (range - facets[i].line.range);
+  return kind == BoundaryKind::surface ? beyond < 0.0 : beyond > 0.0;
+}
+
 /// By Snell's invariant to a line of the row: next_, there_. \return how much it turns, infinity if
 /// that is too much or it does not get there
 double March::cross_by_invariant(double line) {
@@ -121,6 +134,9 @@ bool March::cross_rows() {
     const bool down = tz > 0.0, in_section = cell_->law == Law::bilinear;
     const double line = down ? cell_->row->bottom : cell_->row->top;
     if (line == y_.depth || std::abs(line) > 1e29 || line > limits_.max_depth) break;
+    if (down ? near_bottom_ && stopped_before(line, BoundaryKind::bottom)
+             : near_surface_ && stopped_before(line, BoundaryKind::surface))
+      break;
     const double turn = in_section ? cross_by_series(line) : cross_by_invariant(line);
     if (turn == never) break;
     const bool forward = y_.xi >= 0.0;

@@ -12,7 +12,7 @@ namespace {
 constexpr double finest_gap = 1e-4;
 
 /// How far apart rays that part may stay where there is neither a receiver nor a node near [m].
-constexpr double narrow_gap = 0.1;
+constexpr double narrow_gap = 0.3;
 
 bool stopped_by_limits(const FanRay& ray) noexcept {
   return ray.ended == RayEnd::bounces || ray.ended == RayEnd::faint ||
@@ -74,14 +74,13 @@ bool NeighbourTest::begins_behind_the_box(const FanRay& a, const FanRay& m, cons
   return with == 2;
 }
 
-/// Whether nothing but what lies between three rays close together is lost when the gap in which
-/// they part at leg i is left: they stay within `narrow_gap` of each other, away from nodes and
-/// from the receivers.
-bool NeighbourTest::gap_is_clear(const FanRay& a, const FanRay& m, const FanRay& b,
+/// Whether nothing but what lies between rays close together is lost when the gap in which they
+/// part at leg i is left: they stay within `narrow_gap` of each other, away from nodes and from the
+/// receivers.
+bool NeighbourTest::gap_is_clear(std::initializer_list<const FanRay*> rays, double width,
                                  std::size_t i) const {
-  const double width = b.angle - a.angle;
   const double last = columns_.back().range;
-  for (const FanRay* ray : {&a, &m, &b})
+  for (const FanRay* ray : rays)
     for (std::size_t k = i; k < ray->legs.size(); ++k) {
       const RayLeg& leg = ray->legs[k];
       if (leg.begin.range > last && never_turns_back(*ray, k)) break;
@@ -141,7 +140,7 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
   const auto reached = std::partition_point(columns_.begin(), columns_.end(),
                                             [&](const auto& column) { return column.range < low; });
   if (reached == columns_.end() || reached->range > farthest + room) return false;
-  if (gap_is_clear(a, m, b, i)) return false;
+  if (gap_is_clear({&a, &m, &b}, b.angle - a.angle, i)) return false;
   if (!same_boundary) return true;
   const RayLeg &la = a.legs[i], &lb = b.legs[i];
   const bool at_a_node = la.from_boundary && lb.from_boundary &&

@@ -190,17 +190,16 @@ bool NeighbourTest::regular(const FanRay& a, const FanRay& m, const FanRay& b) c
 }
 
 bool NeighbourTest::pair_tells(const FanRay& a, const FanRay& b) const {
-  if (a.legs.size() != b.legs.size()) return false;
   const double width = b.angle - a.angle;
   const auto straight = [&](double va, double sa, double vb, double sb) {
     return std::abs(vb - va - 0.5 * (sa + sb) * width) < pair_miss &&
            std::abs(sb - sa) * 0.125 * width < pair_miss;
   };
-  for (std::size_t i = 0; i < a.legs.size(); ++i) {
+  const std::size_t legs = std::min(a.legs.size(), b.legs.size());
+  for (std::size_t i = 0; i < legs; ++i) {
     const RayLeg &la = a.legs[i], &lb = b.legs[i];
-    if (la.history != lb.history || la.turned_in != lb.turned_in ||
-        la.to_boundary != lb.to_boundary)
-      return false;
+    if (la.history != lb.history) return gap_is_clear({&a, &b}, width, i);
+    if (la.turned_in != lb.turned_in || la.to_boundary != lb.to_boundary) return false;
     if (la.to_boundary && !straight(la.end.range, la.d_end, lb.end.range, lb.d_end)) return false;
     const auto [first, last] = columns_between(a, b, i, columns_);
     for (std::uint32_t k = first; k < last; ++k) {
@@ -216,7 +215,7 @@ bool NeighbourTest::pair_tells(const FanRay& a, const FanRay& b) const {
       if (!column.between(swept.low, swept.high).empty()) return false;
     }
   }
-  return true;
+  return a.legs.size() == b.legs.size();
 }
 
 /// \param evenly  the legs before end on the boundaries in one way

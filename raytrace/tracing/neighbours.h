@@ -47,7 +47,7 @@ class NeighbourTest {
                                      std::size_t leg) const;
   [[nodiscard]] bool begins_behind_the_box(const FanRay& a, const FanRay& m, const FanRay& b,
                                            std::size_t leg) const;
-  [[nodiscard]] bool gap_is_clear(const FanRay& a, const FanRay& m, const FanRay& b,
+  [[nodiscard]] bool gap_is_clear(std::initializer_list<const FanRay*> rays, double width,
                                   std::size_t leg) const;
   [[nodiscard]] bool ends_far_from_receivers(
       std::initializer_list<const FanRay*> rays) const noexcept;

@@ -61,13 +61,22 @@ class BilinearExpansion {
     tubes_[i] = Two{p[2], p[3]};
   }
 
-  /// Coefficient k of the product of two series.
+  /// Coefficient k of the product of two series. The terms with the latest coefficients come last:
+  /// all others wait for nothing.
   template <std::size_t k, class Lanes>
   [[gnu::always_inline]] static Lanes product(const Lanes* x, const Lanes* y) noexcept {
-    return [&]<std::size_t... i>(std::index_sequence<i...>) __attribute__((always_inline)) {
-      return ((x[i] * y[k - i]) + ...);
+    if constexpr (k == 0) {
+      return x[0] * y[0];
+    } else if constexpr (k == 1) {
+      return x[0] * y[1] + x[1] * y[0];
+    } else {
+      const Lanes before = [&]<std::size_t... i>(std::index_sequence<i...>)
+          __attribute__((always_inline)) {
+        return ((x[i + 1] * y[k - 1 - i]) + ...);
+      }
+      (std::make_index_sequence<k - 1>{});
+      return (before + x[0] * y[k]) + x[k] * y[0];
     }
-    (std::make_index_sequence<k + 1>{});
   }
 
   [[gnu::always_inline]] double size(std::size_t i) const noexcept {
