@@ -215,6 +215,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
     // Along the ridge the delay is late by D for an error of η, the range rate low by rate_slope.
     c.range_per_rate = -processed.result.delay_per_doppler * place.range_slope / place.rate_slope;
     if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
+      c.bearing_known = false;
       c.bearing = 0.0;
       c.bearing_sigma = 1e-3;
     } else {
