@@ -49,6 +49,21 @@ void BeamSurroundings::Lists::end_beam(std::size_t fewest) {
   first.push_back(beams.size());
 }
 
+OwnLeak::OwnLeak(const BeamSurroundings& around, std::size_t beam,
+                 const std::function<double(std::size_t)>& pattern) {
+  std::vector<double> powers;
+  const auto median = [&](std::span<const std::uint32_t> beams) {
+    if (beams.empty()) return 0.0;
+    powers.clear();
+    for (const std::uint32_t other : beams) powers.push_back(pattern(other));
+    const auto middle = powers.begin() + std::ssize(powers) / 2;
+    std::nth_element(powers.begin(), middle, powers.end());
+    return *middle;
+  };
+  beside = median(around.beside(beam));
+  for (const std::size_t s : {0, 1}) side[s] = median(around.on_side(s, beam));
+}
+
 CellPowers::CellPowers(std::size_t filters, std::size_t beams, std::size_t samples, double cell)
     : beams_(beams),
       samples_(samples),
@@ -78,8 +93,8 @@ float CellPowers::mean(std::size_t filter, std::size_t beam, std::size_t cell) c
 }
 
 float CellPowers::background(const BeamSurroundings& surroundings, std::size_t filter,
-                             std::size_t beam, std::size_t sample,
-                             std::vector<float>& scratch) const {
+                             std::size_t beam, std::size_t sample, double power,
+                             const OwnLeak& leak, std::vector<float>& scratch) const {
   const auto median = [&](std::span<const std::uint32_t> beams, std::size_t cell) {
     if (beams.empty()) return 0.0F;
     scratch.clear();
@@ -94,12 +109,14 @@ float CellPowers::background(const BeamSurroundings& surroundings, std::size_t f
   auto* next = heard.begin();
   for (const std::size_t side : {0, 1}) {
     const auto beams = surroundings.on_side(side, beam);
-    *next++ = median(beams, cell);
+    *next++ = median(beams, cell) - static_cast<float>(leak.side[side] * power);
     *next++ = cell >= off ? median(beams, cell - off) : 0.0F;
     *next++ = cell + off < cells_ ? median(beams, cell + off) : 0.0F;
   }
   std::nth_element(heard.begin(), heard.begin() + 1, heard.end(), std::greater<>());
-  return std::max(median(surroundings.beside(beam), cell), heard[1]);
+  const float beside =
+      median(surroundings.beside(beam), cell) - static_cast<float>(leak.beside * power);
+  return std::max({beside, heard[1], 0.0F});
 }
 
 }  // namespace asdic

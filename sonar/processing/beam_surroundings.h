@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,18 @@ class BeamSurroundings {
   std::array<Lists, 2> sides_;
 };
 
+/// What a plane wave of power 1 out of a beam's look leaves in the beams around: medians, as of
+/// what is heard there. A sparse array hears an echo everywhere at about 1/N.
+struct OwnLeak {
+  double beside = 0.0;
+  std::array<double, 2> side{};
+
+  OwnLeak() = default;
+  /// \param pattern  power of that wave in a beam, by its index
+  OwnLeak(const BeamSurroundings& around, std::size_t beam,
+          const std::function<double(std::size_t)>& pattern);
+};
+
 /// The filters' mean power in every cell of time: what a whole ping's beams hear, in brief.
 class CellPowers {
  public:
@@ -57,11 +70,12 @@ class CellPowers {
   [[nodiscard]] float mean(std::size_t filter, std::size_t beam, std::size_t cell) const noexcept;
   /// The background by the beams around one: what those beside it hear in that cell and the next,
   /// or, if more, the second greatest of what either side hears then, and in the cells before and
-  /// after: one more echo in all that is forgiven. 0 where there are no such beams.
+  /// after: one more echo in all that is forgiven. What the peak in question leaks there at its own
+  /// time is taken off. 0 where there are no such beams. \param power  of the peak
   /// \param scratch  any
   [[nodiscard]] float background(const BeamSurroundings& around, std::size_t filter,
-                                 std::size_t beam, std::size_t sample,
-                                 std::vector<float>& scratch) const;
+                                 std::size_t beam, std::size_t sample, double power,
+                                 const OwnLeak& leak, std::vector<float>& scratch) const;
 
  private:
   std::size_t beams_, samples_, cells_;

@@ -10,17 +10,13 @@
 
 #include "raytrace/parallel.h"
 #include "raytrace/propagation.h"
-#include "sonar/processing/beam_surroundings.h"
+#include "sonar/processing/across_beams.h"
 #include "sonar/processing/echo_pointing.h"
 #include "sonar/processing/peak_cluster.h"
 #include "sonar/processing/threshold_probes.h"
 
 namespace asdic {
 namespace {
-
-/// In even noise false alarms come where the background is found at half its value and the beams
-/// around find 1 ± 0.2 of it: three times as much is seen by some hundredths of them.
-constexpr float louder_beside = 3.0F;
 
 /// Offset of a parabola's top through three logarithms of power, within half a step.
 double top_of(double before, double here, double after) {
@@ -58,9 +54,9 @@ class Search {
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
         channels_(channel_spectra(baseband)),
-        around_(shape_, grid_.looks, wavelength_),
-        heard_(settings.normaliser.across_beams ? bank_.filters() : 0, grid_.looks.size(),
-               bank_.samples(), bank_.sample_rate() / replica.noise_bandwidth()),
+        across_(shape_, phones_, weights_, grid_.looks, wavelength_,
+                settings.normaliser.across_beams ? bank_.filters() : 0, bank_.samples(),
+                bank_.sample_rate() / replica.noise_bandwidth()),
         pointing_(baseband, phones_, sound_speed, replica, shape_, weights_, grid_.spacing,
                   dopplers.front()),
         doppler_cell_(doppler_cell(replica)),
@@ -169,9 +165,10 @@ class Search {
         for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
         compare_over_time(grid_.looks[b], work);
         pick(b, f, work, found[b]);
-        if (settings_.normaliser.across_beams) heard_.set(f, b, work.power);
+        if (settings_.normaliser.across_beams) across_.set(f, b, work.power);
         for (PlacedProbe& probe : probes_)  // each has one beam and one filter
           if (probe.inside && probe.beam == b && probe.filter == f) {
+            probe.power = work.power[probe.sample];
             probe.background = work.background[probe.sample];
             probe.threshold = work.threshold[probe.sample];
           }
@@ -242,19 +239,10 @@ class Search {
     }
   }
 
-  /// Where the beams around hear more at that time than the beam itself around that time, by more
-  /// than even noise ever makes it, theirs is the background.
   void compare_across_beams(std::vector<Peak>& peaks) {
-    std::vector<float> scratch;
-    const auto compare = [&](auto& at) {
-      const float beside = heard_.background(around_, at.filter, at.beam, at.sample, scratch);
-      if (!(beside > louder_beside * at.background)) return;
-      at.threshold *= beside / at.background;
-      at.background = beside;
-    };
-    for (Peak& peak : peaks) compare(peak);
+    for (Peak& peak : peaks) across_.correct(peak);
     for (PlacedProbe& probe : probes_)
-      if (probe.inside) compare(probe);
+      if (probe.inside) across_.correct(probe);
     std::erase_if(peaks, [](const Peak& peak) { return !(peak.power > peak.threshold); });
   }
 
@@ -314,8 +302,7 @@ class Search {
   MatchedFilterBank bank_;
   BackgroundEstimator estimator_;
   BeamSpectra channels_;
-  BeamSurroundings around_;
-  CellPowers heard_;
+  AcrossBeams across_;
   EchoPointing pointing_;
   double doppler_cell_, ridge_;  // delay_per_doppler
   std::vector<PlacedProbe> probes_;

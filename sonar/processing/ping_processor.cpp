@@ -112,7 +112,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
 
   ProcessedArray done{.ping = recording.ping, .array = recording.array};
   done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
-  done.places.array = array_at(scenario_, recording.array, recording.ping_time);
+  done.places.array = passage_of_array(scenario_, recording.array, recording.ping_time);
   done.sound_speed = paths_.speed_at(done.places.array.position);
   std::vector<Vec3> phones;
   for (const Vec3& x : recording.phones) phones.push_back(x - done.places.array.position);
@@ -215,6 +215,7 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
     // Along the ridge the delay is late by D for an error of η, the range rate low by rate_slope.
     c.range_per_rate = -processed.result.delay_per_doppler * place.range_slope / place.rate_slope;
     if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
+      c.bearing_known = false;
       c.bearing = 0.0;
       c.bearing_sigma = 1e-3;
     } else {
@@ -226,9 +227,9 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
                           std::sqrt(wavelength / processed.shape.length));
       c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
       c.range_per_bearing = place.bearing_slope;
-      const Vec3 heard = processed.places.array.after(d.time);
-      c.array = heard.head<2>();
-      c.array_velocity = processed.places.array.velocity.head<2>();
+      const Kinematics heard = processed.places.array.at(d.time);
+      c.array = heard.position.head<2>();
+      c.array_velocity = heard.velocity.head<2>();
       c.source = processed.places.source.position.head<2>();
       c.source_velocity = processed.places.source.velocity.head<2>();
     }

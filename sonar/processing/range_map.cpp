@@ -21,7 +21,7 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   // The place at a range, from where the array is when its echo comes (to a straight ray's delay).
   const auto point = [&](double range) {
     Vec3 p = places.array.position + range * across;
-    p += (range + separation(from, p).range) / 1500.0 * places.array.velocity;
+    p = places.array.after((range + separation(from, p).range) / 1500.0) + range * across;
     p.z() = depth;
     return p;
   };

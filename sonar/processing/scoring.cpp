@@ -57,7 +57,7 @@ Together together(std::span<const TrueEcho> echoes, const TrueEcho& echo, double
 
 PingScore score_detections(std::span<const Detection> detections, std::span<const TrueEcho> echoes,
                            std::span<const TrueTarget> targets, const ArrayShape& shape,
-                           const Kinematics& array, const Resolution& resolution, double first,
+                           const Passage& array, const Resolution& resolution, double first,
                            double last) {
   PingScore score;
   score.owner.assign(detections.size(), -1);

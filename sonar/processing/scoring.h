@@ -6,7 +6,7 @@
 
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/detection.h"
-#include "sonar/track.h"
+#include "sonar/processing/passage.h"
 
 namespace asdic {
 
@@ -70,12 +70,12 @@ struct PingScore {
 /// 10 dB below it or below the threshold. It belongs to the one whose echo is loudest there. A
 /// target is audible if its pairs within a cell have together, as powers, the level that they need.
 /// Ranges and bearings are those from where the array was when it heard the detection.
-/// \param array  when the ping was sent [m]   \param first, last  time that is searched
+/// \param array  from when the ping was sent on [m]   \param first, last  time that is searched
 /// [s]
 [[nodiscard]] PingScore score_detections(std::span<const Detection> detections,
                                          std::span<const TrueEcho> echoes,
                                          std::span<const TrueTarget> targets,
-                                         const ArrayShape& shape, const Kinematics& array,
+                                         const ArrayShape& shape, const Passage& array,
                                          const Resolution& resolution, double first, double last);
 
 }  // namespace asdic

@@ -13,7 +13,7 @@ namespace asdic {
 struct PlacedProbe {
   std::size_t beam = 0, filter = 0, sample = 0;
   bool inside = false;  ///< of what is searched
-  float background = 0.0F;
+  float power = 0.0F, background = 0.0F;
   float threshold = std::numeric_limits<float>::infinity();  ///< |y|²
 };
 

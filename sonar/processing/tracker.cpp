@@ -52,6 +52,7 @@ struct Curvature {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   Curvature(const TrackState& state, const Contact& c) {
+    if (!c.bearing_known) return;
     const auto across = [&](const Vec2& platform) -> Eigen::Matrix2d {  // ∂²|x|/∂x∂xᵀ
       const Vec2 way = state.mean.head<2>() - platform;
       const double range = std::max(way.norm(), 1e-3);

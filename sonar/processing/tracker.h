@@ -19,6 +19,7 @@ struct Contact {
   /// Doppler factor along its ridge [m per m/s]; the range of a pair that lies apart with the
   /// bearing, along the ellipse of its delay [m/rad].
   double range_per_rate = 0.0, range_per_bearing = 0.0;
+  bool bearing_known = true;  ///< false: along one line, `bearing`, which it never leaves
   Vec2 array = Vec2::Zero(), array_velocity = Vec2::Zero();    ///< when it heard (east, north)
   Vec2 source = Vec2::Zero(), source_velocity = Vec2::Zero();  ///< when it sent
 };

@@ -1,6 +1,7 @@
 // Peaks compared with what the beams around hear at the same time.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -37,9 +38,9 @@ Return from(double cosine, double delay, std::complex<double> amplitude) {
 }
 
 DetectorResult heard(const Returns& returns, double noise, bool across, double probability,
-                     std::uint32_t seed = 1) {
+                     std::uint32_t seed = 1, const std::vector<Vec3>& places = line(),
+                     Beamformer former = Beamformer::conventional) {
   const Recording recording{.sample_rate = rate, .samples = std::size_t(length * rate)};
-  const std::vector<Vec3> places = line();
   const Pulse pulse = sweep();
   const std::vector<double> p = direct_synthesis(pulse, recording, returns, places);
   std::vector<float> pressure(p.begin(), p.end());
@@ -47,10 +48,13 @@ DetectorResult heard(const Returns& returns, double noise, bool across, double p
   for (float& x : pressure) x += float(noise * draw.normal());
   const Replica known(std::span<const float>(replica(pulse, rate)), rate);
   const Baseband baseband =
-      to_baseband(pressure, phones, rate, 0.0, {.centre = 1000.0, .width = 400.0}, 0.2);
+      to_baseband(pressure, places.size(), rate, 0.0, {.centre = 1000.0, .width = 400.0}, 0.2);
   DetectorSettings settings;
   settings.normaliser.false_alarm_probability = probability;
   settings.normaliser.across_beams = across;
+  settings.beamformer = former;
+  settings.lowest_elevation = -0.3;
+  settings.highest_elevation = 0.3;
   return detect(baseband, places, c, known, std::vector<double>{1.0}, settings);
 }
 
@@ -66,6 +70,18 @@ TEST(AcrossBeams, EvenNoiseHasTheSameFalseAlarms) {
   EXPECT_GT(alone, 80U);
   EXPECT_LE(across, alone);
   EXPECT_GE(double(across), 0.9 * double(alone));
+}
+
+// Nor are a beam's false alarms more where the beams adapt to the noise: 260 of each in 6 runs,
+// from the same noise in other beams, differ by 3·√520 = 68 at most.
+TEST(AcrossBeams, AdaptiveBeamsHaveTheFalseAlarmsOfPlainOnes) {
+  double plain = 0.0, adapted = 0.0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    plain += double(heard({}, 1.0, false, 1e-3, seed).peaks);
+    adapted += double(heard({}, 1.0, false, 1e-3, seed, line(), Beamformer::mvdr).peaks);
+  }
+  EXPECT_GT(plain, 200.0);
+  EXPECT_NEAR(adapted, plain, 68.0);
 }
 
 // 300 scatterers at all bearings answer within 20 ms, two cells, 30 dB over the noise behind the
@@ -133,6 +149,25 @@ TEST(AcrossBeams, PathsOfOneEchoHideNone) {
           there || (std::abs(d.cosine - 0.2) < 0.03 && std::abs(d.time - 2.0 - 0.029 * i) < 0.005);
     EXPECT_TRUE(there) << i;
   }
+}
+
+// A dozen phones strewn over ten wavelengths by ten hear an echo in all beams at about 1/12, hardly
+// less than what a threshold asks for, 13 dB. That is the echo itself and not its background: what
+// is left of it two cells later, −30 dB, is all that may be taken for one.
+TEST(AcrossBeams, AnEchosOwnSideLobesAreNotItsBackground) {
+  std::vector<Vec3> strewn;
+  RandomStream draw(9, Draw::scatterer_place, 0, 0);
+  for (int n = 0; n < 12; ++n)
+    strewn.emplace_back(15.0 * (draw.uniform() - 0.5), 15.0 * (draw.uniform() - 0.5), 0.0);
+  const Returns echo{from(0.3, 2.0, 3.0)};
+  const auto loudest = [&](bool across) {
+    double most = 0.0;
+    for (const Detection& d : heard(echo, 1.0, across, 1e-6, 1, strewn).detections)
+      if (std::abs(d.time - 2.0) < 0.005) most = std::max(most, d.snr_db);
+    return most;
+  };
+  EXPECT_GT(loudest(false), 35.0);
+  EXPECT_GT(loudest(true), 28.0);
 }
 
 // The beams meant: 2 to 6 cells to both sides, at the ends of a line to one; none of a short line.

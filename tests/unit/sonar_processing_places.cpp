@@ -153,6 +153,47 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
   }
 }
 
+// A vehicle at 10 m/s sets out east when it pings and turns north 4 s later; the echo comes at 6 s,
+// 40 m east and 20 m north of the ping. Found is where it came from, seen from there; on a straight
+// course it would be 28 m beside it.
+TEST(LocaliserTest, FollowsTheWaypointsOfARecord) {
+  Scenario s;
+  s.platforms.resize(1);
+  s.platforms[0].track.waypoints = {{.time = 50.0, .position = {0.0, 0.0, 1000.0}},
+                                    {.time = 104.0, .position = {540.0, 0.0, 1000.0}},
+                                    {.time = 200.0, .position = {540.0, 960.0, 1000.0}}};
+  s.arrays.resize(1);
+  SonarPlaces places;
+  places.array = passage_of_array(s, 0, 100.0);
+  EXPECT_EQ(places.array.position.x(), 500.0);
+  const Kinematics heard = places.array.at(6.0);
+  EXPECT_LT((heard.position - Vec3(540.0, 20.0, 1000.0)).norm(), 1e-9);
+  EXPECT_LT((heard.velocity - Vec3(0.0, 10.0, 0.0)).norm(), 1e-9);
+  places.source.position = places.array.position;
+  places.shape = {.kind = ArrayKind::volume, .length = 2.0, .width = 2.0, .height = 2.0};
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  ocean.bottom = {.depth = 4000.0, .material = Rigid{}};
+  const PropagationPaths paths(ocean, {});
+  const Localiser localiser(
+      paths, {.limits = {.max_surface_bounces = 0, .max_bottom_bounces = 0}, .depth = 1000.0});
+  // A target whose way out and back, to where it is heard, takes 6 s.
+  const Vec3 ahead = direction(radians(30.0), 0.0);
+  double range = 4500.0;
+  const auto delay = [&] {
+    const Vec3 target = heard.position + range * ahead;
+    return (range + (target - places.source.position).norm()) / 1500.0;
+  };
+  for (int i = 0; i < 20; ++i) range += 0.5 * 1500.0 * (6.0 - delay());
+  const Detection d{.time = 6.0, .look = ahead};
+  const auto found = localiser.locate(d, places, 0.01);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_LT((found[0].position - heard.position - range * ahead).norm(), 0.01);
+  SonarPlaces straight = places;
+  straight.array.turns.clear();
+  EXPECT_GT((localiser.locate(d, straight, 0.01).at(0).position - found[0].position).norm(), 15.0);
+}
+
 // A vehicle at 10 m/s listens with one phone: the range found is from where it heard, 50 m nearer.
 TEST(Scoring, MeasuresRangesFromWhereTheArrayHeard) {
   const std::vector<TrueEcho> echoes{{.target = 0, .time = 5.0, .doppler = 1.0}};
