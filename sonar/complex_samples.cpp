@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "core/units.h"
@@ -68,21 +69,24 @@ void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phon
                  const Places& at, float* samples, std::size_t row) {
   constexpr std::size_t stride = 8 * fours;
   const auto period = static_cast<std::ptrdiff_t>(baseband.samples);
-  // [samples × phones], wrapped around the period
-  std::vector<std::complex<float>> under(
-      static_cast<std::size_t>(at.highest - at.lowest + 1) * 4 * fours, 0.0F);
+  // [samples × phones], wrapped around the period; zero where there is no phone
+  const auto places = static_cast<std::size_t>(at.highest - at.lowest + 1);
+  const auto under = std::make_unique_for_overwrite<float[]>(places * stride);
+  if (phones < 4 * fours) std::fill_n(under.get(), places * stride, 0.0F);
   for (std::size_t n = 0; n < phones; ++n) {
     const auto x = baseband.channel(channel + n);
     std::ptrdiff_t k = (at.lowest % period + period) % period;
-    for (std::size_t to = n; to < under.size(); to += 4 * fours) {
-      under[to] = x[static_cast<std::size_t>(k)];
+    float* to = under.get() + 2 * n;
+    for (std::size_t i = 0; i < places; ++i, to += stride) {
+      to[0] = x[static_cast<std::size_t>(k)].real();
+      to[1] = x[static_cast<std::size_t>(k)].imag();
       if (++k == period) k = 0;
     }
   }
   std::array<float, block * stride> sums;
   for (std::size_t i = 0; i < at.count; ++i) {
     std::array<Four, fours> sum{};
-    const float* from = reinterpret_cast<const float*>(under.data()) + at.first[i] * stride;
+    const float* from = under.get() + at.first[i] * stride;
 #pragma GCC unroll 24
     for (std::size_t k = 0; k < taps; ++k)
       for (std::size_t q = 0; q < fours; ++q) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace asdic {
@@ -86,30 +87,37 @@ std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
   constexpr double left_out = 1e-5;
   std::vector<double> least;
   struct Entry {
-    std::uint32_t stretch;
     double power, share;
   };
-  std::vector<Entry> entries;
-  entries.reserve(all.size());
-  for (const Found& f : all)
-    entries.push_back(
-        {static_cast<std::uint32_t>(f.sample.delay / stretch), f.ring_power, f.share});
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.stretch, a.power, a.share) < std::tie(b.stretch, b.power, b.share);
-  });
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    double total = 0.0;
-    for (end = begin; end < entries.size() && entries[end].stretch == entries[begin].stretch; ++end)
-      total += entries[end].power * entries[end].share;
-    std::size_t first = begin;
-    for (double dropped = 0.0; first < end; ++first) {
-      dropped += entries[first].power * entries[first].share;
-      if (dropped > left_out * total) break;
-    }
-    least.resize(entries[begin].stretch + 1, 0.0);
+  const auto stretch_of = [&](const Found& f) {
+    return static_cast<std::size_t>(f.sample.delay / stretch);
+  };
+  std::vector<std::size_t> first;  // entry of each stretch
+  for (const Found& f : all) {
+    const std::size_t s = stretch_of(f);
+    if (first.size() < s + 2) first.resize(s + 2, 0);
+    ++first[s + 1];
+  }
+  if (first.empty()) return least;
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Entry> entries(all.size());
+  std::vector<std::size_t> next = first;
+  for (const Found& f : all) entries[next[stretch_of(f)]++] = {f.ring_power, f.share};
+  least.assign(first.size() - 1, 0.0);
+  for (std::size_t s = 0; s < least.size(); ++s) {
+    const std::span<Entry> here(entries.data() + first[s], first[s + 1] - first[s]);
+    std::sort(here.begin(), here.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.power, a.share) < std::tie(b.power, b.share);
+    });
+    double total = 0.0, dropped = 0.0;
+    for (const Entry& e : here) total += e.power * e.share;
     // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
     // that lies a little nearer than its middle would be left out of this stretch for it.
-    least.back() = first > begin ? entries[first - 1].power : 0.0;
+    for (const Entry& e : here) {
+      dropped += e.power * e.share;
+      if (dropped > left_out * total) break;
+      least[s] = e.power;
+    }
   }
   return least;
 }

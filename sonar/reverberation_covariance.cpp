@@ -216,10 +216,15 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
     for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(*heard[order[i]]);
     stretch.rank = sum.factor(factors[s]);
   });
+  std::size_t count = 0;
   for (std::size_t s = 0; s < stretches.size(); ++s) {
-    stretches[s].first = components == 0 ? 0 : columns.size() / components;
-    columns.insert(columns.end(), factors[s].begin(), factors[s].end());
+    stretches[s].first = count;
+    count += stretches[s].rank;
   }
+  columns.resize(count * components);
+  for (std::size_t s = 0; s < stretches.size(); ++s)
+    std::copy(factors[s].begin(), factors[s].end(),
+              columns.begin() + static_cast<std::ptrdiff_t>(stretches[s].first * components));
   // What a neighbour's cells put into a silent stretch has the neighbour's directions.
   const auto take_over = [](Stretch& silent, const Stretch& neighbour) {
     if (silent.rank > 0) return;

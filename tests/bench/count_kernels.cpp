@@ -20,6 +20,7 @@
 #include "support/deep_ocean.h"
 #include "support/oceans.h"
 #include "support/random_returns.h"
+#include "support/thesis.h"
 
 // One kernel, run once to warm up and then so often as told inside a function that callgrind can
 // count the instructions of (tests/bench/check_counts.py): one thread, fixed input.
@@ -146,6 +147,21 @@ Kernel noise(NoiseCoherence coherence) {
   };
 }
 
+/// 60 s of 16 phones in complex baseband: a moving target, reverberation by its covariance.
+/// Nothing is known before.
+Kernel new_ping() {
+  Scenario s = support::thesis(support::deep_ocean("pchip").water);
+  s.environment.absorption = Thorp{};
+  s.transmitters[0].taper = Taper::hann;
+  s.targets = {support::target({23e3, 9e3, 125.0}, 30.0, {-4.0, 0.0, 0.0})};
+  s.reverberation.enabled = true;
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  s.pings.samples = Samples::baseband;
+  s.pings.carrier = 4000.0;
+  s.pings.baseband_rate = 400.0;
+  return [s] { keep(PingSimulator(s).simulate(1)); };
+}
+
 struct Named {
   const char* name;
   std::function<Kernel()> make;
@@ -168,6 +184,7 @@ const std::vector<Named> kernels = {
     {"marching-grid", [] { return marching_eigenrays_to("wedge", 20, 40); }},
     {"scatterers-at-rest", [] { return scatterers(0.0); }},
     {"scatterers-doppler", [] { return scatterers(5e-4); }},
+    {"new-ping", new_ping},
     {"noise-independent", [] { return noise(NoiseCoherence::independent); }},
     {"noise-isotropic", [] { return noise(NoiseCoherence::isotropic); }},
 };
