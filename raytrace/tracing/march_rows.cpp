@@ -134,8 +134,9 @@ bool March::cross_rows() {
     const bool down = tz > 0.0, in_section = cell_->law == Law::bilinear;
     const double line = down ? cell_->row->bottom : cell_->row->top;
     if (line == y_.depth || std::abs(line) > 1e29 || line > limits_.max_depth) break;
-    if (down ? near_bottom_ && stopped_before(line, BoundaryKind::bottom)
-             : near_surface_ && stopped_before(line, BoundaryKind::surface))
+    const bool is_dear = in_section || cell_->law == Law::cubic;
+    if (is_dear && (down ? near_bottom_ && stopped_before(line, BoundaryKind::bottom)
+                         : near_surface_ && stopped_before(line, BoundaryKind::surface)))
       break;
     const double turn = in_section ? cross_by_series(line) : cross_by_invariant(line);
     if (turn == never) break;

@@ -35,7 +35,7 @@ class NeighbourTest {
   /// the same rows of the water, and where one strikes a boundary tells where the next does.
   [[nodiscard]] bool regular(const FanRay& a, const FanRay& m, const FanRay& b) const;
   /// Whether two neighbours are so close that no third ray is needed: their depths, places and the
-  /// slopes of these lie on lines.
+  /// slopes of these lie on lines, and where they part nothing is lost between them.
   [[nodiscard]] bool pair_tells(const FanRay& a, const FanRay& b) const;
 
  private:
