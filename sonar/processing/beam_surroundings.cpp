@@ -44,8 +44,16 @@ BeamSurroundings::BeamSurroundings(const ArrayShape& shape, std::span<const Vec3
   }
 }
 
+/// Too few say nothing. Of the thousands that an array in a curve has over bearing and elevation
+/// some, evenly, tell the median as well: to a tenth.
 void BeamSurroundings::Lists::end_beam(std::size_t fewest) {
-  if (beams.size() - first.back() < fewest) beams.resize(first.back());
+  constexpr std::size_t most = 64;
+  const std::size_t begin = first.back(), found = beams.size() - begin;
+  if (found < fewest) beams.resize(begin);
+  if (found > most) {
+    for (std::size_t i = 0; i < most; ++i) beams[begin + i] = beams[begin + i * found / most];
+    beams.resize(begin + most);
+  }
   first.push_back(beams.size());
 }
 

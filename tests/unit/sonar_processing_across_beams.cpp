@@ -192,5 +192,26 @@ TEST(AcrossBeams, TheBeamsMeantLieBesideTheMainLobe) {
   for (std::size_t b = 0; b < wide.looks.size(); ++b) EXPECT_TRUE(none.beside(b).empty());
 }
 
+// A square of 10 by 10 wavelengths has thousands of beams, and asks 64 of them, all round.
+TEST(AcrossBeams, OfManyBeamsSomeAreAsked) {
+  std::vector<Vec3> square;
+  for (int i = 0; i <= 10; ++i)
+    for (int j = 0; j <= 10; ++j) square.emplace_back(1.5 * i, 1.5 * j, 0.0);
+  const ArrayShape shape = shape_of(square, 1.5);
+  const BeamGrid grid = beam_grid(shape, 1.5);
+  const BeamSurroundings around(shape, grid.looks, 1.5);
+  std::size_t full = 0;
+  for (std::size_t b = 0; b < grid.looks.size(); ++b) {
+    const auto beside = around.beside(b);
+    ASSERT_LE(beside.size(), 64U);
+    if (beside.size() < 64 || grid.looks[b].head<2>().norm() > 0.3) continue;
+    ++full;
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t other : beside) middle += (grid.looks[other] - grid.looks[b]) / 64.0;
+    EXPECT_LT(middle.head<2>().norm(), 0.1);  // they lie 0.2 to 0.6 away, on every side
+  }
+  EXPECT_GT(full, 20U);
+}
+
 }  // namespace
 }  // namespace asdic
