@@ -55,7 +55,8 @@ std::string targets_text(const ProcessedRun& run, const Scenario& scenario) {
                {"range", "m"},
                {"off by", "m"},
                {"bearing off", "deg"},
-               {"range rate", "m/s"}});
+               {"range rate", "m/s"},
+               {"+-", "m/s"}});  // wide where a sweep tells little of it
   bool any = false;
   for (const ProcessedPing& ping : run.pings)
     for (const TargetScore& score : ping.score.targets) {
@@ -74,7 +75,8 @@ std::string targets_text(const ProcessedRun& run, const Scenario& scenario) {
                                                          : score.position_error,
                         0),
                  number(degrees(score.bearing_error), 2),
-                 number(place != nullptr ? place->range_rate : none, 2)});
+                 number(place != nullptr ? place->range_rate : none, 2),
+                 number(place != nullptr ? d->doppler_sigma * place->rate_slope : none, 2)});
     }
   return any ? table.text() : "";
 }
