@@ -38,8 +38,8 @@ double error_of(const ProcessedTrack& made, const TrackPoint& p, const Processed
   const double heard =
       p.detection >= 0 ? ping.array.result.detections[static_cast<std::size_t>(p.detection)].time
                        : 2.0 * (p.time - ping.ping_time);
-  const Passage& array = ping.array.places.array;
-  return std::abs(p.position.y() - separation(array.after(heard), truth).range);
+  const Track& array = ping.array.places.array;
+  return std::abs(p.position.y() - separation(array.at(heard).position, truth).range);
 }
 
 void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,

@@ -17,6 +17,16 @@ Kinematics Track::at(double time) const {
   return {.position = from.position + (time - from.time) * velocity, .velocity = velocity};
 }
 
+Track Track::since(double time, const Vec3& offset) const {
+  Track moved{.start = at(time), .waypoints = waypoints};
+  moved.start.position += offset;
+  for (Waypoint& point : moved.waypoints) {
+    point.time -= time;
+    point.position += offset;
+  }
+  return moved;
+}
+
 std::optional<double> Track::course_at(double time) const {
   const auto bearing = [](const Vec3& v) -> std::optional<double> {
     if (v.x() == 0.0 && v.y() == 0.0) return std::nullopt;

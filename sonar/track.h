@@ -9,9 +9,6 @@ namespace asdic {
 struct Kinematics {
   Vec3 position = Vec3::Zero();  ///< [m]
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
-
-  /// The place `time` [s] later, straight on [m].
-  [[nodiscard]] Vec3 after(double time) const { return position + time * velocity; }
 };
 
 struct Waypoint {
@@ -26,6 +23,9 @@ struct Track {
   std::vector<Waypoint> waypoints;  ///< strictly increasing in time
 
   [[nodiscard]] Kinematics at(double time) const;
+
+  /// Of something that is carried along `offset` away [m], its clock beginning at `time` [s].
+  [[nodiscard]] Track since(double time, const Vec3& offset) const;
 
   /// Bearing of its horizontal motion [rad]: at rest before the first waypoint the one it will
   /// take, after the last (or between two in one place) the one it took. None if it never moves.

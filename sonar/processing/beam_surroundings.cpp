@@ -17,6 +17,15 @@ constexpr Cells side_cells{.nearest = 1.5, .furthest = 4.0, .fewest = 4};
 /// Of time, before and after; with the ones beside from 1 to 5: an echo fills the first.
 constexpr std::size_t off = 3;
 
+/// \param values  any order, and in another one afterwards   \return 0 of none
+template <typename Number>
+Number median_of(std::vector<Number>& values) {
+  if (values.empty()) return Number{};
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 BeamSurroundings::BeamSurroundings(const ArrayShape& shape, std::span<const Vec3> looks,
@@ -61,12 +70,9 @@ OwnLeak::OwnLeak(const BeamSurroundings& around, std::size_t beam,
                  const std::function<double(std::size_t)>& pattern) {
   std::vector<double> powers;
   const auto median = [&](std::span<const std::uint32_t> beams) {
-    if (beams.empty()) return 0.0;
     powers.clear();
     for (const std::uint32_t other : beams) powers.push_back(pattern(other));
-    const auto middle = powers.begin() + std::ssize(powers) / 2;
-    std::nth_element(powers.begin(), middle, powers.end());
-    return *middle;
+    return median_of(powers);
   };
   beside = median(around.beside(beam));
   for (const std::size_t s : {0, 1}) side[s] = median(around.on_side(s, beam));
@@ -104,12 +110,9 @@ float CellPowers::background(const BeamSurroundings& surroundings, std::size_t f
                              std::size_t beam, std::size_t sample, double power,
                              const OwnLeak& leak, std::vector<float>& scratch) const {
   const auto median = [&](std::span<const std::uint32_t> beams, std::size_t cell) {
-    if (beams.empty()) return 0.0F;
     scratch.clear();
     for (const std::uint32_t other : beams) scratch.push_back(mean(filter, other, cell));
-    const auto middle = scratch.begin() + std::ssize(scratch) / 2;
-    std::nth_element(scratch.begin(), middle, scratch.end());
-    return *middle;
+    return median_of(scratch);
   };
   const std::size_t cell =
       std::min(cells_ - 1, static_cast<std::size_t>(static_cast<double>(sample) / cell_));

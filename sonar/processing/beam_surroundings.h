@@ -41,7 +41,7 @@ class BeamSurroundings {
     [[nodiscard]] std::span<const std::uint32_t> of(std::size_t beam) const noexcept {
       return {beams.data() + first[beam], beams.data() + first[beam + 1]};
     }
-    void end_beam(std::size_t fewest);  ///< empties the last list if it is shorter
+    void end_beam(std::size_t fewest);  ///< the last list: none if shorter, some if long
   };
   Lists beside_;
   std::array<Lists, 2> sides_;

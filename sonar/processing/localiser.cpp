@@ -22,7 +22,7 @@ const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double
 }
 
 Vec3 heard_at(const Detection& detection, const SonarPlaces& places) {
-  return places.array.after(detection.time);
+  return places.array.at(detection.time).position;
 }
 
 /// Without a bearing a pair that lies apart puts it on an ellipse, not at a range.

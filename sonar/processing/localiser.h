@@ -6,7 +6,6 @@
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/delay_tables.h"
 #include "sonar/processing/detection.h"
-#include "sonar/processing/passage.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/track.h"
 #include "sonar/transmitter.h"
@@ -29,7 +28,7 @@ inline constexpr double farthest_apart = 30.0;
 /// Who sent and who heard one ping. Times count from the ping's start.
 struct SonarPlaces {
   Kinematics source;                         ///< when the ping starts
-  Passage array;                             ///< of the array's reference point, from then on
+  Track array;                               ///< of the array's reference point, from then on
   const TransmitPattern* pattern = nullptr;  ///< of the transmitter; none: all round
   ArrayShape shape;                          ///< of the array
 };

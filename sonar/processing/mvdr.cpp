@@ -1,11 +1,11 @@
 #include "sonar/processing/mvdr.h"
 
-#include "raytrace/parallel.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {

@@ -1,12 +1,12 @@
 #include "sonar/processing/peak_cluster.h"
 
-#include "raytrace/parallel.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
+
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {

@@ -112,10 +112,13 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
 
   ProcessedArray done{.ping = recording.ping, .array = recording.array};
   done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
-  done.places.array = passage_of_array(scenario_, recording.array, recording.ping_time);
-  done.sound_speed = paths_.speed_at(done.places.array.position);
+  const ReceiverArray& array = scenario_.arrays[static_cast<std::size_t>(recording.array)];
+  done.places.array = scenario_.platforms[static_cast<std::size_t>(array.platform)].track.since(
+      recording.ping_time, array.offset);
+  const Vec3 at_ping = done.places.array.at(0.0).position;
+  done.sound_speed = paths_.speed_at(at_ping);
   std::vector<Vec3> phones;
-  for (const Vec3& x : recording.phones) phones.push_back(x - done.places.array.position);
+  for (const Vec3& x : recording.phones) phones.push_back(x - at_ping);
   const double wavelength = done.sound_speed / pulse.centre_frequency();
   done.shape = shape_of(phones, wavelength);
   done.places.shape = done.shape;
@@ -161,7 +164,7 @@ MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
   MapRanges ranges;
   if (times.empty()) return ranges;
   SonarPlaces places = processed.places;
-  const double apart = separation(places.source.position, places.array.position).range;
+  const double apart = separation(places.source.position, places.array.at(0.0).position).range;
   if (apart <= 0.1 * farthest_apart * times.back()) {
     places.shape.kind = ArrayKind::point;  // no direction is needed
     ranges.of_time.assign(times.size(), std::numeric_limits<double>::quiet_NaN());

@@ -14,14 +14,14 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   if (times.empty()) return found;
   const double depth = settings_.depth.value_or(settings_.shallow);
   const Vec3 from = places.source.position, across = direction(bearing, 0.0);
-  const Vec3 heard = places.array.after(times.back());
-  const double apart =
-      std::max(separation(from, places.array.position).range, separation(from, heard).range);
+  const Vec3 at_ping = places.array.at(0.0).position;
+  const Vec3 heard = places.array.at(times.back()).position;
+  const double apart = std::max(separation(from, at_ping).range, separation(from, heard).range);
   const double longest = DelayTables::longest(times.back(), apart);
   // The place at a range, from where the array is when its echo comes (to a straight ray's delay).
   const auto point = [&](double range) {
-    Vec3 p = places.array.position + range * across;
-    p = places.array.after((range + separation(from, p).range) / 1500.0) + range * across;
+    Vec3 p = at_ping + range * across;
+    p = places.array.at((range + separation(from, p).range) / 1500.0).position + range * across;
     p.z() = depth;
     return p;
   };
@@ -43,7 +43,7 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
     for (std::size_t i = 0; i <= settings_.ranges; ++i) {
       const double range = step * static_cast<double>(i);
       const Vec3 p = point(range);
-      const double back = std::hypot(range, depth - places.array.position.z());
+      const double back = std::hypot(range, depth - at_ping.z());
       const double delay = ((p - from).norm() + back) / *settings_.speed;
       if (i > 0) take(before, delay, range, step, 1.0);
       before = delay;

@@ -57,7 +57,7 @@ Together together(std::span<const TrueEcho> echoes, const TrueEcho& echo, double
 
 PingScore score_detections(std::span<const Detection> detections, std::span<const TrueEcho> echoes,
                            std::span<const TrueTarget> targets, const ArrayShape& shape,
-                           const Passage& array, const Resolution& resolution, double first,
+                           const Track& array, const Resolution& resolution, double first,
                            double last) {
   PingScore score;
   score.owner.assign(detections.size(), -1);
@@ -99,7 +99,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
       const Detection& own = detections[static_cast<std::size_t>(row.detection)];
-      const Vec3 heard_at = array.after(own.time);
+      const Vec3 heard_at = array.at(own.time).position;
       const Separation truth = separation(heard_at, target.position);
       for (const Location& place : own.locations) {
         const Vec3 off = place.position - target.position;

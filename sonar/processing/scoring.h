@@ -6,7 +6,7 @@
 
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/detection.h"
-#include "sonar/processing/passage.h"
+#include "sonar/track.h"
 
 namespace asdic {
 
@@ -75,7 +75,7 @@ struct PingScore {
 [[nodiscard]] PingScore score_detections(std::span<const Detection> detections,
                                          std::span<const TrueEcho> echoes,
                                          std::span<const TrueTarget> targets,
-                                         const ArrayShape& shape, const Passage& array,
+                                         const ArrayShape& shape, const Track& array,
                                          const Resolution& resolution, double first, double last);
 
 }  // namespace asdic

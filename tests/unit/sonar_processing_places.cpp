@@ -110,14 +110,14 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
   const PropagationPaths paths(ocean, {});
   SonarPlaces places;
   places.source.position = {-4000.0, 0.0, 1000.0};
-  places.array.position = {4000.0, 0.0, 1000.0};
+  places.array.start.position = {4000.0, 0.0, 1000.0};
   places.shape = {.kind = ArrayKind::volume, .length = 2.0, .width = 2.0, .height = 2.0};
   const Vec3 velocity(3.0, -7.0, 0.0);
   for (const auto& [x, y] : {std::pair{500.0, 8000.0}, {-2000.0, 4000.0}, {1000.0, 2500.0}}) {
     const Vec3 target(x, y, 1000.0);
     const Separation out = separation(places.source.position, target),
-                     home = separation(target, places.array.position),
-                     seen = separation(places.array.position, target);
+                     home = separation(target, places.array.start.position),
+                     seen = separation(places.array.start.position, target);
     const Vec3 in = slowness_vector(out.bearing, 0.0, 1500.0),
                back = slowness_vector(home.bearing, 0.0, 1500.0);
     const Detection heard{.time = (out.range + home.range) / 1500.0,
@@ -157,19 +157,18 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
 // 40 m east and 20 m north of the ping. Found is where it came from, seen from there; on a straight
 // course it would be 28 m beside it.
 TEST(LocaliserTest, FollowsTheWaypointsOfARecord) {
-  Scenario s;
-  s.platforms.resize(1);
-  s.platforms[0].track.waypoints = {{.time = 50.0, .position = {0.0, 0.0, 1000.0}},
-                                    {.time = 104.0, .position = {540.0, 0.0, 1000.0}},
-                                    {.time = 200.0, .position = {540.0, 960.0, 1000.0}}};
-  s.arrays.resize(1);
+  const Track vehicle{.start = {},
+                      .waypoints = {{.time = 50.0, .position = {0.0, 0.0, 990.0}},
+                                    {.time = 104.0, .position = {540.0, 0.0, 990.0}},
+                                    {.time = 200.0, .position = {540.0, 960.0, 990.0}}}};
   SonarPlaces places;
-  places.array = passage_of_array(s, 0, 100.0);
-  EXPECT_EQ(places.array.position.x(), 500.0);
+  places.array = vehicle.since(100.0, {0.0, 0.0, 10.0});
+  const Vec3 at_ping = places.array.at(0.0).position;
+  EXPECT_EQ(at_ping, Vec3(500.0, 0.0, 1000.0));
   const Kinematics heard = places.array.at(6.0);
   EXPECT_LT((heard.position - Vec3(540.0, 20.0, 1000.0)).norm(), 1e-9);
   EXPECT_LT((heard.velocity - Vec3(0.0, 10.0, 0.0)).norm(), 1e-9);
-  places.source.position = places.array.position;
+  places.source.position = at_ping;
   places.shape = {.kind = ArrayKind::volume, .length = 2.0, .width = 2.0, .height = 2.0};
   Environment ocean;
   ocean.water = SoundSpeedProfile::isovelocity(1500.0);
@@ -190,7 +189,7 @@ TEST(LocaliserTest, FollowsTheWaypointsOfARecord) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_LT((found[0].position - heard.position - range * ahead).norm(), 0.01);
   SonarPlaces straight = places;
-  straight.array.turns.clear();
+  straight.array.waypoints.clear();
   EXPECT_GT((localiser.locate(d, straight, 0.01).at(0).position - found[0].position).norm(), 15.0);
 }
 
@@ -201,7 +200,8 @@ TEST(Scoring, MeasuresRangesFromWhereTheArrayHeard) {
       {.target = 0, .present = true, .position = {0.0, 3750.0, 0.0}}};
   Detection found = at(5.0, 1.0, Vec3::UnitY());
   found.locations = {{.position = {0.0, 3700.0, 0.0}, .range = 3703.0, .bearing = std::nan("")}};
-  const Kinematics array{.position = Vec3::Zero(), .velocity = {0.0, 10.0, 0.0}};
+  const Track array{.start = {.position = Vec3::Zero(), .velocity = {0.0, 10.0, 0.0}},
+                    .waypoints = {}};
   const PingScore score =
       score_detections(std::vector{found}, echoes, targets, ArrayShape{}, array,
                        {.time = 0.1, .doppler = 0.1, .direction = 2.0}, 1.0, 20.0);

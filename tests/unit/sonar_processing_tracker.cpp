@@ -88,6 +88,28 @@ TEST(TrackStateTest, SlopeIsThatOfTheMeasurement) {
   }
 }
 
+constexpr double fifteenth = 14 * 60.0;  // contacts come every minute [s]
+
+/// The track of fifteen contacts. \param contact  by its time
+template <typename ContactAt>
+TrackState after_fifteen(const ContactAt& contact) {
+  TrackState state = TrackState::from(contact(0.0), 10.0);
+  for (double t = 60.0; t <= fifteenth; t += 60.0) {
+    const Contact c = contact(t);
+    state.predict(t, 1e-4);
+    state.update(state.innovation(c));
+  }
+  return state;
+}
+
+/// Squared error of the state then, over its covariance: 4 on average where that is right.
+double normalised_error(const TrackState& state, const Vec2& start, const Vec2& velocity) {
+  Eigen::Vector4d truth;
+  truth << start + fifteenth * velocity, velocity;
+  const Eigen::Vector4d off = state.mean - truth;
+  return off.dot(state.covariance.inverse() * off);
+}
+
 // With the right model the squared, normalised errors of the state have the mean 4 (χ² of four
 // degrees): over 200 runs it is within 4 ± 5·√(8/200) = ±1. With a claimed noise of a third of the
 // true one it is far above: the wrong model fails.
@@ -98,25 +120,14 @@ TEST(TrackStateTest, CovarianceIsThatOfItsErrors) {
     for (int run = 0; run < runs; ++run) {
       RandomStream error(3, Draw::ambient_noise, static_cast<std::uint32_t>(run), 0);
       const Vec2 start(3000.0, 8000.0), velocity(-4.0, 1.5);
-      TrackState state;
-      for (int k = 0; k < 15; ++k) {
-        const double t = 60.0 * k;
+      const TrackState state = after_fifteen([&](double t) {
         Contact c = measure(start + t * velocity, velocity, t, error, 0);
         c.bearing_sigma *= claimed;
         c.range_sigma *= claimed;
         c.range_rate_sigma *= claimed;
-        if (k == 0) {
-          state = TrackState::from(c, 10.0);
-          continue;
-        }
-        state.predict(t, 1e-4);
-        state.update(state.innovation(c));
-      }
-      Eigen::Vector4d truth;
-      truth << start.x() + 840.0 * velocity.x(), start.y() + 840.0 * velocity.y(), velocity.x(),
-          velocity.y();
-      const Eigen::Vector4d off = state.mean - truth;
-      sum += off.dot(state.covariance.inverse() * off);
+        return c;
+      });
+      sum += normalised_error(state, start, velocity);
     }
     return sum / runs;
   };
@@ -137,9 +148,7 @@ Coupled followed(double per_rate, double per_bearing, bool told) {
   for (int run = 0; run < runs; ++run) {
     RandomStream error(7, Draw::ambient_noise, static_cast<std::uint32_t>(run), 0);
     const Vec2 velocity(5.0 * error.normal(), 5.0 * error.normal());
-    TrackState state;
-    for (int k = 0; k < 15; ++k) {
-      const double t = 60.0 * k;
+    const TrackState state = after_fifteen([&](double t) {
       const Vec2 place = start + t * velocity;
       Contact c{.time = t, .bearing_sigma = radians(0.5), .range_sigma = 3.0};
       c.range_rate_sigma = 6.0;
@@ -158,19 +167,11 @@ Coupled followed(double per_rate, double per_bearing, bool told) {
         c.range_sigma =
             std::hypot(c.range_sigma, per_rate * c.range_rate_sigma, per_bearing * c.bearing_sigma);
       }
-      if (k == 0) {
-        state = TrackState::from(c, 10.0);
-        continue;
-      }
-      state.predict(t, 1e-4);
-      state.update(state.innovation(c));
-    }
-    Eigen::Vector4d truth;
-    truth << start.x() + 840.0 * velocity.x(), start.y() + 840.0 * velocity.y(), velocity.x(),
-        velocity.y();
-    const Eigen::Vector4d off = state.mean - truth;
-    result.normalised += off.dot(state.covariance.inverse() * off) / runs;
-    result.range_error += std::pow(state.mean.head<2>().norm() - truth.head<2>().norm(), 2) / runs;
+      return c;
+    });
+    result.normalised += normalised_error(state, start, velocity) / runs;
+    const double range = (start + fifteenth * velocity).norm();
+    result.range_error += std::pow(state.mean.head<2>().norm() - range, 2) / runs;
   }
   result.range_error = std::sqrt(result.range_error);
   return result;

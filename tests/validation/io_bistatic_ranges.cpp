@@ -29,8 +29,9 @@ TEST(BistaticScenario, ADelayIsTheRangeOfItsPlaceAlongTheBearing) {
       record.echoes.begin(), record.echoes.end(),
       [](const EchoPath& a, const EchoPath& b) { return a.level_db < b.level_db; });
   const double delay = loudest.heard.delay;
-  const SonarPlaces places{.source = transmitter_at(s, 0, 0.0), .array = array_at(s, 0, 0.0)};
-  const Vec3 heard = places.array.position + delay * places.array.velocity;
+  const SonarPlaces places{.source = transmitter_at(s, 0, 0.0),
+                           .array = {.start = array_at(s, 0, 0.0), .waypoints = {}}};
+  const Vec3 heard = places.array.at(delay).position;
   // Struck on the way: by the share that the leg out has in the two straight ways.
   Vec3 struck = s.targets[0].track.at(0.5 * delay).position;
   for (int i = 0; i < 3; ++i) {
