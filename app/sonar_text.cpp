@@ -124,7 +124,8 @@ std::string electronics_text(const Electronics& e) {
   return "electronics  " + text.substr(2) + "\n";
 }
 
-std::string array_text(const Scenario& s, const ReceiverArray& array) {
+std::string array_text(const Scenario& s, std::size_t index) {
+  const ReceiverArray& array = s.arrays[index];
   double aperture = 0.0;
   for (const Vec3& a : array.phones)
     for (const Vec3& b : {array.phones.front(), array.phones.back()})
@@ -140,10 +141,10 @@ std::string array_text(const Scenario& s, const ReceiverArray& array) {
   } else {
     text += fmt::format(", {:g} m across", aperture);
   }
-  const auto index = static_cast<int>(&array - s.arrays.data());
-  const double hung = array_at(s, index, 0.0).position.z();
+  const auto number = static_cast<int>(index);
+  const double hung = array_at(s, number, 0.0).position.z();
   double shallowest = infinity, deepest = -infinity;
-  for (const Vec3& phone : phones_at(s, index, 1, 0.0)) {
+  for (const Vec3& phone : phones_at(s, number, 1, 0.0)) {
     shallowest = std::min(shallowest, hung + phone.z());
     deepest = std::max(deepest, hung + phone.z());
   }
@@ -210,15 +211,14 @@ std::string sonar_text(const PingSimulator& simulator) {
     text += transmitter_text(simulator, t);
     if (t == 0 || s.transmitters[t].pulse) text += pulse_text(s, static_cast<int>(t));
   }
-  for (const ReceiverArray& array : s.arrays) text += array_text(s, array);
+  for (std::size_t i = 0; i < s.arrays.size(); ++i) text += array_text(s, i);
   for (const Target& target : s.targets) {
     const Kinematics k = target.track.at(0.0);
     const Separation way = separation(platform.position, k.position);
     text +=
         fmt::format("target     {}: {}, {}, range {:.3f} km, bearing {:.1f} deg, {}\n", target.name,
                     strength_text(target), position(k.position), way.range / 1000.0,
-                    degrees(way.bearing) + (way.bearing < 0.0 ? 360.0 : 0.0),
-                    motion(k.velocity) + closing_text(platform, k));
+                    compass_degrees(way.bearing), motion(k.velocity) + closing_text(platform, k));
   }
   for (const Interferer& ship : s.interferers) {
     const Kinematics k = ship.track.at(0.0);

@@ -123,13 +123,12 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
     print(fmt::format("{} in the journal did not match their checksum and were made again\n",
                       count_of(outcome.damaged, "realisation")));
   if (!outcome.warning.empty()) print("warning: " + outcome.warning + '\n');
-  if (!outcome.written && there == 0)
-    throw RunError(
-        "interrupted before the first realisation was done; the same command begins anew");
   if (!outcome.written)
-    throw RunError(fmt::format("interrupted after {} of {}; {}, and the same command goes on",
-                               there, count_of(outcome.total, "realisation"),
-                               journals_hold(order.run.output)));
+    throw RunError(
+        there == 0
+            ? "interrupted before the first realisation was done; the same command begins anew"
+            : fmt::format("interrupted after {} of {}; {}, and the same command goes on", there,
+                          count_of(outcome.total, "realisation"), journals_hold(order.run.output)));
   if (quiet) return 0;
   if (outcome.was_complete) {
     print(fmt::format("{}: complete already, nothing to do; --fresh begins anew\n", file));

@@ -41,8 +41,7 @@ std::pair<double, double> speeds(const Environment& ocean) {
 /// Where the transect lies along which the ocean varies.
 std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
-  const Environment& ocean = s.environment;
-  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return "";
+  if (!varies_with_range(s.environment)) return "";
   return fmt::format(
       "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
       "it, over {:.0f} m\n",

@@ -67,9 +67,13 @@ DepthFunction attenuation_np_per_m(const Environment& environment, double freque
   return DepthFunction::table(depth, value);
 }
 
+bool varies_with_range(const Environment& environment) noexcept {
+  return environment.section || environment.surface.shape || environment.bottom.shape;
+}
+
 bool is_layered(const Environment& environment) noexcept {
-  return !environment.section && !environment.surface.shape && !environment.bottom.shape &&
-         environment.biology.empty() && environment.attenuation_db_per_km.is_constant();
+  return !varies_with_range(environment) && environment.biology.empty() &&
+         environment.attenuation_db_per_km.is_constant();
 }
 
 }  // namespace asdic

@@ -54,6 +54,9 @@ struct Environment {
 /// All that the water takes out of a wave: absorption, biology and attenuation [Np/m] over depth.
 [[nodiscard]] DepthFunction attenuation_np_per_m(const Environment& environment, double frequency);
 
+/// Whether water or boundaries vary along the transect.
+[[nodiscard]] bool varies_with_range(const Environment& environment) noexcept;
+
 /// Whether the layered solver applies: speed a function of depth, flat boundaries, losses the same
 /// at every depth. Otherwise rays are marched.
 [[nodiscard]] bool is_layered(const Environment& environment) noexcept;

@@ -2,14 +2,16 @@
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
-#include "raytrace/called_off.h"
+#include "raytrace/propagation.h"
 
 namespace asdic {
 
 void in_parallel_called(std::size_t count, const std::function<void(std::size_t i)>& body) {
   tbb::parallel_for(std::size_t{0}, count, body);
-  leave_if_called_off();
+  // In a task whose group was cancelled the loop ended early, without a word.
+  if (tbb::is_current_task_group_canceling()) throw Interrupted();
 }
 
 std::size_t most_workers() {

@@ -77,13 +77,11 @@ double quantile_of(const Weibull& law, const Tails& t) noexcept {
 
 // Where each law ends.
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-
-std::pair<double, double> support(const Uniform& law) { return {law.low, law.high}; }
-std::pair<double, double> support(const Triangular& law) { return {law.low, law.high}; }
-std::pair<double, double> support(const Normal&) { return {-endless, endless}; }
-std::pair<double, double> support(const LogNormal&) { return {0.0, endless}; }
-std::pair<double, double> support(const Weibull&) { return {0.0, endless}; }
+Span support(const Uniform& law) { return {law.low, law.high}; }
+Span support(const Triangular& law) { return {law.low, law.high}; }
+Span support(const Normal&) { return {-infinity, infinity}; }
+Span support(const LogNormal&) { return {0.0, infinity}; }
+Span support(const Weibull&) { return {0.0, infinity}; }
 
 }  // namespace
 
@@ -125,7 +123,7 @@ double CutLaw::share() const noexcept {
   return at_low_.lower < 0.5 ? at_high_.lower - at_low_.lower : at_low_.upper - at_high_.upper;
 }
 
-std::pair<double, double> CutLaw::ends() const noexcept {
+Span CutLaw::ends() const noexcept {
   const auto [low, high] = std::visit([](const auto& law) { return support(law); }, law_);
   return {std::max(low, low_), std::min(high, high_)};
 }

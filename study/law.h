@@ -1,9 +1,16 @@
 #pragma once
+#include <cmath>
 #include <limits>
-#include <utility>
 #include <variant>
 
 namespace asdic::study {
+
+/// An interval, or one value.
+struct Span {
+  double low = 0.0, high = 0.0;
+  [[nodiscard]] bool single() const noexcept { return low == high; }
+  [[nodiscard]] double at(double u) const noexcept { return std::lerp(low, high, u); }
+};
 
 /// How a number is distributed: lower and upper tail and their inverses. Each tail is computed by
 /// itself, so that a law cut off far out keeps its digits. docs/theory/designs.md
@@ -54,7 +61,7 @@ class CutLaw {
   [[nodiscard]] double low() const noexcept { return low_; }
   [[nodiscard]] double high() const noexcept { return high_; }
   /// Where what is drawn ends: at a limit or where the law itself does; infinite where neither.
-  [[nodiscard]] std::pair<double, double> ends() const noexcept;
+  [[nodiscard]] Span ends() const noexcept;
 
  private:
   ContinuousLaw law_;

@@ -21,7 +21,7 @@ struct InHand {
 using Parcel = std::shared_ptr<InHand>;
 
 /// Makes the row, unless it is called off meanwhile: the parallel loops in it then end early, and
-/// who runs them throws (raytrace/called_off.h), which goes no further than the group.
+/// who runs them throws (raytrace/parallel.h), which goes no further than the group.
 void make_row(const Realise& realise, const std::stop_token& stop, InHand& parcel) {
   tbb::task_group group;
   const std::stop_callback call_off(stop, [&group] { group.cancel(); });

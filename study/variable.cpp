@@ -21,8 +21,7 @@ std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
 
 std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
-  const auto [low, high] = law.law.ends();
-  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .ends = {low, high}}};
+  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .ends = law.law.ends()}};
 }
 
 std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {

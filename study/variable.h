@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,13 +29,6 @@ struct ChoiceLaw {
   std::vector<double> cumulative;                ///< [choices] of the weights, the last one 1
   bool by_row = false;                           ///< keys have values of their own, and columns
   std::vector<std::vector<std::string>> labels;  ///< [columns][choices]; [columns][0] of numbers
-};
-
-/// An interval, or one value.
-struct Span {
-  double low = 0.0, high = 0.0;
-  [[nodiscard]] bool single() const noexcept { return low == high; }
-  [[nodiscard]] double at(double u) const noexcept { return std::lerp(low, high, u); }
 };
 
 /// Where something starts and how it goes: `position` and `velocity` below its key. Drawn evenly in
@@ -79,7 +71,7 @@ struct InputColumn {
   std::string name, unit, meaning;
   std::vector<std::string> labels;
   /// Between which its values are drawn; infinite where the law has no end.
-  Span ends{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Span ends{-infinity, infinity};
 };
 [[nodiscard]] std::vector<InputColumn> input_columns(const Variable& variable);
 /// Between which the values of a column are drawn; infinite where it is none of an input.

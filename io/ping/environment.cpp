@@ -65,7 +65,7 @@ void write_section(Hdf5File& file, const SoundSpeedSection& section) {
 /// All that varies along the transect, and where that lies.
 void write_transect(Hdf5File& file, const Scenario& scenario) {
   const Environment& ocean = scenario.environment;
-  if (!ocean.section && !ocean.surface.shape && !ocean.bottom.shape) return;
+  if (!varies_with_range(ocean)) return;
   file.set_attribute("environment", "transect_x_m", scenario.transect.x);
   file.set_attribute("environment", "transect_y_m", scenario.transect.y);
   file.set_attribute("environment", "transect_bearing_deg",

@@ -276,6 +276,15 @@ void check_size(TomlTable& root, const Scenario& scenario) {
                           to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) + " GiB a ping");
 }
 
+void check_fathometer(TomlTable& root, const Scenario& scenario) {
+  if (scenario.propagation.fathometer && varies_with_range(scenario.environment))
+    throw root.table("propagation")
+        .fault("fathometer",
+               "false where the ocean varies along a transect: a mirror that slopes is not in the "
+               "plane of transmitter and array",
+               "true");
+}
+
 }  // namespace
 
 void check_scenario(TomlTable& root, const Scenario& scenario) {
@@ -283,6 +292,7 @@ void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_targets(root, scenario);
   check_interferers(root, scenario);
   check_size(root, scenario);
+  check_fathometer(root, scenario);
   check_intervals(root, scenario);
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
     check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));

@@ -15,12 +15,6 @@ void read_propagation(TomlTable table, Scenario& scenario) {
       {.noun = "angle", .unit = "degrees", .low = 0.0, .high = 90.0, .above = true}, 90.0));
   settings.direct_blast = table.flag("direct_blast", settings.direct_blast);
   settings.fathometer = table.flag("fathometer", settings.fathometer);
-  const Environment& ocean = scenario.environment;
-  if (settings.fathometer && (ocean.section || ocean.surface.shape || ocean.bottom.shape))
-    throw table.fault("fathometer",
-                      "false where the ocean varies along a transect: a mirror that "
-                      "slopes is not in the plane of transmitter and array",
-                      "true");
   settings.wide_band = table.choice("band", {"narrow", "wide"}, "narrow") == "wide";
   settings.exact_per_phone = table.flag("exact_per_phone", false);
   table.finish();

@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "core/error.h"
-#include "raytrace/called_off.h"
 #include "raytrace/parallel.h"
 #include "study/run.h"
 
@@ -127,7 +126,6 @@ TEST(Run, AStopEndsALongRealisationAtOnce) {
 
 // Outside of a run nothing is called off.
 TEST(Run, WithoutAStopNothingIsCalledOff) {
-  EXPECT_FALSE(called_off());
   int made = 0;
   in_parallel(1, [&](std::size_t) { ++made; });
   EXPECT_EQ(made, 1);
