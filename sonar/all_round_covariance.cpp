@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 
@@ -10,45 +11,24 @@
 
 namespace asdic {
 
-namespace {
-
-/// J₀ and its slope a step further, by the Taylor series of y″ = −y − y′/x about x:
-/// (n + 1)(n + 2)·a_{n+2} = −((n + 1)²·a_{n+1} + x·a_n + a_{n−1})/x. From x = 1 on twelve terms of
-/// a sixteenth leave nothing, and a library's function takes ten times as long.
-void step_bessel(double x, double step, double& value, double& slope) {
-  double before = 0.0, a = value, next = slope;                        // a_{n−1}, a_n, a_{n+1}
-  double power = step, sum = value + slope * step, slope_sum = slope;  // power: stepⁿ⁺¹
-  const double per_x = 1.0 / x;
-  for (int n = 0; n < 10; ++n) {
-    const double one = n + 1, two = n + 2;
-    const double last = -(one * one * next + x * a + before) * per_x / (one * two);
-    slope_sum += two * last * power;
-    power *= step;
-    sum += last * power;
-    before = std::exchange(a, std::exchange(next, last));
-  }
-  value = sum;
-  slope = slope_sum;
-}
-
-}  // namespace
-
 BesselTable::BesselTable(double furthest) {
+  // The function is the same for all: the longest table so far serves all that ask for less.
+  static std::mutex mutex;
+  static std::shared_ptr<const Cubics> longest = std::make_shared<Cubics>();
+  const std::lock_guard lock(mutex);
   const auto count = static_cast<std::size_t>(furthest * steps) + 2;
-  cubics_.reserve(count);
-  double value = 1.0, slope = 0.0;  // by x
-  for (std::size_t i = 1; i <= count; ++i) {
-    const double x = static_cast<double>(i) / steps;
-    double next = value, next_slope = slope;
-    if (x <= 1.0)  // POSIX' Bessel functions: std's are slow
-      next = ::j0(x), next_slope = -::j1(x);
-    else
-      step_bessel(x - 1.0 / steps, 1.0 / steps, next, next_slope);
-    const double from = slope / steps, to = next_slope / steps, rise = next - value;
-    cubics_.push_back({value, from, 3.0 * rise - 2.0 * from - to, from + to - 2.0 * rise});
-    value = next;
-    slope = next_slope;
+  if (longest->size() < count) {
+    Cubics longer = *longest;
+    const auto value = [](std::size_t i) { return ::j0(static_cast<double>(i) / steps); };
+    const auto slope = [](std::size_t i) { return -::j1(static_cast<double>(i) / steps) / steps; };
+    // POSIX' Bessel functions: std's are slow
+    for (std::size_t i = longer.size(); i < count; ++i) {
+      const double from = slope(i), to = slope(i + 1), rise = value(i + 1) - value(i);
+      longer.push_back({value(i), from, 3.0 * rise - 2.0 * from - to, from + to - 2.0 * rise});
+    }
+    longest = std::make_shared<Cubics>(std::move(longer));
   }
+  cubics_ = longest;
 }
 
 namespace {

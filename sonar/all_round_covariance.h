@@ -3,6 +3,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,7 @@ class BesselTable {
   /// \param x  from 0 to the furthest
   [[nodiscard]] double operator()(double x) const noexcept {
     const auto place = static_cast<std::int32_t>(x * steps);
-    const std::array<double, 4>& c = cubics_[static_cast<std::size_t>(place)];
+    const std::array<double, 4>& c = (*cubics_)[static_cast<std::size_t>(place)];
     const double t = x * steps - static_cast<double>(place);
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
   }
@@ -29,8 +30,9 @@ class BesselTable {
   }
 
  private:
+  using Cubics = std::vector<std::array<double, 4>>;
   static constexpr double steps = 16.0;
-  std::vector<std::array<double, 4>> cubics_;
+  std::shared_ptr<const Cubics> cubics_;
 };
 
 /// What one circle of places sends back by one pair of paths and, where the delay is the same, by

@@ -1,12 +1,12 @@
 #include "sonar/boundary_fans.h"
 
-#include "raytrace/parallel.h"
-
 #include <tbb/collaborative_call_once.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {

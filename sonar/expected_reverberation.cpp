@@ -1,11 +1,11 @@
 #include "sonar/expected_reverberation.h"
 
-#include "raytrace/parallel.h"
-
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
+
+#include "core/grouped.h"
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {
@@ -85,27 +85,21 @@ std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, dou
 /// Below which all that is left out of a stretch is a hundred-thousandth of its power.
 std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
   constexpr double left_out = 1e-5;
-  std::vector<double> least;
   struct Entry {
     double power, share;
   };
-  const auto stretch_of = [&](const Found& f) {
-    return static_cast<std::size_t>(f.sample.delay / stretch);
-  };
-  std::vector<std::size_t> first;  // entry of each stretch
+  std::size_t stretches = 0;
+  std::vector<std::size_t> stretch_of;
   for (const Found& f : all) {
-    const std::size_t s = stretch_of(f);
-    if (first.size() < s + 2) first.resize(s + 2, 0);
-    ++first[s + 1];
+    stretch_of.push_back(static_cast<std::size_t>(f.sample.delay / stretch));
+    stretches = std::max(stretches, stretch_of.back() + 1);
   }
-  if (first.empty()) return least;
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Entry> entries(all.size());
-  std::vector<std::size_t> next = first;
-  for (const Found& f : all) entries[next[stretch_of(f)]++] = {f.ring_power, f.share};
-  least.assign(first.size() - 1, 0.0);
-  for (std::size_t s = 0; s < least.size(); ++s) {
-    const std::span<Entry> here(entries.data() + first[s], first[s + 1] - first[s]);
+  const Grouped by_stretch = grouped(stretch_of, stretches);
+  std::vector<double> least(stretches, 0.0);
+  std::vector<Entry> here;
+  for (std::size_t s = 0; s < stretches; ++s) {
+    here.clear();
+    for (const std::size_t i : by_stretch.of(s)) here.push_back({all[i].ring_power, all[i].share});
     std::sort(here.begin(), here.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.power, a.share) < std::tie(b.power, b.share);
     });

@@ -1,12 +1,12 @@
 #include "sonar/noise_coherence.h"
 
-#include "raytrace/parallel.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {

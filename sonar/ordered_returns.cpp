@@ -1,8 +1,8 @@
 #include "sonar/ordered_returns.h"
 
-#include "raytrace/parallel.h"
-
 #include <cmath>
+
+#include "raytrace/parallel.h"
 
 namespace asdic {
 namespace {

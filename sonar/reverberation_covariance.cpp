@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grouped.h"
 #include "raytrace/parallel.h"
 #include "sonar/stretch_covariance.h"
 
@@ -195,25 +196,20 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
     for (Heard& h : part) heard.push_back(&h);
   const AllRoundArray all_round(listener.phones, listener.band.frequencies, fastest_of(heard));
 
-  // In the order of stretches, and in each as they came.
-  std::vector<std::size_t> first(stretches.size() + 1, 0), of(heard.size());
-  std::vector<std::size_t> stretch_of_bin(intensity.size());
+  std::vector<std::size_t> stretch_of_bin(intensity.size()), stretch_of(heard.size());
   for (std::size_t s = 0; s < stretches.size(); ++s)
     for (std::size_t b = stretches[s].begin; b < stretches[s].end; ++b) stretch_of_bin[b] = s;
   for (std::size_t i = 0; i < heard.size(); ++i) {
     const auto b = static_cast<std::size_t>(std::max(0.0, heard[i]->delay) / bin);
-    of[i] = stretch_of_bin[std::min(b, intensity.size() - 1)];
-    ++first[of[i] + 1];
+    stretch_of[i] = stretch_of_bin[std::min(b, intensity.size() - 1)];
   }
-  for (std::size_t s = 0; s < stretches.size(); ++s) first[s + 1] += first[s];
-  std::vector<std::size_t> order(heard.size()), next(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < heard.size(); ++i) order[next[of[i]]++] = i;
+  const Grouped by_stretch = grouped(stretch_of, stretches.size());
 
   std::vector<std::vector<std::complex<float>>> factors(stretches.size());
   in_parallel(stretches.size(), [&](std::size_t s) {
     Stretch& stretch = stretches[s];
     StretchSum sum(steering, all_round);
-    for (std::size_t i = first[s]; i < first[s + 1]; ++i) sum.add(*heard[order[i]]);
+    for (const std::size_t i : by_stretch.of(s)) sum.add(*heard[i]);
     stretch.rank = sum.factor(factors[s]);
   });
   std::size_t count = 0;
