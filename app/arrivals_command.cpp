@@ -165,58 +165,54 @@ int arrivals(const Options& options) {
 
 }  // namespace
 
-void add_arrivals_command(CLI::App& program, Action& action) {
+void add_arrivals_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "arrivals",
       "Every eigenray from the platform to the targets and back, or to any depth and range; of a "
       "scenario with a [run], to all its receivers.");
-  add_scenario_options(*command, options->scenario);
+  add_scenario_options(command, options->scenario);
   command
-      ->add_option("--leg", options->legs,
-                   "target: platform to target; array: target to array; default: both")
-      ->type_name("LEG")
-      ->check(CLI::IsMember({"target", "array"}))
-      ->allow_extra_args(false);
-  command->add_option("--target", options->target, "this target alone, from 0; default: all")
-      ->type_name("N")
-      ->check(not_negative());
-  command->add_option("--ping", options->ping, "positions of this ping")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(above_zero());
-  add_length_option(
-      *command, "--receiver-depth", [options](double x) { options->receiver_depth = x; },
-      "depth of a receiver, instead of targets; with --range");
-  add_length_option(
-      *command, "--range", [options](double x) { options->range = x; },
-      "horizontal distance of that receiver, e.g. 30km");
-  add_length_option(
-      *command, "--source-depth", [options](double x) { options->source_depth = x; },
-      "depth of the source, with --range; default: the platform's");
+      .add_option("--leg", options->legs,
+                  "target: platform to target; array: target to array; default: both")
+      .type_name("LEG")
+      .one_of({"target", "array"})
+      .one_at_a_time();
+  command.add_option("--target", options->target, "this target alone, from 0; default: all")
+      .type_name("N")
+      .check(not_negative());
+  command.add_option("--ping", options->ping, "positions of this ping")
+      .show_default()
+      .type_name("N")
+      .check(above_zero());
+  command.add_length("--receiver-depth", options->receiver_depth,
+                     "depth of a receiver, instead of targets; with --range");
+  command.add_length("--range", options->range, "horizontal distance of that receiver, e.g. 30km");
+  command.add_length("--source-depth", options->source_depth,
+                     "depth of the source, with --range; default: the platform's");
   command
-      ->add_option("--bearing", options->bearing,
-                   "of that receiver, where the ocean varies along a transect; default: along it "
-                   "[deg]")
-      ->type_name("DEG")
-      ->check(CLI::Range(-360.0, 360.0));
+      .add_option("--bearing", options->bearing,
+                  "of that receiver, where the ocean varies along a transect; default: along it "
+                  "[deg]")
+      .type_name("DEG")
+      .check(between(-360.0, 360.0));
   command
-      ->add_option("--frequency", options->frequency,
-                   "at which losses are told [Hz]; default: the pulse's centre")
-      ->type_name("HZ")
-      ->check(above_zero());
-  command->add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
+      .add_option("--frequency", options->frequency,
+                  "at which losses are told [Hz]; default: the pulse's centre")
+      .type_name("HZ")
+      .check(above_zero());
+  command.add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
   command
-      ->add_option("-o,--output", options->output,
-                   "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
-                   "the table")
-      ->type_name("FILE");
-  command->footer(
+      .add_option("-o,--output", options->output,
+                  "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
+                  "the table")
+      .type_name("FILE");
+  command.footer(
       "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
       "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"
       "          asdic arrivals scenarios/deep_ocean.toml --receiver-depth 125m --range 25km "
       "--json");
-  command->callback([options, &action] { action = [options] { return arrivals(*options); }; });
+  command.runs([options] { return arrivals(*options); });
 }
 
 }  // namespace asdic::app

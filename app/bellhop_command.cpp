@@ -23,9 +23,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string root, output;
+  std::string root, output, dialect = "fortran";
   bool like_bellhop = false, beams_as_written = false, quiet = false;
-  bellhop::Dialect dialect = bellhop::Dialect::fortran;
   std::optional<int> threads;
 };
 
@@ -119,15 +118,16 @@ PropagationResult search(const bellhop::Input& input, const Options& options) {
 void write_results(const bellhop::Input& input, const PropagationResult& result,
                    const Options& options, const std::filesystem::path& root, Report& report) {
   const PropagationCase& run_case = input.run_case;
+  const bellhop::Dialect dialect =
+      options.dialect == "wide" ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
   if (!result.field.empty()) {
-    bellhop::write_shade_file(with(root, ".shd"),
-                              bellhop::shade_file(run_case, result, options.dialect));
+    bellhop::write_shade_file(with(root, ".shd"), bellhop::shade_file(run_case, result, dialect));
     report.file(with(root, ".shd"));
   }
   if (run_case.task == Task::arrivals || run_case.task == Task::eigenrays_and_arrivals) {
     bellhop::write_arrivals_file(
         with(root, ".arr"),
-        bellhop::arrivals_file(run_case, result, input.binary_arrivals, options.dialect));
+        bellhop::arrivals_file(run_case, result, input.binary_arrivals, dialect));
     report.file(with(root, ".arr"));
   }
   if (run_case.task != Task::arrivals && run_case.task != Task::field) {
@@ -190,36 +190,32 @@ int bellhop_command(const Options& options) {
 
 }  // namespace
 
-void add_bellhop_command(CLI::App& program, Action& action) {
+void add_bellhop_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "bellhop",
       "Run a BELLHOP case: reads ROOT.env and its companions, writes ROOT.shd, ROOT.arr or\n"
       "ROOT.ray, and ROOT.prt.");
-  command->add_option("root", options->root, "name of the case, with or without .env")
-      ->type_name("ROOT")
-      ->required();
-  command->add_flag("--like-bellhop", options->like_bellhop,
-                    "with BELLHOP's own steps, beams and merging, to compare with its files");
-  command->add_flag("--beams-as-written", options->beams_as_written,
-                    "exactly the beams of the file, where fields take as many as they need");
+  command.add_option("root", options->root, "name of the case, with or without .env")
+      .type_name("ROOT")
+      .required();
+  command.add_flag("--like-bellhop", options->like_bellhop,
+                   "with BELLHOP's own steps, beams and merging, to compare with its files");
+  command.add_flag("--beams-as-written", options->beams_as_written,
+                   "exactly the beams of the file, where fields take as many as they need");
   command
-      ->add_option("--dialect", options->dialect,
-                   "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
-      ->type_name("NAME")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, bellhop::Dialect>{{"fortran", bellhop::Dialect::fortran},
-                                                  {"wide", bellhop::Dialect::wide}},
-          CLI::ignore_case));
-  command->add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
-      ->type_name("ROOT");
-  add_threads_option(*command, options->threads);
-  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command->footer(
+      .add_option("--dialect", options->dialect,
+                  "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
+      .type_name("NAME")
+      .one_of({"fortran", "wide"});
+  command.add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
+      .type_name("ROOT");
+  add_threads_option(command, options->threads);
+  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command.footer(
       "Ctrl-C stops; nothing half-written is left.\n"
       "Example:  asdic bellhop munk -o /tmp/munk\n");
-  command->callback(
-      [options, &action] { action = [options] { return bellhop_command(*options); }; });
+  command.runs([options] { return bellhop_command(*options); });
 }
 
 }  // namespace asdic::app

@@ -1,22 +1,232 @@
 #include "app/command.h"
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "core/error.h"
+#include "io/text/toml_value.h"
 
 namespace asdic::app {
+namespace {
 
-void add_scenario_options(CLI::App& command, ScenarioChoice& choice) {
-  command.add_option("SCENARIO", choice.path, "scenario file (TOML)")->required();
+Check check_of(CLI::Validator rule) {
+  return std::make_shared<const CLI::Validator>(std::move(rule));
+}
+
+/// What a mistyped word looks most like, as a question; "" when nothing is near.
+std::string did_you_mean(const std::string& typed, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(typed, names);
+  return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
+}
+
+/// A number out of all of a text.
+template <class T>
+std::optional<T> whole_text(const std::string& text) {
+  T value{};
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+Check above_zero() {
+  return check_of({[](const std::string& text) {
+                     const double value = std::strtod(text.c_str(), nullptr);
+                     return value > 0.0 && std::isfinite(value)
+                                ? std::string()
+                                : "found " + text + ", expected a number above 0";
+                   },
+                   "ABOVE 0"});
+}
+
+Check not_negative() {
+  return check_of({[](const std::string& text) {
+                     const auto value = whole_text<double>(text);
+                     return value && *value >= 0.0 && std::isfinite(*value)
+                                ? std::string()
+                                : "found " + text + ", expected a number of at least 0";
+                   },
+                   "AT LEAST 0"});
+}
+
+Check between(double low, double high) { return check_of(CLI::Range(low, high)); }
+Check between(int low, int high) { return check_of(CLI::Range(low, high)); }
+
+Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun) {
+  return check_of({[low, high, noun](const std::string& text) {
+                     const auto value = whole_text<std::int64_t>(text);
+                     return value && *value >= low && *value <= high
+                                ? std::string()
+                                : "found " + text + ", expected " + noun + " from " +
+                                      std::to_string(low) + " to " + std::to_string(high);
+                   },
+                   std::to_string(low) + " TO " + std::to_string(high)});
+}
+
+Option Option::required() const { return Option(option_->required()); }
+Option Option::type_name(const std::string& name) const { return Option(option_->type_name(name)); }
+Option Option::check(const Check& rule) const { return Option(option_->check(*rule)); }
+Option Option::one_of(std::initializer_list<std::string> words) const {
+  return Option(
+      option_->transform(CLI::IsMember(std::vector<std::string>(words), CLI::ignore_case)));
+}
+Option Option::show_default() const { return Option(option_->capture_default_str()); }
+Option Option::delimiter(char mark) const { return Option(option_->delimiter(mark)); }
+Option Option::one_at_a_time() const { return Option(option_->allow_extra_args(false)); }
+Option Option::excludes(Option other) const { return Option(option_->excludes(other.option_)); }
+Option Option::group(const std::string& heading) const { return Option(option_->group(heading)); }
+
+template <class T>
+Option Command::add_option(const std::string& name, T& store, const std::string& help) const {
+  return Option(command_->add_option(name, store, help));
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
+template Option Command::add_option(const std::string&, int&, const std::string&) const;
+template Option Command::add_option(const std::string&, double&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<int>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<double>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<std::int64_t>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<std::uint16_t>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<std::string>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<double>&,
+                                    const std::string&) const;
+
+namespace {
+
+Option add_length_option(CLI::App& command, const std::string& name,
+                         std::function<void(double)> store, const std::string& help) {
+  const std::string long_name = name.substr(name.find("--"));
+  return Option(command
+                    .add_option_function<std::string>(
+                        name,
+                        [store = std::move(store), long_name](const std::string& text) {
+                          store(parse_length(long_name, text));
+                        },
+                        help)
+                    ->type_name("LENGTH"));
+}
+
+}  // namespace
+
+Option Command::add_length(const std::string& name, double& store, const std::string& help) const {
+  return add_length_option(
+      *command_, name, [&store](double length) { store = length; }, help);
+}
+
+Option Command::add_length(const std::string& name, std::optional<double>& store,
+                           const std::string& help) const {
+  return add_length_option(
+      *command_, name, [&store](double length) { store = length; }, help);
+}
+
+Option Command::add_flag(const std::string& name, bool& store, const std::string& help) const {
+  return Option(command_->add_flag(name, store, help));
+}
+
+Option Command::add_flag(const std::string& name, std::optional<bool>& store, bool value,
+                         const std::string& help) const {
+  return Option(command_->add_flag_callback(
+      name, [&store, value] { store = value; }, help));
+}
+
+void Command::footer(const std::string& text) const { command_->footer(text); }
+
+void Command::runs(Action action) const {
+  command_->callback([chosen = chosen_, action = std::move(action)] { *chosen = action; });
+}
+
+Program::Program(const std::string& name, const std::string& description,
+                 const std::string& version)
+    : name_(name), version_(version), app_(std::make_unique<CLI::App>(description, name)) {
+  app_->set_version_flag("--version", version_);
+  app_->require_subcommand(0, 1);
+}
+
+Program::~Program() = default;
+
+Command Program::add_command(const std::string& name, const std::string& help) {
+  CLI::App* const command = app_->add_subcommand(name, help);
+  command->set_version_flag("--version", version_);
+  return {command, &chosen_};
+}
+
+void Program::footer(const std::string& text) { app_->footer(text); }
+
+/// The help of the command that was being parsed: that one helps.
+std::string Program::see_help() const {
+  const auto chosen = app_->get_subcommands();
+  return "; see " + name_ + (chosen.empty() ? "" : ' ' + chosen.front()->get_name()) + " --help";
+}
+
+/// Words that no command or option takes, in the order in which they were typed.
+std::string Program::complaint_about_extras(int argc, char** argv) const {
+  const std::span<char* const> words(argv + 1, static_cast<std::size_t>(argc - 1));
+  const auto chosen = app_->get_subcommands();
+  std::vector<std::string> names;
+  if (chosen.empty()) {
+    for (const CLI::App* command : app_->get_subcommands({})) names.push_back(command->get_name());
+    for (const std::string word : words)
+      if (!word.starts_with('-'))
+        return word + ": found no such command" + did_you_mean(word, names) + ", expected one of " +
+               CLI::detail::join(names, ", ");
+  } else {
+    for (const CLI::Option* option : chosen.front()->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  std::vector<std::string> left = app_->remaining(true);
+  std::string text;
+  for (const std::string word : words) {
+    const auto found = std::find(left.begin(), left.end(), word);
+    if (found == left.end()) continue;
+    left.erase(found);
+    text += (text.empty() ? "" : ", ") + word;
+    if (word.starts_with("--")) text += did_you_mean(word, names);
+  }
+  return "not expected: " + text;
+}
+
+Action Program::parse(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& help) {  // --help, --version
+    return [this, help] { return app_->exit(help); };
+  } catch (const CLI::ExtrasError&) {
+    throw UsageError(complaint_about_extras(argc, argv) + see_help());
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what() + see_help());
+  }
+  if (!chosen_) throw UsageError("no command was given" + see_help());
+  return chosen_;
+}
+
+void add_scenario_options(const Command& command, ScenarioChoice& choice) {
+  command.add_option("SCENARIO", choice.path, "scenario file (TOML)").required();
   command
       .add_option(
           "--set", choice.overrides,
           "replace one value of the scenario by its path, in SI units as in the file; "
           "may be repeated: --set transmitter.elevation_deg=12 --set target.0.strength_db=20")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+      .type_name("KEY=VALUE")
+      .one_at_a_time();
+}
+
+void add_threads_option(const Command& command, std::optional<int>& threads) {
+  command
+      .add_option("--threads", threads,
+                  "that compute; default: one a core. The results do not depend on it")
+      .type_name("N")
+      .check(whole_number(1, 1024, "a number"));
 }
 
 double parse_length(const std::string& name, const std::string& text) {
@@ -33,65 +243,6 @@ double parse_length(const std::string& name, const std::string& text) {
   if (unit == "km") return 1000.0 * value;
   if (unit.empty() || unit == "m") return value;
   throw wrong();
-}
-
-CLI::Option* add_length_option(CLI::App& command, const std::string& name,
-                               std::function<void(double)> store, const std::string& help) {
-  const std::string long_name = name.substr(name.find("--"));
-  return command
-      .add_option_function<std::string>(
-          name,
-          [store = std::move(store), long_name](const std::string& text) {
-            store(parse_length(long_name, text));
-          },
-          help)
-      ->type_name("LENGTH");
-}
-
-void add_threads_option(CLI::App& command, std::optional<int>& threads) {
-  command
-      .add_option("--threads", threads,
-                  "that compute; default: one a core. The results do not depend on it")
-      ->type_name("N")
-      ->check(whole_number(1, 1024, "a number"));
-}
-
-CLI::Validator above_zero() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value > 0.0 && std::isfinite(value)
-                   ? std::string()
-                   : "found " + text + ", expected a number above 0";
-      },
-      "ABOVE 0");
-}
-
-CLI::Validator not_negative() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        double value = 0.0;
-        const char* const last = text.data() + text.size();
-        const auto [end, error] = std::from_chars(text.data(), last, value);
-        const bool good =
-            error == std::errc{} && end == last && value >= 0.0 && std::isfinite(value);
-        return good ? std::string() : "found " + text + ", expected a number of at least 0";
-      },
-      "AT LEAST 0");
-}
-
-CLI::Validator whole_number(std::int64_t low, std::int64_t high, const std::string& noun) {
-  return CLI::Validator(
-      [low, high, noun](const std::string& text) {
-        std::int64_t value = 0;
-        const char* const last = text.data() + text.size();
-        const auto [end, error] = std::from_chars(text.data(), last, value);
-        const bool good = error == std::errc{} && end == last && value >= low && value <= high;
-        return good ? std::string()
-                    : "found " + text + ", expected " + noun + " from " + std::to_string(low) +
-                          " to " + std::to_string(high);
-      },
-      std::to_string(low) + " TO " + std::to_string(high));
 }
 
 }  // namespace asdic::app

@@ -1,34 +1,142 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+// The command line as asdic's commands describe it. CLI11 stands behind it in command.cpp alone: it
+// takes seconds to compile.
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace asdic::app {
 
 /// What the command line asked for. \return the exit status
 using Action = std::function<int()>;
 
-// Each adds its command to the program; when the command is chosen, `action` becomes what it does.
-void add_ping_command(CLI::App& program, Action& action);
-void add_rays_command(CLI::App& program, Action& action);
-void add_arrivals_command(CLI::App& program, Action& action);
-void add_validate_command(CLI::App& program, Action& action);
-void add_info_command(CLI::App& program, Action& action);
-void add_plot_command(CLI::App& program, Action& action);
-void add_export_command(CLI::App& program, Action& action);
-void add_compare_command(CLI::App& program, Action& action);
-void add_field_command(CLI::App& program, Action& action);
-void add_explain_command(CLI::App& program, Action& action);
-void add_ocean_command(CLI::App& program, Action& action);
-void add_bellhop_command(CLI::App& program, Action& action);
-void add_convert_command(CLI::App& program, Action& action);
-void add_process_command(CLI::App& program, Action& action);
-void add_study_command(CLI::App& program, Action& action);
-void add_merge_command(CLI::App& program, Action& action);
-void add_serve_command(CLI::App& program, Action& action);
+/// A rule that the words of an option obey.
+using Check = std::shared_ptr<const CLI::Validator>;
+
+/// Numbers above zero.
+[[nodiscard]] Check above_zero();
+/// Numbers of at least zero.
+[[nodiscard]] Check not_negative();
+/// Numbers from low to high.
+[[nodiscard]] Check between(double low, double high);
+/// Whole numbers from low to high.
+[[nodiscard]] Check between(int low, int high);
+/// A whole number from low to high: "found 70000, expected a port from 0 to 65535".
+/// \param noun  "a port"
+[[nodiscard]] Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun);
+
+/// A handle of one option. Its methods say more about it, and return it.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  // NOLINTBEGIN(modernize-use-nodiscard): these change the option
+  Option required() const;
+  Option type_name(const std::string& name) const;  ///< what help calls its word: "FILE.h5"
+  Option check(const Check& rule) const;
+  /// One of these words, in capitals or not; what is stored is the word as it stands here.
+  Option one_of(std::initializer_list<std::string> words) const;
+  Option show_default() const;                     ///< in help
+  Option delimiter(char mark) const;               ///< between the parts of one word: -5,0,5
+  Option one_at_a_time() const;                    ///< may be repeated, takes one word each time
+  Option excludes(Option other) const;             ///< not both
+  Option group(const std::string& heading) const;  ///< of help
+                                                   // NOLINTEND(modernize-use-nodiscard)
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A handle of one command: what is typed after the program's name. Stores outlive the parsing.
+class Command {
+ public:
+  Command(CLI::App* command, Action* chosen) : command_(command), chosen_(chosen) {}
+
+  /// An option, "-o,--output", or a word by its place, "FILE".
+  /// \tparam T  a number, a text, an optional or a vector of them; command.cpp lists all
+  template <class T>
+  Option add_option(const std::string& name, T& store, const std::string& help) const;
+
+  /// A length: 60km, 500m, or plain metres; "--range" or "-r,--range".
+  Option add_length(const std::string& name, double& store, const std::string& help) const;
+  Option add_length(const std::string& name, std::optional<double>& store,
+                    const std::string& help) const;
+
+  /// Becomes true; "!--name" becomes false.
+  Option add_flag(const std::string& name, bool& store, const std::string& help) const;
+  /// Becomes `value`.
+  Option add_flag(const std::string& name, std::optional<bool>& store, bool value,
+                  const std::string& help) const;
+
+  void footer(const std::string& text) const;
+
+  /// What the command does.
+  void runs(Action action) const;
+
+ private:
+  CLI::App* command_;
+  Action* chosen_;
+};
+
+/// A command line that makes no sense; what() says what, and where help is.
+class UsageError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A program and its commands.
+class Program {
+ public:
+  /// \param version  what --version prints, of the program and of each command
+  Program(const std::string& name, const std::string& description, const std::string& version);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  Command add_command(const std::string& name, const std::string& help);
+  void footer(const std::string& text);
+
+  /// \return what the chosen command does, or what prints the help or the version \throws
+  /// UsageError \throws InputError naming an option whose word is wrong
+  [[nodiscard]] Action parse(int argc, char** argv);
+
+ private:
+  [[nodiscard]] std::string complaint_about_extras(int argc, char** argv) const;
+  [[nodiscard]] std::string see_help() const;
+
+  std::string name_, version_;
+  std::unique_ptr<CLI::App> app_;
+  Action chosen_;
+};
+
+// Each adds its command to the program.
+void add_ping_command(Program& program);
+void add_rays_command(Program& program);
+void add_arrivals_command(Program& program);
+void add_validate_command(Program& program);
+void add_info_command(Program& program);
+void add_plot_command(Program& program);
+void add_export_command(Program& program);
+void add_compare_command(Program& program);
+void add_field_command(Program& program);
+void add_explain_command(Program& program);
+void add_ocean_command(Program& program);
+void add_bellhop_command(Program& program);
+void add_convert_command(Program& program);
+void add_process_command(Program& program);
+void add_study_command(Program& program);
+void add_merge_command(Program& program);
+void add_serve_command(Program& program);
 
 /// A scenario as the command line names it.
 struct ScenarioChoice {
@@ -37,27 +145,12 @@ struct ScenarioChoice {
 };
 
 /// SCENARIO and --set, as every command that reads a scenario has them.
-void add_scenario_options(CLI::App& command, ScenarioChoice& choice);
+void add_scenario_options(const Command& command, ScenarioChoice& choice);
 
 /// --threads, as every command that computes has it.
-void add_threads_option(CLI::App& command, std::optional<int>& threads);
+void add_threads_option(const Command& command, std::optional<int>& threads);
 
-/// A check for numbers above zero that says just that.
-[[nodiscard]] CLI::Validator above_zero();
-/// The same of at least zero.
-[[nodiscard]] CLI::Validator not_negative();
-/// Checks that an option is a whole number from low to high: "found 70000, expected a port from 0
-/// to 65535". \param noun  "a port"
-[[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high,
-                                          const std::string& noun);
-
-/// An option that takes a length: 60km, 500m, or plain metres. Negative ones are refused.
-/// \throws InputError naming the option, while the command line is parsed
-CLI::Option* add_length_option(CLI::App& command, const std::string& name,
-                               std::function<void(double)> store, const std::string& help);
-
-/// The same for words outside of CLI11: metres out of "60km", "500 m", "2.5e3".
-/// \throws InputError{where: `name`}
+/// Metres out of "60km", "500 m", "2.5e3". \throws InputError{where: `name`}
 [[nodiscard]] double parse_length(const std::string& name, const std::string& text);
 
 }  // namespace asdic::app

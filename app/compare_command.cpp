@@ -169,15 +169,15 @@ int compare_files(const Options& options) {
   return result.within ? 0 : 1;
 }
 
-void add_threshold(CLI::App& command, const std::string& name, std::optional<double>& store,
+void add_threshold(const Command& command, const std::string& name, std::optional<double>& store,
                    const std::string& unit, const std::string& help) {
   command.add_option(name, store, help)
-      ->type_name(unit)
-      ->check(not_negative())
-      ->group("Thresholds (exit status 1 when one is exceeded)");
+      .type_name(unit)
+      .check(not_negative())
+      .group("Thresholds (exit status 1 when one is exceeded)");
 }
 
-void add_thresholds(CLI::App& command, Thresholds& limits) {
+void add_thresholds(const Command& command, Thresholds& limits) {
   add_threshold(command, "--max-median", limits.median_db, "DB",
                 "median of |dTL|; of arrivals, of the amplitudes [dB]");
   add_threshold(command, "--max-p95", limits.p95_db, "DB",
@@ -199,57 +199,56 @@ void add_thresholds(CLI::App& command, Thresholds& limits) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& program, Action& action) {
+void add_compare_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "compare", "How far two fields, lists of arrivals or sets of rays are apart.");
-  command->add_option("A", options->a, ".shd, .arr, .ray, or HDF5 of asdic field, arrivals, rays")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("B", options->b, "the reference, of the same kind")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--floor", options->field.floor_db, "fields: cells with TL below this [dB]")
-      ->capture_default_str()
-      ->type_name("DB");
-  add_length_option(
-      *command, "--min-range", [options](double x) { options->field.min_range = x; },
-      "fields: leave out nearer cells, e.g. 500m");
-  command->add_flag("--resample", options->field.resample,
-                    "fields: take from A the cells of B's grid, where it has them");
+  command.add_option("A", options->a, ".shd, .arr, .ray, or HDF5 of asdic field, arrivals, rays")
+      .required()
+      .type_name("FILE");
+  command.add_option("B", options->b, "the reference, of the same kind")
+      .required()
+      .type_name("FILE");
+  command.add_option("--floor", options->field.floor_db, "fields: cells with TL below this [dB]")
+      .show_default()
+      .type_name("DB");
+  command.add_length("--min-range", options->field.min_range,
+                     "fields: leave out nearer cells, e.g. 500m");
+  command.add_flag("--resample", options->field.resample,
+                   "fields: take from A the cells of B's grid, where it has them");
   command
-      ->add_option("--rel-db", options->arrivals.below_strongest_db,
-                   "arrivals: leave out those further below the strongest at their receiver [dB]")
-      ->capture_default_str()
-      ->type_name("DB")
-      ->check(above_zero());
+      .add_option("--rel-db", options->arrivals.below_strongest_db,
+                  "arrivals: leave out those further below the strongest at their receiver [dB]")
+      .show_default()
+      .type_name("DB")
+      .check(above_zero());
   command
-      ->add_option("--pair-us", options->pair_us,
-                   "arrivals: paths of one history are one within this delay [us]")
-      ->capture_default_str()
-      ->type_name("US")
-      ->check(above_zero());
+      .add_option("--pair-us", options->pair_us,
+                  "arrivals: paths of one history are one within this delay [us]")
+      .show_default()
+      .type_name("US")
+      .check(above_zero());
   command
-      ->add_option("--join-us", options->join_us,
-                   "arrivals: neighbouring beams of one path are that close; 0 joins none [us]")
-      ->capture_default_str()
-      ->type_name("US")
-      ->check(not_negative());
+      .add_option("--join-us", options->join_us,
+                  "arrivals: neighbouring beams of one path are that close; 0 joins none [us]")
+      .show_default()
+      .type_name("US")
+      .check(not_negative());
   command
-      ->add_option("--pair-deg", options->rays.angle_deg,
-                   "rays: pair those within this launch angle [deg]")
-      ->capture_default_str()
-      ->type_name("DEG")
-      ->check(not_negative());
-  add_thresholds(*command, options->limits);
-  command->add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
-  command->add_option("--picture", options->picture, "draw both and their difference")
-      ->type_name("FILE.png");
-  command->footer(
+      .add_option("--pair-deg", options->rays.angle_deg,
+                  "rays: pair those within this launch angle [deg]")
+      .show_default()
+      .type_name("DEG")
+      .check(not_negative());
+  add_thresholds(command, options->limits);
+  command.add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
+  command.add_option("--picture", options->picture, "draw both and their difference")
+      .type_name("FILE.png");
+  command.footer(
       "Differences are A - B; TL is -20 log10 |p|.\n"
       "Exit status: 0 within the thresholds, 1 outside, 2 the input is wrong.\n"
       "Example:  asdic compare new.shd old.shd --max-p95 0.5 --picture difference.png");
-  command->callback([options, &action] { action = [options] { return compare_files(*options); }; });
+  command.runs([options] { return compare_files(*options); });
 }
 
 }  // namespace asdic::app

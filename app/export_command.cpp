@@ -54,24 +54,24 @@ int export_wav(const Options& options) {
 
 }  // namespace
 
-void add_export_command(CLI::App& program, Action& action) {
+void add_export_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("export", "Write the phones of a ping file in another format.");
-  command->add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")->required();
+  const Command command =
+      program.add_command("export", "Write the phones of a ping file in another format.");
+  command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping").required();
   command
-      ->add_flag("--wav", options->wav,
-                 "NAME_pingNNN.wav, 32-bit float, a channel a phone, and NAME_pingNNN.wav.json "
-                 "with the scale in pascal")
-      ->required();
-  command->add_option("-o,--output", options->folder, "folder to write into; made if need be")
-      ->capture_default_str()
-      ->type_name("DIR");
-  command->add_option("--ping", options->ping, "this ping alone; default: all")
-      ->type_name("N")
-      ->check(above_zero());
-  command->footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
-  command->callback([options, &action] { action = [options] { return export_wav(*options); }; });
+      .add_flag("--wav", options->wav,
+                "NAME_pingNNN.wav, 32-bit float, a channel a phone, and NAME_pingNNN.wav.json "
+                "with the scale in pascal")
+      .required();
+  command.add_option("-o,--output", options->folder, "folder to write into; made if need be")
+      .show_default()
+      .type_name("DIR");
+  command.add_option("--ping", options->ping, "this ping alone; default: all")
+      .type_name("N")
+      .check(above_zero());
+  command.footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
+  command.runs([options] { return export_wav(*options); });
 }
 
 }  // namespace asdic::app

@@ -70,15 +70,14 @@ int info(const std::string& path) {
 
 }  // namespace
 
-void add_info_command(CLI::App& program, Action& action) {
+void add_info_command(Program& program) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("info", "Say what a ping file or a study's file holds.");
-  command
-      ->add_option("FILE", *path, "HDF5 file of asdic ping (NAME.part too), asdic study or merge")
-      ->required();
-  command->footer("Example:  asdic info deep_ocean.h5");
-  command->callback([path, &action] { action = [path] { return info(*path); }; });
+  const Command command =
+      program.add_command("info", "Say what a ping file or a study's file holds.");
+  command.add_option("FILE", *path, "HDF5 file of asdic ping (NAME.part too), asdic study or merge")
+      .required();
+  command.footer("Example:  asdic info deep_ocean.h5");
+  command.runs([path] { return info(*path); });
 }
 
 }  // namespace asdic::app

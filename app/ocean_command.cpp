@@ -50,39 +50,37 @@ int ocean(const Options& options) {
 
 }  // namespace
 
-void add_ocean_command(CLI::App& program, Action& action) {
+void add_ocean_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "ocean", "Write the [environment] of a real place, out of measured climatologies.");
-  command->add_option("--latitude", options->latitude, "degrees north")
-      ->required()
-      ->type_name("DEG")
-      ->check(CLI::Range(-90.0, 90.0));
-  command->add_option("--longitude", options->longitude, "degrees east, -180 to 180 or 0 to 360")
-      ->required()
-      ->type_name("DEG")
-      ->check(CLI::Range(-180.0, 360.0));
-  command->add_option("--month", options->month, "1 to 12; default: the mean of the year")
-      ->type_name("N")
-      ->check(CLI::Range(1, 12));
+  command.add_option("--latitude", options->latitude, "degrees north")
+      .required()
+      .type_name("DEG")
+      .check(between(-90.0, 90.0));
+  command.add_option("--longitude", options->longitude, "degrees east, -180 to 180 or 0 to 360")
+      .required()
+      .type_name("DEG")
+      .check(between(-180.0, 360.0));
+  command.add_option("--month", options->month, "1 to 12; default: the mean of the year")
+      .type_name("N")
+      .check(between(1, 12));
   command
-      ->add_option("--bearing", options->bearing,
-                   "of a track: sea floor and water along it instead of one place's [deg]")
-      ->type_name("DEG")
-      ->check(CLI::Range(-360.0, 360.0));
-  add_length_option(
-      *command, "--range", [options](double x) { options->range = x; },
-      "length of that track, e.g. 60km");
+      .add_option("--bearing", options->bearing,
+                  "of a track: sea floor and water along it instead of one place's [deg]")
+      .type_name("DEG")
+      .check(between(-360.0, 360.0));
+  command.add_length("--range", options->range, "length of that track, e.g. 60km");
   command
-      ->add_option("--data", options->data,
-                   "folder of the climatologies; default: where Debian's ferret-datasets is")
-      ->type_name("DIR");
-  command->add_option("-o,--output", options->output, "file to write; default: standard output")
-      ->type_name("FILE.toml");
-  command->footer(
+      .add_option("--data", options->data,
+                  "folder of the climatologies; default: where Debian's ferret-datasets is")
+      .type_name("DIR");
+  command.add_option("-o,--output", options->output, "file to write; default: standard output")
+      .type_name("FILE.toml");
+  command.footer(
       "A scenario takes it with include = \"FILE.toml\".\n"
       "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
-  command->callback([options, &action] { action = [options] { return ocean(*options); }; });
+  command.runs([options] { return ocean(*options); });
 }
 
 }  // namespace asdic::app

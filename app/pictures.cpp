@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 fs::path find_script() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path prefix = program.parent_path().parent_path().parent_path();  // of libexec/asdic
+  const fs::path prefix = program.parent_path().parent_path();  // of bin/asdic
   const fs::path installed = prefix / "share/asdic/python/asdic_plot.py";
   const fs::path source = fs::path(ASDIC_SOURCE_DIR) / "python/asdic_plot.py";
   for (const fs::path& script : {installed, source})

@@ -95,29 +95,29 @@ int ping(const Options& options) {
 
 }  // namespace
 
-void add_ping_command(CLI::App& program, Action& action) {
+void add_ping_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.");
-  add_scenario_options(*command, options->scenario);
+  add_scenario_options(command, options->scenario);
   command
-      ->add_option("-o,--output", options->output,
-                   "file to write; default: the scenario's name with .h5, in this folder")
-      ->type_name("FILE.h5");
+      .add_option("-o,--output", options->output,
+                  "file to write; default: the scenario's name with .h5, in this folder")
+      .type_name("FILE.h5");
   command
-      ->add_option("--pings", options->pings,
-                   "number of pings of each transmitter, instead of pings.count")
-      ->type_name("N")
-      ->check(above_zero());
-  command->add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
-      ->type_name("S")
-      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
-  add_threads_option(*command, options->threads);
-  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command->footer(
+      .add_option("--pings", options->pings,
+                  "number of pings of each transmitter, instead of pings.count")
+      .type_name("N")
+      .check(above_zero());
+  command.add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
+      .type_name("S")
+      .check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
+  add_threads_option(command, options->threads);
+  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command.footer(
       "Ctrl-C finishes the pings in hand and closes the file; a second one ends at once.\n"
       "Example:  asdic ping scenarios/deep_ocean.toml --set target.0.strength_db=20");
-  command->callback([options, &action] { action = [options] { return ping(*options); }; });
+  command.runs([options] { return ping(*options); });
 }
 
 }  // namespace asdic::app

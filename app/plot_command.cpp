@@ -56,7 +56,7 @@ int plot(const Options& options) {
   const TemporaryFolder folder;
   std::filesystem::path file = options.file;
   std::string pictures = options.folder;
-  std::vector<std::string> words;
+  std::vector<std::string> names;
   if (is_study_file(options.file)) {
     study::StudyFile(options.file).check_parts();
   } else if (is_ping_file(options.file)) {
@@ -64,10 +64,11 @@ int plot(const Options& options) {
   } else {
     file = picture_source(options.file, folder, "result");
     static_cast<void>(read_result(file));
-    words = {"--names", options.file};
+    names = {"--names", options.file};
     if (pictures.empty()) pictures = folder_beside(options.file);
   }
-  words.insert(words.begin(), file.string());
+  std::vector<std::string> words{file.string()};
+  words.insert(words.end(), names.begin(), names.end());
   if (!pictures.empty()) words.insert(words.end(), {"--output", pictures});
   if (options.ping) words.insert(words.end(), {"--ping", std::to_string(*options.ping)});
   if (!options.array.empty()) words.insert(words.end(), {"--array", options.array});
@@ -76,31 +77,30 @@ int plot(const Options& options) {
 
 }  // namespace
 
-void add_plot_command(CLI::App& program, Action& action) {
+void add_plot_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).");
   command
-      ->add_option("FILE", options->file,
-                   "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
-      ->required();
+      .add_option("FILE", options->file,
+                  "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
+      .required();
   command
-      ->add_option("-o,--output", options->folder,
-                   "folder for the pictures; default: FILE without its ending")
-      ->type_name("DIR");
-  command->add_option("--ping", options->ping, "ping to draw; default: the first")
-      ->type_name("N")
-      ->check(above_zero());
+      .add_option("-o,--output", options->folder,
+                  "folder for the pictures; default: FILE without its ending")
+      .type_name("DIR");
+  command.add_option("--ping", options->ping, "ping to draw; default: the first")
+      .type_name("N")
+      .check(above_zero());
   command
-      ->add_option(
-          "--array", options->array,
-          "array of a ping file to draw; default: the first (range over bearing: the first "
-          "that tells bearings)")
-      ->type_name("NAME");
-  command->footer(
+      .add_option("--array", options->array,
+                  "array of a ping file to draw; default: the first (range over bearing: the first "
+                  "that tells bearings)")
+      .type_name("NAME");
+  command.footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
       "Example:  asdic plot deep_ocean.h5 -o pictures");
-  command->callback([options, &action] { action = [options] { return plot(*options); }; });
+  command.runs([options] { return plot(*options); });
 }
 
 }  // namespace asdic::app

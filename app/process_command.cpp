@@ -160,125 +160,125 @@ int process(const Options& options) {
   return 0;
 }
 
-void add_detection_options(CLI::App& command, Options& o) {
+void add_detection_options(const Command& command, Options& o) {
   NormaliserSettings& normaliser = o.settings.detector.normaliser;
   command.add_option("--beamformer", o.beamformer, "of the arrays")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"conventional", "mvdr"}));
+      .show_default()
+      .one_of({"conventional", "mvdr"});
   command
       .add_option("--mvdr-loading-db", o.mvdr_loading_db,
                   "diagonal loading, re the mean power of a phone")
-      ->capture_default_str()
-      ->type_name("DB")
-      ->check(CLI::Range(-120.0, 60.0));
+      .show_default()
+      .type_name("DB")
+      .check(between(-120.0, 60.0));
   command.add_option("--shading", o.shading, "of the phones, in conventional beams")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"none", "hann"}));
+      .show_default()
+      .one_of({"none", "hann"});
   command
       .add_option("--elevations", o.elevations,
                   "looked at by arrays that tell elevation and bearing, e.g. -20:20 [deg]")
-      ->type_name("LOW:HIGH");
+      .type_name("LOW:HIGH");
   command
       .add_option("--max-speed", o.settings.max_speed,
                   "closing or opening, that the Doppler filters reach [m/s]")
-      ->capture_default_str()
-      ->type_name("MPS")
-      ->check(CLI::Range(0.0, 500.0));
+      .show_default()
+      .type_name("MPS")
+      .check(between(0.0, 500.0));
   command.add_option("--normaliser", o.normaliser, "estimate of the background")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"cell-averaging", "split-window"}));
+      .show_default()
+      .one_of({"cell-averaging", "split-window"});
   command.add_flag("!--time-only", normaliser.across_beams,
                    "compare a peak with its own beam alone, not with the beams around");
   command.add_option("--guard-cells", normaliser.guard_cells, "left out on either side")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(CLI::Range(0.0, 1e5));
+      .show_default()
+      .type_name("N")
+      .check(between(0.0, 1e5));
   command.add_option("--reference-cells", normaliser.reference_cells, "averaged on either side")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(CLI::Range(1.0, 1e5));
+      .show_default()
+      .type_name("N")
+      .check(between(1.0, 1e5));
   command
       .add_option("--false-alarm-probability", normaliser.false_alarm_probability,
                   "of a cell of Rayleigh background")
-      ->capture_default_str()
-      ->type_name("P")
-      ->check(CLI::Range(1e-30, 0.5));
+      .show_default()
+      .type_name("P")
+      .check(between(1e-30, 0.5));
   command
       .add_option("--from", o.from,
                   "nothing is detected before, after the ping's start; default: the pulse's "
                   "duration [s]")
-      ->type_name("S")
-      ->check(not_negative());
-  command.add_option("--until", o.until, "nor after [s]")->type_name("S")->check(not_negative());
+      .type_name("S")
+      .check(not_negative());
+  command.add_option("--until", o.until, "nor after [s]").type_name("S").check(not_negative());
 }
 
-void add_place_options(CLI::App& command, Options& o) {
-  add_length_option(
-      command, "--target-depth", [&o](double x) { o.settings.target_depth = x; },
+void add_place_options(const Command& command, Options& o) {
+  command.add_length(
+      "--target-depth", o.settings.target_depth,
       "depth of what answers; default: where the ray came from if the array tells elevation, else "
       "100 m");
   command
       .add_option("--range-speed", o.settings.range_speed,
                   "straight rays of this speed, instead of the scenario's sound paths [m/s]")
-      ->type_name("MPS")
-      ->check(CLI::Range(1000.0, 2000.0));
+      .type_name("MPS")
+      .check(between(1000.0, 2000.0));
   command.add_option("--track-start", o.track_start, "a track is believed after m hits in n pings")
-      ->capture_default_str()
-      ->type_name("M/N");
+      .show_default()
+      .type_name("M/N");
   command
       .add_option("--track-stop", o.settings.tracker.stop_misses,
                   "and ends after so many pings without a hit")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
+      .show_default()
+      .type_name("N")
+      .check(between(1, 1000));
   command
       .add_option("--track-acceleration", o.settings.tracker.acceleration,
                   "of targets, root of its density [m/s2 sqrt(s)]")
-      ->capture_default_str()
-      ->type_name("A")
-      ->check(above_zero());
+      .show_default()
+      .type_name("A")
+      .check(above_zero());
   command.add_option("--track-max-speed", o.settings.tracker.max_speed, "of targets [m/s]")
-      ->capture_default_str()
-      ->type_name("MPS")
-      ->check(above_zero());
+      .show_default()
+      .type_name("MPS")
+      .check(above_zero());
 }
 
 }  // namespace
 
-void add_process_command(CLI::App& program, Action& action) {
+void add_process_command(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "process",
       "What a sonar makes of a ping file: beams, matched filters, detections, places, tracks, and "
       "how they compare with the truth. Written into the file's group /processed.");
-  command->add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")->required();
+  command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping").required();
   command
-      ->add_option("-o,--output", options->output,
-                   "write another file, with all that FILE holds; default: FILE itself")
-      ->type_name("FILE.h5");
-  command->add_flag("--no-file", options->no_file, "write no HDF5 at all");
-  command->add_flag("--no-maps", options->no_maps, "leave out the maps for pictures");
+      .add_option("-o,--output", options->output,
+                  "write another file, with all that FILE holds; default: FILE itself")
+      .type_name("FILE.h5");
+  command.add_flag("--no-file", options->no_file, "write no HDF5 at all");
+  command.add_flag("--no-maps", options->no_maps, "leave out the maps for pictures");
   command
-      ->add_option("--csv", options->csv,
-                   "folder for FILE_detections.csv and FILE_tracks.csv; made if need be")
-      ->type_name("DIR");
-  command->add_flag("--json", options->json, "print a summary in JSON");
-  command->add_option("--ping", options->ping, "this ping alone; default: all")
-      ->type_name("N")
-      ->check(above_zero());
+      .add_option("--csv", options->csv,
+                  "folder for FILE_detections.csv and FILE_tracks.csv; made if need be")
+      .type_name("DIR");
+  command.add_flag("--json", options->json, "print a summary in JSON");
+  command.add_option("--ping", options->ping, "this ping alone; default: all")
+      .type_name("N")
+      .check(above_zero());
   command
-      ->add_option("--scenario", options->scenario,
-                   "where FILE's scenario was, if it names other files: they are looked for beside "
-                   "it")
-      ->type_name("FILE.toml");
-  add_detection_options(*command, *options);
-  add_place_options(*command, *options);
-  add_threads_option(*command, options->threads);
-  command->add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command->footer(
+      .add_option("--scenario", options->scenario,
+                  "where FILE's scenario was, if it names other files: they are looked for beside "
+                  "it")
+      .type_name("FILE.toml");
+  add_detection_options(command, *options);
+  add_place_options(command, *options);
+  add_threads_option(command, options->threads);
+  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command.footer(
       "The file is copied, changed and renamed: a stop at any moment leaves it whole.\n"
       "Example:  asdic process two_targets.h5 --target-depth 125m --csv tables");
-  command->callback([options, &action] { action = [options] { return process(*options); }; });
+  command.runs([options] { return process(*options); });
 }
 
 }  // namespace asdic::app

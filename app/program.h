@@ -1,14 +1,19 @@
 #pragma once
-#include <span>
+#include <functional>
+#include <string>
 
-#include "app/command.h"
-
+// How a program of ours starts and ends: asdic, asdic-mpi.
 namespace asdic::app {
 
-using AddCommand = void (*)(CLI::App& program, Action& action);
+enum ExitStatus : int { success = 0, failure = 1, bad_input = 2 };
 
-/// Parses the command line, does what it asks for, and says what went wrong. \return the exit
-/// status
-int run_program(int argc, char** argv, std::span<const AddCommand> commands);
+/// A line on standard error, after all that was printed: "asdic: message".
+void complain(const std::string& program, const std::string& message);
+
+/// Does something that may go wrong. \return the exit status; what went wrong is in `said`
+int guarded(const std::function<void()>& act, std::string& said);
+
+/// main() of a program: does it, says what went wrong. \return the exit status
+int run_program(const std::string& program, const std::function<int()>& act);
 
 }  // namespace asdic::app

@@ -46,24 +46,23 @@ void check_until(const StudyOptions& options, const StudyOrder& order) {
 
 }  // namespace
 
-void add_study_options(CLI::App& command, StudyOptions& options) {
-  command.add_option("STUDY", options.path, "study file (TOML)")->required();
+void add_study_options(const Command& command, StudyOptions& options) {
+  command.add_option("STUDY", options.path, "study file (TOML)").required();
   command
       .add_option("-o,--output", options.output,
                   "file to write; default: the study's name with .h5, in this folder")
-      ->type_name("FILE.h5");
+      .type_name("FILE.h5");
   command
       .add_option("--set", options.overrides,
                   "override a key of the study or its scenario: study.realisations=1000")
-      ->type_name("KEY.PATH=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      .type_name("KEY.PATH=VALUE")
+      .one_at_a_time();
   command
       .add_option("--until", options.until,
                   "stop once the confidence interval of the running estimate is at most twice this "
                   "wide; looked at after 100, 200, ... 1000, 2000, ... realisations")
-      ->type_name("HALF_WIDTH")
-      ->check(above_zero());
+      .type_name("HALF_WIDTH")
+      .check(above_zero());
   command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
   add_threads_option(command, options.threads);
   command.add_flag("-q,--quiet", options.quiet, "print nothing unless something is wrong");

@@ -20,7 +20,7 @@ struct StudyOptions {
 };
 
 /// STUDY, -o, --set, --until, --fresh, --threads, --quiet.
-void add_study_options(CLI::App& command, StudyOptions& options);
+void add_study_options(const Command& command, StudyOptions& options);
 
 /// What is to be done: the study, and the run that the options describe, but for its stop token and
 /// its progress.

@@ -154,15 +154,15 @@ int validate(const ScenarioChoice& choice) {
 
 }  // namespace
 
-void add_validate_command(CLI::App& program, Action& action) {
+void add_validate_command(Program& program) {
   auto choice = std::make_shared<ScenarioChoice>();
-  CLI::App* command = program.add_subcommand(
-      "validate", "Read and check a scenario or a run, and say what it means.");
-  add_scenario_options(*command, *choice);
-  command->footer(
+  const Command command =
+      program.add_command("validate", "Read and check a scenario or a run, and say what it means.");
+  add_scenario_options(command, *choice);
+  command.footer(
       "Exit status: 0 good, 2 not.\n"
       "Example:  asdic validate scenarios/deep_ocean.toml --set pings.count=100");
-  command->callback([choice, &action] { action = [choice] { return validate(*choice); }; });
+  command.runs([choice] { return validate(*choice); });
 }
 
 }  // namespace asdic::app

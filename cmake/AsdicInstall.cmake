@@ -10,7 +10,6 @@ install(TARGETS asdic_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET asdic_mpi)
   install(TARGETS asdic_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-install(TARGETS asdic_full RUNTIME DESTINATION libexec/asdic)  # found from bin/asdic as ../libexec/asdic
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python FILES_MATCHING PATTERN "*.py")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios)
 install(EXPORT asdicTargets NAMESPACE asdic:: DESTINATION ${config_dir})

@@ -52,21 +52,16 @@ function(asdic_allocator program)
   endif()
 endfunction()
 
-# asdic_program(<folder> <libraries>...): every .cpp of <folder> makes libexec/asdic/asdic-full, the whole program; those named
-# in <folder>/quick/sources.cmake make bin/asdic, which starts in a few milliseconds: libraries that it does not call are not loaded.
+# asdic_program(<folder> <libraries>...): the .cpp of <folder> make bin/asdic. All but main.cpp are a library of their own, asdic_commands,
+# from which asdic-mpi takes what it needs.
 function(asdic_program folder)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
-  include("${PROJECT_SOURCE_DIR}/${folder}/quick/sources.cmake")
-  list(TRANSFORM quick_sources PREPEND "${PROJECT_SOURCE_DIR}/${folder}/")
-  add_executable(asdic_full ${sources})
-  add_executable(asdic_${folder} ${quick_sources})
-  set_target_properties(asdic_full PROPERTIES OUTPUT_NAME asdic-full
-                        RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/libexec/asdic)
+  list(REMOVE_ITEM sources "${PROJECT_SOURCE_DIR}/${folder}/main.cpp")
+  add_library(asdic_commands STATIC ${sources})
+  target_link_libraries(asdic_commands PUBLIC ${ARGN} Threads::Threads PRIVATE asdic_warnings asdic_build_options)
+  add_executable(asdic_${folder} "${PROJECT_SOURCE_DIR}/${folder}/main.cpp")
   set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME asdic RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  target_link_options(asdic_${folder} PRIVATE LINKER:--as-needed)
-  add_dependencies(asdic_${folder} asdic_full)
-  asdic_allocator(asdic_full)
-  foreach(program asdic_full asdic_${folder})
-    target_link_libraries(${program} PRIVATE ${ARGN} Threads::Threads asdic_warnings asdic_build_options)
-  endforeach()
+  target_link_libraries(asdic_${folder} PRIVATE asdic_commands asdic_warnings asdic_build_options)
+  asdic_allocator(asdic_${folder})
+  add_custom_target(asdic_full DEPENDS asdic_${folder})  # the former name of the whole program
 endfunction()

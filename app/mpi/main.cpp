@@ -1,4 +1,3 @@
-#include <signal.h>
 #include <tbb/global_control.h>
 
 #include <chrono>
@@ -8,6 +7,7 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/program.h"
 #include "app/provenance.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
@@ -18,29 +18,9 @@
 namespace asdic::app {
 namespace {
 
-enum ExitStatus : int { success = 0, failure = 1, bad_input = 2 };
+constexpr const char* program_name = "asdic-mpi";
 
-void complain(const std::string& message) {
-  std::fflush(stdout);
-  std::fputs(("asdic-mpi: " + message + '\n').c_str(), stderr);
-  std::fflush(stderr);
-}
-
-/// Does something that may go wrong. \return the exit status; what went wrong is in `said`
-int guarded(const std::function<void()>& act, std::string& said) {
-  try {
-    act();
-    return success;
-  } catch (const InputError& error) {
-    said = error.what();
-    return bad_input;
-  } catch (const std::bad_alloc&) {
-    said = "not enough memory for this run";
-  } catch (const std::exception& error) {
-    said = error.what();
-  }
-  return failure;
-}
+void complain(const std::string& message) { app::complain(program_name, message); }
 
 /// The same for all ranks at a time: where one fails, the first that does tells, and all end alike.
 int together(const study::mpi::Session& session, const std::function<void()>& act) {
@@ -119,45 +99,35 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("asdic-mpi makes the realisations of a study with all ranks of an MPI job.",
-                   "asdic-mpi");
-  program.set_version_flag("--version", version_text());
-  program.require_subcommand(1);
+  Program program(program_name,
+                  "asdic-mpi makes the realisations of a study with all ranks of an MPI job.",
+                  version_text());
   StudyOptions options;
-  CLI::App* command = program.add_subcommand(
+  const Command command = program.add_command(
       "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.");
-  add_study_options(*command, options);
+  add_study_options(command, options);
   double silence = study::StudyRun{}.silence.count();
   command
-      ->add_option(
+      .add_option(
           "--silence", silence,
           "after so long without a word of a rank it is taken for dead, and the job ends [s]")
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->check(above_zero());
-  command->footer("Example:  mpirun -n 4 asdic-mpi study study.toml -o study.h5");
-  try {
-    program.parse(argc, argv);  // before MPI: --help needs no ranks
-  } catch (const CLI::Success& help) {
-    return program.exit(help);
-  } catch (const CLI::ParseError& error) {
-    complain(std::string(error.what()) + "; see asdic-mpi study --help");
-    return bad_input;
-  }
-  const study::mpi::Session session(argc, argv);
-  const int status = study_run(options, silence, session);
-  flush_output();
-  return status;
+      .show_default()
+      .type_name("SECONDS")
+      .check(above_zero());
+  command.footer("Example:  mpirun -n 4 asdic-mpi study study.toml -o study.h5");
+  command.runs([&] {
+    const study::mpi::Session session(argc, argv);
+    const int status = study_run(options, silence, session);
+    flush_output();  // MPI's end may be the process's
+    return status;
+  });
+  return program.parse(argc, argv)();  // before MPI: --help needs no ranks
 }
 
 }  // namespace
 }  // namespace asdic::app
 
 int main(int argc, char** argv) {
-  signal(SIGXFSZ, SIG_IGN);  // a file over its limit is a failed write, told as any other
-  std::string said;
-  int status = 0;
-  const int fault = asdic::app::guarded([&] { status = asdic::app::run(argc, argv); }, said);
-  if (fault != 0) asdic::app::complain(said);
-  return fault != 0 ? fault : status;
+  using namespace asdic::app;
+  return run_program(program_name, [&] { return run(argc, argv); });
 }
