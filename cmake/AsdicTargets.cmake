@@ -47,8 +47,7 @@ endfunction()
 # the large arrays of the next ones, which malloc's heap then has no holes for: it grew by 70 kB a realisation. Faster, too.
 function(asdic_allocator program)
   if(NOT ASDIC_SANITIZE)
-    target_link_options(${program} PRIVATE LINKER:--no-as-needed)
-    target_link_libraries(${program} PRIVATE TBB::tbbmalloc_proxy)
+    target_link_libraries(${program} PRIVATE -Wl,--push-state,--no-as-needed $<TARGET_LINKER_FILE:TBB::tbbmalloc_proxy> -Wl,--pop-state)
   endif()
 endfunction()
 

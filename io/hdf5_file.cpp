@@ -30,7 +30,7 @@ Hdf5File::~Hdf5File() {
 }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
-  hdf5::quiet();
+  hdf5::prepare();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   // A link of that name is replaced, not followed: what it points to is somebody else's.
@@ -43,7 +43,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
 
 std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::path& path,
                                                         bool change) {
-  hdf5::quiet();
+  hdf5::prepare();
   std::error_code error;
   const auto wrong = [&](const std::string& got) {
     return InputError({.where = path.string(), .got = got, .expected = "an HDF5 file"});

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "io/hdf5/handles.h"
 #include "io/text/quote.h"
 
 namespace asdic {
@@ -27,6 +28,7 @@ struct File {
   std::filesystem::path path;
 
   explicit File(const std::filesystem::path& where) : path(where) {
+    hdf5::prepare();
     if (const int status = nc_open(path.c_str(), NC_NOWRITE, &id); status != NC_NOERR) {
       id = -1;
       throw InputError(

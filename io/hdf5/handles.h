@@ -38,8 +38,9 @@ class Handle {
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& object,
                        const std::string& action);
 
-/// Keeps HDF5's error stack off the terminal.
-void quiet();
+/// To be called before anything else of HDF5, also by netCDF: keeps its error stack off the
+/// terminal, and its hands off at exit.
+void prepare();
 
 }  // namespace asdic::hdf5
 

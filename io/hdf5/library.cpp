@@ -7,14 +7,12 @@
 
 namespace asdic::hdf5 {
 
-namespace {
-// Once a write has failed (disk full), HDF5 1.10 crashes when it closes the file, at exit too if
-// left to itself. Files are closed by Hdf5File, so nothing is left to do at exit. It must be said
-// before anybody (netCDF) uses the library: hence before main().
-[[maybe_unused]] const herr_t nothing_at_exit = H5dont_atexit();
-}  // namespace
-
-void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void prepare() {
+  // Once a write has failed (disk full), HDF5 1.10 crashes when it closes the file, at exit too if
+  // left to itself. Files are closed by Hdf5File, so nothing is left to do at exit.
+  [[maybe_unused]] static const herr_t nothing_at_exit = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::string last_message() {
   std::vector<std::string> messages;  // innermost first
