@@ -6,9 +6,14 @@
 
 namespace asdic {
 
+/// A small matrix that lies in memory alike whatever instructions a file is compiled for: Eigen's
+/// own alignment grows with them.
+template <int rows, int columns>
+using SmallMatrix = Eigen::Matrix<double, rows, columns, Eigen::DontAlign>;
+
 /// East, north, depth [m]. The triple is left-handed (z points down): no cross products.
-using Vec3 = Eigen::Vector3d;
-using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;  // of 24 bytes: never aligned
+using Vec2 = SmallMatrix<2, 1>;
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -105,9 +105,8 @@ void BoundaryShape::bend_facets() {
   tangent_.assign(n, Vec2(1.0, 0.0));
   Vec2 before(1.0, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 after = i + 1 < n
-                           ? Vec2(range_[i + 1] - range_[i], depth_[i + 1] - depth_[i]).normalized()
-                           : Vec2(1.0, 0.0);
+    Vec2 after(1.0, 0.0);
+    if (i + 1 < n) after = Vec2(range_[i + 1] - range_[i], depth_[i + 1] - depth_[i]).normalized();
     tangent_[i] = 0.5 * (before + after);
     before = after;
   }

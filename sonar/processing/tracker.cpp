@@ -11,8 +11,8 @@ namespace asdic {
 namespace {
 
 /// What a contact would be if the target were there.
-Eigen::Vector3d measured(const Eigen::Vector4d& state, const Contact& c,
-                         Eigen::Matrix<double, 3, 4>* slope) {
+Eigen::Vector3d measured(const SmallMatrix<4, 1>& state, const Contact& c,
+                         SmallMatrix<3, 4>* slope) {
   const Vec2 position = state.head<2>(), velocity = state.tail<2>();
   const Vec2 from_array = position - c.array, from_source = position - c.source;
   const double range = std::max(from_array.norm(), 1e-3);
@@ -60,10 +60,10 @@ struct Curvature {
       return beside * beside.transpose() / range;
     };
     const Eigen::Matrix2d home = across(c.array), both = 0.5 * (home + across(c.source));
-    Eigen::Matrix4d of_range = Eigen::Matrix4d::Zero(), of_rate = of_range;
+    SmallMatrix<4, 4> of_range = SmallMatrix<4, 4>::Zero(), of_rate = of_range;
     of_range.topLeftCorner<2, 2>() = home;
     of_rate.topRightCorner<2, 2>() = of_rate.bottomLeftCorner<2, 2>() = both;
-    const Eigen::Matrix4d range = of_range * state.covariance, rate = of_rate * state.covariance;
+    const SmallMatrix<4, 4> range = of_range * state.covariance, rate = of_rate * state.covariance;
     mean[1] = 0.5 * range.trace();
     mean[2] = 0.5 * rate.trace();
     covariance(1, 1) = 0.5 * (range * range).trace();
@@ -168,8 +168,8 @@ class Tracker {
   void drop_twins() {
     for (std::size_t i = 0; i < open_.size(); ++i)
       for (std::size_t j = i + 1; j < open_.size();) {
-        const Eigen::Vector4d off = open_[i].state.mean - open_[j].state.mean;
-        const Eigen::Matrix4d both = open_[i].state.covariance + open_[j].state.covariance;
+        const SmallMatrix<4, 1> off = open_[i].state.mean - open_[j].state.mean;
+        const SmallMatrix<4, 4> both = open_[i].state.covariance + open_[j].state.covariance;
         const bool same = !open_[j].believed && off.dot(both.ldlt().solve(off)) < 4.0;
         if (same)
           open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(j));
@@ -220,11 +220,11 @@ class Tracker {
 
 void TrackState::predict(double to, double acceleration) {
   const double t = to - time;
-  Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
+  SmallMatrix<4, 4> step = SmallMatrix<4, 4>::Identity();
   step(0, 2) = step(1, 3) = t;
   // White acceleration of density q: ∫ of (t, 1)(t, 1)ᵀ.
   const double q = acceleration * acceleration, length = std::abs(t);
-  Eigen::Matrix4d noise = Eigen::Matrix4d::Zero();
+  SmallMatrix<4, 4> noise = SmallMatrix<4, 4>::Zero();
   for (int i = 0; i < 2; ++i) {
     noise(i, i) = q * length * length * length / 3.0;
     noise(i, i + 2) = noise(i + 2, i) = q * length * t / 2.0;
@@ -252,10 +252,10 @@ TrackState::Innovation TrackState::innovation(const Contact& contact) const {
 }
 
 void TrackState::update(const Innovation& innovation) {
-  const Eigen::Matrix<double, 4, 3> gain =
+  const SmallMatrix<4, 3> gain =
       innovation.covariance.ldlt().solve(innovation.slope * covariance).transpose();
   mean += gain * innovation.residual;
-  const Eigen::Matrix4d left = Eigen::Matrix4d::Identity() - gain * innovation.slope;
+  const SmallMatrix<4, 4> left = SmallMatrix<4, 4>::Identity() - gain * innovation.slope;
   covariance = left * covariance * left.transpose() + gain * innovation.noise * gain.transpose();
 }
 
@@ -284,7 +284,7 @@ TrackState TrackState::from(const Contact& c, double max_speed) {
   const double speed_sigma = std::sqrt(likely * noise / (likely + noise));
   const Vec2 turned = std::max(c.range * c.bearing_sigma, 1e-3) * across +
                       c.range_per_bearing * c.bearing_sigma * home;
-  Eigen::Matrix4d errors;
+  SmallMatrix<4, 4> errors;
   errors.row(0) << turned.x(), c.range_sigma * home.x(), range_per_speed * speed_sigma * home.x(),
       0.0;
   errors.row(1) << turned.y(), c.range_sigma * home.y(), range_per_speed * speed_sigma * home.y(),

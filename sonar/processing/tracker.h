@@ -49,8 +49,8 @@ struct ContactTrack {
 
 /// State (x, y, v_x, v_y) and covariance.
 struct TrackState {
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  SmallMatrix<4, 1> mean = SmallMatrix<4, 1>::Zero();
+  SmallMatrix<4, 4> covariance = SmallMatrix<4, 4>::Zero();
   double time = 0.0;  ///< [s]
 
   /// Constant velocity with white acceleration. \param acceleration  [m/s²·√s]
@@ -61,7 +61,7 @@ struct TrackState {
     Eigen::Vector3d residual;
     Eigen::Matrix3d noise;       ///< the contact's, and what the slope leaves out
     Eigen::Matrix3d covariance;  ///< of the residual
-    Eigen::Matrix<double, 3, 4> slope;
+    SmallMatrix<3, 4> slope;
     [[nodiscard]] double distance() const;  ///< squared, Mahalanobis
   };
   [[nodiscard]] Innovation innovation(const Contact& contact) const;
