@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "core/error.h"
+#include "core/instruction_level.h"
 
 namespace asdic::app {
 
@@ -42,6 +43,7 @@ int run_program(const std::string& program, const std::function<int()>& act) {
   int status = success;
   const int fault = guarded(
       [&] {
+        check_instruction_level();
         status = act();
         flush_output();
       },

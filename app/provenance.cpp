@@ -10,6 +10,8 @@
 #include <chrono>
 #include <fstream>
 
+#include "core/instruction_level.h"
+
 // ASDIC_VERSION, ASDIC_BUILD and ASDIC_LIBRARIES come from cmake/AsdicProgramInfo.cmake.
 
 namespace asdic::app {
@@ -29,6 +31,9 @@ std::string cpu_model() {
   return "unknown";
 }
 
+/// How it was built, and the instruction level that runs.
+std::string build_text() { return fmt::format("{}, {}", ASDIC_BUILD, instruction_level_name()); }
+
 std::string library_versions() {
   return fmt::format("{}, oneTBB {}, Eigen {}.{}.{}", ASDIC_LIBRARIES, TBB_runtime_version(),
                      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
@@ -39,7 +44,7 @@ std::string library_versions() {
 Provenance provenance(int threads) {
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return {.program_version = ASDIC_VERSION,
-          .build = ASDIC_BUILD,
+          .build = build_text(),
           .host = host_name(),
           .started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
           .cpu = cpu_model(),
@@ -47,10 +52,10 @@ Provenance provenance(int threads) {
           .threads = threads};
 }
 
-std::string program_and_build() { return fmt::format("{} ({})", ASDIC_VERSION, ASDIC_BUILD); }
+std::string program_and_build() { return fmt::format("{} ({})", ASDIC_VERSION, build_text()); }
 
 std::string version_text() {
-  return fmt::format("asdic {}\nbuild: {}\nlibraries: {}", ASDIC_VERSION, ASDIC_BUILD,
+  return fmt::format("asdic {}\nbuild: {}\nlibraries: {}", ASDIC_VERSION, build_text(),
                      library_versions());
 }
 

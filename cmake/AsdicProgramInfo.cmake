@@ -2,8 +2,8 @@
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" flags)
 set(build "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}, ")
-string(APPEND build "$<IF:$<BOOL:${ASDIC_NATIVE}>,native,portable>, "
-  "$<JOIN:$<TARGET_PROPERTY:asdic_build_options,INTERFACE_COMPILE_OPTIONS>, > ${flags}")  # by name: options may hold commas
+string(APPEND build ""
+  "$<JOIN:$<TARGET_PROPERTY:asdic_any_level_options,INTERFACE_COMPILE_OPTIONS>, > ${flags}")  # by name: options may hold commas
 set_property(SOURCE app/provenance.cpp APPEND PROPERTY COMPILE_DEFINITIONS
   ASDIC_VERSION="${PROJECT_VERSION}" ASDIC_BUILD="${build}"
   ASDIC_LIBRARIES="HDF5 ${hdf5_hdf5_VERSION}, FFTW ${fftw3_fftw3_fftw3_VERSION}, netCDF ${netcdf_netcdf_VERSION}")

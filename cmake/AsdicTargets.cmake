@@ -9,24 +9,35 @@ add_library(asdic::warnings ALIAS asdic_warnings)
 target_compile_options(asdic_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wnull-dereference -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough -Wno-missing-field-initializers -Wno-restrict -Wno-psabi $<$<BOOL:${ASDIC_WERROR}>:-Werror>)
 
-# Instruction set, sanitizers, coverage. No -ffast-math: the same bits for any number of threads.
-add_library(asdic_build_options INTERFACE)
-target_compile_options(asdic_build_options INTERFACE
-  $<IF:$<BOOL:${ASDIC_NATIVE}>,-march=native,-march=x86-64-v2>
-  $<$<CONFIG:Release>:-O3>)
+# Optimisation, sanitizers, coverage. No -ffast-math: the same bits for any number of threads.
+add_library(asdic_any_level_options INTERFACE)
+target_compile_options(asdic_any_level_options INTERFACE $<$<CONFIG:Release>:-O3>)
 if(ASDIC_SANITIZE)
-  target_compile_options(asdic_build_options INTERFACE -fsanitize=${ASDIC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
-  target_link_options(asdic_build_options INTERFACE -fsanitize=${ASDIC_SANITIZE})
+  target_compile_options(asdic_any_level_options INTERFACE -fsanitize=${ASDIC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(asdic_any_level_options INTERFACE -fsanitize=${ASDIC_SANITIZE})
 endif()
 if(ASDIC_COVERAGE)
-  target_compile_options(asdic_build_options INTERFACE --coverage)
-  target_link_options(asdic_build_options INTERFACE --coverage)
+  target_compile_options(asdic_any_level_options INTERFACE --coverage)
+  target_link_options(asdic_any_level_options INTERFACE --coverage)
 endif()
 
-# asdic_library(<folder> PUBLIC ... PRIVATE ...): every .cpp below <folder> makes asdic::<folder>, but for those in a folder mpi.
+# The above for the instructions that every machine has; what is hot is compiled for more of them.
+include(AsdicLevels)
+add_library(asdic_build_options INTERFACE)
+target_link_libraries(asdic_build_options INTERFACE asdic_any_level_options asdic_baseline)
+
+# asdic_library(<folder> PUBLIC ... PRIVATE ... LEVELS ...): every .cpp below <folder> makes asdic::<folder>, but for those in a
+# folder mpi. LEVELS: how the paths of hot sources begin: a folder, or a file with what its name begins.
 function(asdic_library folder)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE;LEVELS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+  set(hot "")
+  foreach(place IN LISTS ARG_LEVELS)
+    set(there ${sources})
+    list(FILTER there INCLUDE REGEX "^${PROJECT_SOURCE_DIR}/${place}")
+    list(APPEND hot ${there})
+  endforeach()
+  list(REMOVE_ITEM sources ${hot})
   list(FILTER sources EXCLUDE REGEX "/mpi/[^/]*$")  # AsdicMpi.cmake
   if(NOT sources)  # a folder of headers only
     file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/${folder}_empty.cpp" CONTENT "")
@@ -40,6 +51,9 @@ function(asdic_library folder)
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/asdic>)
   target_link_libraries(asdic_${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} Threads::Threads
                         $<BUILD_INTERFACE:asdic_warnings> $<BUILD_INTERFACE:asdic_build_options>)
+  if(hot)
+    asdic_levels(${folder} LIBRARIES ${ARG_PUBLIC} ${ARG_PRIVATE} SOURCES ${hot})
+  endif()
   set_property(GLOBAL APPEND PROPERTY ASDIC_LIBRARIES ${folder})
 endfunction()
 

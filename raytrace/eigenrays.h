@@ -6,11 +6,12 @@
 
 #include "raytrace/arrivals.h"
 #include "raytrace/environment.h"
-#include "raytrace/layered/branch_table.h"
+#include "raytrace/path_limits.h"
 #include "raytrace/tracing/receiver_columns.h"
 
 namespace asdic {
 
+class BranchTable;
 class RayTracer;
 
 /// Finds every eigenray of an ocean, by whichever of two solvers applies. Built once per

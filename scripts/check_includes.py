@@ -3,7 +3,8 @@
 
 core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
-Parallel loops are raytrace/parallel.h's, which are left when the realisation they belong to is called off.
+Parallel loops are raytrace/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
+instruction level (core/level_namespace.h) is included by sources that are compiled once a level (LEVELS in CMakeLists.txt) alone.
 """
 import pathlib
 import re
@@ -45,7 +46,25 @@ def faults():
         yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
 
 
+def level_faults():
+    """Sources that include what depends on the instruction level, and are compiled for one level alone"""
+    includes = {}
+    for folder in ORDER:
+        for path in (ROOT / folder).rglob("*"):
+            if path.suffix in (".h", ".cpp"):
+                quoted = [header for quote, header in INCLUDE.findall(path.read_text()) if quote == '"']
+                includes[str(path.relative_to(ROOT))] = quoted
+    reached = {"core/level_namespace.h"}
+    while grown := {name for name, headers in includes.items() if name not in reached and reached.intersection(headers)}:
+        reached |= grown
+    text = re.sub(r"#.*", "", (ROOT / "CMakeLists.txt").read_text())
+    hot = [place for places in re.findall(r"\bLEVELS\b([^)]*)\)", text) for place in places.split()]
+    for name in sorted(reached):
+        if name.endswith(".cpp") and not any(name.startswith(place) for place in hot):
+            yield f"{name}: depends on the instruction level, but is not among LEVELS in CMakeLists.txt"
+
+
 if __name__ == "__main__":
-    found = list(faults())
+    found = [*faults(), *level_faults()]
     print("\n".join(found) or "include order: clean")
     sys.exit(bool(found))

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "core/level_namespace.h"
+
 namespace asdic {
 
 /// Lays an impulse between the samples of a grid: eight taps of a Kaiser–Bessel bump, so that after
@@ -19,7 +21,7 @@ class DelayKernel {
   static constexpr double oversampling = 1.35;  ///< least sample rate over width of the band
 
   /// Real taps, each twice: as they multiply interleaved complex samples.
-  using Lanes = Eigen::Array<float, 2 * taps, 1>;
+  using Lanes = Eigen::Array<float, 2 * taps, 1, Eigen::DontAlign>;
 
   DelayKernel();
   /// One is as good as another.

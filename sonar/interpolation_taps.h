@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/level_namespace.h"
 #include "core/units.h"
 #include "sonar/kaiser_window.h"
 
@@ -17,7 +18,7 @@ class InterpolationTaps {
  public:
   static constexpr int taps = n_taps;
   static constexpr int before = taps / 2 - 1;  ///< of them before the sample at or below the place
-  using Weights = Eigen::Array<Real, taps, 1>;
+  using Weights = Eigen::Array<Real, taps, 1, Eigen::DontAlign>;
 
   /// \param beta  of the Kaiser window
   explicit InterpolationTaps(double beta) {

@@ -71,6 +71,8 @@ void Steering::add(std::complex<double> amplitude, const Vec3& s,
 StretchSum::StretchSum(const Steering& steering, const AllRoundArray& all_round)
     : steering_(steering), array_(all_round), all_round_(all_round) {}
 
+StretchSum::~StretchSum() = default;
+
 void StretchSum::add(Heard& h) {
   if (h.all_round) {
     const HeardAllRound circle = h.from_all_round();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "sonar/all_round_covariance.h"
 
 namespace asdic {
@@ -48,6 +49,7 @@ class Steering {
 class StretchSum {
  public:
   StretchSum(const Steering& steering, const AllRoundArray& all_round);
+  ~StretchSum();  // matrices are given back by the code that made them: alignment goes with levels
 
   /// Adds what one place sends back, and finds its power.
   void add(Heard& h);

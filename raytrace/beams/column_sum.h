@@ -5,12 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
 #include "raytrace/beams/lanes.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// Sums hat and Gaussian beams in Cartesian coordinates over a rectilinear grid of receivers: what
 /// add_beam does, several receivers at a time in single precision (phases are reduced in double
@@ -109,5 +112,7 @@ class ColumnSum {
   std::vector<std::int32_t> place_, rows_;  // of add_hats: of the first row in the sum, how many
   std::vector<std::int32_t> is_even_;       // for add_even_gaussians
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

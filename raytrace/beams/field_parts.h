@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/field_run.h"
@@ -100,6 +101,8 @@ class PlainPart {
   BeamTwins twins_;
 };
 
+inline namespace ASDIC_LEVEL {
+
 /// Hat and Gaussian beams in Cartesian coordinates on a rectilinear grid.
 class FastPart {
  public:
@@ -181,5 +184,7 @@ class FastPart {
   std::vector<ColumnSum> sum_;
   std::optional<TubeError> tubes_;
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

@@ -6,6 +6,7 @@
 #include <experimental/simd>
 #include <utility>
 
+#include "core/level_namespace.h"
 #include "core/units.h"
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -19,6 +20,7 @@
 #endif
 
 namespace asdic {
+inline namespace ASDIC_LEVEL {
 
 /// As many single-precision numbers as the machine adds at once.
 using Lanes = std::experimental::native_simd<float>;
@@ -178,4 +180,5 @@ inline Lanes exponential(const Lanes& argument) noexcept {
   return e * __builtin_bit_cast(Lanes, bits);
 }
 
+}  // namespace ASDIC_LEVEL
 }  // namespace asdic

@@ -1,8 +1,11 @@
 #pragma once
+#include "core/level_namespace.h"
 #include "raytrace/layered/column.h"
 #include "raytrace/layered/lane_math.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// RayParameter of several rays of one interval of the fan, which turn in the same layers.
 struct RayLanes {
@@ -54,6 +57,8 @@ struct ColumnLanes {
 struct LayerVisit {
   Rays::mask_type crossed, turned;
 };
+
+}  // namespace ASDIC_LEVEL
 
 /// Adds to each ray that comes to a layer what it adds to r/ξ and dr/dξ, one way; zero to others.
 /// \param between  a speed inside the rays' interval of the fan: what they do in a layer is the

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <experimental/simd>
 
+#include "core/level_namespace.h"
 #include "core/units.h"
 #include "raytrace/layered/arc_series.h"
 
 namespace asdic {
+inline namespace ASDIC_LEVEL {
 
 /// As many double-precision numbers as the machine adds at once: one for each of several rays.
 using Rays = std::experimental::native_simd<double>;
@@ -110,4 +112,5 @@ inline Rays asin_over(const Rays& x) noexcept {
   return ratio;
 }
 
+}  // namespace ASDIC_LEVEL
 }  // namespace asdic

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/polynomial_fit.h"
 
@@ -13,6 +14,8 @@ namespace asdic {
 /// What of a leg is smooth in σ, and so a series: r/ξ, σ·dr/dξ, τ − ξr (whose error is of second
 /// order in that of σ) and the length.
 enum LegQuantity : std::size_t { per_slowness, d_range, intercept, length, leg_quantities };
+
+inline namespace ASDIC_LEVEL {
 
 /// Several legs between two nodes of the fan as polynomials in σ: function
 /// quantity × legs + leg.
@@ -124,6 +127,8 @@ class IntervalSeries {
   std::span<const double> nodes_;
   std::vector<Piece> pieces_;  ///< in order
 };
+
+}  // namespace ASDIC_LEVEL
 
 /// How far a series reaches from σ on. The nearest singularity is where s vanishes at the next
 /// slower knot, at ±ia, a² = (c_ref/c)² − 1: on a stretch of 1.5 times its distance n terms leave

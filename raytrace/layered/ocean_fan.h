@@ -4,10 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/fan_nodes.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// What every layer of an ocean adds to the rays at the nodes of its fan, wherever source and
 /// receiver lie: these only cut two layers in two, and two intervals of the fan. So the fan of any
@@ -49,5 +52,7 @@ class OceanFan {
   std::vector<CriticalSpeed> critical_;
   std::unique_ptr<Slot[]> slots_;  ///< [critical − 1]
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

@@ -6,9 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/layered/leg_series.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// What rays add up from every cut of an ocean to their vertices above and below, as series in σ:
 /// wherever source and receiver lie, their legs are two of these and the way from a cut to the
@@ -125,5 +128,7 @@ class OceanLegs {
   const OceanSeries* series_;
   Anchor upper_, lower_;
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

@@ -3,10 +3,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/level_namespace.h"
 #include "core/units.h"
 #include "raytrace/layered/lane_math.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// A stretch of σ as x from −1 to 1.
 struct SigmaStretch {
@@ -92,5 +95,7 @@ struct PolynomialFit {
     return table;
   }
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

@@ -1,10 +1,13 @@
 #pragma once
 #include <array>
 
+#include "core/level_namespace.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/ocean/boundary.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// Complex numbers in lanes.
 struct ComplexLanes {
@@ -14,6 +17,8 @@ struct ComplexLanes {
     return {a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real};
   }
 };
+
+}  // namespace ASDIC_LEVEL
 
 /// reflection_coefficient (raytrace/ocean/boundary.h) of several rays, each to a power: what as
 /// many bounces leave. \param sine, cosine  of the grazing angles   \param grazing  these [rad]

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/level_namespace.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/hermite.h"
@@ -33,6 +34,8 @@ struct RootTask {
   std::size_t receiver = 0;  ///< whose it is
   double range = 0.0;        ///< [m]
 };
+
+inline namespace ASDIC_LEVEL {
 
 /// As many tasks as lanes, side by side; the last one fills what is left.
 struct TaskLanes {
@@ -72,11 +75,15 @@ struct LegSource {
   }
 };
 
+}  // namespace ASDIC_LEVEL
+
 /// The roots: from the cubic through the stretch's ends by Newton's method, kept inside a shrinking
 /// bracket, until what is missed is below 0.01 mm, or what the next step would leave is below 0.1
 /// mm and 1e-8 of the slope; path_builder.cpp sees to the rest.
 [[nodiscard]] FoundRays find_roots(const LegSource& source, double c_ref,
                                    const TaskLanes& tasks) noexcept;
+
+inline namespace ASDIC_LEVEL {
 
 /// Of the tasks of one interval, those that are solved alike: with one series, or with walks.
 class RootGroups {
@@ -116,5 +123,7 @@ class RootGroups {
   IntervalSeries series_;               ///< of no cells where no series can be worth while
   std::vector<const RootTask*> order_;  ///< by cell
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic

@@ -1,8 +1,11 @@
 #pragma once
+#include "core/level_namespace.h"
 #include "raytrace/layered/lane_math.h"
 #include "raytrace/layered/layer.h"
 
 namespace asdic {
+
+inline namespace ASDIC_LEVEL {
 
 /// Layer::at for lanes of depths.
 struct WaterLanes {
@@ -24,5 +27,7 @@ struct WaterLanes {
     }
   }
 };
+
+}  // namespace ASDIC_LEVEL
 
 }  // namespace asdic
