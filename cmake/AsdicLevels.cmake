@@ -67,5 +67,7 @@ endfunction()
 function(asdic_use_level target folder level)
   target_compile_options(${target} PRIVATE -march=x86-64-${level} $<$<STREQUAL:${level},v4>:${avx512_options}>)
   add_dependencies(${target} asdic_${folder}_open)
-  target_link_libraries(${target} PRIVATE ${PROJECT_BINARY_DIR}/levels/${folder}/${folder}_${level}_open.o)
+  set(open ${PROJECT_BINARY_DIR}/levels/${folder}/${folder}_${level}_open.o)
+  set_source_files_properties(${open} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  target_sources(${target} PRIVATE ${open})  # before the libraries: the table of jumps is then not asked for
 endfunction()
