@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
+#include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/cell_hits.h"
 
@@ -32,6 +36,17 @@ double airy_floor(double curvature, double frequency) {
   constexpr double zeta = 0.307;
   return std::cbrt(2.0) * std::sqrt(zeta) * std::pow(curvature, 2.0 / 3.0) /
          std::cbrt(2.0 * pi * frequency);
+}
+
+/// Whether a cubic rises, or falls, all the way between two points of it, by the sufficient
+/// condition of Fritsch & Carlson: no slope there is against the rise (but for a caustic's, which
+/// is rounding), nor above three times that of the chord.
+bool is_monotone(const HermiteNode& a, const HermiteNode& b) {
+  const double chord = (b.value - a.value) / (b.x - a.x);
+  const auto tame = [chord](double slope) {
+    return slope / chord >= -1e-3 && slope / chord <= 3.0;
+  };
+  return tame(a.slope) && tame(b.slope);
 }
 
 class BranchFollower {
@@ -99,22 +114,46 @@ class BranchFollower {
   }
 
   void refine(const BranchPoint& a, const BranchPoint& b, int depth) {
+    if (!(b.range.x > a.range.x)) return;  // one and the same ray, to rounding
     const double low = std::min(a.range.value, b.range.value),
                  high = std::max(a.range.value, b.range.value);
     if (high < 0.5 * spacing_ || low > max_range_) return;
     const Hermite range(a.range, b.range), delay(a.delay, b.delay);
-    if (depth < 12 && high - low > 0.5 * spacing_) {
-      const double middle = 0.5 * (a.range.x + b.range.x);
+    // Where the next ray meets a knot or a boundary r goes like a square root: its slope at that
+    // end tells nothing of a piece that is wider than the end's own surroundings.
+    const bool tame = is_monotone(a.range, b.range) && is_monotone(a.delay, b.delay);
+    const double middle = 0.5 * (a.range.x + b.range.x);
+    const bool apart = middle > a.range.x && middle < b.range.x;
+    if (depth < 12 && apart && (high - low > 0.5 * spacing_ || (!tame && holds_cell(low, high)))) {
       const BranchPoint m = point(middle);
       const double error = std::abs(range.value(middle) - m.range.value) +
                            std::abs(delay.value(middle) - m.delay.value) / ray(middle).slowness;
-      if (error > 0.01 * spacing_) {
+      if (!tame || error > 0.01 * spacing_) {
         refine(a, m, depth + 1);
         refine(m, b, depth + 1);
         return;
       }
     }
-    lay(a, b, range, delay);
+    if (tame)
+      lay(a, b, range, delay);
+    else  // too narrow to halve: by chords
+      lay(a, b, chord(a.range, b.range), chord(a.delay, b.delay));
+  }
+
+  /// Whether neighbouring numbers θ are rays within a hundredth of the spacing. Where they are not,
+  /// beside a maximum of c, a path has 10⁻⁵ of the others' amplitude and less.
+  [[nodiscard]] bool is_told(double theta, double range_slope) const {
+    return std::abs(range_slope) * theta * std::numeric_limits<double>::epsilon() < 0.01 * spacing_;
+  }
+
+  static Hermite chord(HermiteNode a, HermiteNode b) {
+    a.slope = b.slope = (b.value - a.value) / (b.x - a.x);
+    return {a, b};
+  }
+
+  /// Whether the centre of a cell lies between two ranges.
+  [[nodiscard]] bool holds_cell(double low, double high) const {
+    return (std::max(0.0, std::ceil(low / spacing_ - 0.5)) + 0.5) * spacing_ < high;
   }
 
   /// Every cell centre between the ranges of two points.
@@ -129,11 +168,9 @@ class BranchFollower {
     for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
       const double r = (cell + 0.5) * spacing_;
       if (r >= limit) return;
-      for (int i = 0; i < 3; ++i) {  // the cubic's root, from the neighbour's
-        const double slope = range.slope(theta);
-        if (slope == 0.0) break;
-        theta = std::clamp(theta - (range.value(theta) - r) / slope, lo, hi);
-      }
+      theta = monotone_root(range, r, lo, hi, rising, theta,
+                            1e-6 * spacing_);  // from the neighbour's
+      if (!is_told(theta, range.slope(theta))) continue;
       const double share = (r - near.range.value) / (far.range.value - near.range.value);
       // by the mean speed: L/τ is linear where L is not
       const double tau = delay.value(theta);
@@ -224,6 +261,25 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
   return found;
 }
 
+bool is_finite(const GroundPath& p) {
+  return std::isfinite(p.delay) && std::isfinite(p.amplitude.real()) &&
+         std::isfinite(p.amplitude.imag()) && std::isfinite(p.launch_elevation) &&
+         std::isfinite(p.grazing) && std::isfinite(p.horizontal_slowness) &&
+         std::isfinite(p.slowness_slope) && std::isfinite(p.length);
+}
+
+/// The gate that every path goes through: what uses paths makes indices and sizes of their delays.
+void check_finite(std::span<const CellPath> found, double source_depth) {
+  const auto bad = std::count_if(found.begin(), found.end(),
+                                 [](const CellPath& p) { return !is_finite(p.path); });
+  if (bad > 0)
+    throw std::runtime_error(
+        "rays from " + std::to_string(source_depth) + " m: " + std::to_string(bad) + " of " +
+        std::to_string(found.size()) +
+        " paths to a boundary are no numbers; this is a fault of asdic, please "
+        "report it with the scenario");
+}
+
 }  // namespace
 
 GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
@@ -231,6 +287,7 @@ GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                          double frequency, const PathLimits& limits) {
   const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
       solver, source_depth, level, spacing, max_range, frequency, limits);
+  check_finite(found, source_depth);
   GroundPaths ground;
   ground.spacing_ = spacing;
   const auto cells = static_cast<std::size_t>(std::max(0.0, std::ceil(max_range / spacing - 0.5)));

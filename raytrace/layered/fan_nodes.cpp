@@ -12,8 +12,14 @@ bool is_smooth_extremum(const Layer& layer, double depth) {
   return std::abs(here.dc_dz) < 1e-6 * std::abs(here.d2c_dz2) * layer.thickness();
 }
 
+/// Speeds that the sums cannot tell apart. Rays that turn between them pass the one and not the
+/// other by less than rounding: there are none in the fan.
+bool are_one(double slower, double faster) { return faster - slower <= 1e-13 * faster; }
+
 }  // namespace
 
+/// Of speeds that are one the slowest and the fastest: slower rays meet none of them, faster ones
+/// all.
 std::vector<CriticalSpeed> critical_speeds(std::span<const Layer> layers, double slowest,
                                            double fastest) {
   std::vector<CriticalSpeed> critical;
@@ -34,24 +40,28 @@ std::vector<CriticalSpeed> critical_speeds(std::span<const Layer> layers, double
                 [&](const CriticalSpeed& c) { return c.speed < slowest || c.speed > fastest; });
   std::sort(critical.begin(), critical.end(),
             [](const auto& a, const auto& b) { return a.speed < b.speed; });
-  std::size_t kept = 0;
-  for (const CriticalSpeed& c : critical) {
-    if (kept > 0 && c.speed - critical[kept - 1].speed <= 1e-13 * c.speed)
-      critical[kept - 1].logarithmic |= c.logarithmic;
-    else
-      critical[kept++] = c;
+  std::vector<CriticalSpeed> kept;
+  for (auto first = critical.begin(); first != critical.end();) {
+    const auto end = std::find_if(first, critical.end(),
+                                  [&](const auto& c) { return !are_one(first->speed, c.speed); });
+    const bool logarithmic = std::any_of(first, end, [](const auto& c) { return c.logarithmic; });
+    const double slowest_of_them = first->speed, fastest_of_them = (end - 1)->speed;
+    kept.push_back({slowest_of_them, logarithmic});
+    if (fastest_of_them > slowest_of_them) kept.push_back({fastest_of_them, logarithmic});
+    first = end;
   }
-  critical.resize(kept);
-  return critical;
+  return kept;
 }
 
 void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analytic,
                std::vector<double>& sigma) {
-  const double ratio = slow.speed / fast.speed;
-  const double sigma_end = std::sqrt((1.0 - ratio) * (1.0 + ratio));
+  sigma.clear();
+  if (are_one(slow.speed, fast.speed)) return;
+  // The last node is 1e-12 short of it: the speeds' ratio would not tell it so well.
+  const double sigma_end =
+      std::sqrt((fast.speed - slow.speed) * (fast.speed + slow.speed)) / fast.speed;
   const int count = analytic ? 16 : 7;
   const double first = sigma_end / (count * count);
-  sigma.clear();
   sigma.push_back(1e-10 * sigma_end);
   if (slow.logarithmic)
     for (int m = 14; m >= 1; --m) sigma.push_back(std::ldexp(first, -2 * m));

@@ -44,10 +44,11 @@ bool few_nodes_suffice(const Layer& layer, const RayParameter& ray, double sine_
   // singularity at −x falls as ρ^(−2n), ρ = v + √(v² − 1), v = 1 + 2x.
   const double a = sine_top * sine_top, b = sine_bottom * sine_bottom;
   const double flat = std::min(a, b), rise = 3.0 * std::abs(a - b);
+  const auto way = RayAlong::from_flat_edge(layer, ray, sine_top, sine_bottom);
   if (flat > 16.0 * rise)  // ρ ≥ 66: 66^−8
-    at_cubic_nodes<4>(layer, ray, layer.top, layer.bottom, f);
+    at_cubic_nodes<4>(way, 0.0, layer.thickness(), f);
   else if (flat > 0.7 * rise)  // ρ ≥ 4.6: 4.6^−16 = 2e-11
-    at_cubic_nodes<8>(layer, ray, layer.top, layer.bottom, f);
+    at_cubic_nodes<8>(way, 0.0, layer.thickness(), f);
   else
     return false;
   return true;
@@ -80,18 +81,9 @@ PassDetail parabola(double n_a, double n_b, double w_a, double w_b, double h, do
   return {.time = time, .length = length};
 }
 
-}  // namespace
-
-double turning_depth(const Layer& layer, const RayParameter& ray) noexcept {
-  const double target = ray.turning_speed();
+/// Newton inside a shrinking bracket: the law is monotone in the layer.
+double turning_depth_by_speed(const Layer& layer, double target) {
   const double span = layer.c_bottom - layer.c_top;
-  if (layer.law == Layer::Law::c_linear)
-    return span > 0 ? layer.bottom - (layer.c_bottom - target) / layer.gradient
-                    : layer.top + (target - layer.c_top) / layer.gradient;
-  if (layer.law == Layer::Law::n2_linear)
-    return layer.top +
-           (ray.slowness * ray.slowness - 1.0 / (layer.c_top * layer.c_top)) / layer.gradient;
-  // Newton inside a shrinking bracket: the law is monotone in the layer.
   double low = layer.top, high = layer.bottom;
   double z = low + (high - low) * std::clamp((target - layer.c_top) / span, 0.0, 1.0);
   for (int i = 0; i < 60; ++i) {
@@ -104,6 +96,47 @@ double turning_depth(const Layer& layer, const RayParameter& ray) noexcept {
     z = next;
   }
   return z;
+}
+
+/// From the edge whose speed is nearer to that of the turn, by the difference of the two, which the
+/// sine at the edge tells: s² = ξ²(c_turn − c)(c_turn + c).
+double turning_depth_of_cubic(const Layer& layer, const RayParameter& ray) {
+  const double turning = ray.turning_speed();
+  const auto rise_to_turn = [&](double c) {
+    return ray.sine2(c) / (ray.slowness * ray.slowness * (turning + c));
+  };
+  const double from_top = rise_to_turn(layer.c_top), from_bottom = rise_to_turn(layer.c_bottom);
+  const bool at_top = std::abs(from_top) < std::abs(from_bottom);
+  const double edge = at_top ? layer.top : layer.bottom, sign = at_top ? 1.0 : -1.0;
+  const SpeedDrop<double> drop = speed_drop(layer, edge, sign);
+  const double wanted = at_top ? -from_top : -from_bottom, h = layer.thickness();
+  const bool falls =
+      (at_top ? layer.c_bottom : layer.c_top) < (at_top ? layer.c_top : layer.c_bottom);
+  double low = 0.0, high = h;
+  double t = h * std::clamp(wanted / drop(h), 0.0, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    const double off = wanted - drop(t);
+    ((off > 0.0) == falls ? low : high) = t;
+    double next = t + off / drop.slope(t);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - t) <= 1e-15 * next) return edge + sign * next;
+    t = next;
+  }
+  return edge + sign * t;
+}
+
+}  // namespace
+
+double turning_depth(const Layer& layer, const RayParameter& ray) noexcept {
+  const double target = ray.turning_speed();
+  if (layer.law == Layer::Law::c_linear)
+    return layer.c_bottom > layer.c_top ? layer.bottom - (layer.c_bottom - target) / layer.gradient
+                                        : layer.top + (target - layer.c_top) / layer.gradient;
+  if (layer.law == Layer::Law::n2_linear)
+    return layer.top +
+           (ray.slowness * ray.slowness - 1.0 / (layer.c_top * layer.c_top)) / layer.gradient;
+  return layer.law == Layer::Law::cubic ? turning_depth_of_cubic(layer, ray)
+                                        : turning_depth_by_speed(layer, target);
 }
 
 Pass cross(const Layer& layer, const RayParameter& ray, double sine_top,
@@ -129,14 +162,14 @@ Pass cross(const Layer& layer, const RayParameter& ray, double sine_top,
     const bool flat = std::min(top2, bottom2) < 0.2 * std::max(top2, bottom2);
     double by_parts = 1.0 / (sine_bottom * layer.at(layer.bottom).dc_dz) -
                       1.0 / (sine_top * layer.at(layer.top).dc_dz);
-    integrate_evenly_bent(layer, ray, sine_top, sine_bottom,
+    integrate_evenly_bent(RayAlong::from_flat_edge(layer, ray, sine_top, sine_bottom),
                           [&](const SoundSpeed& water, double per_s, double dz) {
                             add(water.c, per_s, dz);
                             by_parts += dz * water.d2c_dz2 * per_s / (water.dc_dz * water.dc_dz);
                           });
     if (flat) pass.d_range = by_parts / (xi * xi);
   } else {
-    integrate_crossing(layer, ray, sine_top, sine_bottom, add);
+    integrate_crossing(RayAlong::from_flat_edge(layer, ray, sine_top, sine_bottom), add);
   }
   pass.range *= xi;
   return pass;
@@ -158,10 +191,10 @@ PassDetail cross_detail(const Layer& layer, const RayParameter& ray, double sine
   if (few_nodes_suffice(layer, ray, sine_top, sine_bottom, add)) {
   } else if (layer.evenly_bent) {
     integrate_evenly_bent(
-        layer, ray, sine_top, sine_bottom,
+        RayAlong::from_flat_edge(layer, ray, sine_top, sine_bottom),
         [&](const SoundSpeed& water, double per_s, double dz) { add(water.c, per_s, dz); });
   } else {
-    integrate_crossing(layer, ray, sine_top, sine_bottom, add);
+    integrate_crossing(RayAlong::from_flat_edge(layer, ray, sine_top, sine_bottom), add);
   }
   return detail;
 }
@@ -190,7 +223,7 @@ Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
   Pass pass;
   double by_parts = 0.0;
   const double orientation = downward ? -1.0 : 1.0;  // dz from the turning depth to the edge
-  const double hand_over = integrate_turning(
+  const HandOver end = integrate_turning(
       layer, ray, turn_z,
       [&](double c, double per_s, double dz) {
         pass.range += dz * c * per_s;
@@ -200,9 +233,8 @@ Pass turn(const Layer& layer, const RayParameter& ray, double sine) noexcept {
         pass.range += dz * water.c * per_s;
         by_parts += dz * water.d2c_dz2 * per_s / (water.dc_dz * water.dc_dz);
       });
-  const SoundSpeed end = layer.at(hand_over);
-  const double s_end = hand_over == edge ? sine : std::sqrt(ray.sine2(end.c));
-  by_parts += orientation / (s_end * end.dc_dz);
+  const double s_end = end.depth == edge ? sine : std::sqrt(end.sine2);
+  by_parts += orientation / (s_end * layer.at(end.depth).dc_dz);
   pass.range *= xi;
   pass.d_range += by_parts / (xi * xi);
   return pass;

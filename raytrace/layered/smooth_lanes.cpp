@@ -32,15 +32,16 @@ void one_by_one(const RayLanes& rays, LegLanes& leg, const PassOf& pass_of,
   }
 }
 
-/// Gauss–Legendre nodes in depth, shared by all rays.
+/// Gauss–Legendre nodes in depth, shared by all rays. \param least  s² of rays at the faster edge
 template <std::size_t n, bool detailed>
-void cross_at_shared_nodes(const Layer& layer, const RayLanes& rays, LegLanes& leg) noexcept {
+void cross_at_shared_nodes(const Layer& layer, const RayLanes& rays, const Rays& least,
+                           LegLanes& leg) noexcept {
   using Rule = GaussLegendre<n>;
   const double half = 0.5 * layer.thickness();
   const double* const speed = layer.node_speed.data() + Layer::first_node<n>;
   for (std::size_t i = 0; i < n; ++i) {
     const double weight = half * Rule::weight[i], c = speed[i];
-    const Rays s = sqrt(rays.sine2(c)), per_s = 1.0 / s;
+    const Rays s = sqrt(max(rays.sine2(c), least)), per_s = 1.0 / s;
     const Rays part = (weight * c) * per_s;
     leg.per_slowness += part;
     leg.d_range += part * (per_s * per_s);
@@ -51,29 +52,48 @@ void cross_at_shared_nodes(const Layer& layer, const RayLanes& rays, LegLanes& l
   }
 }
 
-/// What eight nodes in u = √|z − vertex| add: at_nodes_in_root, for several rays. `by_parts` gets
-/// ∫ c″/(s c′²) dz. \param vertex  of each ray \param from, to  distances from it
-template <bool detailed>
-void add_in_root(const Layer& layer, const RayLanes& rays, const Rays& vertex, double sign,
-                 const Rays& from, const Rays& to, LegLanes& sum, Rays& by_parts) noexcept {
+/// RayAlong (smooth_quadrature.h) for several rays: along ways that begin at one depth or, of T =
+/// Rays, at several.
+template <class T>
+struct AlongLanes {
+  T depth;            ///< where they begin [m]
+  double sign;        ///< +1 down, −1 up
+  T speed;            ///< there [m/s]
+  Rays sine2;         ///< there
+  SpeedDrop<T> drop;  ///< of a cubic law
+  bool cubic;
+
+  [[nodiscard]] Rays sine2_at(const RayLanes& rays, const Rays& t, const Rays& c) const noexcept {
+    if (!cubic)
+      return max((rays.reference_speed - c) * (rays.reference_speed + c) * rays.per_c2 +
+                     rays.sigma * rays.sigma * (c * c * rays.per_c2),
+                 Rays(1e-300));
+    const Rays less = drop(t);
+    return max(sine2 + rays.slowness * rays.slowness * less * (2.0 * speed - less), Rays(1e-300));
+  }
+};
+
+/// What eight nodes in u = √(t + before) add: at_nodes_in_root, for several rays. `by_parts` gets
+/// ∫ c″/(s c′²) dz.
+template <bool detailed, class T>
+void add_in_root(const Layer& layer, const RayLanes& rays, const AlongLanes<T>& way,
+                 const Rays& before, const Rays& length, LegLanes& sum, Rays& by_parts) noexcept {
   using Rule = GaussLegendre<8>;
-  const Rays u_from = sqrt(from), u_to = sqrt(to);
+  const Rays u_from = sqrt(before), u_to = sqrt(before + length);
   const Rays centre = 0.5 * (u_from + u_to), half = 0.5 * (u_to - u_from);
   for (std::size_t i = 0; i < 8; ++i) {
-    const Rays u = centre + half * Rule::node[i];
-    const WaterLanes water(layer, vertex + sign * (u * u));
+    const Rays u = centre + half * Rule::node[i], t = u * u - before;
+    const WaterLanes water(layer, way.depth + way.sign * t);
     const Rays& c = water.c;
-    const Rays s2 = max((rays.reference_speed - c) * (rays.reference_speed + c) * rays.per_c2 +
-                            rays.sigma * rays.sigma * (c * c * rays.per_c2),
-                        Rays(1e-300));
+    const Rays s2 = way.sine2_at(rays, t, c);
     const Rays per_s = 1.0 / sqrt(s2), dz = (2.0 * Rule::weight[i]) * u * half;
-    const Rays way = dz * per_s;
-    sum.per_slowness += way * c;
-    sum.d_range += way * c * (per_s * per_s);
-    by_parts += way * water.d2c_dz2 / (water.dc_dz * water.dc_dz);
+    const Rays part = dz * per_s;
+    sum.per_slowness += part * c;
+    sum.d_range += part * c * (per_s * per_s);
+    by_parts += part * water.d2c_dz2 / (water.dc_dz * water.dc_dz);
     if constexpr (detailed) {
-      sum.intercept += way * s2 / c;
-      sum.length += way;
+      sum.intercept += part * s2 / c;
+      sum.length += part;
     }
   }
 }
@@ -92,7 +112,7 @@ void add(const LegLanes& part, LegLanes& leg) noexcept {
 template <bool detailed>
 void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sine_top,
                        const Rays& sine_bottom, LegLanes& leg) noexcept {
-  const bool flat_at_top = layer.c_top > layer.c_bottom;
+  const bool flat_at_top = falls(layer);
   const double edge = flat_at_top ? layer.top : layer.bottom, sign = flat_at_top ? 1.0 : -1.0;
   const Rays s2 = flat_at_top ? sine_top * sine_top : sine_bottom * sine_bottom;
   const Rays far2 = flat_at_top ? sine_bottom * sine_bottom : sine_top * sine_top;
@@ -100,40 +120,56 @@ void cross_evenly_bent(const Layer& layer, const RayLanes& rays, const Rays& sin
   const SoundSpeed& flat = flat_at_top ? top : bottom;
   const Rays xi2 = rays.slowness * rays.slowness;
   const Rays before = before_edge(s2, xi2, flat);
+  const AlongLanes<double> way{.depth = edge,
+                               .sign = sign,
+                               .speed = flat_at_top ? layer.c_top : layer.c_bottom,
+                               .sine2 = s2,
+                               .drop = {flat.dc_dz, flat.d2c_dz2, layer.coefficient[3], sign},
+                               .cubic = layer.law == Layer::Law::cubic};
   LegLanes sum;
   Rays by_parts = 1.0 / (sine_bottom * layer.slope_bottom) - 1.0 / (sine_top * layer.slope_top);
-  add_in_root<detailed>(layer, rays, edge - sign * before, sign, before, before + layer.thickness(),
-                        sum, by_parts);
+  add_in_root<detailed>(layer, rays, way, before, Rays(layer.thickness()), sum, by_parts);
   where(s2 < 0.2 * far2, sum.d_range) = by_parts / xi2;
   add<detailed>(sum, leg);
 }
 
-/// Where c(z) = 1/ξ: Newton's method inside a shrinking bracket, for the law is monotone in the
-/// layer; until c is 1/ξ but for its rounding, if that is 1e-12 of the way from the slower edge,
-/// else to the last bit of the bracket, as the plain way does: nodes crowd at the turning depth.
-Rays turning_depths(const Layer& layer, const RayLanes& rays) noexcept {
+/// The way from the slower edge to where the rays turn, at c = 1/ξ: Newton's method inside a
+/// shrinking bracket, for the law is monotone in the layer, until the speed has risen by s²/(ξ²(1/ξ
+/// + c)) but for its rounding; nodes crowd at the turning depth.
+Rays ways_to_turn(const Layer& layer, const RayLanes& rays, const Rays& sine) noexcept {
+  const bool downward = layer.c_bottom > layer.c_top, cubic = layer.law == Layer::Law::cubic;
+  const double edge = downward ? layer.top : layer.bottom, sign = downward ? 1.0 : -1.0;
+  const double c_edge = downward ? layer.c_top : layer.c_bottom, h = layer.thickness();
+  const SpeedDrop<double> drop = speed_drop(layer, edge, sign);
   const Rays target = 1.0 / rays.slowness;
-  const Rays rounding = 2e-16 * target;
-  const bool rises = layer.c_bottom > layer.c_top;
-  Rays low = layer.top, high = layer.bottom;
-  const Rays share = (target - layer.c_top) / (layer.c_bottom - layer.c_top);
-  Rays z = low + (high - low) * min(max(share, Rays(0.0)), Rays(1.0));
+  const Rays rise = sine * sine * target * (target / (target + c_edge));
+  // Speeds beyond a cubic's are known to 2e-16 of themselves only.
+  const Rays rounding = cubic ? 1e-16 * rise : 2e-16 * target;
+  Rays low = 0.0, high = h;
+  Rays t = h * min(max(rise / std::abs(layer.c_bottom - layer.c_top), Rays(0.0)), Rays(1.0));
   Rays::mask_type done(false);
   for (int i = 0; i < 60; ++i) {
-    const WaterLanes here(layer, z);
-    const Rays way = rises ? z - layer.top : layer.bottom - z;
-    done = done || (abs(target - here.c) <= rounding && rounding <= 1e-12 * way * abs(here.dc_dz));
-    const auto slower = (here.c < target) == Rays::mask_type(rises);
-    where(slower, low) = z;
-    where(!slower, high) = z;
-    Rays next = z + (target - here.c) / here.dc_dz;
+    Rays off, slope;
+    if (cubic) {
+      off = rise + drop(t);
+      slope = -drop.slope(t);
+    } else {
+      const WaterLanes here(layer, edge + sign * t);
+      off = target - here.c;
+      slope = sign * here.dc_dz;
+    }
+    done = done || (abs(off) <= rounding && rounding <= 1e-12 * t * slope);
+    const auto slower = off > 0.0;
+    where(slower, low) = t;
+    where(!slower, high) = t;
+    Rays next = t + off / slope;
     where(!(next > low && next < high), next) = 0.5 * (low + high);
-    const Rays step = abs(next - z);
-    where(!done, z) = next;
-    done = done || step <= 1e-15 * (abs(z) + 1.0);
+    const Rays step = abs(next - t);
+    where(!done, t) = next;
+    done = done || step <= 1e-15 * next;
     if (all_of(done)) break;
   }
-  return z;
+  return t;
 }
 
 }  // namespace
@@ -146,14 +182,14 @@ void cross_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine_top
     // ρ^(−2n) of a singularity at −x, ρ = v + √(v² − 1), v = 1 + 2x, x ≥ flat/(3·|rise|).
     const double steepest_rise =
         3.0 * std::abs(layer.c_top - layer.c_bottom) * (layer.c_top + layer.c_bottom) * rays.per_c2;
-    const double flat = hmin(min(sine_top, sine_bottom));
-    const double x = flat * flat / steepest_rise;
+    const Rays flattest = min(sine_top, sine_bottom), least = flattest * flattest;
+    const double x = hmin(least) / steepest_rise;
     if (x > 16.0)  // ρ ≥ 30: 30⁻⁸ = 2e-12
-      return cross_at_shared_nodes<4, detailed>(layer, rays, leg);
+      return cross_at_shared_nodes<4, detailed>(layer, rays, least, leg);
     if (x > 4.0)  // ρ ≥ 9.9: 9.9⁻¹² = 1e-12
-      return cross_at_shared_nodes<6, detailed>(layer, rays, leg);
+      return cross_at_shared_nodes<6, detailed>(layer, rays, least, leg);
     if (x > 0.7)  // ρ ≥ 4.6: 4.6⁻¹⁶ = 2e-11
-      return cross_at_shared_nodes<8, detailed>(layer, rays, leg);
+      return cross_at_shared_nodes<8, detailed>(layer, rays, least, leg);
   }
   if (layer.evenly_bent)
     return cross_evenly_bent<detailed>(layer, rays, sine_top, sine_bottom, leg);
@@ -174,7 +210,7 @@ void turn_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine,
   const double edge = downward ? layer.top : layer.bottom;
   const double sign = downward ? -1.0 : 1.0;  // from the turning depth towards the edge
   const SoundSpeed at_edge = layer.at(edge);
-  const Rays turn_z = turning_depths(layer, rays), total = abs(turn_z - edge);
+  const Rays total = ways_to_turn(layer, rays, sine), turn_z = edge - sign * total;
   const WaterLanes there(layer, turn_z);
   using Arc = TurnedArc<Rays>;
   const double gradient = std::abs(at_edge.dc_dz);
@@ -187,9 +223,15 @@ void turn_smooth(const Layer& layer, const RayLanes& rays, const Rays& sine,
         rays, leg,
         [&](const RayParameter& ray, std::size_t i) { return turn(layer, ray, sine[i]); },
         [&](const RayParameter& ray, std::size_t i) { return turn_detail(layer, ray, sine[i]); });
+  const AlongLanes<Rays> way{.depth = turn_z,
+                             .sign = sign,
+                             .speed = 1.0 / rays.slowness,
+                             .sine2 = 0.0,
+                             .drop = {there.dc_dz, there.d2c_dz2, layer.coefficient[3], sign},
+                             .cubic = layer.law == Layer::Law::cubic};
   LegLanes sum;
   Rays by_parts = sign / (sine * at_edge.dc_dz);
-  add_in_root<detailed>(layer, rays, turn_z, sign, Rays(0.0), total, sum, by_parts);
+  add_in_root<detailed>(layer, rays, way, Rays(0.0), total, sum, by_parts);
   sum.d_range = by_parts / (rays.slowness * rays.slowness);
   if (any_of(straight)) {
     const Arc arc(sine, rays.slowness, gradient, at_edge.d2c_dz2);

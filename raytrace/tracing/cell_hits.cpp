@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/layered/hermite.h"
+#include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/fan_splitting.h"
 
@@ -128,16 +129,8 @@ class CellSearch {
     for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
       const double r = (cell + 0.5) * spacing_;
       if (r >= limit) return;
-      double low = std::min(near, far), high = std::max(near, far);
-      for (int i = 0; i < 40; ++i) {  // the cubic's root, from the neighbour's
-        const double off = range.value(alpha) - r;
-        if (std::abs(off) < 1e-3 * spacing_) break;
-        ((off < 0.0) == rising ? low : high) = alpha;
-        const double slope = range.slope(alpha);
-        double next = slope != 0.0 ? alpha - off / slope : low;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        alpha = next;
-      }
+      alpha = monotone_root(range, r, std::min(near, far), std::max(near, far), rising, alpha,
+                            1e-3 * spacing_);  // from the neighbour's
       out.push_back(path(a, ha, b, hb, range, alpha, time.value(alpha), cell));
     }
   }
