@@ -11,7 +11,7 @@ namespace {
 
 class FirstPass final : public RangeVisitor {
  public:
-  explicit FirstPass(FanRay& out) : out_(out) { out_ = {}; }
+  explicit FirstPass(RayAtRange& out) : out_(out) { out_ = {}; }
   void pass(std::size_t, const RayState& y, const RayHistory& history) override {
     if (out_.arrived) return;
     // a zero of q since the segment's begin is counted by the tracer
@@ -29,7 +29,7 @@ class FirstPass final : public RangeVisitor {
   }
 
  private:
-  FanRay& out_;
+  RayAtRange& out_;
 };
 
 }  // namespace
@@ -46,7 +46,8 @@ RayFan::RayFan(const Environment& environment, double frequency, double source_d
                            .source_depth = source_depth}) {}
 RayFan::~RayFan() = default;
 
-void RayFan::trace(std::span<const double> elevations, double range, std::span<FanRay> out) const {
+void RayFan::trace(std::span<const double> elevations, double range,
+                   std::span<RayAtRange> out) const {
   LayeredFan::Workspace work;
   for (std::size_t i = 0; i < elevations.size(); ++i) {
     if (solvers_->layered && solvers_->layered->trace(elevations[i], range, work, out[i])) continue;

@@ -8,7 +8,7 @@
 namespace asdic {
 
 /// A ray and its beam where it first crosses a range.
-struct FanRay {
+struct RayAtRange {
   bool arrived = false;    ///< false: it turned back, or a boundary kept it
   double depth = 0.0;      ///< [m]
   double elevation = 0.0;  ///< of travel there, positive up [rad]
@@ -31,7 +31,7 @@ class RayFan {
   ~RayFan();
 
   /// \param elevations  [n] positive up [rad], within ±π/2 \param range  > 0 [m] \param out  [n]
-  void trace(std::span<const double> elevations, double range, std::span<FanRay> out) const;
+  void trace(std::span<const double> elevations, double range, std::span<RayAtRange> out) const;
 
  private:
   struct Solvers;

@@ -69,7 +69,7 @@ LayeredFan::Sum LayeredFan::turn(double xi, double sine, double gradient) const 
 }
 
 bool LayeredFan::trace(double elevation, double range, Workspace& work,
-                       FanRay& out) const noexcept {
+                       RayAtRange& out) const noexcept {
   const double c0 = column_->source_speed();
   const double cosine = std::cos(elevation), s0 = std::abs(std::sin(elevation));
   if (!(cosine > 1e-3 && s0 > 1e-7 && range >= 0.0)) return false;

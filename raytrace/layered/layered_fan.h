@@ -26,7 +26,7 @@ class LayeredFan {
   };
 
   /// \return false: a ray almost vertical, level or backwards is one for the RayTracer
-  bool trace(double elevation, double range, Workspace& work, FanRay& out) const noexcept;
+  bool trace(double elevation, double range, Workspace& work, RayAtRange& out) const noexcept;
 
  private:
   LayeredFan(const Environment& environment, double frequency,

@@ -68,7 +68,7 @@ Kernel fan() {
   const auto rays = std::make_shared<const RayFan>(*ocean, 1000.0, 1000.0);
   std::vector<double> elevations;
   for (int i = 0; i < 1000; ++i) elevations.push_back(radians(-15.0 + 0.03 * (i + 0.5)));
-  return [ocean, rays, elevations, out = std::vector<FanRay>(1000)]() mutable {
+  return [ocean, rays, elevations, out = std::vector<RayAtRange>(1000)]() mutable {
     rays->trace(elevations, 100e3, out);
     keep(out);
   };

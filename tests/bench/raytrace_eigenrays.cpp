@@ -135,7 +135,7 @@ void BM_Fan(benchmark::State& state) {
   const RayFan fan(ocean, 1000.0, 1000.0);
   std::vector<double> elevations;
   for (int i = 0; i < 5000; ++i) elevations.push_back(radians(-15.0 + 0.006 * (i + 0.5)));
-  std::vector<FanRay> rays(elevations.size());
+  std::vector<RayAtRange> rays(elevations.size());
   for (auto _ : state) {
     fan.trace(elevations, 100e3, rays);
     benchmark::DoNotOptimize(rays.data());

@@ -140,7 +140,7 @@ TEST(Allocations, OfAFanDoNotGrowWithItsRays) {
   const RayFan fan(ocean, 1000.0, 1000.0);
   std::vector<double> elevations;
   for (int i = 0; i < 1000; ++i) elevations.push_back(radians(-15.0 + 0.03 * (i + 0.5)));
-  std::vector<FanRay> rays(elevations.size());
+  std::vector<RayAtRange> rays(elevations.size());
   EXPECT_LE(allocations_of([&] { fan.trace(elevations, 100e3, rays); }), 4U);
 }
 

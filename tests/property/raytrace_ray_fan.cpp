@@ -51,7 +51,7 @@ TEST(RayFan, CountsTheCyclesThatATracerFollows) {
       const RayTracer tracer(ocean, 1000.0);
       std::vector<double> elevations;
       for (int i = 0; i < 200; ++i) elevations.push_back(radians(-40.0 + 80.0 * (i + 0.31) / 200));
-      std::vector<FanRay> rays(elevations.size());
+      std::vector<RayAtRange> rays(elevations.size());
       for (const double range : {300.0, 4321.0, 30e3, 100e3}) {
         fan.trace(elevations, range, rays);
         int compared = 0;
@@ -60,7 +60,7 @@ TEST(RayFan, CountsTheCyclesThatATracerFollows) {
           tracer.trace_past(std::span(&range, 1), 0.0, source, elevations[i],
                             {.max_range = range + 10.0}, last);
           ASSERT_TRUE(last.seen && rays[i].arrived);
-          const FanRay& ray = rays[i];
+          const RayAtRange& ray = rays[i];
           SCOPED_TRACE(testing::Message() << source << " m, " << range << " m, " << elevations[i]);
           const double size = std::abs(last.state.q) + range;
           EXPECT_NEAR(ray.depth, last.state.depth, 1e-11 * size);
@@ -89,7 +89,7 @@ TEST(RayFan, AnyOcean) {
   const RayFan fan(ocean, 1000.0, 1000.0);
   const RayTracer tracer(ocean, 1000.0);
   const std::vector<double> elevations = {-0.2, -0.01, 0.0, 0.1};
-  std::vector<FanRay> rays(elevations.size());
+  std::vector<RayAtRange> rays(elevations.size());
   const double range = 20e3;
   fan.trace(elevations, range, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-OPENS = re.compile(r"^(inline )?namespace ([\w:]+) \{")
+OPENS = re.compile(r"^(inline )?namespace ([\w:]+) \{$")
 CLOSES = re.compile(r"^\}  // namespace")
 CLASS = re.compile(r"^(?:struct|class) (?:alignas\(\d+\) )?(\w+)(?: final)?(?: : [^{;]*)?(?: \{|$)")
 
@@ -21,8 +21,8 @@ def classes(header):
     for line in header.read_text().splitlines():
         if opened := OPENS.match(line):
             spaces.append(opened[2])
-        elif CLOSES.match(line):
-            spaces.pop()
+        elif CLOSES.match(line) or (line == "}" and spaces and not spaces[0].startswith("asdic")):
+            spaces.pop()  # what is declared of a library's is closed without a comment
         elif (found := CLASS.match(line)) and not before.startswith("template"):
             yield "::".join([*spaces, found[1]])
         before = line
