@@ -32,7 +32,7 @@ if [ "${1:-}" != --no-asan ]; then
   fi
 fi
 
-# Instructions of the kernels, on the portable build: what noise cannot disturb.
+# Instructions of the kernels: what noise cannot disturb.
 if said=$(scripts/bench.sh --check 2>&1); then
   verdict kernels good "$(grep -c ' %' <<<"$said") kernels within their counts"
 else
