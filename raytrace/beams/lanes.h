@@ -61,7 +61,9 @@ class Packing {
     std::uint32_t bits = 0;
     for (std::size_t l = 0; l < lanes; ++l) bits |= (wanted[l] ? 1U : 0U) << l;
     count_ = static_cast<std::size_t>(std::popcount(bits));
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX512F__)
+    wanted_ = static_cast<__mmask16>(bits);
+#elif defined(__AVX2__)
     order_ = _mm256_cvtepu8_epi32(
         _mm_loadl_epi64(reinterpret_cast<const __m128i*>(packing_orders[bits].data())));
 #else
@@ -73,14 +75,18 @@ class Packing {
 
   /// The wanted ones of [lanes] numbers; what `to` gets behind them is without meaning.
   void pack(const float* from, float* to) const noexcept {
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX512F__)
+    _mm512_storeu_ps(to, _mm512_maskz_compress_ps(wanted_, _mm512_loadu_ps(from)));
+#elif defined(__AVX2__)
     _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), order_));
 #else
     for (std::size_t n = 0; n < count_; ++n) to[n] = from[order_[n]];
 #endif
   }
   void pack(const std::int32_t* from, std::int32_t* to) const noexcept {
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX512F__)
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(wanted_, _mm512_loadu_si512(from)));
+#elif defined(__AVX2__)
     const auto* source = reinterpret_cast<const __m256i*>(from);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                         _mm256_permutevar8x32_epi32(_mm256_loadu_si256(source), order_));
@@ -91,34 +97,47 @@ class Packing {
 
  private:
   std::size_t count_ = 0;
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX512F__)
+  __mmask16 wanted_;
+#elif defined(__AVX2__)
   __m256i order_;
 #else
   std::array<std::size_t, lanes> order_{};
 #endif
 };
 
+/// A square of [8 × 8] numbers, turned over its diagonal. \param row  from row to row
+inline void transpose_eight(const float* from, float* to, std::size_t row) noexcept {
+  using Eight [[gnu::vector_size(32)]] = float;
+  Eight r[8], t[8];
+  for (std::size_t i = 0; i < 8; ++i) std::memcpy(&r[i], from + i * row, sizeof r[i]);
+  for (int i = 0; i < 8; i += 2) {  // half by half, each shuffle one instruction
+    t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int j = 0; j < 2; ++j) {
+      const int at = i + 2 * j;
+      r[at] = __builtin_shufflevector(t[i + j], t[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      r[at + 1] = __builtin_shufflevector(t[i + j], t[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int i = 0; i < 4; ++i) {
+    t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + i * row, &t[i], sizeof t[i]);
+}
+
 /// A square of [lanes × lanes] numbers, in place.
 inline void transpose(float* square) noexcept {
   if constexpr (lanes == 8) {
-    using Eight [[gnu::vector_size(32)]] = float;
-    Eight r[8], t[8];
-    std::memcpy(r, square, sizeof r);
-    for (int i = 0; i < 8; i += 2) {  // half by half, each shuffle one instruction
-      t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-      t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-    }
-    for (int i = 0; i < 8; i += 4)
-      for (int j = 0; j < 2; ++j) {
-        const int at = i + 2 * j;
-        r[at] = __builtin_shufflevector(t[i + j], t[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-        r[at + 1] = __builtin_shufflevector(t[i + j], t[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-      }
-    for (int i = 0; i < 4; ++i) {
-      t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-      t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-    }
-    std::memcpy(square, t, sizeof t);
+    transpose_eight(square, square, lanes);
+  } else if constexpr (lanes == 16) {
+    std::array<float, 16 * 16> turned;
+    for (std::size_t i = 0; i < 16; i += 8)
+      for (std::size_t j = 0; j < 16; j += 8)
+        transpose_eight(square + i * 16 + j, &turned[j * 16 + i], 16);
+    std::memcpy(square, turned.data(), sizeof turned);
   } else {
     for (std::size_t i = 0; i < lanes; ++i)
       for (std::size_t j = 0; j < i; ++j) std::swap(square[i * lanes + j], square[j * lanes + i]);
