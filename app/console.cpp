@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace asdic::app {
 namespace {
@@ -23,6 +24,8 @@ std::size_t width(std::string_view text) {
   }));
 }
 
+constexpr std::string_view bold = "\x1b[1m", plain = "\x1b[0m";
+
 RunError cannot_write() {
   return RunError(std::string("standard output: ") + std::strerror(errno));
 }
@@ -33,7 +36,15 @@ bool stdout_is_terminal() noexcept { return isatty(STDOUT_FILENO) == 1; }
 bool stderr_is_terminal() noexcept { return isatty(STDERR_FILENO) == 1; }
 
 void print(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw cannot_write();
+  while (!text.empty()) {
+    const auto end = std::min(text.find(bold), text.find(plain));
+    const std::string safe = printable_lines(text.substr(0, end));
+    if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size()) throw cannot_write();
+    if (end == std::string_view::npos) return;
+    const std::string_view style = text.substr(end).starts_with(bold) ? bold : plain;
+    if (std::fwrite(style.data(), 1, style.size(), stdout) != style.size()) throw cannot_write();
+    text.remove_prefix(end + style.size());
+  }
 }
 
 void flush_output() {
@@ -41,9 +52,10 @@ void flush_output() {
 }
 
 std::string emphasised(std::string_view text) {
-  const char* plain = std::getenv("NO_COLOR");
-  if (!stdout_is_terminal() || (plain != nullptr && *plain != '\0')) return std::string(text);
-  return fmt::format("\x1b[1m{}\x1b[0m", text);
+  const char* no_colour = std::getenv("NO_COLOR");
+  if (!stdout_is_terminal() || (no_colour != nullptr && *no_colour != '\0'))
+    return std::string(text);
+  return fmt::format("{}{}{}", bold, text, plain);
 }
 
 void Table::row(std::vector<std::string> cells) {

@@ -10,12 +10,13 @@
 #include "app/console.h"
 #include "core/error.h"
 #include "core/instruction_level.h"
+#include "core/printable.h"
 
 namespace asdic::app {
 
 void complain(const std::string& program, const std::string& message) {
   std::fflush(stdout);
-  std::fputs((program + ": " + message + '\n').c_str(), stderr);
+  std::fputs((program + ": " + printable_lines(message) + '\n').c_str(), stderr);
   std::fflush(stderr);
 }
 

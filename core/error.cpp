@@ -2,10 +2,14 @@
 
 #include <utility>
 
+#include "core/printable.h"
+
 namespace asdic {
 
+// What it says is printable: control characters out of a file are escaped.
 InputError::InputError(InputFault fault)
-    : std::runtime_error(fault.where + ": found " + fault.got + ", expected " + fault.expected),
+    : std::runtime_error(
+          printable(fault.where + ": found " + fault.got + ", expected " + fault.expected)),
       fault_(std::move(fault)) {}
 
 InputError InputError::inside(const std::string& outer) const {
