@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "core/error.h"
 #include "io/bellhop/results.h"
+#include "io/input_file.h"
 #include "io/result_file.h"
 
 namespace asdic::app {
@@ -126,14 +127,12 @@ double step_of(const PropagationCase& c) {
 /// Who wrote the results that a .prt goes with: asdic signs the first line of its own.
 Explanation::OnDisk::Writer writer_of(const std::filesystem::path& prt) {
   using Writer = Explanation::OnDisk::Writer;
-  std::string head(4096, '\0');
-  std::ifstream stream(prt, std::ios::binary);
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
-  if (head.empty()) return Writer::unknown;
-  if (!head.starts_with("asdic ")) return Writer::bellhop;
-  std::string line;  // the echo of the case may be long: look at every line
-  for (stream.clear(), stream.seekg(0); std::getline(stream, line);)
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(prt, unknown)) return Writer::unknown;
+  std::istringstream text(read_input(prt, "what a run has printed"));
+  if (text.view().empty()) return Writer::unknown;
+  if (!text.view().starts_with("asdic ")) return Writer::bellhop;
+  for (std::string line; std::getline(text, line);)
     if (line.starts_with("traced") && line.find("as BELLHOP does") != std::string::npos)
       return Writer::asdic_like_bellhop;
   return Writer::asdic;

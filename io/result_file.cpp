@@ -4,12 +4,13 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <fstream>
+#include <string_view>
 #include <type_traits>
 
 #include "core/error.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/field_file.h"
+#include "io/input_file.h"
 #include "io/result/tables.h"
 
 namespace asdic {
@@ -53,17 +54,8 @@ std::string_view kind_of(const PropagationFile& file) noexcept {
 }
 
 bool is_hdf5(const std::filesystem::path& path) {
-  std::error_code ignored;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path, ignored))
-    throw InputError({.where = path.string(),
-                      .got = std::filesystem::exists(path, ignored) ? "no file that can be read"
-                                                                    : "no such file",
-                      .expected = known_files});
-  constexpr std::array<char, 8> signature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  std::array<char, 8> begin{};
-  file.read(begin.data(), begin.size());
-  return file && begin == signature;
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  return InputFile(path, known_files).read(signature.size()) == signature;
 }
 
 PropagationFile read_result(const std::filesystem::path& path) {

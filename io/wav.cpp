@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/input_file.h"
 #include "io/text/csv_table.h"
 
 namespace asdic {
@@ -38,7 +39,8 @@ SampledPulse read_csv_pulse(const std::filesystem::path& path) {
 
 SampledPulse read_sound_pulse(const std::filesystem::path& path) {
   SF_INFO info{};
-  const SoundFile file(sf_open(path.c_str(), SFM_READ, &info));
+  const InputFile input(path, "a mono WAV file");
+  const SoundFile file(sf_open_fd(input.descriptor(), SFM_READ, &info, SF_FALSE));
   if (file == nullptr)
     throw InputError(
         {.where = path.string(),

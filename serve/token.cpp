@@ -1,9 +1,9 @@
 #include "serve/token.h"
 
-#include <fstream>
 #include <random>
 
 #include "core/error.h"
+#include "io/input_file.h"
 #include "io/text/quote.h"
 
 namespace asdic::serve {
@@ -43,20 +43,23 @@ void check_token(const std::string& token, const std::string& where) {
 }
 
 std::string read_token(const std::filesystem::path& path) {
+  constexpr std::size_t longest = 4096;  // of which the first line is the token
   std::error_code error;
   const auto permissions = std::filesystem::status(path, error).permissions();
-  std::ifstream file(path);
-  if (error || !file)
+  std::string text;
+  try {
+    text = InputFile(path, "").read(longest);
+  } catch (const InputError& fault) {
     throw InputError({.where = "--token-file",
-                      .got = in_quotes(path.string()),
+                      .got = in_quotes(path.string()) + ", " + fault.fault().got,
                       .expected = "a file that can be read"});
+  }
   using std::filesystem::perms;
   if ((permissions & (perms::group_all | perms::others_all)) != perms::none)
     throw InputError({.where = "--token-file",
                       .got = in_quotes(path.string()) + ", which others may use",
                       .expected = "a file for its owner alone (chmod 600)"});
-  std::string token;
-  std::getline(file, token);
+  std::string token = text.substr(0, text.find('\n'));
   check_token(token, "--token-file");
   return token;
 }

@@ -3,9 +3,9 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
-#include "io/bellhop/file_bytes.h"
 #include "io/bellhop/list_reader.h"
 #include "io/bellhop/number_stream.h"
+#include "io/input_file.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -214,7 +214,7 @@ ArrivalsFile parse_arrivals_file(std::string_view bytes, const std::string& name
 }
 
 ArrivalsFile read_arrivals_file(const std::filesystem::path& path) {
-  return parse_arrivals_file(read_bytes(path, "arrivals (.arr)"), path.string());
+  return parse_arrivals_file(read_input(path, "arrivals (.arr)"), path.string());
 }
 
 }  // namespace asdic::bellhop

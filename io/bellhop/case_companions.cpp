@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "core/error.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
+#include "io/input_file.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -43,13 +43,9 @@ ListReader CaseReading::companion(const std::string& extension,
                                   const std::string& wanted_for) const {
   for (const auto& [name, text] : texts.companions)
     if (name == extension) return {text, root + extension};
-  std::error_code unknown;
-  const std::filesystem::path path = root + extension;
   throw InputError(
       {.where = root + extension,
-       .got = std::filesystem::is_directory(path, unknown) ? "a folder"
-              : std::filesystem::exists(path, unknown)     ? "a file that cannot be read"
-                                                           : "no such file",
+       .got = what_is_at(root + extension),
        .expected = "the file that \"" + wanted_for + "\" in " + env.file() + " asks for"});
 }
 

@@ -1,28 +1,19 @@
 #include "io/bellhop/case_reader.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
-
 #include "core/error.h"
 #include "io/bellhop/case_parts.h"
-#include "io/bellhop/file_bytes.h"
+#include "io/input_file.h"
 
 namespace asdic::bellhop {
 namespace {
 
 constexpr const char* companion_kinds[] = {".bty", ".ati", ".ssp", ".brc", ".trc", ".sbp"};
 
+/// A companion, if there is one; what else bears its name is told of when it is asked for.
 std::optional<std::string> text_of(const std::filesystem::path& path) {
   std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown)) return std::nullopt;  // it opens, empty
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (file.bad()) return std::nullopt;
-  return std::move(text).str();
+  if (!std::filesystem::is_regular_file(path, unknown)) return std::nullopt;
+  return read_input(path, "a file of the case");
 }
 
 void shape_of(CaseReading& reading, Boundary& boundary, bool surface) {
@@ -60,13 +51,7 @@ Input read_case(const std::filesystem::path& root) {
   std::filesystem::path stem = root;
   if (stem.extension() == ".env") stem.replace_extension();
   const std::string env = stem.string() + ".env";
-  errno = 0;
-  auto text = text_of(env);
-  if (!text)
-    throw InputError({.where = env,
-                      .got = std::filesystem::is_directory(env) ? "a folder" : unreadable(errno),
-                      .expected = "the input of a BELLHOP case"});
-  Texts texts{.env = std::move(*text), .companions = {}};
+  Texts texts{.env = read_input(env, "the input of a BELLHOP case"), .companions = {}};
   for (const char* kind : companion_kinds)
     if (auto companion = text_of(stem.string() + kind))
       texts.companions.emplace_back(kind, std::move(*companion));

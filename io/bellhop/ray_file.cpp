@@ -5,6 +5,7 @@
 #include "io/bellhop/fortran_format.h"
 #include "io/bellhop/list_reader.h"
 #include "io/bellhop/number_stream.h"
+#include "io/input_file.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -88,7 +89,7 @@ std::string ray_file_bytes(const RayFile& file) {
 }
 
 RayFile read_ray_file(const std::filesystem::path& path) {
-  return parse_ray_file(read_bytes(path, "rays (.ray)"), path.string());
+  return parse_ray_file(read_input(path, "rays (.ray)"), path.string());
 }
 
 void write_ray_file(const std::filesystem::path& path, const RayFile& file) {

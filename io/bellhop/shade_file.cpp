@@ -5,6 +5,7 @@
 #include "io/bellhop/binary.h"
 #include "io/bellhop/file_bytes.h"
 #include "io/bellhop/list_reader.h"
+#include "io/input_file.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -180,7 +181,7 @@ std::string shade_file_bytes(const ShadeFile& shade) {
 }
 
 ShadeFile read_shade_file(const std::filesystem::path& path) {
-  return parse_shade_file(read_bytes(path, "a pressure field (.shd)"), path.string());
+  return parse_shade_file(read_input(path, "a pressure field (.shd)"), path.string());
 }
 
 void write_shade_file(const std::filesystem::path& path, const ShadeFile& file) {

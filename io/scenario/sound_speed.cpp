@@ -88,6 +88,13 @@ SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
     return values;
   };
   const std::vector<double> range = distinct(r), depth = distinct(z);
+  constexpr std::size_t few = 1'000'000;  // gaps are looked for, place by place
+  if (const std::size_t places = range.size() * depth.size();
+      places > few && places > columns.rows())
+    throw table.fault("file", "a speed at every depth of every range",
+                      std::to_string(columns.rows()) + " speeds for " +
+                          std::to_string(range.size()) + " ranges and " +
+                          std::to_string(depth.size()) + " depths");
   std::vector<double> speed(range.size() * depth.size(), 0.0);
   const auto place = [](const std::vector<double>& axis, double value) {
     return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), value) -

@@ -4,11 +4,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "core/error.h"
+#include "io/input_file.h"
 #include "io/text/quote.h"
 
 namespace asdic {
@@ -99,23 +99,7 @@ CsvTable read_csv(const std::filesystem::path& path) {
 }
 
 std::string read_text_file(const std::filesystem::path& path, const std::string& expected) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    throw InputError({.where = path.string(),
-                      .got = std::filesystem::is_directory(path, error)
-                                 ? "a directory"
-                                 : "something that is no file",
-                      .expected = expected});
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    const bool exists = std::filesystem::exists(path, error);
-    throw InputError({.where = path.string(),
-                      .got = exists ? "a file that may not be read" : "no such file",
-                      .expected = expected});
-  }
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return std::move(content).str();
+  return read_input(path, expected);
 }
 
 }  // namespace asdic

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "io/bellhop/bellhop_files.h"
-#include "io/bellhop/file_bytes.h"
+#include "io/input_file.h"
 #include "support/program.h"
 
 // `asdic bellhop` and `asdic convert`: what they write, what they say, and what they leave behind.
@@ -20,7 +20,7 @@ const std::filesystem::path data = std::filesystem::path(ASDIC_TEST_DATA) / "bel
 class BellhopCommand : public ::testing::Test {
  protected:
   std::string case_of(const std::string& name) { return (data / name / "case").string(); }
-  std::string text(const std::string& name) { return bellhop::read_bytes(folder / name, ""); }
+  std::string text(const std::string& name) { return read_input(folder / name, ""); }
   bool exists(const std::string& name) { return std::filesystem::exists(folder / name); }
 
   support::TemporaryDirectory folder;
@@ -163,7 +163,7 @@ TEST_F(BellhopCommand, ResultsBecomeHdf5AndTheSameBytesAgain) {
     const std::string file = (data / name).string(), extension = file.substr(file.size() - 4);
     ASSERT_EQ(asdic(folder, "convert " + file + " x.h5").status, 0) << name;
     ASSERT_EQ(asdic(folder, "convert x.h5 x" + extension).status, 0) << name;
-    EXPECT_TRUE(text("x" + extension) == bellhop::read_bytes(file, "")) << name;
+    EXPECT_TRUE(text("x" + extension) == read_input(file, "")) << name;
   }
 }
 

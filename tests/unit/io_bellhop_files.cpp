@@ -7,9 +7,9 @@
 #include "core/units.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/case_reader.h"
-#include "io/bellhop/file_bytes.h"
 #include "io/bellhop/fortran_format.h"
 #include "io/bellhop/results.h"
+#include "io/input_file.h"
 
 // BELLHOP's output files: read and written again they are the same bytes; what is wrong with one is
 // told with its place; our results become its numbers.
@@ -32,7 +32,7 @@ TEST(BellhopFiles, ReadAndWrittenAgainAreTheSameBytes) {
     for (const char* extension : {".shd", ".arr", ".ray"}) {
       const auto path = folder.path() / (std::string("case") + extension);
       if (!std::filesystem::exists(path)) continue;
-      const std::string bytes = read_bytes(path, "");
+      const std::string bytes = read_input(path, "");
       EXPECT_TRUE(again(extension, bytes) == bytes) << path;
       ++files;
     }
