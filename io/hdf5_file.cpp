@@ -4,10 +4,13 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "core/error.h"
 #include "io/hdf5/elements.h"
-#include "io/hdf5/handles.h"
+#include "io/hdf5/gate.h"
+#include "io/hdf5/remote.h"
+#include "io/input_file.h"
 
 namespace asdic {
 
@@ -48,19 +51,26 @@ std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::p
   const auto wrong = [&](const std::string& got) {
     return InputError({.where = path.string(), .got = got, .expected = "an HDF5 file"});
   };
-  if (!std::filesystem::exists(path, error)) throw wrong("no such file");
-  if (!std::filesystem::is_regular_file(path, error)) throw wrong("something that is no file");
+  require_file(path, "an HDF5 file");
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   if (std::filesystem::file_size(path, error) == 0) throw wrong("an empty file");
   if (H5Fis_hdf5(path.c_str()) == 0) throw wrong("a file that is not HDF5");
   impl->file = H5Fopen(path.c_str(), change ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
   if (impl->file < 0) throw wrong("a file that cannot be opened (" + hdf5::last_message() + ")");
+  hdf5::check_contents(impl->file, path);
   return impl;
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
-  return Hdf5File(open_existing(path, false));
+  hdf5::prepare();  // once here, so that children need not
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  impl->child = std::make_unique<isolated::Child>(path, "HDF5", [&path] {
+    auto file = std::make_shared<const Hdf5File>(Hdf5File(open_existing(path, false)));
+    return [file](std::string_view question) { return hdf5::answer(*file, question); };
+  });
+  return Hdf5File(std::move(impl));
 }
 
 Hdf5File Hdf5File::edit(const std::filesystem::path& path) {
@@ -118,18 +128,17 @@ void Hdf5File::write(const std::string& dataset, std::span<const T> values, cons
 }
 
 void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
+  const Handle type = hdf5::text_type(text.size());
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle parents = make_parents();
   const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), type, space, parents,
                                           H5P_DEFAULT, H5P_DEFAULT),
                                dataset, "creating the dataset"),
                   H5Dclose);
-  const std::string copy(text);
-  const char* pointer = copy.c_str();
-  impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer), dataset, "writing");
+  std::string padded(text);
+  padded.resize(H5Tget_size(type));
+  impl_->check(H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), dataset,
+               "writing");
 }
 
 void Hdf5File::make_scale(const std::string& dataset, const std::string& dimension) {
@@ -155,30 +164,66 @@ void Hdf5File::make_group(const std::string& group) {
       H5Gclose);
 }
 
+namespace {
+
+/// What is asked of the child at a time: neither process holds much more than the values [bytes].
+constexpr std::size_t most_at_once = std::size_t{1} << 24;
+
+/// Cuts a block into pieces of at most so many elements, in row-major order.
+void in_pieces(Shape start, Shape count, std::size_t most,
+               const std::function<void(const Shape&, const Shape&)>& take) {
+  const auto axis = std::find_if(count.begin(), count.end(), [](std::size_t n) { return n > 1; });
+  const std::size_t all = product(count);
+  if (all <= most || axis == count.end()) return take(start, count);
+  const std::size_t n = *axis, rows = std::max<std::size_t>(1, most / (all / n));
+  std::size_t& from = start[static_cast<std::size_t>(axis - count.begin())];
+  for (std::size_t done = 0; done < n; done += rows, from += rows) {
+    *axis = std::min(rows, n - done);
+    in_pieces(start, count, most, take);
+  }
+}
+
+}  // namespace
+
+template <class T>
+std::vector<T> Hdf5File::Impl::read_by_child(const std::string& dataset, const Shape& start,
+                                             const Shape& count) const {
+  std::vector<T> values;
+  values.reserve(product(count));
+  in_pieces(start, count, most_at_once / sizeof(T), [&](const Shape& from, const Shape& size) {
+    const auto piece = hdf5::ask<hdf5::read_block<T>>(*child, dataset, from, size);
+    values.insert(values.end(), piece.begin(), piece.end());
+  });
+  return values;
+}
+
 template <class T>
 std::vector<T> Hdf5File::read(const std::string& dataset) const {
-  const Handle id = impl_->open_dataset(dataset);
-  std::vector<T> values(product(impl_->shape_of(id, dataset)));
-  if (values.empty()) return values;
-  impl_->check(H5Dread(id, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), dataset,
-               "reading");
-  return values;
+  const Shape shape = info(dataset).shape;
+  return read<T>(dataset, Shape(shape.size(), 0), shape);
 }
 
 template <class T>
 std::vector<T> Hdf5File::read(const std::string& dataset, const Shape& start,
                               const Shape& count) const {
+  if (impl_->child) return impl_->read_by_child<T>(dataset, start, count);
   const Handle id = impl_->open_dataset(dataset);
-  const Handle space(H5Dget_space(id), H5Sclose);
-  if (start.size() != impl_->shape_of(id, dataset).size() || start.size() != count.size())
+  const Shape shape = impl_->shape_of(id, dataset);
+  if (start.size() != shape.size() || start.size() != count.size())
     throw std::logic_error(dataset + ": a block of another rank");
-  const auto from = dims(start), size = dims(count);
-  impl_->check(
-      H5Sselect_hyperslab(space, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr),
-      dataset, "selecting a block");
-  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
-                      H5Sclose);
+  hdf5::check_sources(id, impl_->path);
   std::vector<T> values(product(count));
+  if (values.empty()) return values;
+  const Handle space(H5Dget_space(id), H5Sclose);
+  const auto from = dims(start), size = dims(count);
+  if (!shape.empty())
+    impl_->check(
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr),
+        dataset, "selecting a block");
+  const Handle memory(shape.empty()
+                          ? H5Screate(H5S_SCALAR)
+                          : H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
+                      H5Sclose);
   impl_->check(H5Dread(id, native_type<T>(), memory, space, H5P_DEFAULT, values.data()), dataset,
                "reading");
   return values;

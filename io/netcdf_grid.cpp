@@ -8,12 +8,17 @@
 #include <limits>
 
 #include "core/error.h"
+#include "io/hdf5/gate.h"
 #include "io/hdf5/handles.h"
+#include "io/input_file.h"
+#include "io/isolated/child.h"
+#include "io/isolated/pack.h"
 #include "io/text/quote.h"
 
 namespace asdic {
 namespace {
 
+constexpr std::size_t longest_axis = 10'000'000;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 std::string lower(std::string text) {
@@ -28,7 +33,7 @@ struct File {
   std::filesystem::path path;
 
   explicit File(const std::filesystem::path& where) : path(where) {
-    hdf5::prepare();
+    hdf5::check_contents(path);  // of netCDF-4
     if (const int status = nc_open(path.c_str(), NC_NOWRITE, &id); status != NC_NOERR) {
       id = -1;
       throw InputError(
@@ -71,10 +76,40 @@ struct File {
 
 /// One dimension of a variable.
 struct Dimension {
-  std::optional<NetcdfGrid::Axis> axis;
-  std::string name;
-  std::vector<double> values;  // as stored; depth in metres, positive down
+  std::string name{};
+  bool known = false;  ///< as one of the axes
+  NetcdfGrid::Axis axis{};
+  std::vector<double> values{};  ///< as stored; depth in metres, positive down
 };
+
+template <class Visit>
+void fields(Dimension& dimension, Visit visit) {
+  visit(dimension.name);
+  visit(dimension.known);
+  visit(dimension.axis);
+  visit(dimension.values);
+}
+
+/// What is known of a variable before its values are read.
+struct Variable {
+  bool found = false;
+  std::string name{}, units{};
+  std::vector<Dimension> dimensions{};            ///< in the order of the variable
+  std::vector<double> missing_values{}, valid{};  ///< packed
+  double scale = 1.0, offset = 0.0;
+};
+
+template <class Visit>
+void fields(Variable& variable, Visit visit) {
+  visit(variable.found);
+  visit(variable.name);
+  visit(variable.units);
+  visit(variable.dimensions);
+  visit(variable.missing_values);
+  visit(variable.valid);
+  visit(variable.scale);
+  visit(variable.offset);
+}
 
 /// What an axis is by the conventions; its name is asked last.
 std::optional<NetcdfGrid::Axis> axis_of(const File& file, int variable, const std::string& name) {
@@ -100,92 +135,175 @@ std::optional<NetcdfGrid::Axis> axis_of(const File& file, int variable, const st
   return std::nullopt;
 }
 
+/// The side that has the file open, in a child process: it says what a variable is, and gives its
+/// values one by one as they are stored.
+class VariableReader {
+ public:
+  VariableReader(const std::filesystem::path& path, const std::vector<std::string>& names)
+      : file_(path) {
+    find(names);
+  }
+
+  /// Nothing asked: the variable. Indices: the value there.
+  [[nodiscard]] std::string answer(std::string_view question) const {
+    isolated::Packed out;
+    if (question.empty()) {
+      out.put(variable_);
+      return out.bytes();
+    }
+    const auto index = isolated::Unpacked(question).get<std::vector<std::size_t>>();
+    double packed = 0.0;
+    file_.check(nc_get_var1_double(file_.id, id_, index.data(), &packed), variable_.name);
+    out.put(packed);
+    return out.bytes();
+  }
+
+ private:
+  void find(const std::vector<std::string>& names);
+  void read_dimensions();
+  void read_coordinate(Dimension& dimension, int dimension_id);
+
+  File file_;
+  int id_ = -1;
+  Variable variable_;
+};
+
+void VariableReader::find(const std::vector<std::string>& names) {
+  int variables = 0;
+  file_.check(nc_inq_nvars(file_.id, &variables), "variables");
+  for (const std::string& wanted : names) {
+    for (int id = 0; id < variables; ++id) {
+      char text[NC_MAX_NAME + 1] = {};
+      file_.check(nc_inq_varname(file_.id, id, text), "variables");
+      if (lower(text) != lower(wanted) && lower(file_.text(id, "standard_name")) != lower(wanted))
+        continue;
+      id_ = id;
+      variable_.found = true;
+      variable_.name = text;
+      variable_.units = file_.text(id, "units");
+      for (const char* key : {"missing_value", "_FillValue"})
+        for (const double flag : file_.numbers(id, key)) variable_.missing_values.push_back(flag);
+      variable_.valid = file_.numbers(id, "valid_range");
+      if (const auto scale = file_.numbers(id, "scale_factor"); !scale.empty())
+        variable_.scale = scale[0];
+      if (const auto offset = file_.numbers(id, "add_offset"); !offset.empty())
+        variable_.offset = offset[0];
+      return read_dimensions();
+    }
+  }
+}
+
+void VariableReader::read_dimensions() {
+  const std::string where = file_.path.string() + ": " + variable_.name;
+  int rank = 0;
+  file_.check(nc_inq_varndims(file_.id, id_, &rank), variable_.name);
+  std::vector<int> ids(static_cast<std::size_t>(rank));
+  file_.check(nc_inq_vardimid(file_.id, id_, ids.data()), variable_.name);
+  for (const int dimension_id : ids) {
+    char text[NC_MAX_NAME + 1] = {};
+    std::size_t size = 0;
+    file_.check(nc_inq_dim(file_.id, dimension_id, text, &size), variable_.name);
+    if (size == 0 || size > longest_axis)
+      throw InputError({.where = where,
+                        .got = "the dimension " + in_quotes(text) + " of " + std::to_string(size),
+                        .expected = "1 to " + std::to_string(longest_axis)});
+    Dimension dimension{.name = text, .values = std::vector<double>(size)};
+    read_coordinate(dimension, dimension_id);
+    if (!dimension.known && size > 1)
+      throw InputError({.where = where,
+                        .got = "the dimension " + in_quotes(text),
+                        .expected = "longitude, latitude, depth or time by their units, "
+                                    "standard_name or axis"});
+    variable_.dimensions.push_back(std::move(dimension));
+  }
+  for (const auto axis : {NetcdfGrid::Axis::longitude, NetcdfGrid::Axis::latitude})
+    if (std::none_of(variable_.dimensions.begin(), variable_.dimensions.end(),
+                     [&](const Dimension& d) { return d.known && d.axis == axis; }))
+      throw InputError({.where = where,
+                        .got = "a variable without longitude and latitude",
+                        .expected = "one on a grid of them"});
+}
+
+/// The values of the variable that bears a dimension's name.
+void VariableReader::read_coordinate(Dimension& dimension, int dimension_id) {
+  const char* const name = dimension.name.c_str();
+  int coordinate = -1, rank = 0, along = -1;
+  if (nc_inq_varid(file_.id, name, &coordinate) != NC_NOERR) return;
+  file_.check(nc_inq_varndims(file_.id, coordinate, &rank), dimension.name);
+  if (rank == 1) file_.check(nc_inq_vardimid(file_.id, coordinate, &along), dimension.name);
+  if (along != dimension_id) return;  // a variable that only bears its name
+  const auto axis = axis_of(file_, coordinate, dimension.name);
+  dimension.known = axis.has_value();
+  if (axis) dimension.axis = *axis;
+  file_.check(nc_get_var_double(file_.id, coordinate, dimension.values.data()), dimension.name);
+  if (axis != NetcdfGrid::Axis::depth) return;
+  const std::string unit = lower(file_.text(coordinate, "units"));
+  const double metres = unit.starts_with("km") || unit.starts_with("kilom") ? 1000.0 : 1.0;
+  const double sign = lower(file_.text(coordinate, "positive")) == "up" ? -1.0 : 1.0;
+  for (double& z : dimension.values) z *= sign * metres;
+}
+
 }  // namespace
 
 struct NetcdfGrid::Impl {
-  File file;
-  int id = -1;
-  std::string name, units;
-  std::vector<Dimension> dimensions;          // in the order of the variable
+  std::unique_ptr<isolated::Child> child;  // a VariableReader; netCDF fails as HDF5 does
+  Variable variable;
   std::vector<double> longitudes, latitudes;  // as stored
   std::vector<double> depths;                 // increasing
   bool depths_reversed = false;
-  std::vector<double> missing_values, valid;  // packed
-  double scale = 1.0, offset = 0.0;
 
-  explicit Impl(const std::filesystem::path& path) : file(path) {}
+  Impl(const std::filesystem::path& path, const std::vector<std::string>& names);
 
-  void read_dimensions();
   [[nodiscard]] const Dimension* find(Axis axis) const {
-    for (const Dimension& dimension : dimensions)
-      if (dimension.axis == axis) return &dimension;
+    for (const Dimension& dimension : variable.dimensions)
+      if (dimension.known && dimension.axis == axis) return &dimension;
     return nullptr;
   }
   [[nodiscard]] double value(std::size_t i, std::size_t j, std::size_t level,
                              std::size_t time) const;
 };
 
-void NetcdfGrid::Impl::read_dimensions() {
-  int rank = 0;
-  file.check(nc_inq_varndims(file.id, id, &rank), name);
-  std::vector<int> ids(static_cast<std::size_t>(rank));
-  file.check(nc_inq_vardimid(file.id, id, ids.data()), name);
-  for (const int dimension_id : ids) {
-    char text[NC_MAX_NAME + 1] = {};
-    std::size_t size = 0;
-    file.check(nc_inq_dim(file.id, dimension_id, text, &size), name);
-    Dimension dimension{.axis = std::nullopt, .name = text, .values = std::vector<double>(size)};
-    int coordinate = -1;
-    if (nc_inq_varid(file.id, text, &coordinate) == NC_NOERR) {
-      dimension.axis = axis_of(file, coordinate, text);
-      file.check(nc_get_var_double(file.id, coordinate, dimension.values.data()), text);
-    }
-    if (!dimension.axis.has_value() && size > 1)
-      throw InputError({.where = file.path.string() + ": " + name,
-                        .got = "the dimension " + in_quotes(text),
-                        .expected = "longitude, latitude, depth or time by their units, "
-                                    "standard_name or axis"});
-    if (dimension.axis == Axis::longitude) longitudes = dimension.values;
-    if (dimension.axis == Axis::latitude) latitudes = dimension.values;
-    if (dimension.axis == Axis::depth && coordinate >= 0) {
-      const std::string unit = lower(file.text(coordinate, "units"));
-      const double metres = unit.starts_with("km") || unit.starts_with("kilom") ? 1000.0 : 1.0;
-      const double sign = lower(file.text(coordinate, "positive")) == "up" ? -1.0 : 1.0;
-      for (double& z : dimension.values) z *= sign * metres;
-      depths = dimension.values;
-      depths_reversed = depths.size() > 1 && depths.front() > depths.back();
-      if (depths_reversed) std::reverse(depths.begin(), depths.end());
-    }
-    dimensions.push_back(std::move(dimension));
-  }
-  if (longitudes.empty() || latitudes.empty())
-    throw InputError({.where = file.path.string() + ": " + name,
-                      .got = "a variable without longitude and latitude",
-                      .expected = "one on a grid of them"});
+NetcdfGrid::Impl::Impl(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  require_file(path, "a netCDF file");
+  hdf5::prepare();  // once here, so that children need not
+  nc_initialize();
+  child = std::make_unique<isolated::Child>(path, "netCDF", [&] {
+    auto reader = std::make_shared<const VariableReader>(path, names);
+    return [reader](std::string_view question) { return reader->answer(question); };
+  });
+  variable = isolated::Unpacked(child->ask("")).get<Variable>();
+  if (const Dimension* axis = find(Axis::longitude)) longitudes = axis->values;
+  if (const Dimension* axis = find(Axis::latitude)) latitudes = axis->values;
+  if (const Dimension* axis = find(Axis::depth)) depths = axis->values;
+  depths_reversed = depths.size() > 1 && depths.front() > depths.back();
+  if (depths_reversed) std::reverse(depths.begin(), depths.end());
 }
 
 double NetcdfGrid::Impl::value(std::size_t i, std::size_t j, std::size_t level,
                                std::size_t time) const {
   std::vector<std::size_t> index;
-  for (const Dimension& dimension : dimensions) {
-    if (dimension.axis == Axis::longitude)
+  for (const Dimension& dimension : variable.dimensions) {
+    if (!dimension.known)
+      index.push_back(0);
+    else if (dimension.axis == Axis::longitude)
       index.push_back(i);
     else if (dimension.axis == Axis::latitude)
       index.push_back(j);
     else if (dimension.axis == Axis::depth)
       index.push_back(depths_reversed ? depths.size() - 1 - level : level);
-    else if (dimension.axis == Axis::time)
-      index.push_back(time);
     else
-      index.push_back(0);
+      index.push_back(time);
   }
-  double packed = 0.0;
-  file.check(nc_get_var1_double(file.id, id, index.data(), &packed), name);
+  isolated::Packed question;
+  question.put(index);
+  const auto packed = isolated::Unpacked(child->ask(question.bytes())).get<double>();
   if (!std::isfinite(packed)) return missing;
-  for (const double flag : missing_values)  // stored as float, the flag may be a double, or round
+  for (const double flag :
+       variable.missing_values)  // stored as float, the flag may be a double, or round
     if (std::abs(packed - flag) <= 1e-6 * std::abs(flag)) return missing;
+  const auto& valid = variable.valid;
   if (valid.size() == 2 && (packed < valid[0] || packed > valid[1])) return missing;
-  return packed * scale + offset;
+  return packed * variable.scale + variable.offset;
 }
 
 NetcdfGrid::NetcdfGrid(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -195,35 +313,13 @@ NetcdfGrid::~NetcdfGrid() = default;
 
 std::optional<NetcdfGrid> NetcdfGrid::find(const std::filesystem::path& path,
                                            const std::vector<std::string>& names) {
-  auto impl = std::make_unique<Impl>(path);
-  const File& file = impl->file;
-  int variables = 0;
-  file.check(nc_inq_nvars(file.id, &variables), "variables");
-  for (const std::string& wanted : names) {
-    for (int id = 0; id < variables; ++id) {
-      char text[NC_MAX_NAME + 1] = {};
-      file.check(nc_inq_varname(file.id, id, text), "variables");
-      if (lower(text) != lower(wanted) && lower(file.text(id, "standard_name")) != lower(wanted))
-        continue;
-      impl->id = id;
-      impl->name = text;
-      impl->units = file.text(id, "units");
-      for (const char* key : {"missing_value", "_FillValue"})
-        for (const double flag : file.numbers(id, key)) impl->missing_values.push_back(flag);
-      impl->valid = file.numbers(id, "valid_range");
-      if (const auto scale = file.numbers(id, "scale_factor"); !scale.empty())
-        impl->scale = scale[0];
-      if (const auto offset = file.numbers(id, "add_offset"); !offset.empty())
-        impl->offset = offset[0];
-      impl->read_dimensions();
-      return NetcdfGrid(std::move(impl));
-    }
-  }
-  return std::nullopt;
+  auto impl = std::make_unique<Impl>(path, names);
+  if (!impl->variable.found) return std::nullopt;
+  return NetcdfGrid(std::move(impl));
 }
 
-const std::string& NetcdfGrid::variable() const noexcept { return impl_->name; }
-const std::string& NetcdfGrid::units() const noexcept { return impl_->units; }
+const std::string& NetcdfGrid::variable() const noexcept { return impl_->variable.name; }
+const std::string& NetcdfGrid::units() const noexcept { return impl_->variable.units; }
 bool NetcdfGrid::has(Axis axis) const noexcept { return impl_->find(axis) != nullptr; }
 const std::vector<double>& NetcdfGrid::depths() const noexcept { return impl_->depths; }
 std::size_t NetcdfGrid::times() const noexcept {

@@ -4,7 +4,8 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/hdf5/handles.h"
+#include "io/hdf5/elements.h"
+#include "io/hdf5/remote.h"
 #include "io/text/toml_value.h"
 
 namespace asdic {
@@ -44,6 +45,7 @@ ElementType element_type(std::int64_t type) {
 std::vector<std::string> to_strings(const std::vector<char>& buffer, std::size_t size,
                                     bool variable) {
   std::vector<std::string> result;
+  if (size == 0) return result;
   for (std::size_t at = 0; at + size <= buffer.size(); at += size) {
     const char* text = buffer.data() + at;
     if (variable) {
@@ -96,13 +98,32 @@ void write_attribute(const hdf5::Handle& object, const std::string& key, std::in
 
 }  // namespace
 
+namespace {
+
+/// Attributes are parts of their owner's header, which has no room for more.
+constexpr std::size_t most_fixed = 60'000;  // [bytes]
+
+void write_texts(const hdf5::Handle& object, const std::string& key, std::int64_t space,
+                 const std::vector<std::string>& values, const std::filesystem::path& path,
+                 const std::string& where) {
+  std::size_t longest = 1;
+  for (const std::string& value : values) longest = std::max(longest, value.size());
+  if (longest * values.size() > most_fixed) {
+    std::vector<const char*> pointers;
+    for (const std::string& value : values) pointers.push_back(value.c_str());
+    return write_attribute(object, key, variable_text(), space, pointers.data(), path, where);
+  }
+  std::string padded;
+  for (const std::string& value : values) padded += value + std::string(longest - value.size(), 0);
+  write_attribute(object, key, hdf5::text_type(longest), space, padded.data(), path, where);
+}
+
+}  // namespace
+
 void Hdf5File::set_attribute(const std::string& object, const std::string& key,
                              std::string_view value) {
-  const std::string text(value);
-  const char* pointer = text.c_str();
-  const Handle type = variable_text();  // which h5py and netCDF4 read as str, not as bytes
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  write_attribute(impl_->open_object(object), key, type, space, &pointer, impl_->path, object);
+  write_texts(impl_->open_object(object), key, space, {std::string(value)}, impl_->path, object);
 }
 
 void Hdf5File::set_attribute(const std::string& object, const std::string& key, double value) {
@@ -120,16 +141,13 @@ void Hdf5File::set_attribute(const std::string& object, const std::string& key,
 
 void Hdf5File::set_attribute(const std::string& object, const std::string& key,
                              const std::vector<std::string>& values) {
-  std::vector<const char*> pointers;
-  for (const std::string& value : values) pointers.push_back(value.c_str());
   const hsize_t size = values.size();
-  const Handle type = variable_text();
   const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  write_attribute(impl_->open_object(object), key, type, space, pointers.data(), impl_->path,
-                  object);
+  write_texts(impl_->open_object(object), key, space, values, impl_->path, object);
 }
 
 bool Hdf5File::has(const std::string& object) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::has>(*impl_->child, object);
   const std::string path = root_or(object);
   for (std::size_t slash = path.find('/', 1); slash != std::string::npos;
        slash = path.find('/', slash + 1))  // H5Lexists wants every parent to exist
@@ -138,6 +156,7 @@ bool Hdf5File::has(const std::string& object) const {
 }
 
 DatasetInfo Hdf5File::info(const std::string& dataset) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::info>(*impl_->child, dataset);
   const Handle id = impl_->open_dataset(dataset);
   const Handle type(H5Dget_type(id), H5Tclose);
   return {.path = dataset.starts_with('/') ? dataset : "/" + dataset,
@@ -146,6 +165,7 @@ DatasetInfo Hdf5File::info(const std::string& dataset) const {
 }
 
 std::vector<DatasetInfo> Hdf5File::datasets() const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::datasets>(*impl_->child);
   std::vector<std::string> names;
   const auto collect = [](hid_t, const char* path, const H5O_info_t* object, void* into) -> herr_t {
     if (object->type == H5O_TYPE_DATASET)
@@ -161,21 +181,23 @@ std::vector<DatasetInfo> Hdf5File::datasets() const {
 }
 
 std::string Hdf5File::read_text(const std::string& dataset) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::read_text>(*impl_->child, dataset);
   const Handle id = impl_->open_dataset(dataset);
-  const Handle type(H5Dget_type(id), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) <= 0)
+  const Handle type(H5Dget_type(id), H5Tclose), space(H5Dget_space(id), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1)
     throw InputError({.where = impl_->path.string() + ": " + dataset,
                       .got = std::string(name(element_type(type))),
                       .expected = "a string"});
-  const Handle memory = variable_text();
-  char* text = nullptr;
-  impl_->check(H5Dread(id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text), dataset, "reading");
-  std::string result(text == nullptr ? "" : text);
-  H5free_memory(text);
-  return result;
+  const bool variable = H5Tis_variable_str(type) > 0;  // files of before
+  std::vector<char> buffer(H5Tget_size(type));
+  impl_->check(H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()), dataset, "reading");
+  const auto texts = to_strings(buffer, buffer.size(), variable);
+  if (variable) H5Dvlen_reclaim(type, space, H5P_DEFAULT, buffer.data());
+  return texts.empty() ? "" : texts.front();
 }
 
 std::vector<std::string> Hdf5File::attributes(const std::string& object) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::attributes>(*impl_->child, object);
   std::vector<std::string> names;
   const auto collect = [](hid_t, const char* key, const H5A_info_t*, void* into) -> herr_t {
     static_cast<std::vector<std::string>*>(into)->emplace_back(key);
@@ -189,10 +211,12 @@ std::vector<std::string> Hdf5File::attributes(const std::string& object) const {
 }
 
 bool Hdf5File::has_attribute(const std::string& object, const std::string& key) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::has_attribute>(*impl_->child, object, key);
   return H5Aexists(impl_->open_object(object), key.c_str()) > 0;
 }
 
 double Hdf5File::attribute_number(const std::string& object, const std::string& key) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::attribute_number>(*impl_->child, object, key);
   const Handle owner = impl_->open_object(object);
   const Handle id(impl_->check(H5Aopen(owner, key.c_str(), H5P_DEFAULT), object,
                                "opening the attribute " + key),
@@ -207,6 +231,7 @@ double Hdf5File::attribute_number(const std::string& object, const std::string& 
 
 std::vector<std::string> Hdf5File::attribute_texts(const std::string& object,
                                                    const std::string& key) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::attribute_texts>(*impl_->child, object, key);
   const Handle owner = impl_->open_object(object);
   const Handle id(impl_->check(H5Aopen(owner, key.c_str(), H5P_DEFAULT), object,
                                "opening the attribute " + key),

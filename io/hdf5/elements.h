@@ -13,6 +13,10 @@ namespace asdic::hdf5 {
 template <class T>
 [[nodiscard]] std::int64_t native_type();
 
+/// UTF-8 of a fixed length, filled with zeros at the end; at least one byte. Text of variable
+/// length lies apart from its owner, in heaps of the file that damage makes HDF5 crash on.
+[[nodiscard]] Handle text_type(std::size_t bytes);
+
 /// As HDF5 wants a shape.
 [[nodiscard]] inline std::vector<unsigned long long> dims(const Shape& shape) {
   return {shape.begin(), shape.end()};

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "io/hdf5_file.h"
+#include "io/isolated/child.h"
 
 // Inside of Hdf5File, for its own .cpp files; hid_t is std::int64_t in HDF5 1.10 and later.
 namespace asdic::hdf5 {
@@ -49,7 +51,8 @@ namespace asdic {
 struct Hdf5File::Impl {
   std::filesystem::path path;
   std::int64_t file = -1;
-  mutable bool failed = false;  // a write may have: the file is then left as it lies
+  mutable bool failed = false;             // a write may have: the file is then left as it lies
+  std::unique_ptr<isolated::Child> child;  // who reads it for us; `file` is then none
 
   /// The identifier if it is one, else the failure.
   std::int64_t check(std::int64_t id, const std::string& object, const std::string& action) const {
@@ -59,6 +62,10 @@ struct Hdf5File::Impl {
   }
   [[nodiscard]] hdf5::Handle open_dataset(const std::string& dataset) const;
   [[nodiscard]] hdf5::Handle open_object(const std::string& object) const;
+  /// A block, piece by piece.
+  template <class T>
+  [[nodiscard]] std::vector<T> read_by_child(const std::string& dataset, const Shape& start,
+                                             const Shape& count) const;
   [[nodiscard]] Shape shape_of(std::int64_t dataset_id, const std::string& dataset) const;
 };
 

@@ -1,6 +1,8 @@
 // The HDF5 library: its quirks, its types, its words.
 #include <hdf5.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "io/hdf5/elements.h"
 #include "io/hdf5/handles.h"
@@ -54,6 +56,14 @@ std::int64_t native_type<float>() {
 template <>
 std::int64_t native_type<double>() {
   return H5T_NATIVE_DOUBLE;
+}
+
+Handle text_type(std::size_t bytes) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(bytes, 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
 }
 
 Handle make_parents() {

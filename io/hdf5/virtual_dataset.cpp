@@ -1,10 +1,11 @@
 // Virtual datasets of Hdf5File.
 #include <hdf5.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "io/hdf5/elements.h"
+#include "io/hdf5/gate.h"
+#include "io/hdf5/remote.h"
 
 namespace asdic {
 namespace {
@@ -54,21 +55,9 @@ void Hdf5File::write_virtual(const std::string& dataset, const Shape& shape,
 }
 
 std::vector<std::filesystem::path> Hdf5File::virtual_files(const std::string& dataset) const {
+  if (impl_->child) return hdf5::ask<&Hdf5File::virtual_files>(*impl_->child, dataset);
   const Handle id = impl_->open_dataset(dataset);
-  const Handle properties(H5Dget_create_plist(id), H5Pclose);
-  std::vector<std::filesystem::path> files;
-  if (H5Pget_layout(properties) != H5D_VIRTUAL) return files;
-  std::size_t count = 0;
-  impl_->check(H5Pget_virtual_count(properties, &count), dataset, "reading what it refers to");
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto size = impl_->check(H5Pget_virtual_filename(properties, i, nullptr, 0), dataset,
-                                   "reading what it refers to");
-    std::string file(static_cast<std::size_t>(size) + 1, '\0');
-    H5Pget_virtual_filename(properties, i, file.data(), file.size());
-    file.resize(static_cast<std::size_t>(size));
-    if (std::find(files.begin(), files.end(), file) == files.end()) files.emplace_back(file);
-  }
-  return files;
+  return hdf5::virtual_sources(Handle(H5Dget_create_plist(id), H5Pclose), impl_->path);
 }
 
 #define ASDIC_HDF5_ELEMENT(T)                                                \

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/hdf5/scale.h"
 #include "io/hdf5_file.h"
+#include "io/isolated/child.h"
 #include "io/processing/table.h"
 
 namespace asdic {
@@ -172,21 +173,10 @@ class Part {
   bool kept_ = false;
 };
 
-}  // namespace
-
-void write_processed(const std::filesystem::path& input, const std::filesystem::path& output,
-                     const ProcessedRun& run, const Replica& replica) {
-  // A link stays a link: what it points to is what changes.
-  std::error_code error;
-  std::filesystem::path target = std::filesystem::is_symlink(output, error)
-                                     ? std::filesystem::canonical(output, error)
-                                     : output;
-  if (target.empty()) target = output;
-  Part part(target.string() + ".part");
-  std::filesystem::copy_file(input, part.path(), std::filesystem::copy_options::overwrite_existing,
-                             error);
-  if (error) throw RunError(part.path().string() + ": " + error.message());
-  Hdf5File file = Hdf5File::edit(part.path());
+/// Writes /processed into a file, in place of one that is there.
+void add_results(const std::filesystem::path& path, const ProcessedRun& run,
+                 const Replica& replica) {
+  Hdf5File file = Hdf5File::edit(path);
   file.remove("processed");
   file.make_group("processed");
   file.set_attribute("processed", "version", "1.0");
@@ -202,6 +192,27 @@ void write_processed(const std::filesystem::path& input, const std::filesystem::
     write_ambiguity(file, replica);
   }
   file.close();
+}
+
+}  // namespace
+
+void write_processed(const std::filesystem::path& input, const std::filesystem::path& output,
+                     const ProcessedRun& run, const Replica& replica) {
+  // A link stays a link: what it points to is what changes.
+  std::error_code error;
+  std::filesystem::path target = std::filesystem::is_symlink(output, error)
+                                     ? std::filesystem::canonical(output, error)
+                                     : output;
+  if (target.empty()) target = output;
+  Part part(target.string() + ".part");
+  std::filesystem::copy_file(input, part.path(), std::filesystem::copy_options::overwrite_existing,
+                             error);
+  if (error) throw RunError(part.path().string() + ": " + error.message());
+  constexpr isolated::Limits patience{.processor = std::chrono::minutes(10),
+                                      .wall = std::chrono::hours(1),
+                                      .memory = 0};  // a disk may be slow
+  isolated::run(
+      part.path(), "HDF5", [&] { add_results(part.path(), run, replica); }, patience);
   synchronise(part.path());
   part.rename(target);
 }
