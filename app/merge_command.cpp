@@ -6,6 +6,8 @@
 #include "app/console.h"
 #include "app/text_output.h"
 #include "core/error.h"
+#include "io/scenario/embedded.h"
+#include "io/text/csv_table.h"
 #include "study/merge.h"
 #include "study/study.h"
 
@@ -40,17 +42,20 @@ std::filesystem::path find_study(const Options& options, const study::StudyFile&
 study::Study study_of(const Options& options) {
   const study::StudyFile part(options.parts.front());
   const std::filesystem::path path = find_study(options, part);
+  if (options.study.empty()) {  // nothing but the part says so: it must not lead to other files
+    scenario::check_names(part.imprint().overrides, path.parent_path(), "--study names the study");
+    if (read_text_file(path, "a study file") != part.imprint().text)
+      throw InputError({.where = path.string(),
+                        .got = "a file that has changed since the parts were made, if only in what "
+                               "is made of the rows",
+                        .expected = "as it was; --study " + path.string() + " takes it as it is"});
+  }
   study::Study study = study::read_study(path, part.imprint().overrides);
   if (study::identity(study) != part.imprint().identity)
     throw InputError({.where = path.string(),
                       .got = "another study (identity " + study::identity(study) + ")",
                       .expected = "that of " + part.path().string() + " (identity " +
                                   part.imprint().identity + "); --study names another file"});
-  if (options.study.empty() && study.text != part.imprint().text)
-    throw InputError({.where = path.string(),
-                      .got = "a file that has changed since the parts were made, if only in what "
-                             "is made of the rows",
-                      .expected = "as it was; --study " + path.string() + " takes it as it is"});
   return study;
 }
 

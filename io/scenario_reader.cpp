@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/scenario/document.h"
+#include "io/scenario/embedded.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
 #include "io/text/csv_table.h"
@@ -15,12 +16,32 @@ Scenario read_scenario(const std::filesystem::path& path, std::span<const std::s
   return parse_scenario(read_text_file(path, "a scenario file"), path, overrides);
 }
 
-Scenario parse_scenario(std::string_view text, const std::filesystem::path& path,
-                        std::span<const std::string> overrides) {
-  Scenario scenario = scenario_of(scenario::read_document(text, path, overrides), path);
+namespace {
+
+Scenario scenario_of(const TomlValue& document, std::string_view text,
+                     const std::filesystem::path& path, std::span<const std::string> overrides) {
+  Scenario scenario = scenario_of(document, path);
   scenario.text = text;
   scenario.overrides.assign(overrides.begin(), overrides.end());
   return scenario;
+}
+
+}  // namespace
+
+Scenario parse_scenario(std::string_view text, const std::filesystem::path& path,
+                        std::span<const std::string> overrides) {
+  return scenario_of(scenario::read_document(text, path, overrides), text, path, overrides);
+}
+
+Scenario parse_embedded_scenario(std::string_view text, const std::filesystem::path& path,
+                                 std::span<const std::string> overrides) {
+  const std::filesystem::path folder = path.parent_path();
+  const std::string remedy = "--scenario names the scenario's own file";
+  scenario::check_names(parse_toml(text, path.string()), folder, remedy);
+  scenario::check_names(overrides, folder, remedy);
+  const TomlValue document = scenario::read_document(text, path, overrides);
+  scenario::check_names(document, folder, remedy);  // with what it includes
+  return scenario_of(document, text, path, overrides);
 }
 
 Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path) {

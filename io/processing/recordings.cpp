@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "core/error.h"
+#include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
+#include "io/text/csv_table.h"
 #include "sonar/geometry.h"
 #include "sonar/processing/truth.h"
 
@@ -30,10 +32,13 @@ Scenario scenario_of(const Hdf5File& file, const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& scenario_path) {
   std::vector<std::string> overrides;
   if (file.has_attribute("", "overrides")) overrides = file.attribute_texts("", "overrides");
-  return parse_scenario(
-      file.read_text("scenario"),
-      scenario_path.value_or(path.parent_path() / (path.filename().string() + ":scenario")),
-      overrides);
+  const std::string text = file.read_text("scenario");
+  const std::filesystem::path name =
+      scenario_path.value_or(path.parent_path() / (path.filename().string() + ":scenario"));
+  // One that the user has, letter by letter, may lead to any file of his.
+  if (scenario_path && read_text_file(name, "the scenario that the pings were made of") == text)
+    return parse_scenario(text, name, overrides);
+  return parse_embedded_scenario(text, name, overrides);
 }
 
 }  // namespace
