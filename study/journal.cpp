@@ -100,7 +100,13 @@ std::vector<Session> Journal::sessions() const {
   impl_->commit();  // with what this one has made so far
   std::vector<Session> all;
   sqlite::Statement get(impl_->database, "SELECT text FROM session ORDER BY id");
-  while (get.step()) all.push_back(session_from_json(get.text(0)));
+  while (get.step()) try {
+      all.push_back(session_from_json(get.text(0)));
+    } catch (const std::exception& error) {
+      throw InputError({.where = path().string(),
+                        .got = std::string("a session that cannot be read (") + error.what() + ")",
+                        .expected = "a journal as asdic study left it"});
+    }
   return all;
 }
 

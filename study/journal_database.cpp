@@ -1,6 +1,7 @@
 // The tables of a journal, and the thread that commits what waits.
 #include "study/journal_database.h"
 
+#include <condition_variable>
 #include <string_view>
 
 #include "core/error.h"
@@ -49,9 +50,21 @@ void Journal::Impl::check_format() {
                       .expected = std::string(format)});
 }
 
+std::size_t Journal::Impl::columns_of_rows() {
+  const std::string columns = meta("columns");
+  try {
+    return columns_from_json(columns).size();
+  } catch (const std::exception& error) {
+    throw InputError({.where = database.path().string(),
+                      .got = std::string("columns that cannot be read (") + error.what() + ")",
+                      .expected = "a journal as asdic study left it; remove it to begin afresh"});
+  }
+}
+
 /// Every row is looked at once: those that do not match their checksum go.
 void Journal::Impl::check_rows() {
   std::vector<std::uint64_t> bad;
+  const std::size_t width = columns_of_rows();
   {
     sqlite::Statement get(
         database,
@@ -60,7 +73,8 @@ void Journal::Impl::check_rows() {
     while (get.step()) {
       const Row row = row_at(get);
       const bool kept = get.integer(4) != 0;
-      if (get.text(5) == checksum(row, kept) && (!kept || get.integer(6) == get.integer(0)))
+      if (get.text(5) == checksum(row, kept) && (!kept || get.integer(6) == get.integer(0)) &&
+          get.integer(0) >= 0 && row.values.size() == width)
         done.add(row.index);
       else
         bad.push_back(row.index);
@@ -89,7 +103,10 @@ bool Journal::Impl::add_series(Row& row) const {
   const std::string timing = get.text(1);
   row.timing = timing_of(timing);
   row.pressure = vector_of<float>(get.blob(2));
-  return checksum_of_series(row.index, shape, timing, get.blob(2)) == get.text(3);
+  double samples = row.pressure_shape.empty() ? 0.0 : 1.0;
+  for (const std::size_t n : row.pressure_shape) samples *= static_cast<double>(n);
+  return samples == static_cast<double>(row.pressure.size()) &&
+         checksum_of_series(row.index, shape, timing, get.blob(2)) == get.text(3);
 }
 
 void Journal::Impl::drop(std::uint64_t index) const {
@@ -104,8 +121,11 @@ void Journal::Impl::start() {
   committer = std::jthread([this](const std::stop_token& over) {
     using Clock = std::chrono::steady_clock;
     auto last = Clock::now();
+    std::mutex asleep;
+    std::condition_variable_any nobody;
     while (!over.stop_requested()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::unique_lock sleep(asleep);
+      nobody.wait_for(sleep, over, std::chrono::milliseconds(20), [] { return false; });
       if (Clock::now() - last < commit_after) continue;
       last = Clock::now();
       const std::lock_guard lock(mutex);

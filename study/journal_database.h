@@ -39,6 +39,7 @@ struct Journal::Impl {
   }
 
   void check_format();
+  [[nodiscard]] std::size_t columns_of_rows();  ///< as its meta data say
   void check_rows();
   void start();
   void append(const Row& row);

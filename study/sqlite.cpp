@@ -2,11 +2,31 @@
 
 #include <sqlite3.h>
 
+#include <utility>
+
 #include "core/error.h"
+#include "io/input_file.h"
 
 namespace asdic::study::sqlite {
 
+namespace {
+
+/// A journal is data. What else a database may bring along (views, triggers, functions in its
+/// schema, links in place of the file) is not obeyed, and nothing that is read is taken to be
+/// whole.
+void distrust(sqlite3* connection) {
+  for (const auto& [setting, on] :
+       {std::pair{SQLITE_DBCONFIG_DEFENSIVE, 1}, std::pair{SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+        std::pair{SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}, std::pair{SQLITE_DBCONFIG_ENABLE_VIEW, 0}})
+    sqlite3_db_config(connection, setting, on, nullptr);
+  sqlite3_exec(connection, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+}
+
+}  // namespace
+
 Database::Database(const std::filesystem::path& path) : path_(path) {
+  if (std::error_code unknown; std::filesystem::exists(path, unknown))
+    require_file(path, "a journal of asdic study");
   const int code =
       sqlite3_open_v2(path.c_str(), &connection_,
                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);
@@ -17,6 +37,7 @@ Database::Database(const std::filesystem::path& path) : path_(path) {
     throw;
   }
   sqlite3_extended_result_codes(connection_, 1);
+  distrust(connection_);
   sqlite3_busy_timeout(connection_, 1000);  // [ms]: another may just be ending
 }
 
