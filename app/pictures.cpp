@@ -60,7 +60,10 @@ void check_modules(const std::string& interpreter) {
   constexpr const char* modules[] = {"numpy", "h5py", "matplotlib"};
   const int missing =
       run({interpreter, "-c",
-           "import importlib.util as u, sys\n"
+           "import sys\n"
+           // modules of the working folder are not Python's
+           "sys.path[:] = [p for p in sys.path if p]\n"
+           "import importlib.util as u\n"
            "names = ['numpy', 'h5py', 'matplotlib']\n"
            "sys.exit(sum(64 >> i for i, m in enumerate(names) if not u.find_spec(m)))"});
   if (missing == 0) return;
@@ -82,7 +85,11 @@ int draw_pictures(const std::vector<std::string>& arguments) {
   flush_output();  // what was said before stands before what the script says
   std::vector<std::string> words{interpreter, script.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  return run(words);
+  const int status = run(words);
+  if (status == 128 + SIGSEGV || status == 128 + SIGABRT || status == 128 + SIGBUS)
+    throw RunError(
+        fmt::format("plot: Python crashed ({}) on {}", strsignal(status - 128), arguments.front()));
+  return status;
 }
 
 }  // namespace asdic::app

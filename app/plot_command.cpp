@@ -7,6 +7,7 @@
 #include "app/pictures.h"
 #include "app/study_info.h"
 #include "core/error.h"
+#include "io/hdf5/readable.h"
 #include "io/ping_file.h"
 #include "io/result_file.h"
 #include "study/study_file.h"
@@ -67,6 +68,7 @@ int plot(const Options& options) {
     names = {"--names", options.file};
     if (pictures.empty()) pictures = folder_beside(options.file);
   }
+  check_readable(Hdf5File::open(file));
   std::vector<std::string> words{file.string()};
   words.insert(words.end(), names.begin(), names.end());
   if (!pictures.empty()) words.insert(words.end(), {"--output", pictures});

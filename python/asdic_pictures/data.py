@@ -442,5 +442,6 @@ class PingFile:
 
     def rays(self):
         """Launch elevation [ray], range and depth [ray, point], kind [ray], surface hits [hit]"""
+        hits = self.read("rays/hit_range") if self.has("rays/hit_range") else np.empty(0)
         return [self.read(f"rays/{k}")
-                for k in ("launch_elevation_deg", "range", "depth", "kind", "hit_range")]
+                for k in ("launch_elevation_deg", "range", "depth", "kind")] + [hits]
