@@ -32,6 +32,16 @@ if [ "${1:-}" != --no-asan ]; then
   fi
 fi
 
+# Damaged HDF5 and netCDF: the libraries are nobody's to instrument, so a run of the plain build.
+cmake --preset ci >/dev/null && cmake --build --preset ci --target fuzz_damaged_files >/dev/null
+for library in hdf5 netcdf; do
+  if said=$(build/ci/tests/fuzz/fuzz_damaged_files "$library" "${ASDIC_FILE_RUNS:-100000}" 2>&1); then
+    verdict "$library" good "${said#*: }"
+  else
+    verdict "$library" FAILED "$(tail -n 1 <<<"$said")"
+  fi
+done
+
 # Instructions of the kernels: what noise cannot disturb.
 if said=$(scripts/bench.sh --check 2>&1); then
   verdict kernels good "$(grep -c ' %' <<<"$said") kernels within their counts"

@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 runs=${1:-1000000}
 shift || true
 targets=("$@")
-[ "${#targets[@]}" -gt 0 ] || targets=(env bty ssp brc sbp shd arr ray toml serve)
+[ "${#targets[@]}" -gt 0 ] || targets=(env bty ssp brc sbp shd arr ray toml include csv wav study journal serve)
 cmake --preset fuzz -DASDIC_BENCHMARKS=OFF >/dev/null
 cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" >/dev/null
 mkdir -p build/fuzz/found
@@ -15,9 +15,9 @@ for target in "${targets[@]}"; do
   corpus=$(mktemp -d)
   if build/fuzz/tests/fuzz/fuzz_"$target" -runs="$runs" -seed=1 -timeout=20 -rss_limit_mb=4096 -max_len=8192 -verbosity=0 -print_final_stats=1 \
     -artifact_prefix=build/fuzz/found/"$target"- "$corpus" tests/fuzz/seeds/"$target" >build/fuzz/"$target".log 2>&1; then
-    printf '%-6s good    %s runs\n' "$target" "$(awk '/number_of_executed_units/ {print $2}' build/fuzz/"$target".log)"
+    printf '%-7s good    %s runs\n' "$target" "$(awk '/number_of_executed_units/ {print $2}' build/fuzz/"$target".log)"
   else
-    printf '%-6s FAILED  see build/fuzz/%s.log\n' "$target" "$target"
+    printf '%-7s FAILED  see build/fuzz/%s.log\n' "$target" "$target"
     failures=$((failures + 1))
   fi
   rm -rf "$corpus"

@@ -2,13 +2,13 @@
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 
-// A scenario file: as a sonar's scenario, and as a run of the propagation model. Files that it
-// names are looked for in a folder that is not there.
+// A scenario file: as a sonar's scenario, and as a run of the propagation model. The files that its
+// seeds name are there.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace asdic;
   const std::string text(fuzz::text(data, size));
-  const std::filesystem::path path = "/no/such/folder/fuzz.toml";
+  const std::filesystem::path path = ASDIC_FUZZ_COMPANIONS "/fuzz.toml";
   (void)fuzz::refuses([&] { (void)parse_scenario(text, path); });
   std::vector<std::string> notes;
   (void)fuzz::refuses([&] { (void)parse_propagation_case(text, path, {}, notes); });
