@@ -98,16 +98,19 @@ void fix_fan(PropagationCase& run_case) {
 }
 
 PropagationResult search(const bellhop::Input& input, const Options& options) {
-  const Interrupt interrupt;
   constexpr int steps = 100;
   ProgressBar bar("hundredth", steps, !options.quiet);
   const Progress progress = [&](double share) {
     bar.done(static_cast<int>(std::clamp(share, 0.0, 1.0) * steps));
-    return !Interrupt::requested();
+    return true;
   };
   try {
-    return options.like_bellhop ? run_like_bellhop(input.run_case, progress)
-                                : run(input.run_case, progress);
+    PropagationResult result;
+    until_interrupted([&] {
+      result = options.like_bellhop ? run_like_bellhop(input.run_case, progress)
+                                    : run(input.run_case, progress);
+    });
+    return result;
   } catch (const Interrupted&) {
     throw RunError("interrupted; no result was written");
   } catch (const InputError& error) {

@@ -26,14 +26,14 @@ int explain_case(const Options& options) {
   const tbb::global_control limit(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(options.threads.value_or(tbb::info::default_concurrency())));
-  const Interrupt interrupt;
   std::optional<ProgressBar> bar(std::in_place, "%", 100, !options.quiet);
   const auto progress = [&](double share) {
     bar->done(static_cast<int>(100.0 * share));
-    return !Interrupt::requested();
+    return true;
   };
   try {
-    const Explanation explanation = explain(input, options.root, options.finer, progress);
+    Explanation explanation;
+    until_interrupted([&] { explanation = explain(input, options.root, options.finer, progress); });
     bar.reset();
     print(options.json ? explanation_json(explanation) : explanation_table(explanation));
   } catch (const Interrupted&) {

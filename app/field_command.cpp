@@ -31,14 +31,18 @@ struct Options {
 bool is_shade_name(const std::filesystem::path& path) { return path.extension() == ".shd"; }
 
 PropagationResult run_field_of(const PropagationCase& run_case, const Options& options) {
-  const Interrupt interrupt;
   ProgressBar bar("%", 100, !options.quiet);
   const Progress progress = [&](double share) {
     bar.done(static_cast<int>(100.0 * share));
-    return !Interrupt::requested();
+    return true;
   };
   try {
-    return options.like_bellhop ? run_like_bellhop(run_case, progress) : run(run_case, progress);
+    PropagationResult result;
+    until_interrupted([&] {
+      result =
+          options.like_bellhop ? run_like_bellhop(run_case, progress) : run(run_case, progress);
+    });
+    return result;
   } catch (const Interrupted&) {
     throw RunError("interrupted; no file was written");
   } catch (const InputError& error) {

@@ -2,31 +2,39 @@
 
 #include <signal.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <utility>
 
 #include "app/console.h"
+#include "raytrace/stop.h"
 
 namespace asdic::app {
 namespace {
 
+constexpr std::array<int, 3> stopping = {SIGINT, SIGTERM, SIGHUP};
+
 std::atomic<bool> signalled = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only use such");
 
-void on_both(void (*handler)(int)) {
-  struct sigaction action = {};
-  action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+/// Of all that are not ignored: whoever started the program wants those ignored.
+void on_all(void (*handler)(int)) {
+  for (const int number : stopping) {
+    struct sigaction action = {};
+    if (sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(number, &action, nullptr);
+  }
 }
 
 extern "C" void on_signal(int) {
   signalled = true;
-  on_both(SIG_DFL);  // the second is not ours, whichever it is
+  on_all(SIG_DFL);  // the second is not ours, whichever it is
 }
 
 /// In place of a progress bar's line, which is drawn anew below.
@@ -39,10 +47,10 @@ void say(const std::string& line) {
 
 Interrupt::Interrupt() {
   signalled = false;
-  on_both(on_signal);
+  on_all(on_signal);
 }
 
-Interrupt::~Interrupt() { on_both(SIG_DFL); }
+Interrupt::~Interrupt() { on_all(SIG_DFL); }
 
 bool Interrupt::requested() noexcept { return signalled; }
 
@@ -60,6 +68,11 @@ StopOnInterrupt::StopOnInterrupt(std::string told) {
 StopOnInterrupt::~StopOnInterrupt() {
   watcher_.request_stop();
   watcher_.join();
+}
+
+void until_interrupted(const std::function<void()>& work) {
+  const StopOnInterrupt interrupt;
+  until_stopped(interrupt.token(), work);
 }
 
 }  // namespace asdic::app

@@ -1,5 +1,6 @@
 #pragma once
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <string>
@@ -7,8 +8,9 @@
 
 namespace asdic::app {
 
-/// While it lives, the first SIGINT or SIGTERM is noted, and the second ends the program at once.
-/// One at a time.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP is noted, and the second ends the program at
+/// once. One that was ignored stays so: SIGINT of a shell's job in the background, SIGHUP under
+/// nohup. One at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -37,5 +39,9 @@ class StopOnInterrupt {
   std::condition_variable_any over_;  ///< wakes the watcher before its time
   std::jthread watcher_;
 };
+
+/// Does some work, which the first such signal ends (raytrace/stop.h). \throws Interrupted if it
+/// did
+void until_interrupted(const std::function<void()>& work);
 
 }  // namespace asdic::app

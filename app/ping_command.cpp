@@ -17,6 +17,8 @@
 #include "app/provenance.h"
 #include "core/error.h"
 #include "io/scenario_reader.h"
+#include "raytrace/propagation.h"
+#include "raytrace/stop.h"
 
 namespace asdic::app {
 namespace {
@@ -37,9 +39,12 @@ std::vector<std::string> overrides(const Options& options) {
   return all;
 }
 
+constexpr const char* before_the_first =
+    "interrupted before the first ping was done; no file was written";
+
 /// What Ctrl-C left. \return the exit status
 int interrupted(int done, int count, const std::filesystem::path& output) {
-  if (done == 0) throw RunError("interrupted before the first ping was done; no file was written");
+  if (done == 0) throw RunError(before_the_first);
   throw RunError(fmt::format("interrupted after {} of {}; {} holds them, marked as not complete",
                              done, count_of(std::size_t(count), "ping"), output.string()));
 }
@@ -55,17 +60,28 @@ int ping(const Options& options) {
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  const StopOnInterrupt interrupt(fmt::format(
-      "asdic: stopping when the pings in hand are done; Ctrl-C again ends at once, then {}.part "
-      "holds those before",
-      output.string()));
-  const PingSimulator simulator(std::move(scenario));
+  const StopOnInterrupt interrupt(
+      fmt::format("asdic: stopping now, the pings in hand are left; Ctrl-C again ends at once, "
+                  "then {}.part holds those before",
+                  output.string()));
+  const auto call_off = [&](const auto& work) {
+    try {
+      until_stopped(interrupt.token(), work);
+    } catch (const Interrupted&) {
+      throw RunError(before_the_first);
+    }
+  };
+  std::optional<PingSimulator> made;
+  call_off([&] { made.emplace(std::move(scenario)); });
+  const PingSimulator& simulator = *made;
   const int count = simulator.pings();
   PingReport report(simulator.scenario());
   PingFileWriter writer(output, simulator.scenario(), provenance(threads));
   int done = 0;
   try {
-    writer.write_rays(drawn_rays(simulator));
+    RayPaths rays;
+    call_off([&] { rays = drawn_rays(simulator); });
+    writer.write_rays(rays);
     ProgressBar bar("ping", count, !options.quiet);
     run_pings(simulator,
               [&](PingRecord&& record) {
@@ -115,7 +131,7 @@ void add_ping_command(Program& program) {
   add_threads_option(command, options->threads);
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command.footer(
-      "Ctrl-C finishes the pings in hand and closes the file; a second one ends at once.\n"
+      "Ctrl-C leaves the pings in hand and closes the file; a second one ends at once.\n"
       "Example:  asdic ping scenarios/deep_ocean.toml --set target.0.strength_db=20");
   command.runs([options] { return ping(*options); });
 }

@@ -135,13 +135,14 @@ int process(const Options& options) {
     const ProcessingSettings settings = settings_of(options, replicas, 0.0);
     first = replicas.front();
     const PingProcessor processor(recordings.scenario(), std::move(replicas), settings);
-    const Interrupt interrupt;
     const int count = options.ping ? 1 : static_cast<int>(recordings.pings());
     try {
       ProgressBar bar("ping", count, !options.quiet);
-      run = process_file(
-          recordings, processor, options.ping, [&](int done) { bar.done(done); },
-          [] { return !Interrupt::requested(); });
+      until_interrupted([&] {
+        run = process_file(
+            recordings, processor, options.ping, [&](int done) { bar.done(done); },
+            [] { return !Interrupt::requested(); });
+      });
     } catch (const Interrupted&) {
       throw RunError("interrupted; " + output +
                      (output == options.file ? " is as it was" : " was not written"));

@@ -115,7 +115,7 @@ void add_serve_command(Program& program) {
       .one_at_a_time();
   add_threads_option(command, options->threads);
   command.footer(
-      "Ctrl-C finishes the ping in hand; a second one ends at once.\n"
+      "Ctrl-C finishes the ping in hand, or leaves it after a second; a second one ends at once.\n"
       "Example:  asdic serve scenarios/deep_ocean.toml --socket sonar.sock --output-dir pings");
   command.runs([options] { return serve_scenario(*options); });
 }

@@ -5,13 +5,17 @@
 #include <oneapi/tbb/task_group.h>
 
 #include "raytrace/propagation.h"
+#include "raytrace/stop.h"
 
 namespace asdic {
 
 void in_parallel_called(std::size_t count, const std::function<void(std::size_t i)>& body) {
-  tbb::parallel_for(std::size_t{0}, count, body);
+  // A task may be many indices long, and is not cut short by itself.
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    if (!tbb::is_current_task_group_canceling()) body(i);
+  });
   // In a task whose group was cancelled the loop ended early, without a word.
-  if (tbb::is_current_task_group_canceling()) throw Interrupted();
+  stop_point();
 }
 
 std::size_t most_workers() {
@@ -26,6 +30,17 @@ void in_parallel_by_worker(std::size_t count,
       body(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()), i);
     });
   });
+}
+
+void stop_point() {
+  if (tbb::is_current_task_group_canceling()) throw Interrupted();
+}
+
+void until_stopped(const std::stop_token& stop, const std::function<void()>& work) {
+  tbb::task_group group;
+  const std::stop_callback call_off(stop, [&group] { group.cancel(); });
+  // What the work throws when it is called off goes no further than the group.
+  if (group.run_and_wait(work) == tbb::canceled) throw Interrupted();
 }
 
 }  // namespace asdic

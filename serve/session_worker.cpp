@@ -2,7 +2,15 @@
 
 #include <chrono>
 
+#include "raytrace/propagation.h"
+#include "raytrace/stop.h"
+
 namespace asdic::serve {
+namespace {
+
+constexpr std::chrono::seconds grace(1);  // for the command in hand when the server is stopped
+
+}  // namespace
 
 SessionWorker::SessionWorker(Engine& engine, Ways ways)
     : engine_(engine),
@@ -24,8 +32,24 @@ bool SessionWorker::offer(Command command) {
 
 void SessionWorker::stop() {
   const std::lock_guard lock(mutex_);  // so that who is about to wait sees it
-  stopping_ = true;
+  if (stopping_.exchange(true)) return;
   wake_.notify_all();
+  grace_ = std::jthread([this](const std::stop_token& over) {
+    std::mutex mutex;
+    std::unique_lock waiting(mutex);
+    std::condition_variable_any().wait_for(waiting, over, grace, [] { return false; });
+    if (!over.stop_requested()) call_off_.request_stop();
+  });
+}
+
+Answer SessionWorker::answer_to(Session& session, const Command& command) {
+  try {
+    Answer answer;
+    until_stopped(call_off_.get_token(), [&] { answer = session.execute(command); });
+    return answer;
+  } catch (const Interrupted&) {
+    return refusal_answer(command.id, "closing", "the server is being stopped");
+  }
 }
 
 void SessionWorker::run() {
@@ -54,7 +78,7 @@ void SessionWorker::serve() {
     ways_.goes_on();
     if (wait(session.wait(*command)) && wait_for_the_reader()) {
       const std::lock_guard lock(engine_.busy);
-      Answer answer = session.execute(*command);
+      Answer answer = answer_to(session, *command);
       last = answer.last;
       ways_.deliver(std::move(answer));
     } else {

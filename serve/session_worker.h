@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "serve/command_queue.h"
@@ -39,13 +40,15 @@ class SessionWorker {
   [[nodiscard]] bool has_begun() const { return begun_; }
   [[nodiscard]] bool idle() const { return in_hand_ == 0; }  ///< no command waits, or is in hand
 
-  void finish() { queue_.close(); }    ///< no more commands come
-  void stop();                         ///< those that wait are refused; the one in hand is finished
+  void finish() { queue_.close(); }  ///< no more commands come
+  /// Those that wait are refused; the one in hand is finished, or called off after a second.
+  void stop();
   void wake() { wake_.notify_all(); }  ///< the reader may have caught up
 
  private:
   void run();
   void serve();
+  Answer answer_to(Session& session, const Command& command);
   bool wait(double seconds);
   bool wait_for_the_reader();
 
@@ -56,6 +59,8 @@ class SessionWorker {
   std::atomic<bool> begun_ = false, stopping_ = false;
   std::mutex mutex_;
   std::condition_variable wake_;
+  std::stop_source call_off_;
+  std::jthread grace_;   // calls off
   std::jthread thread_;  // last: it uses all the others
 };
 

@@ -93,7 +93,7 @@ class PingSimulator {
 };
 
 struct PingOptions {
-  std::stop_token stop;  ///< when requested, pings in hand are finished, no new one is begun
+  std::stop_token stop;  ///< when requested, pings in hand are called off, no new one is begun
   std::function<void(int done)> progress = {};  ///< called in the sink's thread after each ping
 };
 

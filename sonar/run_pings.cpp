@@ -4,10 +4,31 @@
 #include <algorithm>
 #include <utility>
 
+#include "raytrace/propagation.h"
+#include "raytrace/stop.h"
 #include "sonar/ping.h"
 #include "sonar/stream.h"
 
 namespace asdic {
+
+namespace {
+
+/// Null if it is called off meanwhile.
+std::shared_ptr<PingRecord> make_ping(const PingSimulator& simulator, int ping,
+                                      const std::stop_token& stop) {
+  std::shared_ptr<PingRecord> record;
+  try {
+    until_stopped(stop, [&] {
+      record = std::make_shared<PingRecord>(
+          simulator.scenario().pings.continuous ? simulator.sound(ping) : simulator.simulate(ping));
+    });
+  } catch (const Interrupted&) {
+    record.reset();
+  }
+  return record;
+}
+
+}  // namespace
 
 int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
               const PingOptions& options) {
@@ -16,6 +37,7 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
   Stream stream(simulator.scenario());
   ReceiverElectronics::Carried carried;
   int next = 1, done = 0;
+  bool over = false;
   // Two pings in flight a thread keep the writer fed; more would only cost memory.
   const auto in_flight =
       static_cast<std::size_t>(std::max(2, tbb::this_task_arena::max_concurrency()));
@@ -31,12 +53,11 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
                                   }) &
           tbb::make_filter<int, std::shared_ptr<PingRecord>>(
               tbb::filter_mode::parallel,
-              [&](int ping) {
-                return std::make_shared<PingRecord>(continuous ? simulator.sound(ping)
-                                                               : simulator.simulate(ping));
-              }) &
+              [&](int ping) { return make_ping(simulator, ping, options.stop); }) &
           tbb::make_filter<std::shared_ptr<PingRecord>, void>(
               tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<PingRecord>& record) {
+                over = over || !record;  // what follows one that is missing is none of ours
+                if (over) return;
                 if (continuous) {
                   stream.take(*record);
                   simulator.complete(*record, &carried);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "raytrace/stop.h"
+
 namespace asdic {
 namespace {
 
@@ -97,6 +99,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
 
 void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits,
                                double ring, double below) const {
+  stop_point();                      // who asks at a place asks at thousands
   constexpr double strongest = 2.0;  // [1/sr] no law says more
   pairs.found.clear();
   pairs.colours.clear();

@@ -2,11 +2,13 @@
 
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
 #include <atomic>
 #include <exception>
 #include <memory>
+
+#include "raytrace/propagation.h"
+#include "raytrace/stop.h"
 
 namespace asdic::study {
 namespace {
@@ -20,13 +22,13 @@ struct InHand {
 };
 using Parcel = std::shared_ptr<InHand>;
 
-/// Makes the row, unless it is called off meanwhile: the parallel loops in it then end early, and
-/// who runs them throws (raytrace/parallel.h), which goes no further than the group.
+/// Makes the row, unless it is called off meanwhile.
 void make_row(const Realise& realise, const std::stop_token& stop, InHand& parcel) {
-  tbb::task_group group;
-  const std::stop_callback call_off(stop, [&group] { group.cancel(); });
-  const auto status = group.run_and_wait([&] { parcel.row = realise(parcel.index); });
-  parcel.made = status != tbb::canceled;
+  try {
+    until_stopped(stop, [&] { parcel.row = realise(parcel.index); });
+    parcel.made = true;
+  } catch (const Interrupted&) {
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raytrace/parallel.h"
+#include "raytrace/stop.h"
 #include "raytrace/tracing/search_watch.h"
 
 namespace asdic {
@@ -60,6 +61,7 @@ class FanSplitting {
       if (stopped) return;
       Memory& memory = memory_of(worker);
       const auto stop = [&] {  // asked now and then within an interval too, which may take long
+        stop_point();
         if (watch != nullptr && watch->progress &&
             !watch->progress(double(done.load()) / first_intervals))
           stopped = true;

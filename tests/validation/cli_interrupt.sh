@@ -12,7 +12,7 @@ interrupt_scenario run.toml
 # ping NAME: a run in the background; its id in $run.
 ping() { start "$ASDIC" ping run.toml -o "$1.h5" >"$1.out" 2>"$1.err"; }
 
-# Ctrl-C, and SIGTERM: the pings in hand are finished, the file gets its name, the status is 1.
+# Ctrl-C, and SIGTERM: what is done is kept, the file gets its name, the status is 1.
 for signal in INT TERM; do
   ping "$signal"
   wait_for_ping "$signal.h5.part"
@@ -63,7 +63,7 @@ for delay in 0.0 0.13 0.29; do
   echo "kill -9 after $delay s more: $pings pings in killed.h5.part"
 done
 
-# Ctrl-C as soon as the file is there: the pings in hand, or no file at all.
+# Ctrl-C as soon as the file is there: the pings that are done, or no file at all.
 sed -e 's/phones = 8/phones = 64/' run.toml >slow.toml
 mv slow.toml run.toml
 ping early

@@ -1,0 +1,16 @@
+#pragma once
+#include <functional>
+#include <stop_token>
+
+namespace asdic {
+
+/// Does some work; when `stop` is requested meanwhile, its parallel loops (raytrace/parallel.h) end
+/// early and its stop points throw, so that it is over within milliseconds.
+/// \throws Interrupted if it was stopped; what the work throws
+void until_stopped(const std::stop_token& stop, const std::function<void()>& work);
+
+/// For loops that may take long beside or within the parallel ones: ends the work that was called
+/// off; else costs some nanoseconds. \throws Interrupted
+void stop_point();
+
+}  // namespace asdic
