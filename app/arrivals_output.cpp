@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/console.h"
 #include "core/units.h"
@@ -29,13 +31,22 @@ std::string title_of(const ArrivalsResult& result, const Leg& leg) {
                      distance, number(compass_degrees(leg.bearing), 1), found);
 }
 
+/// Bounces of a path that are listed one by one. A guide without loss has paths of thousands.
+constexpr std::size_t most_listed = 256;
+
+std::span<const Bounce> listed_bounces(const Arrival& arrival) {
+  return std::span(arrival.bounces).first(std::min(arrival.bounces.size(), most_listed));
+}
+
 /// s12.3 b20.1: in order, surface or bottom with the grazing angle.
 std::string bounces_of(const Arrival& arrival) {
   std::string text;
-  for (const Bounce& bounce : arrival.bounces)
+  for (const Bounce& bounce : listed_bounces(arrival))
     text += fmt::format("{}{}{}", text.empty() ? "" : " ",
                         bounce.boundary == BoundaryKind::surface ? 's' : 'b',
                         number(degrees(bounce.grazing), 2));
+  if (arrival.bounces.size() > most_listed)
+    text += fmt::format(" and {} more", arrival.bounces.size() - most_listed);
   return text;
 }
 
@@ -43,7 +54,7 @@ ordered_json json_of(const Arrivals& arrivals) {
   ordered_json paths = ordered_json::array();
   for (const Arrival& a : arrivals) {
     ordered_json bounces = ordered_json::array();
-    for (const Bounce& bounce : a.bounces)
+    for (const Bounce& bounce : listed_bounces(a))
       bounces.push_back(
           {{"boundary", bounce.boundary == BoundaryKind::surface ? "surface" : "bottom"},
            {"grazing_deg", degrees(bounce.grazing)},
@@ -63,6 +74,8 @@ ordered_json json_of(const Arrivals& arrivals) {
                      {"lower_turns", a.lower_turns},
                      {"caustics", a.caustics},
                      {"bounces", bounces}});
+    if (a.bounces.size() > most_listed)
+      paths.back()["more_bounces"] = a.bounces.size() - most_listed;
   }
   return paths;
 }

@@ -118,9 +118,11 @@ RaysResult read(const Options& options, bool as_run) {
 }
 
 std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case, const Options& options) {
-  const Interrupt interrupt;
   try {
-    return run(run_case, [](double) { return !Interrupt::requested(); }).rays;
+    PropagationResult found;
+    until_interrupted([&] { found = run(run_case); });
+    for (const std::string& note : found.notes) fmt::print(stderr, "asdic: note: {}\n", note);
+    return std::move(found.rays);
   } catch (const Interrupted&) {
     throw RunError("interrupted");
   } catch (const InputError& error) {

@@ -42,12 +42,13 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
                 .path = choice.path,
                 .text = read_text_file(choice.path, "a scenario file"),
                 .overrides = overrides};
-  const Interrupt interrupt;
   ProgressBar bar("%", 100, true);
   try {
-    all.result = run(all.run_case, [&](double share) {
-      bar.done(static_cast<int>(100.0 * share));
-      return !Interrupt::requested();
+    until_interrupted([&] {
+      all.result = run(all.run_case, [&](double share) {
+        bar.done(static_cast<int>(100.0 * share));
+        return true;
+      });
     });
   } catch (const Interrupted&) {
     throw RunError("interrupted");
@@ -55,6 +56,7 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
     throw told_of_scenario(error, choice.path, overrides);
   }
   all.notes.insert(all.notes.end(), all.result.notes.begin(), all.result.notes.end());
+  for (const std::string& note : all.notes) fmt::print(stderr, "asdic: note: {}\n", note);
   return all;
 }
 
@@ -85,6 +87,7 @@ std::string run_arrivals_json(const RunArrivals& all) {
                              {"title", all.origin.title},
                              {"scenario", all.origin.path},
                              {"frequency_hz", all.run_case.frequency},
+                             {"notes", all.notes},
                              {"legs", legs}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
@@ -98,6 +101,7 @@ void write_run_arrivals(const std::filesystem::path& path, const RunArrivals& al
   Hdf5Output output(path);
   write_hdf5_result(output.file(), arrivals);
   write_root(output.file(), "asdic arrivals", all.origin);
+  if (!all.notes.empty()) output.file().set_attribute("", "notes", all.notes);
   output.finish();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -18,7 +19,8 @@
 namespace asdic {
 namespace {
 
-/// A waveguide without loss has no end of paths; these are very many.
+/// Off either boundary. A waveguide without loss has no end of paths; these are very many, and what
+/// is left out is told.
 constexpr int most_bounces = 2048;
 
 /// Launch elevations at the edge of the fan belong to it.
@@ -31,6 +33,19 @@ bool within_box(const PropagationCase& run_case) {
 
 bool forward_only(const BeamSettings& beams) {
   return std::max(std::abs(beams.lowest), std::abs(beams.highest)) <= 0.5 * pi + edge_of_fan;
+}
+
+/// How much of the intensity at a receiver paths with more than most_bounces would add at most, as
+/// a share of what was found: paths spread as the inverse of their length, which grows with their
+/// bounces, so that all after the n-th have no more than n times the intensity of the n-th.
+double left_out(const Arrivals& arrivals) {
+  double all = 0.0, last = 0.0;
+  for (const Arrival& a : arrivals) {
+    const double intensity = std::norm(a.amplitude);
+    all += intensity;
+    if (std::max(a.surface_bounces, a.bottom_bounces) == most_bounces) last += intensity;
+  }
+  return last > 0.0 ? most_bounces * last / all : 0.0;
 }
 
 class ArrivalSearch {
@@ -81,12 +96,28 @@ class ArrivalSearch {
                         " of " + std::to_string(watch.intervals) +
                         " parts of the fan; faint paths are missing there");
     }
+    tell_of_bounces(source_depth, found, notes);
     for (std::size_t i = 0; i < found.size(); ++i) finish(found[i], receivers_[i].range);
     tell_of(source_depth, notes);
     return found;
   }
 
  private:
+  /// Where paths had to be given up at most_bounces.
+  static void tell_of_bounces(double depth, const std::vector<Arrivals>& found,
+                              std::vector<std::string>& notes) {
+    double most = 0.0;
+    for (const Arrivals& arrivals : found) most = std::max(most, left_out(arrivals));
+    if (most == 0.0) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "source at %g m: paths hardly lose anything in bouncing and have no end; those "
+                  "of more than %d bounces off a boundary are left out, at most %.2g dB of the "
+                  "incoherent level",
+                  depth, most_bounces, db_from_power(1.0 + most));
+    notes.emplace_back(text);
+  }
+
   /// What is special about a source's place.
   void tell_of(double depth, std::vector<std::string>& notes) const {
     if (on_vacuum(case_.environment, depth))
