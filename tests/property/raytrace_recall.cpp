@@ -6,6 +6,7 @@
 
 #include "core/units.h"
 #include "raytrace/eigenrays.h"
+#include "raytrace/layered/branch_table.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/deep_ocean.h"

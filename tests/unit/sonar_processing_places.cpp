@@ -67,8 +67,7 @@ TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
       at(10.0, 1.004, Vec3::UnitX()),           // another speed
       at(10.0, 1.002, Vec3::UnitY()),           // another direction
       at(3.02, 0.99, Vec3::UnitY())};           // the transmitter itself
-  const PingScore score =
-      score_detections(found, echoes, targets, line, Kinematics{}, cell, 1.0, 20.0);
+  const PingScore score = score_detections(found, echoes, targets, line, Track{}, cell, 1.0, 20.0);
   EXPECT_EQ(score.owner, (std::vector<int>{0, 0, -1, -1, -1, direct_sound}));
   EXPECT_EQ(score.hits, 1);
   EXPECT_EQ(score.misses, 0);  // target 1 has no echo: it is not missed
@@ -78,10 +77,9 @@ TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
   EXPECT_NEAR(score.targets[0].position_error, std::hypot(50.0, 30.0), 1e-9);
   EXPECT_FALSE(score.targets[1].audible);
   // Nothing is missed that was not searched for.
-  const PingScore nothing =
-      score_detections({}, echoes, targets, line, Kinematics{}, cell, 11.0, 20.0);
+  const PingScore nothing = score_detections({}, echoes, targets, line, Track{}, cell, 11.0, 20.0);
   EXPECT_EQ(nothing.misses, 0);
-  EXPECT_EQ(score_detections({}, echoes, targets, line, Kinematics{}, cell, 1.0, 20.0).misses, 1);
+  EXPECT_EQ(score_detections({}, echoes, targets, line, Track{}, cell, 1.0, 20.0).misses, 1);
 }
 
 // On a sweep's ridge an error of the Doppler factor moves the time by κ times it.
@@ -93,7 +91,7 @@ TEST(Scoring, FollowsASweepsRidge) {
   const std::vector<Detection> along{at(10.2, 1.005, Vec3::UnitX())},
       across{at(10.2, 0.995, Vec3::UnitX())};
   const auto hits = [&](const std::vector<Detection>& found) {
-    return score_detections(found, echoes, targets, point, Kinematics{}, cell, 1.0, 20.0).hits;
+    return score_detections(found, echoes, targets, point, Track{}, cell, 1.0, 20.0).hits;
   };
   EXPECT_EQ(hits(along), 1);
   EXPECT_EQ(hits(across), 0);
