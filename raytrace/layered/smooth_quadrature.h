@@ -24,6 +24,7 @@ class RayAlong {
   RayAlong(const Layer& layer, const RayParameter& ray, double depth, double sign, double speed,
            double sine2) noexcept
       : layer_(layer),
+        ray_(ray),
         drop_(speed_drop(layer, depth, sign)),
         depth_(depth),
         sign_(sign),
@@ -53,21 +54,17 @@ class RayAlong {
   [[nodiscard]] At at(double t) const noexcept {
     if (layer_.law == Layer::Law::cubic) return at_cubic(t);
     const double c = layer_.at(depth(t)).c;
-    return {c, of(speed_ - c)};
+    return {c, std::max(ray_.sine2(c), 1e-300)};
   }
   /// The same where the law is cubic: no branch, for loops that become vector instructions.
   [[nodiscard]] At at_cubic(double t) const noexcept {
-    const double drop = drop_(t);
-    return {speed_ - drop, of(drop)};
+    const double drop = drop_(t), sine2 = sine2_ + slowness2_ * drop * (2.0 * speed_ - drop);
+    return {speed_ - drop, sine2 > 1e-300 ? sine2 : 1e-300};
   }
 
  private:
-  [[nodiscard]] double of(double drop) const noexcept {
-    const double sine2 = sine2_ + slowness2_ * drop * (2.0 * speed_ - drop);
-    return sine2 > 1e-300 ? sine2 : 1e-300;
-  }
-
   const Layer& layer_;
+  const RayParameter& ray_;
   SpeedDrop<double> drop_;
   double depth_, sign_, speed_, sine2_, slowness2_;
 };
