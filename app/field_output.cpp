@@ -17,17 +17,18 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Transmission losses where there is sound, sorted [dB].
-std::vector<double> losses(const FieldData& data) {
+std::vector<double> losses(const std::vector<std::complex<float>>& pressure) {
   std::vector<double> all;
-  for (const std::complex<float> p : data.pressure)
+  for (const std::complex<float> p : pressure)
     if (const double magnitude = std::abs(std::complex<double>(p)); magnitude > 0.0)
       all.push_back(-20.0 * std::log10(magnitude));
   std::sort(all.begin(), all.end());
   return all;
 }
 
-double silent_pct(const FieldData& data, std::size_t heard) {
-  const auto all = static_cast<double>(data.pressure.size());
+/// \param heard  of so many receivers
+double silent_pct(std::size_t receivers, std::size_t heard) {
+  const auto all = static_cast<double>(receivers);
   return all > 0.0 ? 100.0 * (all - static_cast<double>(heard)) / all : 0.0;
 }
 
@@ -38,6 +39,14 @@ std::string receivers_text(const ReceiverGrid& grid) {
 }
 
 }  // namespace
+
+std::string loss_text(const std::vector<std::complex<float>>& pressure) {
+  const std::vector<double> tl = losses(pressure);
+  if (tl.empty()) return "loss       no sound at 100 %\n";
+  return fmt::format("loss       {} to {} dB, median {} dB; no sound at {:.3g} %\n",
+                     number(tl.front(), 1), number(tl.back(), 1),
+                     number(compare::quantile(tl, 0.5), 1), silent_pct(pressure.size(), tl.size()));
+}
 
 FieldData field_data(const PropagationCase& run_case, PropagationResult&& result) {
   return {.title = run_case.title,
@@ -67,7 +76,6 @@ void write_field_file(const FieldResult& result) {
 
 std::string field_text(const FieldResult& result, double wall) {
   const FieldData& data = result.data;
-  const std::vector<double> tl = losses(data);
   std::string text =
       emphasised(data.title.empty() ? result.origin.path : data.title) +
       fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
@@ -77,12 +85,7 @@ std::string field_text(const FieldResult& result, double wall) {
       fmt::format("beams      {} of kind {}; more would change {} {} dB at 95 % of the receivers\n",
                   data.beams, data.beam_kind, data.beam_error_bounded ? "no more than" : "about",
                   number(data.beam_error_db, 3));
-  if (!tl.empty())
-    text += fmt::format("loss       {} to {} dB, median {} dB; no sound at {:.3g} %\n",
-                        number(tl.front(), 1), number(tl.back(), 1),
-                        number(compare::quantile(tl, 0.5), 1), silent_pct(data, tl.size()));
-  else
-    text += "loss       no sound at 100 %\n";
+  text += loss_text(data.pressure);
   for (const std::string& note : result.notes) text += "note: " + note + '\n';
   return text + fmt::format("{}: {}, {}\n", result.output.string(),
                             byte_count(double(std::filesystem::file_size(result.output))),
@@ -91,7 +94,7 @@ std::string field_text(const FieldResult& result, double wall) {
 
 std::string field_json(const FieldResult& result) {
   const FieldData& data = result.data;
-  const std::vector<double> tl = losses(data);
+  const std::vector<double> tl = losses(data.pressure);
   ordered_json loss;
   if (!tl.empty())
     loss = {{"least", tl.front()}, {"median", compare::quantile(tl, 0.5)}, {"greatest", tl.back()}};
@@ -110,7 +113,7 @@ std::string field_json(const FieldResult& result) {
                             {"beam_error_db", data.beam_error_db},
                             {"beam_error_bounded", data.beam_error_bounded},
                             {"tl_db", loss},
-                            {"silent_pct", silent_pct(data, tl.size())},
+                            {"silent_pct", silent_pct(data.pressure.size(), tl.size())},
                             {"notes", result.notes}};
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <complex>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct FieldResult {
   std::filesystem::path output{};
   std::vector<std::string> notes{};
 };
+
+/// How loud a field is, a line for people: "loss       60.1 to 99.0 dB, median …".
+[[nodiscard]] std::string loss_text(const std::vector<std::complex<float>>& pressure);
 
 [[nodiscard]] FieldData field_data(const PropagationCase& run_case, PropagationResult&& result);
 

@@ -1,21 +1,48 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "app/command.h"
 #include "app/console.h"
 #include "app/ping_report.h"
+#include "app/result_info.h"
 #include "app/study_info.h"
 #include "core/error.h"
 #include "io/ping_file.h"
+#include "io/result_file.h"
 
 namespace asdic::app {
 namespace {
 
 /// An attribute as text, "unknown" if it is not there.
 std::string attribute(const PingFile& file, const std::string& object, const std::string& key) {
-  return file.file().has_attribute(object, key) ? file.file().attribute_text(object, key)
-                                                : "unknown";
+  return file.file().attribute_or(object, key, "unknown");
+}
+
+/// What `asdic process` added.
+std::string processed(const Hdf5File& file) {
+  if (!file.has("processed")) return {};
+  const auto rows = [&](const std::string& table, const std::string& thing) {
+    const std::string ping = "processed/" + table + "/ping";
+    return count_of(file.has(ping) ? file.info(ping).shape.at(0) : 0, thing);
+  };
+  return fmt::format("processed    {}, {} of tracks, by asdic {}\n",
+                     rows("detections", "detection"), rows("tracks", "point"),
+                     file.attribute_or("processed", "program_version", "unknown"));
+}
+
+/// What is neither HDF5 nor anything else that can be told: better words than HDF5's.
+void check_kind_of_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::is_empty(path, error) ||
+      is_hdf5(path))
+    return;
+  throw InputError({.where = path,
+                    .got = "a file that is not HDF5",
+                    .expected = "HDF5 of asdic ping, process, study, merge, field, arrivals or "
+                                "rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
+                                "tells)"});
 }
 
 std::string completeness(const PingFile& file) {
@@ -40,6 +67,9 @@ std::string summary(const PingFile& file) {
 
 int info(const std::string& path) {
   if (is_study_file(path)) return study_info(path);
+  if (is_propagation_file(path)) return propagation_info(path);
+  if (std::filesystem::path(path).extension() == ".wav") return wav_info(path);
+  check_kind_of_file(path);
   const PingFile file(path);
   const auto root = [&](const std::string& key) { return attribute(file, "", key); };
   const std::string title = root("title");
@@ -64,7 +94,7 @@ int info(const std::string& path) {
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
   if (file.file().has_attribute("", "overrides"))
     print(fmt::format("changed by   {}\n", root("overrides")));
-  print(summary(file));
+  print(processed(file.file()) + summary(file));
   return 0;
 }
 
@@ -72,9 +102,11 @@ int info(const std::string& path) {
 
 void add_info_command(Program& program) {
   auto path = std::make_shared<std::string>();
-  const Command command =
-      program.add_command("info", "Say what a ping file or a study's file holds.");
-  command.add_option("FILE", *path, "HDF5 file of asdic ping (NAME.part too), asdic study or merge")
+  const Command command = program.add_command("info", "Say what a file that asdic wrote holds.");
+  command
+      .add_option("FILE", *path,
+                  "HDF5 of asdic ping (NAME.part too), process, study, merge, field, arrivals or "
+                  "rays, or .shd, .arr, .ray, .wav")
       .required();
   command.footer("Example:  asdic info deep_ocean.h5");
   command.runs([path] { return info(*path); });

@@ -3,7 +3,8 @@
 #include "app/provenance.h"
 #include "core/error.h"
 #include "io/digest.h"
-#include "io/ping/growing_table.h"
+#include "io/hdf5/scale.h"
+#include "io/result_file.h"
 
 namespace asdic::app {
 Hdf5Output::Hdf5Output(const std::filesystem::path& path)
@@ -47,8 +48,7 @@ ResultOrigin origin_of(const Scenario& scenario) {
 
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin) {
   const Provenance made = provenance(1);
-  file.set_attribute("", "filetype", filetype);
-  file.set_attribute("", "version", "1.0");
+  write_filetype(file, filetype, result_version);
   file.set_attribute("", "title", origin.title);
   file.set_attribute("", "program_version", made.program_version);
   file.set_attribute("", "build", made.build);

@@ -28,7 +28,7 @@ struct Options {
   std::string output;
   std::optional<int> pings, threads;
   std::optional<std::int64_t> seed;
-  bool quiet = false;
+  bool time_axis = false, quiet = false;
 };
 
 /// --pings and --seed are overrides like any other: so the file tells of them.
@@ -76,7 +76,8 @@ int ping(const Options& options) {
   const PingSimulator& simulator = *made;
   const int count = simulator.pings();
   PingReport report(simulator.scenario());
-  PingFileWriter writer(output, simulator.scenario(), provenance(threads));
+  PingFileWriter writer(output, simulator.scenario(), provenance(threads),
+                        options.time_axis ? SampleTimes::written_out : SampleTimes::start_and_step);
   int done = 0;
   try {
     RayPaths rays;
@@ -129,6 +130,8 @@ void add_ping_command(Program& program) {
       .type_name("S")
       .check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
   add_threads_option(command, options->threads);
+  command.add_flag("--time-axis", options->time_axis,
+                   "write the time of every sample out as well, not start and step alone");
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command.footer(
       "Ctrl-C leaves the pings in hand and closes the file; a second one ends at once.\n"

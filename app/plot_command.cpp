@@ -24,10 +24,8 @@ struct Options {
 /// is told in our own words.
 bool is_ping_file(const std::string& path) {
   if (!is_hdf5(path)) return false;
-  const Hdf5File file = Hdf5File::open(path);
-  return !file.has_attribute("", "filetype") ||
-         file.attribute_text("", "filetype") == "asdic ping" ||
-         !file.attribute_text("", "filetype").starts_with("asdic ");
+  const std::string type = filetype_of(path);
+  return type == "asdic ping" || !type.starts_with("asdic ");
 }
 
 /// FILE without its ending, as the script does it for a ping file.

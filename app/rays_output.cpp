@@ -60,12 +60,12 @@ class RaysGroup {
   /// \param value  (ray, i), for i below size(ray)
   void matrix(const std::string& name, const std::string& dimension, std::size_t n,
               std::size_t (*size)(const RayPath&), double (*value)(const RayPath&, std::size_t),
-              const std::string& long_name, const std::string& units) {
+              const std::string& long_name, const std::string& units, const Meaning& meaning = {}) {
     std::vector<double> values(rays_.size() * n, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < rays_.size(); ++i)
       for (std::size_t j = 0; j < size(rays_[i]); ++j) values[i * n + j] = value(rays_[i], j);
     file_.write<double>(path(name), values, {rays_.size(), n});
-    describe(file_, path(name), long_name, units);
+    describe(file_, path(name), long_name, units, meaning);
     file_.attach_scales(path(name), {path("ray"), path(dimension)});
   }
 
@@ -184,7 +184,7 @@ void write_rays_file(const std::filesystem::path& path, const RaysResult& result
   group.matrix(
       "depth", "point", points, point_count,
       [](const RayPath& r, std::size_t i) { return r.points[i].depth; }, "depth, positive down",
-      "m");
+      "m", cf::depth);
   group.matrix(
       "time", "point", points, point_count,
       [](const RayPath& r, std::size_t i) { return r.points[i].time; }, "travel time", "s");

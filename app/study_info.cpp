@@ -49,8 +49,7 @@ std::string columns_of(const study::Table& table) {
 
 std::string origin_of(const study::StudyFile& file) {
   const auto run = [&](const std::string& key) {
-    return file.file().has_attribute("run", key) ? file.file().attribute_text("run", key)
-                                                 : std::string("unknown");
+    return file.file().attribute_or("run", key, "unknown");
   };
   const std::size_t runs = file.sessions().size();
   std::string text = fmt::format("made         {} on {}, {}, {} threads, in {}\n", run("started"),
@@ -62,12 +61,7 @@ std::string origin_of(const study::StudyFile& file) {
 
 }  // namespace
 
-bool is_study_file(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || !is_hdf5(path)) return false;
-  const Hdf5File file = Hdf5File::open(path);
-  return file.has_attribute("", "filetype") && file.attribute_text("", "filetype") == "asdic study";
-}
+bool is_study_file(const std::string& path) { return filetype_of(path) == "asdic study"; }
 
 int study_info(const std::string& path) {
   const study::StudyFile file(path);

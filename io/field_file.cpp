@@ -10,9 +10,9 @@ namespace asdic {
 namespace {
 
 void coordinate(Hdf5File& file, const std::string& name, const std::vector<double>& values,
-                const std::string& long_name) {
+                const std::string& long_name, const Meaning& meaning = {}) {
   file.write<double>(name, values, {values.size()});
-  describe(file, name, long_name, "m");
+  describe(file, name, long_name, "m", meaning);
   file.attach_scales(name, {"receiver"});
 }
 
@@ -27,11 +27,6 @@ std::vector<double> axis(const Hdf5File& file, const std::string& name) {
   std::vector<double> values = file.read<double>(name);
   if (values.empty()) throw wrong(file, name, "no values", "one or more");
   return values;
-}
-
-std::string text_or(const Hdf5File& file, const std::string& object, const std::string& key,
-                    const std::string& otherwise) {
-  return file.has_attribute(object, key) ? file.attribute_text(object, key) : otherwise;
 }
 
 constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-coherent"};
@@ -49,7 +44,7 @@ void write_field(Hdf5File& file, const FieldData& field) {
     file.set_attribute("", "beam_error_bounded", std::int64_t{field.beam_error_bounded});
   }
   write_scale(file, "source_depth", "source_depth", field.source_depths,
-              "depth of the source, positive down", "m");
+              "depth of the source, positive down", "m", cf::depth);
   write_scale<std::int8_t>(file, "re_im", "re_im", {0, 1}, "0 real part, 1 imaginary part");
   const ReceiverGrid& grid = field.receivers;
   const std::size_t sources = field.source_depths.size();
@@ -59,13 +54,16 @@ void write_field(Hdf5File& file, const FieldData& field) {
     std::vector<std::int32_t> numbers(grid.ranges.size());
     std::iota(numbers.begin(), numbers.end(), 0);
     write_scale(file, "receiver", "receiver", numbers, "number of the receiver, from 0");
-    coordinate(file, "receiver_depth", grid.depths, "depth of the receiver, positive down");
+    coordinate(file, "receiver_depth", grid.depths, "depth of the receiver, positive down",
+               cf::depth);
     coordinate(file, "receiver_range", grid.ranges, "horizontal distance from the source");
     shape = {sources, grid.ranges.size(), 2};
     scales = {"source_depth", "receiver", "re_im"};
   } else {
-    write_scale(file, "depth", "depth", grid.depths, "depth of the receiver, positive down", "m");
-    write_scale(file, "range", "range", grid.ranges, "horizontal distance from the source", "m");
+    write_scale(file, "depth", "depth", grid.depths, "depth of the receiver, positive down", "m",
+                cf::depth_axis);
+    write_scale(file, "range", "range", grid.ranges, "horizontal distance from the source", "m",
+                cf::range_axis);
   }
   std::vector<float> parts;
   parts.reserve(2 * field.pressure.size());
@@ -76,22 +74,24 @@ void write_field(Hdf5File& file, const FieldData& field) {
            "pressure relative to 1 m from the source; transmission loss = -20 log10 |pressure|",
            "1");
   file.attach_scales("pressure", scales);
+  if (grid.irregular)
+    file.set_attribute("pressure", "coordinates", "receiver_depth receiver_range");
 }
 
 FieldData read_field(const Hdf5File& file) {
-  if (const std::string type = text_or(file, "", "filetype", ""); type != "asdic field")
+  if (const std::string type = file.attribute_or("", "filetype", ""); type != "asdic field")
     throw wrong(file, "filetype", type.empty() ? "none" : '"' + type + '"', "\"asdic field\"");
-  FieldData field{.title = text_or(file, "", "title", ""),
+  FieldData field{.title = file.attribute_or("", "title", ""),
                   .source_depths = axis(file, "source_depth"),
-                  .beam_kind = text_or(file, "", "beam_kind", "")};
+                  .beam_kind = file.attribute_or("", "beam_kind", "")};
   if (file.has_attribute("", "frequency_hz"))
     field.frequency = file.attribute_number("", "frequency_hz");
-  const std::string kind = text_or(file, "", "field", "coherent");
+  const std::string kind = file.attribute_or("", "field", "coherent");
   const auto known = std::find(std::begin(field_kinds), std::end(field_kinds), kind);
   if (known == std::end(field_kinds))
     throw wrong(file, "field", '"' + kind + '"', "coherent, incoherent or semi-coherent");
   field.kind = static_cast<FieldKind>(known - std::begin(field_kinds));
-  if (text_or(file, "", "source", "point") == "line") field.source = SourceKind::line;
+  if (file.attribute_or("", "source", "point") == "line") field.source = SourceKind::line;
   if (file.has_attribute("", "beams"))
     field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
   if (file.has_attribute("", "beam_error_db"))

@@ -141,6 +141,23 @@ void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
                "writing");
 }
 
+void Hdf5File::make_dimension(const std::string& dataset, std::size_t size) {
+  const hsize_t extent = size;
+  const Handle space(H5Screate_simple(1, &extent, nullptr), H5Sclose);
+  const Handle parents = make_parents();
+  {
+    // Never written, so HDF5 gives it no room. The type is what netCDF-C itself takes.
+    const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), H5T_IEEE_F32BE, space,
+                                            parents, H5P_DEFAULT, H5P_DEFAULT),
+                                 dataset, "creating the dimension"),
+                    H5Dclose);
+  }
+  // By this name all netCDF-4 readers know it ("NetCDF-4 dimensions", netCDF user's guide, app. C).
+  std::string length = std::to_string(size);
+  length.insert(0, 10 - std::min<std::size_t>(10, length.size()), ' ');
+  make_scale(dataset, "This is a netCDF dimension but not a netCDF variable." + length);
+}
+
 void Hdf5File::make_scale(const std::string& dataset, const std::string& dimension) {
   const Handle id = impl_->open_dataset(dataset);
   impl_->check(H5DSset_scale(id, dimension.c_str()), dataset, "making a scale");

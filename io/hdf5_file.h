@@ -83,6 +83,9 @@ class Hdf5File {
   template <class T>
   void append_padded(const std::string& dataset, std::span<const T> values, std::size_t length);
 
+  /// A dimension that has a length but no values, as netCDF keeps its dimensions without a
+  /// variable: a scale that takes no room in the file, and reads as zeros.
+  void make_dimension(const std::string& dataset, std::size_t size);
   /// Makes a dataset the scale of a dimension, and hangs scales on the axes of another.
   void make_scale(const std::string& dataset, const std::string& dimension);
   void attach_scales(const std::string& dataset, const std::vector<std::string>& scales);
@@ -118,6 +121,9 @@ class Hdf5File {
                                                          const std::string& key) const;
   /// As one text, whatever it is: numbers in their shortest form, lists joined by ", ".
   [[nodiscard]] std::string attribute_text(const std::string& object, const std::string& key) const;
+  /// The same, or something else where there is no such object or attribute.
+  [[nodiscard]] std::string attribute_or(const std::string& object, const std::string& key,
+                                         std::string_view otherwise) const;
   [[nodiscard]] double attribute_number(const std::string& object, const std::string& key) const;
 
  private:

@@ -10,11 +10,11 @@
 namespace asdic {
 
 PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
-                               const Provenance& provenance)
-    : impl_(std::make_unique<Impl>(path, scenario)) {
+                               const Provenance& provenance, SampleTimes times)
+    : impl_(std::make_unique<Impl>(path, scenario, times)) {
   try {
     ping_file::write_root(impl_->file, scenario, provenance);
-    ping_file::write_replicas(impl_->file, scenario);
+    ping_file::write_replicas(impl_->file, scenario, times);
     ping_file::write_environment(impl_->file, scenario);
     impl_->create_ping_datasets();
     impl_->file.flush();  // readable from now on, whatever happens

@@ -37,13 +37,17 @@ struct RayPaths {
   std::vector<double> hit_range{};  ///< where the fan meets the surface [m]
 };
 
+/// How the file tells when its samples are: by start and step, or with every time written out as
+/// well, for readers that want an axis (as large as half a phone's pressure).
+enum class SampleTimes { start_and_step, written_out };
+
 /// Writes docs/formats/ping.md while a run goes on: NAME.part, readable after every append() even
 /// if the program dies, renamed to NAME by finish(). All methods throw RunError when the world says
 /// no. One thread at a time (HDF5).
 class PingFileWriter {
  public:
   PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
-                 const Provenance& provenance);
+                 const Provenance& provenance, SampleTimes times = SampleTimes::start_and_step);
   PingFileWriter(PingFileWriter&&) noexcept;
   /// Without finish(): NAME.part stays if it holds a ping (hours of work are not thrown away by an
   /// exception), else it goes.
@@ -61,6 +65,9 @@ class PingFileWriter {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Opens a ping file of version 1 or 2. \throws InputError for a file that is not one
+[[nodiscard]] Hdf5File open_ping_file(const std::filesystem::path& path);
 
 /// Reads a ping file. All throw InputError for a file that is not one, RunError when reading fails.
 class PingFile {

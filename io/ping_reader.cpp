@@ -3,16 +3,25 @@
 
 namespace asdic {
 
-PingFile::PingFile(const std::filesystem::path& path) : file_(Hdf5File::open(path)) {
+Hdf5File open_ping_file(const std::filesystem::path& path) {
+  Hdf5File file = Hdf5File::open(path);
   const auto wrong = [&](const std::string& got, const std::string& expected) {
     return InputError({.where = path.string(), .got = got, .expected = expected});
   };
-  if (!file_.has_attribute("", "filetype"))
+  if (!file.has_attribute("", "filetype"))
     throw wrong("an HDF5 file without filetype", "a ping file of asdic");
-  if (const std::string type = file_.attribute_text("", "filetype"); type != "asdic ping")
+  if (const std::string type = file.attribute_text("", "filetype"); type != "asdic ping")
     throw wrong("filetype \"" + type + "\"", "\"asdic ping\"");
-  if (const std::string version = file_.attribute_text("", "version"); !version.starts_with("1."))
-    throw wrong("version " + version, "version 1.x");
+  const std::string version = file.attribute_text("", "version");
+  if (!version.starts_with("1.") && !version.starts_with("2."))
+    throw wrong("version " + version, "version 1.x or 2.x");
+  return file;
+}
+
+PingFile::PingFile(const std::filesystem::path& path) : file_(open_ping_file(path)) {
+  const auto wrong = [&](const std::string& got, const std::string& expected) {
+    return InputError({.where = path.string(), .got = got, .expected = expected});
+  };
   if (file_.has("pressure")) shape_ = file_.info("pressure").shape;
   const bool complex = shape_.size() == 4 && shape_[3] == 2;
   if (shape_.size() != 3 && !complex)

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/field_file.h"
+#include "io/hdf5/scale.h"
 #include "io/input_file.h"
 #include "io/result/tables.h"
 
@@ -58,6 +59,12 @@ bool is_hdf5(const std::filesystem::path& path) {
   return InputFile(path, known_files).read(signature.size()) == signature;
 }
 
+std::string filetype_of(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored) || !is_hdf5(path)) return {};
+  return Hdf5File::open(path).attribute_or("", "filetype", "");
+}
+
 PropagationFile read_result(const std::filesystem::path& path) {
   if (is_hdf5(path)) return read_hdf5_result(Hdf5File::open(path));
   const std::string type = ending(path);
@@ -70,8 +77,7 @@ PropagationFile read_result(const std::filesystem::path& path) {
 }
 
 PropagationFile read_hdf5_result(const Hdf5File& file) {
-  const std::string type =
-      file.has_attribute("", "filetype") ? file.attribute_text("", "filetype") : "none";
+  const std::string type = file.attribute_or("", "filetype", "none");
   if (type == "asdic field") return with_layout(file, to_shade_file(read_field(file)));
   if (type == "asdic arrivals") return with_layout(file, result_tables::read_arrivals(file));
   if (type == "asdic rays") return result_tables::read_rays(file);
@@ -81,8 +87,7 @@ PropagationFile read_hdf5_result(const Hdf5File& file) {
 }
 
 void write_hdf5_result(Hdf5File& file, const PropagationFile& result) {
-  file.set_attribute("", "filetype", "asdic " + std::string(kind_of(result)));
-  file.set_attribute("", "version", "1.0");
+  write_filetype(file, "asdic " + std::string(kind_of(result)), result_version);
   if (const auto* field = std::get_if<bellhop::ShadeFile>(&result)) {
     file.set_attribute("", "title", field->title);
     write_layout(file, *field);

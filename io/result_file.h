@@ -11,6 +11,9 @@ namespace asdic {
 /// A result of the propagation model, of either program.
 using PropagationFile = std::variant<bellhop::ShadeFile, bellhop::ArrivalsFile, bellhop::RayFile>;
 
+/// Of docs/formats/field.md, arrivals.md and rays.md, in HDF5.
+inline constexpr const char* result_version = "1.1";
+
 /// "field", "arrivals" or "rays".
 [[nodiscard]] std::string_view kind_of(const PropagationFile& file) noexcept;
 
@@ -18,6 +21,9 @@ using PropagationFile = std::variant<bellhop::ShadeFile, bellhop::ArrivalsFile, 
 /// `asdic arrivals` and `asdic rays` (by their first bytes).
 /// \throws InputError that says what was found and expected
 [[nodiscard]] PropagationFile read_result(const std::filesystem::path& path);
+
+/// The filetype that an HDF5 file of ours tells at its root; "" of any other file.
+[[nodiscard]] std::string filetype_of(const std::filesystem::path& path);
 
 /// Whether a file begins as HDF5 does. \throws InputError if it cannot be read
 [[nodiscard]] bool is_hdf5(const std::filesystem::path& path);

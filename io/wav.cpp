@@ -60,7 +60,38 @@ SampledPulse read_sound_pulse(const std::filesystem::path& path) {
   return pulse;
 }
 
+std::string json_beside(const std::filesystem::path& path) { return path.string() + ".json"; }
+
 }  // namespace
+
+WavContent read_wav_content(const std::filesystem::path& path) {
+  constexpr const char* expected = "a WAV file of asdic export";
+  SF_INFO info{};
+  const InputFile input(path, expected);
+  const SoundFile file(sf_open_fd(input.descriptor(), SFM_READ, &info, SF_FALSE));
+  if (file == nullptr)
+    throw InputError(
+        {.where = path.string(),
+         .got = "a file that libsndfile cannot read (" + std::string(sf_strerror(nullptr)) + ")",
+         .expected = expected});
+  WavContent content{.channels = static_cast<std::size_t>(info.channels),
+                     .samples = static_cast<std::size_t>(info.frames),
+                     .scale = {.sample_rate = static_cast<double>(info.samplerate)}};
+  std::error_code ignored;
+  if (!std::filesystem::exists(json_beside(path), ignored)) return content;
+  const std::string json = read_input(json_beside(path), "what asdic export wrote of a WAV file");
+  try {
+    const auto beside = nlohmann::json::parse(json);
+    content.scale = {.pascal_per_unit = beside.at("pascal_per_unit"),
+                     .sample_rate = beside.at("sample_rate_hz")};
+    content.has_scale = true;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError({.where = json_beside(path),
+                      .got = "what cannot be read (" + std::string(error.what()) + ")",
+                      .expected = "pascal_per_unit and sample_rate_hz of the WAV file"});
+  }
+  return content;
+}
 
 SampledPulse read_pulse_file(const std::filesystem::path& path) {
   SampledPulse pulse = path.extension() == ".csv" ? read_csv_pulse(path) : read_sound_pulse(path);
@@ -115,7 +146,7 @@ WavScale write_wav(const std::filesystem::path& path, std::span<const float> pre
       throw RunError(path.string() + ": cannot be written: " + sf_strerror(file.get()));
   }
 
-  const std::string json_path = path.string() + ".json";
+  const std::string json_path = json_beside(path);
   std::ofstream json(json_path);
   json << nlohmann::json{{"pascal_per_unit", scale},
                          {"sample_rate_hz", sample_rate},

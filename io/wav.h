@@ -23,6 +23,16 @@ struct WavScale {
   double sample_rate = 0.0;  ///< exact; the WAV header rounds it to whole Hz [Hz]
 };
 
+/// What a file of write_wav() holds.
+struct WavContent {
+  std::size_t channels = 0, samples = 0;
+  WavScale scale{};
+  bool has_scale = false;  ///< NAME.wav.json is there; else the scale is not known
+};
+/// Reads what the head of a WAV file and the JSON beside it tell.
+/// \throws InputError if the sound or what is beside it cannot be read
+[[nodiscard]] WavContent read_wav_content(const std::filesystem::path& path);
+
 /// Writes phones as 32-bit float WAV, full scale the largest |sample|, and NAME.wav.json with
 /// pascal_per_unit, sample_rate_hz, channels and samples.
 /// \param pressure  [channels × samples] row per phone [Pa]

@@ -1,4 +1,5 @@
 // What a study's file says of itself: its root, summary, manifest, and how it came about.
+#include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -29,8 +30,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 void StudyFileWriter::write_root() {
   const Imprint& imprint = results_.imprint;
-  file_.set_attribute("", "filetype", "asdic study");
-  file_.set_attribute("", "version", "1.1");
+  write_filetype(file_, "asdic study", "1.2");
   file_.set_attribute("", "title", imprint.title);
   file_.set_attribute("", "identity", imprint.identity);
   file_.set_attribute("", "seed", std::to_string(imprint.seed));
@@ -48,6 +48,42 @@ void StudyFileWriter::write_root() {
   text("scenario", imprint.scenario_text, "the scenario file, verbatim");
 }
 
+/// The dimension of a table's rows: its axis or, where it has several, one without values.
+/// \return the dataset that stands for it
+std::string StudyFileWriter::write_rows(const SummaryTable& table, const std::string& group) {
+  const auto has_column = [&](const std::string& name) {
+    return std::any_of(table.columns.begin(), table.columns.end(),
+                       [&](const Column& column) { return column.name == name; });
+  };
+  std::string name = table.axes.size() == 1 ? table.axes.front() : "cell";
+  const std::string path = group + "/";
+  if (table.axes.size() == 1) {
+    const auto axis = std::find_if(table.columns.begin(), table.columns.end(),
+                                   [&](const Column& column) { return column.name == name; });
+    const auto& values = table.values[static_cast<std::size_t>(axis - table.columns.begin())];
+    file_.write<double>(path + name, values, {values.size()});
+    file_.make_scale(path + name, name);
+    return path + name;
+  }
+  while (has_column(name)) name += '_';
+  file_.make_dimension(path + name, table.values.empty() ? 0 : table.values.front().size());
+  describe(file_, path + name, "no values: a row for each of the axes' combinations");
+  return path + name;
+}
+
+/// CF's list of what else tells where a value belongs.
+void StudyFileWriter::write_coordinates(const SummaryTable& table, const std::string& group) {
+  std::vector<std::string> others = table.edges;
+  if (table.axes.size() > 1) others.insert(others.begin(), table.axes.begin(), table.axes.end());
+  std::string names;
+  for (const std::string& name : others) names += (names.empty() ? "" : " ") + name;
+  if (names.empty()) return;
+  for (const Column& column : table.columns)
+    if (std::find(others.begin(), others.end(), column.name) == others.end() &&
+        std::find(table.axes.begin(), table.axes.end(), column.name) == table.axes.end())
+      file_.set_attribute(group + "/" + column.name, "coordinates", names);
+}
+
 void StudyFileWriter::write_summary() {
   const Summary& summary = results_.summary;
   file_.make_group("summary");
@@ -59,13 +95,18 @@ void StudyFileWriter::write_summary() {
     file_.make_group(group);
     file_.set_attribute(group, "title", table.title);
     std::vector<std::string> order;
+    const std::string rows = write_rows(table, group);
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       const std::string path = group + "/" + table.columns[i].name;
-      file_.write<double>(path, table.values[i], {table.values[i].size()});
+      if (path != rows) {
+        file_.write<double>(path, table.values[i], {table.values[i].size()});
+        file_.attach_scales(path, {rows});
+      }
       describe_column(path, table.columns[i]);
       noted(path, table.values[i]);
       order.push_back(table.columns[i].name);
     }
+    write_coordinates(table, group);
     if (!order.empty()) file_.set_attribute(group, "columns", order);
   }
 }
@@ -112,6 +153,7 @@ void StudyFileWriter::write_run() {
     const std::string path = "run/reuse/" + table.columns[i].name;
     file_.write<double>(path, table.values[i], {table.values[i].size()});
     describe_column(path, table.columns[i]);
+    file_.attach_scales(path, {"index"});
   }
 }
 

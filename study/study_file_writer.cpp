@@ -66,6 +66,7 @@ void StudyFileWriter::write_series(const SeriesSource& series) {
   file_.make_scale("time_series/index", "kept");
   column<std::int32_t>("time_series/valid_samples", samples, 0, true);
   describe(file_, "time_series/valid_samples", "samples before the padding");
+  file_.attach_scales("time_series/valid_samples", {"time_series/index"});
   for (const SeriesDataset& dataset : series_datasets()) {
     const std::string path = std::string("time_series/") + dataset.name;
     std::vector<double> values;
@@ -77,7 +78,18 @@ void StudyFileWriter::write_series(const SeriesSource& series) {
   write_pressure(series, row);
   describe(file_, "time_series/pressure", "what the phones hear; complex where the last axis is 2",
            "Pa");
-  file_.attach_scales("time_series/pressure", {"time_series/index"});
+  const std::vector<std::pair<const char*, const char*>> all{
+      {"channel", "no values: number of the phone, from 0"},
+      {"sample", "no values: number k is at start + k / sample_rate"},
+      {"iq", "no values: 0 real part, 1 imaginary part"}};
+  std::vector<std::string> scales{"time_series/index"};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const auto& [name, meaning] = all.at(row.size() == 1 ? 1 : i);
+    scales.push_back(std::string("time_series/") + name);
+    file_.make_dimension(scales.back(), row[i]);
+    describe(file_, scales.back(), meaning);
+  }
+  file_.attach_scales("time_series/pressure", scales);
 }
 
 /// The time series one by one: they are never held together.

@@ -34,13 +34,15 @@ bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
 }
 
 SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
-  SummaryTable made{.name = "statistics", .title = "Every column over all valid realisations"};
+  SummaryTable made{.name = "statistics",
+                    .title = "Every column over all valid realisations, in its own unit",
+                    .axes = {"quantity"}};
   const auto column = [&](const std::string& name, const std::string& unit,
                           const std::string& meaning) {
     made.columns.push_back({.name = name, .unit = unit, .meaning = meaning});
     made.values.emplace_back();
   };
-  const std::string of = "of the quantity";
+  const std::string of;  // as many units as rows: none
   column("quantity", "1", "column of the rows");
   column("count", "1", "finite values");
   column("mean", of, "mean");

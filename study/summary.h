@@ -20,6 +20,8 @@ struct SummaryTable {
   std::string name, title;
   std::vector<Column> columns;
   std::vector<std::vector<double>> values;  ///< [columns][rows]
+  std::vector<std::string> axes{};   ///< columns that tell which row it is: of one, its coordinate
+  std::vector<std::string> edges{};  ///< columns with the ends of the bins along them
 };
 
 /// All that [summary] asks for, out of the rows alone: the same bits for the same rows.

@@ -93,9 +93,11 @@ SummaryTable start(const std::string& name, const std::string& title, const std:
   for (const Axis& axis : axes) {
     const Column& column = table.columns[axis.column];
     add(made, column, column.name, axis.by_value ? "value" : "middle of the bin");
+    made.axes.push_back(column.name);
     if (axis.by_value) continue;
     add(made, column, column.name + "_low", "least of the bin");
     add(made, column, column.name + "_high", "greatest of the bin");
+    made.edges.insert(made.edges.end(), {column.name + "_low", column.name + "_high"});
   }
   add(made, {.unit = "1"}, "count", "valid realisations");
   return made;

@@ -49,7 +49,8 @@ Area area_of(const std::vector<double>& present, const std::vector<double>& abse
 std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table) {
   const std::string head = "snr_matched_db", other = "snr_absent_db";
   std::vector<SummaryTable> all;
-  SummaryTable areas{.name = "roc_area", .title = "Area under the receiver operating curve"};
+  SummaryTable areas{
+      .name = "roc_area", .title = "Area under the receiver operating curve", .axes = {"target"}};
   areas.columns = {{.name = "target", .unit = "1", .meaning = "whose matched filter"},
                    {.name = "area", .unit = "1", .meaning = "P(with echo > without)"},
                    {.name = "area_low", .unit = "1", .meaning = "confidence interval"},
@@ -66,7 +67,9 @@ std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table
     const std::vector<double> absent =
         sorted_values(table, static_cast<std::size_t>(it - table.columns.begin()));
     if (present.empty() || absent.empty()) continue;
-    SummaryTable roc{.name = "roc" + suffix, .title = "Receiver operating characteristic"};
+    SummaryTable roc{.name = "roc" + suffix,
+                     .title = "Receiver operating characteristic",
+                     .axes = {"threshold_db"}};
     roc.columns = {{.name = "threshold_db", .unit = "dB", .meaning = "over the background"},
                    {.name = "pfa", .unit = "1", .meaning = "over it without an echo"},
                    {.name = "pfa_low", .unit = "1", .meaning = "confidence interval"},

@@ -55,7 +55,9 @@ FirstOrder first_order(const std::vector<double>& x, const std::vector<double>& 
 }  // namespace
 
 std::vector<SummaryTable> sensitivity_table(const SummaryPlan& plan, const Table& table) {
-  SummaryTable made{.name = "sensitivity", .title = "How much each measure depends on each input"};
+  SummaryTable made{.name = "sensitivity",
+                    .title = "How much each measure depends on each input",
+                    .axes = {"measure", "input"}};
   made.columns = {
       {.name = "measure", .unit = "1", .meaning = "column"},
       {.name = "input", .unit = "1", .meaning = "column"},
@@ -120,7 +122,8 @@ std::vector<SummaryTable> convergence_table(const SummaryPlan& plan, const Table
   const bool proportion = is_proportion(column);
   const std::string name = proportion ? proportion_name(column) : column.name;
   SummaryTable made{.name = "convergence",
-                    .title = name + " after ever more realisations, in order of their index"};
+                    .title = name + " after ever more realisations, in order of their index",
+                    .axes = {"count"}};
   made.columns = {{.name = "count", .unit = "1", .meaning = "valid realisations"},
                   {.name = name, .unit = column.unit, .meaning = "estimate"},
                   {.name = name + "_low", .unit = column.unit, .meaning = "confidence interval"},

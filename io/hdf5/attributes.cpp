@@ -264,4 +264,10 @@ std::string Hdf5File::attribute_text(const std::string& object, const std::strin
   return text;
 }
 
+std::string Hdf5File::attribute_or(const std::string& object, const std::string& key,
+                                   std::string_view otherwise) const {
+  return has(object) && has_attribute(object, key) ? attribute_text(object, key)
+                                                   : std::string(otherwise);
+}
+
 }  // namespace asdic

@@ -35,7 +35,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<double>("target_velocity", "velocity of the target", "m/s", vector, {targets, 3});
   growing<double>("target_strength_db",
                   "target strength at its aspect from the transmitter, without fluctuation", "dB",
-                  scale, {targets});
+                  scale, {targets}, {.reference = "1 m2"});
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
   growing<std::int32_t>("summary/array",
@@ -43,13 +43,14 @@ void PingFileWriter::Impl::create_ping_datasets() {
                         {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
   growing<double>("summary/echo_time", "delay of the strongest pair", "s", scale, {targets});
-  growing<double>("summary/echo_level_db", "of the strongest pair, re 1 uPa", "dB", scale,
-                  {targets});
-  growing<double>("summary/reverberation_db", "expected at that time, re 1 uPa", "dB", scale,
-                  {targets});
-  growing<double>("summary/noise_db", "in the pulse's band, re 1 uPa", "dB", scale, {targets});
-  growing<double>("summary/echo_peak_db", "peak of all paths together, re 1 uPa", "dB", scale,
-                  {targets});
+  growing<double>("summary/echo_level_db", "of the strongest pair", "dB", scale, {targets},
+                  cf::level);
+  growing<double>("summary/reverberation_db", "expected at that time", "dB", scale, {targets},
+                  cf::pressure_level);
+  growing<double>("summary/noise_db", "in the pulse's band", "dB", scale, {targets},
+                  cf::pressure_level);
+  growing<double>("summary/echo_peak_db", "peak of all paths together", "dB", scale, {targets},
+                  cf::level);
   growing<double>("summary/signal_excess_db", "peak over reverberation plus noise", "dB", scale,
                   {targets});
 }
@@ -58,26 +59,28 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   const Recording& recording = record.recording;
   samples = recording.samples;
   if (scenario.pings.continuous) samples = Stream::longest_part(scenario);
-  std::vector<double> time(samples);
-  for (std::size_t i = 0; i < samples; ++i)
-    time[i] = recording.start + static_cast<double>(i) / recording.sample_rate;
-  file.write<double>("time", time, {samples});
-  describe(file, "time", "after the start of the ping", "s");
-  file.make_scale("time", "sample");
+  const TimeAxis time{.dimension = "sample",
+                      .coordinate = "time",
+                      .long_name = "after the start of the ping",
+                      .start = recording.start,
+                      .step = 1.0 / recording.sample_rate,
+                      .size = samples};
+  std::vector<std::string> scales{"ping", "channel",
+                                  write_time_axis(file, time, times_written_out)};
   const std::size_t channels = channels_of(scenario);
   if (recording.is_complex()) {
-    write_scale<std::int32_t>(file, "iq", "iq", {0, 1}, "0 real part, 1 imaginary part");
+    scales.emplace_back("iq");
     file.create_growing<float>("pressure", {channels, samples, 2}, Shape{1, 1, samples, 2});
     describe(file, "pressure", "acoustic pressure, complex baseband", "Pa");
-    file.attach_scales("pressure", {"ping", "channel", "time", "iq"});
     file.set_attribute("pressure", "carrier_hz", recording.carrier);
     file.set_attribute("pressure", "carrier_clock",
                        scenario.pings.continuous ? "start of the scenario" : "start of the ping");
   } else {
     file.create_growing<float>("pressure", {channels, samples}, Shape{1, 1, samples});
-    describe(file, "pressure", "acoustic pressure", "Pa");
-    file.attach_scales("pressure", {"ping", "channel", "time"});
+    describe(file, "pressure", "acoustic pressure", "Pa", cf::pressure);
   }
+  file.attach_scales("pressure", scales);
+  write_times(file, "pressure", time);
   file.set_attribute("pressure", "sample_rate_hz", recording.sample_rate);
   file.set_attribute("pressure", "reference",
                      recording.is_complex()
@@ -87,17 +90,19 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
 
   level_bins = record.levels.echo.size();
   if (level_bins == 0) return;
-  std::vector<double> middle(level_bins);
-  for (std::size_t i = 0; i < level_bins; ++i)
-    middle[i] = recording.start + (static_cast<double>(i) + 0.5) * record.levels.time_step;
-  file.write<double>("levels/level_time", middle, {level_bins});
-  describe(file, "levels/level_time", "middle of the interval, after the start of the ping", "s");
-  file.make_scale("levels/level_time", "level_time");
+  const TimeAxis middle{.dimension = "levels/interval",
+                        .coordinate = "levels/level_time",
+                        .long_name = "middle of the interval, after the start of the ping",
+                        .start = recording.start + 0.5 * record.levels.time_step,
+                        .step = record.levels.time_step,
+                        .size = level_bins};
+  const std::string interval = write_time_axis(file, middle, times_written_out);
   for (const std::string name : {"echo", "reverberation", "noise"}) {
     const std::string dataset = "levels/" + name;
     file.create_growing<float>(dataset, {level_bins}, std::size_t{1});
     describe(file, dataset, "mean-square pressure over the phones, " + name, "Pa2");
-    file.attach_scales(dataset, {"ping", "levels/level_time"});
+    file.attach_scales(dataset, {"ping", interval});
+    write_times(file, dataset, middle);
   }
 }
 

@@ -38,9 +38,11 @@ std::vector<T> vector_of(std::span<const T> values) {
 void write_shape(Hdf5File& file, const std::string& side, const BoundaryShape& shape) {
   const std::string range = "environment/" + side + "_range",
                     depth = "environment/" + side + "_depth";
-  write_scale(file, range, side + "_node", vector_of(shape.ranges()), "along the transect", "m");
+  write_scale(file, range, side + "_node", vector_of(shape.ranges()), "along the transect", "m",
+              cf::range_axis);
   file.write<double>(depth, vector_of(shape.depths()), {shape.depths().size()});
-  describe(file, depth, "of the " + side + " at its nodes, positive down", "m");
+  describe(file, depth, "of the " + side + " at its nodes, positive down", "m",
+           cf::of_boundary(side));
   file.attach_scales(depth, {range});
   file.set_attribute(depth, "interpolation", name(shape.interpolation()));
   if (shape.materials().empty()) return;
@@ -52,12 +54,12 @@ void write_shape(Hdf5File& file, const std::string& side, const BoundaryShape& s
 
 void write_section(Hdf5File& file, const SoundSpeedSection& section) {
   write_scale(file, "environment/section_range", "section_range", vector_of(section.ranges()),
-              "along the transect", "m");
+              "along the transect", "m", cf::range_axis);
   write_scale(file, "environment/section_depth", "section_depth", vector_of(section.depths()),
-              "depth, positive down", "m");
+              "depth, positive down", "m", cf::depth_axis);
   file.write<double>("environment/section_sound_speed", vector_of(section.speeds()),
                      {section.ranges().size(), section.depths().size()});
-  describe(file, "environment/section_sound_speed", "speed of sound", "m/s");
+  describe(file, "environment/section_sound_speed", "speed of sound", "m/s", cf::sound_speed);
   file.attach_scales("environment/section_sound_speed",
                      {"environment/section_range", "environment/section_depth"});
 }
@@ -88,9 +90,11 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
     depth.push_back(surface + (bottom - surface) * static_cast<double>(i) / (points - 1.0));
     speed.push_back(paths.speed_at({place.x(), place.y(), depth.back()}));
   }
-  write_scale(file, "environment/depth", "depth", depth, "depth, positive down", "m");
+  write_scale(file, "environment/depth", "depth", depth, "depth, positive down", "m",
+              cf::depth_axis);
   file.write<double>("environment/sound_speed", speed, {points});
-  describe(file, "environment/sound_speed", "speed of sound at the platform's first place", "m/s");
+  describe(file, "environment/sound_speed", "speed of sound at the platform's first place", "m/s",
+           cf::sound_speed);
   file.attach_scales("environment/sound_speed", {"environment/depth"});
 
   const std::string group = "environment";

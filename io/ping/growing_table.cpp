@@ -24,7 +24,7 @@ GrowingTable::GrowingTable(Hdf5File& file, const std::string& group, const std::
       file.create_growing<std::int8_t>(path, {}, chunk);
     else
       file.create_growing<double>(path, {}, chunk);
-    describe(file, path, column.long_name, column.units);
+    describe(file, path, column.long_name, column.units, column.meaning);
     file.attach_scales(path, {dimension_});
   }
 }

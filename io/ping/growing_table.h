@@ -13,6 +13,7 @@ class GrowingTable {
   struct Column {
     std::string name, long_name, units;  ///< no units: a count or a number
     ElementType type = ElementType::float64;
+    Meaning meaning{};
   };
 
   GrowingTable(Hdf5File& file, const std::string& group, const std::string& dimension,

@@ -26,17 +26,18 @@ std::string_view text_of(PulseWindow window) {
 void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& line) {
   if (line.range.empty()) return;
   const std::string range = "rays/" + side + "_range", depth = "rays/" + side + "_depth";
-  write_scale(file, range, "rays_" + side, line.range, "from the source, along the rays", "m");
+  write_scale(file, range, "rays_" + side, line.range, "from the source, along the rays", "m",
+              cf::range_axis);
   file.write<double>(depth, line.depth, {line.depth.size()});
-  describe(file, depth, "of the " + side + " in the plane of the rays, positive down", "m");
+  describe(file, depth, "of the " + side + " in the plane of the rays, positive down", "m",
+           cf::of_boundary(side));
   file.attach_scales(depth, {range});
 }
 
 }  // namespace
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance) {
-  file.set_attribute("", "filetype", "asdic ping");
-  file.set_attribute("", "version", "1.0");
+  write_filetype(file, "asdic ping", "2.0");
   file.set_attribute("", "title", scenario.title);
   file.set_attribute("", "program_version", provenance.program_version);
   file.set_attribute("", "build", provenance.build);
@@ -86,27 +87,34 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
 
 /// The pulse of one transmitter as a matched filter needs it: real at the phones' rate, or complex
 /// about the baseband's carrier.
-void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter) {
+void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter, SampleTimes times) {
   const PulseSettings& settings = pulse_of(scenario, transmitter);
   const Pulse pulse(settings);
   const double rate = recorded_rate(scenario), carrier = recorded_carrier(scenario);
   const std::string suffix = transmitter == 0 ? "" : "_" + std::to_string(transmitter);
-  const std::string name = "replica" + suffix, time_name = "replica_time" + suffix;
+  const std::string name = "replica" + suffix;
   std::vector<float> samples =
       carrier > 0.0 ? baseband_replica(pulse, rate, carrier) : replica(pulse, rate);
   const std::size_t length = carrier > 0.0 ? samples.size() / 2 : samples.size();
-  std::vector<double> time(length);
-  for (std::size_t i = 0; i < length; ++i) time[i] = static_cast<double>(i) / rate;
-  write_scale(file, time_name, "replica_sample" + suffix, time, "after the pulse's leading edge",
-              "s");
-  if (carrier > 0.0)
-    file.write<float>(name, samples, {length, 2});
-  else
-    file.write<float>(name, samples, {length});
+  const TimeAxis axis{.dimension = "replica_sample" + suffix,
+                      .coordinate = "replica_time" + suffix,
+                      .long_name = "after the pulse's leading edge",
+                      .start = 0.0,
+                      .step = 1.0 / rate,
+                      .size = length};
+  Shape shape{length};
+  std::vector<std::string> scales{write_time_axis(file, axis, times == SampleTimes::written_out)};
+  if (carrier > 0.0) {
+    shape.push_back(2);
+    scales.emplace_back("iq");
+  }
+  file.write<float>(name, samples, shape);
   describe(file, name,
            carrier > 0.0 ? "transmitted pulse, complex baseband, unit peak before its window"
-                         : "transmitted pulse, unit peak before its window");
-  file.attach_scales(name, {time_name});
+                         : "transmitted pulse, unit peak before its window",
+           "1");
+  file.attach_scales(name, scales);
+  write_times(file, name, axis);
   file.set_attribute(name, "kind", text_of(settings.kind));
   file.set_attribute(name, "centre_frequency_hz", pulse.centre_frequency());
   file.set_attribute(name, "bandwidth_hz", pulse.bandwidth_40db());
@@ -116,9 +124,11 @@ void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter) {
                      scenario.transmitters[static_cast<std::size_t>(transmitter)].source_level_db);
 }
 
-void write_replicas(Hdf5File& file, const Scenario& scenario) {
+void write_replicas(Hdf5File& file, const Scenario& scenario, SampleTimes times) {
+  if (recorded_carrier(scenario) > 0.0)
+    write_scale<std::int32_t>(file, "iq", "iq", {0, 1}, "0 real part, 1 imaginary part");
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
-    write_replica(file, scenario, static_cast<int>(t));
+    write_replica(file, scenario, static_cast<int>(t), times);
 }
 
 void write_rays(Hdf5File& file, const RayPaths& rays) {
@@ -149,7 +159,7 @@ void write_rays(Hdf5File& file, const RayPaths& rays) {
   file.write<double>("rays/range", range, {n, points});
   describe(file, "rays/range", "horizontal distance from the source", "m");
   file.write<double>("rays/depth", depth, {n, points});
-  describe(file, "rays/depth", "depth, positive down", "m");
+  describe(file, "rays/depth", "depth, positive down", "m", cf::depth);
   for (const char* name : {"rays/launch_elevation_deg", "rays/kind"})
     file.attach_scales(name, {"rays/ray"});
   for (const char* name : {"rays/range", "rays/depth"})

@@ -10,7 +10,7 @@ namespace asdic::ping_file {
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance);
 /// replica, replica_1, …: one per transmitter.
-void write_replicas(Hdf5File& file, const Scenario& scenario);
+void write_replicas(Hdf5File& file, const Scenario& scenario, SampleTimes times);
 void write_environment(Hdf5File& file, const Scenario& scenario);
 void write_rays(Hdf5File& file, const RayPaths& rays);
 

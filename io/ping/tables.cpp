@@ -8,19 +8,20 @@ using Type = ElementType;
 }  // namespace
 
 std::vector<GrowingTable::Column> echo_columns() {
-  return {{"ping", "number of the ping", "", Type::int32},
-          {"target", "number of the target", "", Type::int32},
-          {"array", "number of the array", "", Type::int32},
-          {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
-          {"highlight", "number of the target's highlight, -1: a point", "", Type::int32},
-          {"outgoing", "path of the leg source to target", "", Type::int32},
-          {"returning", "path of the leg target to array", "", Type::int32},
-          {"delay", "from the start of the ping to the echo's leading edge", "s"},
-          {"struck", "from the start of the ping to when that edge meets the target", "s"},
-          {"doppler_factor", "received over transmitted frequency", ""},
-          {"level_db", "peak envelope over sqrt 2, pulse not windowed, re 1 uPa", "dB"},
-          {"arrival_elevation_deg", "elevation of travel at the array, positive up", "degree"},
-          {"arrival_bearing_deg", "bearing of travel at the array", "degree"}};
+  return {
+      {"ping", "number of the ping", "", Type::int32},
+      {"target", "number of the target", "", Type::int32},
+      {"array", "number of the array", "", Type::int32},
+      {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
+      {"highlight", "number of the target's highlight, -1: a point", "", Type::int32},
+      {"outgoing", "path of the leg source to target", "", Type::int32},
+      {"returning", "path of the leg target to array", "", Type::int32},
+      {"delay", "from the start of the ping to the echo's leading edge", "s"},
+      {"struck", "from the start of the ping to when that edge meets the target", "s"},
+      {"doppler_factor", "received over transmitted frequency", ""},
+      {"level_db", "peak envelope over sqrt 2, pulse not windowed", "dB", Type::float64, cf::level},
+      {"arrival_elevation_deg", "elevation of travel at the array, positive up", "degree"},
+      {"arrival_bearing_deg", "bearing of travel at the array", "degree"}};
 }
 
 std::vector<GrowingTable::Column> patch_columns() {
@@ -34,8 +35,13 @@ std::vector<GrowingTable::Column> patch_columns() {
           {"grazing_out_deg", "angle at which sound leaves the surface", "degree"},
           {"launch_elevation_deg", "of the outgoing path, positive up", "degree"},
           {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
-          {"scattering_strength_db", "of this pair of angles", "dB"},
-          {"level_db", "expected, of that area, pulse not windowed, re 1 uPa", "dB"}};
+          {"scattering_strength_db",
+           "of this pair of angles",
+           "dB",
+           Type::float64,
+           {.reference = "1 of a boundary, 1/m of the volume"}},
+          {"level_db", "expected, of that area, pulse not windowed", "dB", Type::float64,
+           cf::pressure_level}};
 }
 
 std::vector<GrowingTable::Column> interference_columns() {
@@ -50,8 +56,8 @@ std::vector<GrowingTable::Column> interference_columns() {
           {"arrival_elevation_deg", "of travel at the array, positive up", "degree"},
           {"amplitude_real", "re 1 m", ""},
           {"amplitude_imag", "re 1 m", ""},
-          {"surface_bounces", "", "", Type::int32},
-          {"bottom_bounces", "", "", Type::int32}};
+          {"surface_bounces", "reflections at the surface", "", Type::int32},
+          {"bottom_bounces", "reflections at the bottom", "", Type::int32}};
 }
 
 }  // namespace asdic::ping_file

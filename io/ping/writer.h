@@ -15,6 +15,7 @@ struct PingFileWriter::Impl {
   std::filesystem::path path, part;
   Hdf5File file;
   Scenario scenario;
+  bool times_written_out = false;
   std::size_t pings = 0;
   bool finished = false;
   ArrivalTable arrivals;
@@ -23,11 +24,12 @@ struct PingFileWriter::Impl {
   std::size_t every = 1;
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
-  Impl(const std::filesystem::path& final_path, const Scenario& s)
+  Impl(const std::filesystem::path& final_path, const Scenario& s, SampleTimes times)
       : path(final_path),
         part(final_path.string() + ".part"),
         file(Hdf5File::create(part)),
         scenario(s),
+        times_written_out(times == SampleTimes::written_out),
         arrivals(file),
         echoes(file, "echoes", "echo", ping_file::echo_columns()),
         patches(file, "patches", "patch", ping_file::patch_columns()) {
@@ -41,9 +43,10 @@ struct PingFileWriter::Impl {
 
   template <class T>
   void growing(const std::string& dataset, const std::string& long_name, const std::string& units,
-               const std::vector<std::string>& scales = {}, const Shape& row = {}) {
+               const std::vector<std::string>& scales = {}, const Shape& row = {},
+               const Meaning& meaning = {}) {
     file.create_growing<T>(dataset, row, std::size_t{64});
-    describe(file, dataset, long_name, units);
+    describe(file, dataset, long_name, units, meaning);
     std::vector<std::string> all{"ping"};
     all.insert(all.end(), scales.begin(), scales.end());
     file.attach_scales(dataset, all);

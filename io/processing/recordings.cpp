@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "io/hdf5/scale.h"
 #include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
@@ -13,20 +14,6 @@
 
 namespace asdic {
 namespace {
-
-Hdf5File open_ping_file(const std::filesystem::path& path) {
-  Hdf5File file = Hdf5File::open(path);
-  const auto wrong = [&](const std::string& got, const std::string& expected) {
-    return InputError({.where = path.string(), .got = got, .expected = expected});
-  };
-  if (!file.has_attribute("", "filetype"))
-    throw wrong("an HDF5 file without filetype", "a ping file of asdic");
-  if (const std::string type = file.attribute_text("", "filetype"); type != "asdic ping")
-    throw wrong("filetype \"" + type + "\"", "\"asdic ping\"");
-  if (const std::string version = file.attribute_text("", "version"); !version.starts_with("1."))
-    throw wrong("version " + version, "version 1.x");
-  return file;
-}
 
 Scenario scenario_of(const Hdf5File& file, const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& scenario_path) {
@@ -49,8 +36,8 @@ PingRecordings::PingRecordings(const std::filesystem::path& path,
   const auto wrong = [&](const std::string& got, const std::string& expected) {
     return InputError({.where = path_.string(), .got = got, .expected = expected});
   };
-  for (const char* name : {"pressure", "ping", "ping_time", "valid_samples", "phone_position",
-                           "time", "replica", "scenario"})
+  for (const char* name :
+       {"pressure", "ping", "ping_time", "valid_samples", "phone_position", "replica", "scenario"})
     if (!file_.has(name)) throw wrong(std::string("no dataset ") + name, "a file with a ping");
   shape_ = file_.info("pressure").shape;
   if (!(shape_.size() == 3 || (shape_.size() == 4 && shape_[3] == 2)))
@@ -66,7 +53,7 @@ PingRecordings::PingRecordings(const std::filesystem::path& path,
   valid_ = file_.read<std::int64_t>("valid_samples");
   if (file_.has("transmitter")) transmitters_ = file_.read<std::int32_t>("transmitter");
   rate_ = file_.attribute_number("pressure", "sample_rate_hz");
-  start_ = file_.read<double>("time", {0}, {1}).front();
+  start_ = time_of_first(file_, "pressure", "time");
   if (complex_samples()) carrier_ = file_.attribute_number("pressure", "carrier_hz");
   if (file_.has_attribute("pressure", "continuous"))
     continuous_ = file_.attribute_number("pressure", "continuous") != 0.0;

@@ -157,11 +157,11 @@ void write_arrivals(Hdf5File& file, const ArrivalsFile& arrivals) {
   file.set_attribute("", "frequency_hz", arrivals.frequency);
   file.set_attribute("", "irregular", std::int64_t{arrivals.irregular});
   write_scale(file, "source_depth", "source_depth", arrivals.source_depths,
-              "depth of the source, positive down", "m");
+              "depth of the source, positive down", "m", cf::depth);
   write_scale(file, "depth", "depth", arrivals.receiver_depths,
-              "depth of the receiver, positive down", "m");
+              "depth of the receiver, positive down", "m", cf::depth_axis);
   write_scale(file, "range", "range", arrivals.receiver_ranges,
-              "horizontal distance from the source", "m");
+              "horizontal distance from the source", "m", cf::range_axis);
   const std::size_t ranges = arrivals.receiver_ranges.size();
   const std::size_t rows = arrivals.irregular ? 1 : arrivals.receiver_depths.size();
   GrowingTable table(file, "arrivals", "arrival", columns());

@@ -21,9 +21,10 @@ void write_numbers(Hdf5File& file, const std::string& name, std::size_t n) {
 
 template <class T>
 void write(Hdf5File& file, const std::string& name, const std::vector<T>& values,
-           const Shape& shape, const std::string& long_name, const std::string& units = "") {
+           const Shape& shape, const std::string& long_name, const std::string& units = "",
+           const Meaning& meaning = {}) {
   file.write<T>("rays/" + name, values, shape);
-  describe(file, "rays/" + name, long_name, units);
+  describe(file, "rays/" + name, long_name, units, meaning);
   file.attach_scales("rays/" + name, shape.size() == 1
                                          ? std::vector<std::string>{"rays/ray"}
                                          : std::vector<std::string>{"rays/ray", "rays/point"});
@@ -67,7 +68,7 @@ void write_rays(Hdf5File& file, const RayFile& rays) {
   write(file, "surface_bounces", surface, {n}, "reflections at the surface");
   write(file, "bottom_bounces", bottom, {n}, "reflections at the bottom");
   write(file, "range", range, {n, points}, "horizontal distance from the source", "m");
-  write(file, "depth", depth, {n, points}, "depth, positive down", "m");
+  write(file, "depth", depth, {n, points}, "depth, positive down", "m", cf::depth);
 }
 
 RayFile read_rays(const Hdf5File& file) {

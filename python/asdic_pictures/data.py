@@ -78,9 +78,9 @@ class PingFile:
                              f'filetype "{kind}"' if kind else "an HDF5 file without a filetype",
                              'filetype "asdic ping"')
         version = self._text(self.file.attrs, "version") or "none"
-        if version.split(".")[0] != "1":
+        if version.split(".")[0] not in ("1", "2"):
             self.file.close()
-            raise InputError(path, f"version {version} of the format", "version 1")
+            raise InputError(path, f"version {version} of the format", "version 1 or 2")
         shape = self._dataset("pressure").shape
         self.complex = len(shape) == 4 and shape[3] == 2
         if (len(shape) != 3 and not self.complex) or 0 in shape:
@@ -140,6 +140,15 @@ class PingFile:
         except Exception as error:
             raise InputError(self.path, f"no number in the attribute {name} of {where}",
                              "one (docs/formats/ping.md)") from error
+
+    def times(self, name, coordinate, count) -> np.ndarray:
+        """When the first samples of a dataset are [s]: by its attributes or, in files of version 1,
+        by the dataset of its times.
+        """
+        if "time_start" not in self._dataset(name).attrs:
+            return self.read(coordinate, slice(0, count))
+        return self.attribute(name, "time_start") \
+            + self.attribute(name, "time_step") * np.arange(count)
 
     def _column(self, name):
         """A column of a table, read once."""
@@ -217,7 +226,7 @@ class PingFile:
     @cached_property
     def start(self) -> float:
         """Time of the first sample [s]"""
-        return float(self.read("time", slice(0, 1))[0])
+        return self.times("pressure", "time", 1)[0]
 
     @cached_property
     def stored_rate(self) -> float:
@@ -436,8 +445,8 @@ class PingFile:
 
     def levels(self, row: int):
         """Time [s] and the mean-square pressures [Pa²] of echo, reverberation and noise"""
-        time = self.read("levels/level_time")
-        return time, {k: self.read(f"levels/{k}", row).astype(float)
+        count = self._dataset("levels/echo").shape[-1]
+        return self.times("levels/echo", "levels/level_time", count), {k: self.read(f"levels/{k}", row).astype(float)
                       for k in ("echo", "reverberation", "noise")}
 
     def rays(self):

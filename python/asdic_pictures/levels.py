@@ -10,7 +10,7 @@ TITLE = "Level over time: echo, reverberation, noise"
 
 
 def nothing_to_show(data, ping):
-    if not data.has("levels") or data.read("levels/level_time").size == 0:
+    if not data.has("levels/echo") or data.levels(ping)[0].size == 0:
         return "the file holds no levels"
     return None
 

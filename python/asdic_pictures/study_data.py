@@ -92,7 +92,8 @@ def _text(value) -> str:
 def _column(name, dataset, rows=slice(None)) -> Column:
     attributes = dataset.attrs
     labels = [_text(label) for label in np.ravel(attributes.get("labels", []))]
-    return Column(name, _text(attributes.get("units", "")), _text(attributes.get("long_name", name)),
+    unit = " re ".join(_text(attributes[key]) for key in ("units", "reference") if key in attributes)
+    return Column(name, unit, _text(attributes.get("long_name", name)),
                   np.asarray(dataset[()], float)[rows], _text(attributes.get("role", "")), labels)
 
 

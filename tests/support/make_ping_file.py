@@ -51,6 +51,20 @@ def scale(group, name, data, long_name, units=None, dtype=None):
     return d
 
 
+def time_axis(f, s, dimension, coordinate, times, long_name):
+    """The axis of a dataset's samples, and the dataset's attributes that tell their times. Version 1
+    has the times as the axis' scale, version 2 a dimension without values.
+    """
+    if s.version == 1:
+        return scale(f, coordinate, times, long_name, "s"), {}
+    axis = f.create_dataset(dimension, (len(times),), ">f4")
+    axis.make_scale(f"This is a netCDF dimension but not a netCDF variable.{len(times):10d}")
+    told = {"time_start": times[0] if len(times) else 0.0,
+            "time_step": times[1] - times[0] if len(times) > 1 else 1.0}
+    axis.attrs.update(long_name=f"no values: {long_name}", **told)
+    return axis, told
+
+
 def unit_of(name):
     if name.endswith("_deg"):
         return "degrees"
@@ -96,7 +110,7 @@ def write(path, s: Settings):
 
 def write_root(f, s, result):
     n = result["pressure"].shape[2]
-    f.attrs.update(filetype="asdic ping", version="1.0", title="Synthetic ping in deep water",
+    f.attrs.update(filetype="asdic ping", version=f"{s.version}.0", title="Synthetic ping in deep water",
                    program_version="0.1.0",
                    build="none", seed=s.seed, scenario_sha256="0" * 64,
                    complete=int((s.pings_requested or s.pings) == s.pings),
@@ -104,12 +118,13 @@ def write_root(f, s, result):
     ping = scale(f, "ping", np.arange(1, s.pings + 1), "number of the ping", dtype=np.int32)
     channel = scale(f, "channel", np.arange(len(result["offsets"])), "number of the phone",
                     dtype=np.int32)
-    time = scale(f, "time", np.arange(n) / s.sample_rate, "time after the start of the ping", "s")
+    time, told = time_axis(f, s, "sample", "time", np.arange(n) / s.sample_rate,
+                           "time after the start of the ping")
     xyz = scale(f, "xyz", np.arange(3), "0 east, 1 north, 2 depth", dtype=np.int32)
     p = f.create_dataset("pressure", data=result["pressure"], chunks=(1, 1, n) if n else None)
     for axis, axis_scale in enumerate((ping, channel, time)):
         p.dims[axis].attach_scale(axis_scale)
-    p.attrs.update(long_name="acoustic pressure", units="Pa", sample_rate_hz=s.sample_rate,
+    p.attrs.update(long_name="acoustic pressure", units="Pa", sample_rate_hz=s.sample_rate, **told,
                    reference="p = Re{Σ A s₊(η(t − τ))}, time dependence exp(+iωt)")
     count = np.arange(s.pings)
     put(f, "valid_samples", np.full(s.pings, n), "samples that were simulated", None, (ping,),
@@ -139,12 +154,13 @@ def write_root(f, s, result):
         put(f, "target_present", np.ones(r.shape), "1 where the target is there", None,
             (ping, index), np.int8)
     t = np.arange(int(np.ceil(s.pulse * s.sample_rate)) + 1) / s.sample_rate
-    replica_time = scale(f, "replica_time", t, "time after the leading edge", "s")
+    replica_time, told = time_axis(f, s, "replica_sample", "replica_time", t,
+                                   "time after the leading edge")
     replica = put(f, "replica", analytic_pulse(t, s).real, "transmitted pulse", None,
                   (replica_time,), np.float32)
     replica.attrs.update(kind="lfm" if s.bandwidth else "cw", centre_frequency_hz=s.frequency,
                          bandwidth_hz=s.bandwidth + 6.0 / s.pulse, duration_s=s.pulse,
-                         window="hann", source_level_db=s.source_level)
+                         window="hann", source_level_db=s.source_level, **told)
     text = f.create_dataset("scenario", data="title = \"synthetic\"\n")
     text.attrs["long_name"] = "the scenario file"
 
@@ -152,11 +168,11 @@ def write_root(f, s, result):
 def write_levels_and_rays(f, s, result):
     levels = f.create_group("levels")
     count = result["levels"]["noise"].shape[1]
-    time = scale(levels, "level_time", np.arange(count) * result["step"],
-                 "time after the start of the ping", "s")
+    time, told = time_axis(levels, s, "interval", "level_time", np.arange(count) * result["step"],
+                           "time after the start of the ping")
     for key, values in result["levels"].items():
         put(levels, key, values, f"mean-square pressure of {key}", "Pa2", (f["ping"], time),
-            np.float32)
+            np.float32).attrs.update(told)
     if s.targets:
         summary = f.create_group("summary")
         rows = np.array(result["summary"], float)

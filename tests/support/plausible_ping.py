@@ -39,6 +39,7 @@ class Settings:
     noise_level: float | None = 40.0     # [dB re 1 µPa²/Hz]
     reverberation: bool = True
     seed: int = 1
+    version: int = 2                     # of the format
 
 
 # ---------------------------------------------------------------- the ocean and its rays

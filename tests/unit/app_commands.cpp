@@ -136,7 +136,8 @@ TEST_F(Commands, ArrivalsFileIsThePingFilesTable) {
 }
 
 TEST_F(Commands, InfoShowsWhatAFileHolds) {
-  ASSERT_EQ(asdic(folder, "ping small.toml -q --seed 11").status, 0);
+  ASSERT_EQ(asdic(folder, "ping small.toml -q --seed 11 --time-axis").status, 0);
+  EXPECT_EQ(Hdf5File::open(folder / "small.h5").info("time").shape, Shape{20000});
   const auto run = asdic(folder, "info small.h5");
   EXPECT_EQ(run.status, 0) << run.err;
   for (const char* part :
@@ -144,6 +145,25 @@ TEST_F(Commands, InfoShowsWhatAFileHolds) {
         "seed 11", "rock", "asdic 0."})
     EXPECT_NE(run.out.find(part), std::string::npos) << part << " is not in:\n" << run.out;
   EXPECT_LE(std::count(run.out.begin(), run.out.end(), '\n'), 24);  // one screen
+}
+
+TEST_F(Commands, InfoReadsResultsOfEveryKind) {
+  ASSERT_EQ(asdic(folder, "arrivals small.toml -o arrivals.h5").status, 0);
+  ASSERT_EQ(asdic(folder, "rays small.toml -o rays.h5").status, 0);
+  ASSERT_EQ(asdic(folder, "convert arrivals.h5 a.arr -q").status, 0);
+  const auto says = [&](const std::string& file, const std::string& part) {
+    const auto run = asdic(folder, "info " + file);
+    EXPECT_EQ(run.status, 0) << file << ": " << run.err;
+    EXPECT_NE(run.out.find(part), std::string::npos) << part << " is not in:\n" << run.out;
+  };
+  says("arrivals.h5", "small sea");
+  says("arrivals.h5", "frequency  1000 Hz");
+  says("rays.h5", "rays       41, launched at -20 to 20 deg");
+  says("a.arr", "arrivals");
+  const auto toml = asdic(folder, "info small.toml");
+  EXPECT_EQ(toml.status, 2);
+  EXPECT_NE(toml.err.find("small.toml: found a file that is not HDF5, expected"), std::string::npos)
+      << toml.err;
 }
 
 TEST_F(Commands, ExportWritesAWavFileAPing) {

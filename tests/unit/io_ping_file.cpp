@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "io/hdf5/scale.h"
 #include "io/text/csv_table.h"
 #include "support/ping_record.h"
 #include "support/temporary_directory.h"
@@ -87,6 +88,68 @@ TEST(PingFile, GivesBackWhatWasWritten) {
   EXPECT_TRUE(std::isnan(depth[5]));
   EXPECT_THROW(static_cast<void>(file.pressure(2, 0)), InputError);
   EXPECT_THROW(static_cast<void>(file.pressure(0, 4)), InputError);
+}
+
+// Start and step tell the same times as the axis that takes their place; the dimension takes no
+// room: all of the file's growth is the axes, 8 bytes a time.
+TEST(PingFile, TimesAreStartAndStepOrWrittenOut) {
+  const TemporaryDirectory folder;
+  const Scenario scenario = small_scenario();
+  for (const auto& [name, times] : {std::pair{"told.h5", SampleTimes::start_and_step},
+                                    std::pair{"axis.h5", SampleTimes::written_out}}) {
+    PingFileWriter writer(folder / name, scenario, provenance, times);
+    writer.append(small_record(scenario, 1));
+    writer.finish(true);
+  }
+  const Hdf5File told = Hdf5File::open(folder / "told.h5"),
+                 axis = Hdf5File::open(folder / "axis.h5");
+  for (const auto& [dataset, dimension, coordinate] :
+       {std::array{"pressure", "sample", "time"},
+        std::array{"replica", "replica_sample", "replica_time"},
+        std::array{"levels/echo", "levels/interval", "levels/level_time"}}) {
+    EXPECT_TRUE(told.has(dimension) && !told.has(coordinate)) << dataset;
+    EXPECT_TRUE(axis.has(coordinate) && !axis.has(dimension)) << dataset;
+    const double start = told.attribute_number(dataset, "time_start"),
+                 step = told.attribute_number(dataset, "time_step");
+    const auto written = axis.read<double>(coordinate);
+    ASSERT_EQ(told.info(dimension).shape, Shape{written.size()}) << dataset;
+    ASSERT_EQ(told.info(dataset).shape.back(), written.size()) << dataset;
+    for (std::size_t k = 0; k < written.size(); ++k)
+      ASSERT_NEAR(written[k], start + double(k) * step, 1e-9 * step) << dataset << ' ' << k;
+    EXPECT_EQ(time_of_first(told, dataset, coordinate), written.front()) << dataset;
+  }
+  EXPECT_DOUBLE_EQ(told.attribute_number("pressure", "time_step"), 1.0 / 4000.0);
+  EXPECT_LT(std::filesystem::file_size(folder / "told.h5") + 8 * 2000,
+            std::filesystem::file_size(folder / "axis.h5"));
+}
+
+TEST(PingFile, TimesOfFilesOfVersionOneAreThoseOfTheirAxis) {
+  const TemporaryDirectory folder;
+  Hdf5File file = Hdf5File::create(folder / "old.h5");
+  write_scale<double>(file, "time", "sample", {0.5, 0.75, 1.0}, "after the start of the ping", "s");
+  file.write<float>("pressure", std::vector<float>(3), {3});
+  EXPECT_EQ(time_of_first(file, "pressure", "time"), 0.5);
+}
+
+TEST(PingFile, VersionsOneAndTwoAreRead) {
+  const TemporaryDirectory folder;
+  const Scenario scenario = small_scenario();
+  const auto path = folder / "p.h5";
+  PingFileWriter writer(path, scenario, provenance);
+  writer.append(small_record(scenario, 1));
+  writer.finish(true);
+  for (const auto& [version, good] :
+       {std::pair{"1.0", true}, std::pair{"2.7", true}, std::pair{"3.0", false}}) {
+    {
+      Hdf5File file = Hdf5File::edit(path);
+      file.set_attribute("", "version", version);
+      file.close();
+    }
+    if (good)
+      EXPECT_NO_THROW(static_cast<void>(PingFile(path))) << version;
+    else
+      EXPECT_THROW(static_cast<void>(PingFile(path)), InputError) << version;
+  }
 }
 
 TEST(PingFile, EveryDatasetSaysWhatItIsAndHasAxes) {

@@ -57,6 +57,25 @@ TEST(Wav, PhonesComeBackThroughTheScale) {
                   static_cast<double>(pressure[channel * samples + i]), 1.2e-7 * 3.0e-4);
 }
 
+TEST(Wav, TheContentOfAFileIsReadWithAndWithoutItsScale) {
+  const TemporaryDirectory folder;
+  const std::vector<float> pressure{0.25F, -2.0F, 1.0F, 0.5F, 0.0F, 0.125F};
+  write_wav(folder / "p.wav", pressure, 2, 3999.6);
+  const WavContent whole = read_wav_content(folder / "p.wav");
+  EXPECT_EQ(whole.channels, 2U);
+  EXPECT_EQ(whole.samples, 3U);
+  EXPECT_TRUE(whole.has_scale);
+  EXPECT_EQ(whole.scale.pascal_per_unit, 2.0);
+  EXPECT_EQ(whole.scale.sample_rate, 3999.6);
+  std::filesystem::remove(folder / "p.wav.json");
+  const WavContent bare = read_wav_content(folder / "p.wav");
+  EXPECT_FALSE(bare.has_scale);
+  EXPECT_EQ(bare.scale.sample_rate, 4000.0);  // what the header rounds to
+  static_cast<void>(folder.write("p.wav.json", "{}"));
+  EXPECT_THROW(static_cast<void>(read_wav_content(folder / "p.wav")), InputError);
+  EXPECT_THROW(static_cast<void>(read_wav_content(folder / "none.wav")), InputError);
+}
+
 TEST(Wav, ShapesAndFoldersThatDoNotFit) {
   const TemporaryDirectory folder;
   const std::vector<float> pressure(9, 1.0F);

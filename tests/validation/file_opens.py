@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests" / "support"))
 
 ROOT_ATTRIBUTES = ["filetype", "version", "title", "program_version", "build", "seed",
                    "scenario_sha256", "complete", "pings_requested"]
-PRESSURE_ATTRIBUTES = ["sample_rate_hz", "reference"]
+PRESSURE_ATTRIBUTES = ["sample_rate_hz", "time_start", "time_step", "reference"]
 REPLICA_ATTRIBUTES = ["kind", "centre_frequency_hz", "bandwidth_hz", "duration_s", "window",
                       "source_level_db"]
 ENVIRONMENT_ATTRIBUTES = ["surface", "bottom", "bottom_depth_m", "wind_speed_mps", "absorption",
@@ -46,13 +46,15 @@ LAYOUT = {
     "target_strength_db": ("ping target", F8), "target_present": ("ping target", I1),
     "replica": ("replica_sample", F4), "replica_time": ("replica_sample", F8),
     "environment/depth": ("depth", F8), "environment/sound_speed": ("depth", F8),
-    "levels/level_time": ("level_time", F8), "levels/echo": ("ping level_time", F4),
-    "levels/reverberation": ("ping level_time", F4),
-    "levels/noise": ("ping level_time", F4),
+    "levels/level_time": ("interval", F8), "levels/echo": ("ping interval", F4),
+    "levels/reverberation": ("ping interval", F4),
+    "levels/noise": ("ping interval", F4),
     "rays/launch_elevation_deg": ("ray", None), "rays/range": ("ray point", None),
     "rays/depth": ("ray point", None),
     "rays/kind": ("ray", None), "rays/hit_range": ("hit", None),
 }
+# Axes that are there with --time-axis alone → the dimensions without values in their place.
+TIMES = {"time": "sample", "replica_time": "replica_sample", "levels/level_time": "interval"}
 TABLES = {
     "arrivals":
         "ping leg target channel path bearing_deg range launch_elevation_deg "
@@ -115,6 +117,11 @@ def layout_of(f):
         wanted.update({f"{table}/{c}": (ROWS[table], None) for c in columns.split()})
     wanted.update({f"run/time_{t}": ("ping", None) for t in TIMINGS.split()})
     wanted.update({f"run/{name}": ("ping", None) for name in REUSE.split()})
+    if "time" not in f:
+        for axis, dimension in TIMES.items():
+            group = axis.rpartition("/")[0]
+            wanted.pop(axis)
+            wanted[f"{group}/{dimension}".lstrip("/")] = (dimension, None)
     if "target_index" in f:
         wanted.update({f"summary/{c}": ("ping target", None) for c in SUMMARY.split()})
     else:
@@ -186,7 +193,7 @@ def check_attributes(f, check):
                 check.that(name in f[place].attrs, f"{place}: no attribute {name}")
     check.that(text(f.attrs.get("filetype", "")) == "asdic ping",
                f"filetype {f.attrs.get('filetype')!r}")
-    check.that(text(f.attrs.get("version", "")) == "1.0", f"version {f.attrs.get('version')!r}")
+    check.that(text(f.attrs.get("version", "")) == "2.0", f"version {f.attrs.get('version')!r}")
     check.that(re.fullmatch(r"[0-9a-f]{64}", text(f.attrs.get("scenario_sha256", ""))),
                "scenario_sha256: not 64 hexadecimal digits")
     if "scenario" in f:
@@ -200,15 +207,18 @@ def check_attributes(f, check):
 def check_values(f, check):
     """What every file must obey whatever was simulated."""
     rate = float(f["pressure"].attrs["sample_rate_hz"])
-    time = f["time"][()]
+    told = f["pressure"].attrs
+    start, step, samples = told["time_start"], told["time_step"], f["pressure"].shape[2]
     check.that(np.array_equal(f["ping"][()], np.arange(1, f["ping"].shape[0] + 1)),
                "ping: not 1, 2, …")
     check.that(np.array_equal(f["channel"][()], np.arange(f["channel"].shape[0])),
                "channel: not 0, 1, …")
-    check.that(np.allclose(time, time[0] + np.arange(time.size) / rate, rtol=0, atol=1e-3 / rate),
-               "time: not even at the sample rate")
+    check.that(abs(step * rate - 1.0) < 1e-9, f"time_step {step}: not the sample rate's")
+    if "time" in f:
+        check.that(np.allclose(f["time"][()], start + np.arange(samples) * step, rtol=0,
+                               atol=1e-3 * step), "time: not what start and step tell")
     valid = f["valid_samples"][()]
-    check.that(np.all((valid >= 0) & (valid <= time.size)), "valid_samples: not within the record")
+    check.that(np.all((valid >= 0) & (valid <= samples)), "valid_samples: not within the record")
     for row, n in enumerate(valid):
         check.that(not np.any(f["pressure"][row, :, n:]),
                    f"pressure: not 0 past valid_samples of ping {row + 1}")
@@ -245,9 +255,11 @@ def check_xarray(path, check):
     try:
         with xarray.open_dataset(path, engine="netcdf4") as root:
             p = root["pressure"]
-            for axis in ("ping", "channel", "time"):
+            axes = ["ping", "channel"] + ["time"] * ("time" in root.variables)
+            for axis in axes:
                 check.that(axis in p.dims, f"xarray: pressure has the axes {p.dims}, no {axis}")
                 check.that(axis in p.coords, f"xarray: pressure has no coordinate {axis}")
+            check.that(p.dims[2] in ("time", "sample"), f"xarray: pressure has the axes {p.dims}")
             check.that(np.array_equal(p.values[0, -1, :64], corner, equal_nan=True),
                        "xarray: other pressures than h5py")
             check.that(p.attrs.get("units") == "Pa", "xarray: pressure without units")
@@ -309,7 +321,7 @@ def proves_itself(folder):
         "no scale": lambda f: f["phone_position"].dims[1].detach_scale(f["channel"]),
         "no dataset": lambda f: f.__delitem__("levels/noise"),
         "compound": lambda f: f.create_dataset("x", data=np.zeros(2, [("a", "f4"), ("b", "f4")])),
-        "not even": lambda f: f["time"].__setitem__(5, 1.0),
+        "not the rate": lambda f: f["pressure"].attrs.__setitem__("time_step", 1.0),
         "past the end": lambda f: f["valid_samples"].__setitem__(0, 100),
         "wrong unit": lambda f: f["environment/depth"].attrs.__setitem__("units", "km"),
     }
@@ -326,7 +338,7 @@ def proves_itself(folder):
     return True
 
 
-def run_program(program, folder):
+def run_program(program, folder, *options):
     """Runs `asdic ping` on the isovelocity scenario (any other, where that is not there). → path of
     the file
     """
@@ -335,9 +347,9 @@ def run_program(program, folder):
     scenario = next((s for s in scenarios if s.exists()), None)
     if scenario is None:
         return None
-    file = folder / "ping.h5"
-    done = subprocess.run([program, "ping", scenario, "-o", file, "--quiet"], capture_output=True,
-                          text=True)
+    file = folder / ("ping.h5" if not options else "axis.h5")
+    done = subprocess.run([program, "ping", scenario, "-o", file, "--quiet", *options],
+                          capture_output=True, text=True)
     if done.returncode != 0 or not file.exists():
         sys.exit(f"asdic ping {scenario.name}: exit {done.returncode}: {done.stderr.strip()}")
     if list(folder.glob("*.part")):
@@ -360,7 +372,7 @@ def main():
         if file is None:
             print("no program or no scenario: checked the synthetic file only")
             return 0
-        return 0 if check_file(file) else 1
+        return 0 if check_file(file) and check_file(run_program(program, folder, "--time-axis")) else 1
 
 
 if __name__ == "__main__":

@@ -92,6 +92,16 @@ class Case(unittest.TestCase):
 
 
 class EveryPictureIsDrawn(Case):
+    def test_version_1_as_version_2(self):
+        """Times that are written out make the same pictures as start and step."""
+        shown = []
+        for version in (1, 2):
+            self.check_plot(small(pings=2, version=version), ALWAYS + ["sweep"])
+            shown.append({p.stem: matplotlib.image.imread(p)
+                          for p in (self.folder / "pictures").iterdir()})
+        for name, picture in shown[0].items():
+            self.assertTrue(np.array_equal(picture, shown[1][name]), name)
+
     def test_horizontal_array(self):
         self.assertEqual(self.check_plot(small()), "")
 
@@ -225,13 +235,13 @@ class BadInput(Case):
     def test_newer_format(self):
         synthetic.write(self.file, small())
         with h5py.File(self.file, "r+") as f:
-            f.attrs["version"] = "2.0"
+            f.attrs["version"] = "3.0"
         self.assertRegex(self.refused(self.file),
-                         r"found version 2\.0 of the format, expected version 1")
+                         r"found version 3\.0 of the format, expected version 1 or 2")
 
     def test_datasets_that_are_missing(self):
         whole = self.folder / "whole.h5"
-        synthetic.write(whole, small(duration=1.0))
+        synthetic.write(whole, small(duration=1.0, version=1))
         for name in ("pressure", "ping", "valid_samples", "phone_position",
                      "environment/sound_speed", "replica", "time"):
             with self.subTest(name=name):
