@@ -1,4 +1,4 @@
-# What is borrowed. All are Debian 12 packages (scripts/packages.txt). Those without a CMake package come by pkg-config or as headers.
+# What is borrowed. All are Debian 12 packages (scripts/packages/). Those without a CMake package come by pkg-config or as headers.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)

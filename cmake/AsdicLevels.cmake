@@ -47,7 +47,7 @@ function(asdic_levels folder)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} asdic_warnings asdic_any_level_options)
     target_compile_options(${target} PRIVATE -march=x86-64-${level} $<$<STREQUAL:${level},v4>:${avx512_options}>)
-    file(GENERATE OUTPUT ${made}/${level}.objects CONTENT "$<JOIN:$<TARGET_OBJECTS:${target}>,\n>\n")
+    file(GENERATE OUTPUT ${made}/${level}.objects CONTENT "$<JOIN:$<FILTER:$<TARGET_OBJECTS:${target}>,EXCLUDE,[.]gch$>,\n>\n")  # no precompiled header
     list(APPEND compiled $<TARGET_OBJECTS:${target}>)
     list(APPEND objects ${made}/${folder}_${level}.o)
     list(APPEND open ${made}/${folder}_${level}_open.o)

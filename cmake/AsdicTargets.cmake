@@ -71,6 +71,7 @@ function(asdic_program folder)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
   list(REMOVE_ITEM sources "${PROJECT_SOURCE_DIR}/${folder}/main.cpp")
   add_library(asdic_commands STATIC ${sources})
+  set_target_properties(asdic_commands PROPERTIES POSITION_INDEPENDENT_CODE ON)  # as the folders: they share a precompiled header
   target_link_libraries(asdic_commands PUBLIC ${ARGN} Threads::Threads PRIVATE asdic_warnings asdic_build_options)
   add_executable(asdic_${folder} "${PROJECT_SOURCE_DIR}/${folder}/main.cpp")
   set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME asdic RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)

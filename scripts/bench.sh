@@ -20,8 +20,9 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-asdic_setup
+asdic_setup test
 if [ -n "$counts" ]; then
+  asdic_setup develop
   cmake --preset portable -DASDIC_TESTS=OFF -DASDIC_BENCHMARKS=ON >/dev/null
   cmake --build --preset portable --target count_kernels >/dev/null
   if [ "$counts" = linear ]; then

@@ -16,7 +16,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
     "sqlite3": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
     "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "study", "serve", "app"],
-    "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "spdlog": ["app"], "fmt/": ["app"],
+    "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "fmt/": ["app"],
 }
 
 
@@ -37,6 +37,8 @@ def faults():
                     continue
                 if header.endswith("tbb/parallel_for.h") and str(name) != "raytrace/parallel.cpp":
                     yield f"{name}: <{header}> belongs in raytrace/parallel.cpp; loops are in_parallel() of raytrace/parallel.h"
+                if header.startswith("CLI/") and str(name) != "app/command.cpp":
+                    yield f"{name}: <{header}> belongs in app/command.cpp, which alone takes seconds to compile"
                 for prefix, homes in HOMES.items():
                     if header.startswith(prefix) and (folder not in homes or (path.suffix == ".h" and folder != "app")):
                         yield f"{name}: <{header}> belongs in .cpp files of {', '.join(homes)}"

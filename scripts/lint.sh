@@ -3,7 +3,7 @@
 #   scripts/lint.sh [FILES]       ASDIC_JOBS: processes at a time (all processors)
 set -euo pipefail
 cd "$(dirname "$0")/.."
-command -v clang-tidy >/dev/null || { echo "lint.sh: needs Debian's clang-tidy" >&2; exit 1; }
+command -v clang-tidy >/dev/null || { echo "lint.sh: needs clang-tidy: scripts/setup.sh develop" >&2; exit 1; }
 cmake --preset ci -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
 # Sources of the command belong to up to three programs: each file is read once.
 mkdir -p build/lint

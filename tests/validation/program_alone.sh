@@ -21,7 +21,7 @@ if [ "$(uname -m)" = x86_64 ] && ! readelf -d asdic | grep -q 'libasan\|libtsan'
   grep -q 'calling init.*libtbb' loaded || fail "the dynamic linker told nothing"
   if grep 'calling init.*\(hdf5\|netcdf\|sndfile\|crypto\|sqlite\|fftw\)' loaded; then fail "bellhop loads what it does not call"; fi
   # Without one of them the other commands work, and those that need it say so.
-  sed 's/libhdf5\([a-z_]*\)\.so/libhdf0\1.so/' asdic >poor
+  sed 's/libhdf5\([a-z_]*\)\.so/libhdf0\1.so/g' asdic >poor
   chmod +x poor
   ./poor bellhop "$root/tests/data/bellhop/rays-upslope/case" -q -o fan
   status=0
