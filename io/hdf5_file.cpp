@@ -128,7 +128,7 @@ void Hdf5File::write(const std::string& dataset, std::span<const T> values, cons
 }
 
 void Hdf5File::write_text(const std::string& dataset, std::string_view text) {
-  const Handle type = hdf5::text_type(text.size());
+  const Handle type = hdf5::text_type(text.size() + 1);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle parents = make_parents();
   const Handle id(impl_->check(H5Dcreate2(impl_->file, dataset.c_str(), type, space, parents,

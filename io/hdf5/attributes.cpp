@@ -106,8 +106,8 @@ constexpr std::size_t most_fixed = 60'000;  // [bytes]
 void write_texts(const hdf5::Handle& object, const std::string& key, std::int64_t space,
                  const std::vector<std::string>& values, const std::filesystem::path& path,
                  const std::string& where) {
-  std::size_t longest = 1;
-  for (const std::string& value : values) longest = std::max(longest, value.size());
+  std::size_t longest = 1;  // with a zero at the end, see text_type()
+  for (const std::string& value : values) longest = std::max(longest, value.size() + 1);
   if (longest * values.size() > most_fixed) {
     std::vector<const char*> pointers;
     for (const std::string& value : values) pointers.push_back(value.c_str());

@@ -355,6 +355,12 @@ def faults_of_dataset(name, d, f):
         yield f"a time step of {d.attrs['time_step']} s"
 
 
+def is_unterminated(kind, value):
+    """netCDF-C reads a text of fixed length on until it finds a zero: past the end, if it has none."""
+    return (isinstance(kind, h5py.h5t.TypeStringID) and not kind.is_variable_str()
+            and any(len(text) >= kind.get_size() for text in np.ravel(value)))
+
+
 def check_h5py(path, f, fault):
     if text(f.attrs.get("Conventions", "")) != "CF-1.10":
         fault("no Conventions = CF-1.10")
@@ -364,7 +370,12 @@ def check_h5py(path, f, fault):
             for what in faults_of_dataset(name, item, f):
                 fault(f"{name}: {what}")
             item[()]
+            if is_unterminated(item.id.get_type(), item[()]):
+                fault(f"{name}: a text without a zero at its end")
         for key in item.attrs:
+            if key not in INSIDE and is_unterminated(h5py.h5a.open(item.id, key.encode()).get_type(),
+                                                     item.attrs[key]):
+                fault(f"{name}: attribute {key}: a text without a zero at its end")
             if key not in INSIDE and np.asarray(item.attrs[key]).dtype.kind in "Vc":
                 fault(f"{name}: attribute {key} of a type that netCDF cannot read")
     f.visititems(visit)
