@@ -205,6 +205,12 @@ void in_pieces(Shape start, Shape count, std::size_t most,
 template <class T>
 std::vector<T> Hdf5File::Impl::read_by_child(const std::string& dataset, const Shape& start,
                                              const Shape& count) const {
+  const Shape shape = hdf5::ask<&Hdf5File::info>(*child, dataset).shape;
+  for (std::size_t i = 0; i < std::min(shape.size(), count.size()); ++i)
+    if (count[i] > shape[i] || start.at(i) > shape[i] - count[i])
+      throw InputError({.where = path.string() + ": " + dataset,
+                        .got = "fewer values than another dataset tells of",
+                        .expected = "a whole file"});
   std::vector<T> values;
   values.reserve(product(count));
   in_pieces(start, count, most_at_once / sizeof(T), [&](const Shape& from, const Shape& size) {

@@ -143,6 +143,10 @@ std::vector<SeriesTiming> StudyFile::series_timing() const {
 
 std::vector<float> StudyFile::series(std::size_t k) const {
   Shape count = series_shape();
+  if (count.size() < 2)
+    throw InputError({.where = path().string() + ": time_series/pressure",
+                      .got = std::to_string(count.size()) + " dimensions",
+                      .expected = "(series, channel, sample), or with iq"});
   Shape start(count.size(), 0);
   start[0] = k;
   count[0] = 1;
@@ -161,6 +165,7 @@ void add(Digest& digest, const Hdf5File& file, const DatasetInfo& info) {
   for (std::size_t i = 1; i < info.shape.size(); ++i) row *= info.shape[i];
   const std::size_t rows = std::max<std::size_t>(1, at_a_time / std::max<std::size_t>(row, 1));
   Shape start(info.shape.size(), 0), count = info.shape;
+  if (info.shape.empty()) return digest.add(std::span<const T>(file.read<T>(info.path)));
   for (; start[0] < info.shape[0]; start[0] += count[0]) {
     count[0] = std::min(rows, info.shape[0] - start[0]);
     const std::vector<T> values = file.read<T>(info.path, start, count);
@@ -226,16 +231,36 @@ void StudyFile::check_each_part() const {
   }
 }
 
+namespace {
+
+/// What a manifest tells of a dataset.
+struct Told {
+  std::string dataset, sha256;
+  Shape shape;
+};
+
+std::vector<Told> told_by(const std::string& manifest) {
+  std::vector<Told> all;
+  for (const auto& [dataset, told] : Json::parse(manifest).at("datasets").items())
+    all.push_back({dataset, told.at("sha256"), told.at("shape")});
+  return all;
+}
+
+}  // namespace
+
 void StudyFile::verify() const {
   check_parts();
-  const Json manifest = Json::parse(manifest_);
-  for (const auto& [dataset, told] : manifest.at("datasets").items()) {
+  std::vector<Told> all;
+  try {
+    all = told_by(manifest_);
+  } catch (const Json::exception& error) {
+    throw no_manifest(path(), error);
+  }
+  for (const auto& [dataset, sum, shape] : all) {
     const std::string where = path().string() + ": " + dataset;
-    const std::string sum = told.at("sha256");
     if (!file_.has(dataset))
       throw InputError(
           {.where = where, .got = "no such dataset", .expected = "what the manifest lists"});
-    const Shape shape = told.at("shape");
     if (file_.info(dataset).shape == shape && digest_of(file_, dataset) == sum) continue;
     check_each_part();
     throw InputError({.where = where,
