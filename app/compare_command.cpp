@@ -30,7 +30,7 @@ struct Options {
   compare::RayOptions rays;
   double pair_us = 2000.0, join_us = 20.0;
   Thresholds limits;
-  bool json = false;
+  bool json = false, force = false;
 };
 
 /// Holds results against thresholds, and remembers in words which are exceeded.
@@ -155,9 +155,12 @@ void draw(const Options& options) {
   check_output(options.picture, options.a);
   const TemporaryFolder folder;
   const auto a = picture_source(options.a, folder, "a"), b = picture_source(options.b, folder, "b");
-  const int status =
-      draw_pictures({a.string(), "--against", b.string(), "--names", options.a, options.b,
-                     "--floor", fmt::format("{}", options.field.floor_db), "-o", options.picture});
+  std::vector<std::string> words{
+      a.string(), "--against",    b.string(), "--names",
+      options.a,  options.b,      "--floor",  fmt::format("{}", options.field.floor_db),
+      "-o",       options.picture};
+  if (options.force) words.push_back("--force");
+  const int status = draw_pictures(words);
   if (status != 0) throw RunError(options.picture + ": the picture was not drawn");
 }
 
@@ -244,6 +247,8 @@ void add_compare_command(Program& program) {
   command.add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
   command.add_option("--picture", options->picture, "draw both and their difference")
       .type_name("FILE.png");
+  command.add_flag("--force", options->force,
+                   "write over the picture even if asdic did not draw it");
   command.footer(
       "Differences are A - B; TL is -20 log10 |p|.\n"
       "Exit status: 0 within the thresholds, 1 outside, 2 the input is wrong.\n"

@@ -18,6 +18,7 @@ namespace {
 struct Options {
   std::string file, folder, array;
   std::optional<int> ping;
+  bool force = false;
 };
 
 /// Whether it is a file of `asdic ping`; what is neither that nor a result of the propagation model
@@ -72,6 +73,7 @@ int plot(const Options& options) {
   if (!pictures.empty()) words.insert(words.end(), {"--output", pictures});
   if (options.ping) words.insert(words.end(), {"--ping", std::to_string(*options.ping)});
   if (!options.array.empty()) words.insert(words.end(), {"--array", options.array});
+  if (options.force) words.push_back("--force");
   return draw_pictures(words);
 }
 
@@ -97,6 +99,7 @@ void add_plot_command(Program& program) {
                   "array of a ping file to draw; default: the first (range over bearing: the first "
                   "that tells bearings)")
       .type_name("NAME");
+  command.add_flag("--force", options->force, "write over files even if asdic did not write them");
   command.footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
       "Example:  asdic plot deep_ocean.h5 -o pictures");

@@ -7,6 +7,7 @@ import sys
 import warnings
 from pathlib import Path
 
+from . import output
 from .data import InputError, PingFile
 from .results import KINDS, filetype
 
@@ -28,6 +29,8 @@ def arguments(argv):
                         help="what the files are called in the pictures")
     parser.add_argument("--floor", metavar="DB", type=float, default=120.0,
                         help="differences of fields where both losses are below this")
+    parser.add_argument("--force", action="store_true",
+                        help="write over files even if asdic did not write them")
     return parser.parse_args(argv)
 
 
@@ -48,11 +51,12 @@ def complain(line: str) -> None:
     say(f"asdic plot: {line}", sys.stderr)
 
 
-def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None) -> None:
+def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None,
+             force: bool = False) -> None:
     """Draws each picture, or says why it is left out: there is nothing to show.
 
-    A picture of an earlier run that is left out now is removed, so a folder never shows two files'
-    pictures. Those of `asdic process` are spoken of only where it has run.
+    A picture of an earlier run that is left out now is removed, if it is ours, so a folder never
+    shows two files' pictures. Those of `asdic process` are spoken of only where it has run.
     Without `array`, what the first hears, and range over bearing of the first that tells bearings.
     """
     from . import (ambiguity, bearing_time, detections, levels, matched_filter, pressure, processed,
@@ -69,11 +73,11 @@ def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None) 
             select_first(data, lambda: module.nothing_to_show(data, ping))
         reason = module.nothing_to_show(data, ping)
         if reason:
-            (folder / name).unlink(missing_ok=True)
+            output.remove(folder / name)
             if module not in received or processed.there(data):
                 say(f"{folder / name}: left out, {reason}")
             continue
-        style.write(module.draw(data, ping), folder / name)
+        style.write(module.draw(data, ping), folder / name, force)
         say(f"{folder / name}: {module.TITLE}{'' if module in of_all else data.of_array}")
     if len(data.array_names) > 1 and not array:
         names = ", ".join(f'"{n}"' for n in data.array_names)
@@ -101,13 +105,14 @@ def draw_result(options) -> None:
                     results.Arrivals: ("arrivals", arrival_stems),
                     results.Rays: ("rays", ray_paths)}[type(result)]
     if reason := module.nothing_to_show(result):
-        (folder / f"{name}.png").unlink(missing_ok=True)
+        output.remove(folder / f"{name}.png")
         say(f"{folder / name}.png: left out, {reason}")
         return
     sources = result.source_depths.size if isinstance(result, results.Field) else 1
     for source in range(sources):
         path = folder / (f"{name}_{source + 1}.png" if sources > 1 else f"{name}.png")
-        style.write(module.draw(result, source) if sources > 1 else module.draw(result), path)
+        style.write(module.draw(result, source) if sources > 1 else module.draw(result), path,
+                    options.force)
         say(f"{path}: {module.TITLE}")
 
 
@@ -120,7 +125,7 @@ def draw_study(options) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, figure in study_pictures.draw(study):
         path = folder / f"{name}.png"
-        style.write(figure, path)
+        style.write(figure, path, options.force)
         say(f"{path}: {figure._suptitle.get_text()}")
 
 
@@ -131,7 +136,7 @@ def draw_comparison(options) -> None:
     names = options.names if len(options.names) == 2 else [options.file, options.against]
     path = Path(options.output or "comparison.png")
     figure = comparison.draw(a, b, [short_name(name) for name in names], options.floor)
-    style.write(figure, path)
+    style.write(figure, path, options.force)
     say(f"{path}: A against B", sys.stderr)
 
 
@@ -156,7 +161,7 @@ def run(argv=None) -> int:
         ping = data.choose_ping(options.ping)
         folder = Path(options.output) if options.output else default_folder(options.file)
         folder.mkdir(parents=True, exist_ok=True)
-        draw_all(data, ping, folder, options.array)
+        draw_all(data, ping, folder, options.array, options.force)
         for warning in data.warnings():
             complain(f"{options.file}: {warning}")
     return 0
@@ -164,6 +169,7 @@ def run(argv=None) -> int:
 
 def main(argv=None) -> int:
     """Runs; a failure becomes one line and an exit code: 2 the input, 130 Ctrl-C, 1 the rest."""
+    output.open_standard_streams()
     warnings.simplefilter("ignore")
     try:
         return run(argv)

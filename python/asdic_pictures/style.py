@@ -8,6 +8,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib import patheffects, ticker  # noqa: E402
 
+from . import output  # noqa: E402
+
 INK, GREY = "#222222", "#8a8a8a"
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
 SLATE, BROWN = "#6f7fa6", "#6b4423"     # of no target
@@ -151,12 +153,9 @@ def cell_edges(centres):
     return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
 
 
-def write(fig, path) -> None:
-    """\\throws OSError with the path when the picture cannot be written"""
+def write(fig, path, force: bool = False) -> None:
+    """\\throws InputError where the name is somebody's, OSError with the path when it cannot be written"""
     try:
-        fig.savefig(path)
-    except OSError as error:
-        error.filename = error.filename or str(path)
-        raise
+        output.write(fig, path, force)
     finally:
         plt.close(fig)

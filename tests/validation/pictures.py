@@ -6,6 +6,7 @@ Synthetic files with known contents (tests/support/make_ping_file.py) stand for 
 import contextlib
 import io
 import os
+import resource
 import shutil
 import stat
 import subprocess
@@ -25,7 +26,7 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
-from asdic_pictures import command, style  # noqa: E402
+from asdic_pictures import command, output, style  # noqa: E402
 
 style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
 
@@ -92,16 +93,6 @@ class Case(unittest.TestCase):
 
 
 class EveryPictureIsDrawn(Case):
-    def test_version_1_as_version_2(self):
-        """Times that are written out make the same pictures as start and step."""
-        shown = []
-        for version in (1, 2):
-            self.check_plot(small(pings=2, version=version), ALWAYS + ["sweep"])
-            shown.append({p.stem: matplotlib.image.imread(p)
-                          for p in (self.folder / "pictures").iterdir()})
-        for name, picture in shown[0].items():
-            self.assertTrue(np.array_equal(picture, shown[1][name]), name)
-
     def test_horizontal_array(self):
         self.assertEqual(self.check_plot(small()), "")
 
@@ -235,13 +226,13 @@ class BadInput(Case):
     def test_newer_format(self):
         synthetic.write(self.file, small())
         with h5py.File(self.file, "r+") as f:
-            f.attrs["version"] = "3.0"
+            f.attrs["version"] = "2.0"
         self.assertRegex(self.refused(self.file),
-                         r"found version 3\.0 of the format, expected version 1 or 2")
+                         r"found version 2\.0 of the format, expected version 1")
 
     def test_datasets_that_are_missing(self):
         whole = self.folder / "whole.h5"
-        synthetic.write(whole, small(duration=1.0, version=1))
+        synthetic.write(whole, small(duration=1.0))
         for name in ("pressure", "ping", "valid_samples", "phone_position",
                      "environment/sound_speed", "replica", "time"):
             with self.subTest(name=name):
@@ -270,14 +261,56 @@ class BadInput(Case):
         self.refused(self.file, "-o", locked, code=1)
 
     def test_full_disk(self):
-        """/dev/full stands in: writing a picture to it fails, which is the world's fault, not the
-        input's.
+        """A limit on the size of files stands in: writing a picture fails, which is the world's
+        fault, not the input's.
         """
         synthetic.write(self.file, small(duration=1.0))
         pictures = self.folder / "pictures"
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+        try:
+            self.assertIn("rays.png", self.refused(self.file, "-o", pictures, code=1))
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        self.assertEqual(list(pictures.iterdir()), [])
+
+    def test_pictures_of_others(self):
+        """Neither written over nor removed; ours are, and say whose they are."""
+        synthetic.write(self.file, small(duration=1.0))
+        pictures = self.folder / "pictures"
+        self.assertEqual(plot(self.file, "-o", pictures)[0], 0)
+        drawn = {path.name for path in pictures.iterdir()}
+        self.assertIn("rays.png", drawn)
+        for path in pictures.iterdir():
+            self.assertTrue(output.is_ours(path), path)
+        for name in ("tracks.png", "sweep.png", "detections.png"):   # of which nothing is drawn
+            self.assertNotIn(name, drawn)
+            (pictures / name).write_bytes(b"a drawing by hand")
+        self.assertEqual(plot(self.file, "-o", pictures)[0], 0)
+        for name in ("tracks.png", "sweep.png", "detections.png"):
+            self.assertEqual((pictures / name).read_bytes(), b"a drawing by hand", name)
+
+        fig, _ = style.figure("by another program")                  # a PNG, but not ours
+        fig.savefig(pictures / "rays.png")
+        others = (pictures / "rays.png").read_bytes()
+        self.assertFalse(output.is_ours(pictures / "rays.png"))
+        self.assertIn("asdic did not write", self.refused(self.file, "-o", pictures))
+        self.assertEqual((pictures / "rays.png").read_bytes(), others)
+        self.assertEqual(plot(self.file, "-o", pictures, "--force")[0], 0)
+        self.assertTrue(output.is_ours(pictures / "rays.png"))
+        (pictures / "rays.png").unlink()
+        (pictures / "rays.png").symlink_to(self.file)
+        self.assertIn("no file", self.refused(self.file, "-o", pictures, "--force"))
+        self.assertEqual([p for p in pictures.iterdir() if p.name.endswith(".part")], [])
+
+    def test_pictures_of_ours_that_are_left_out_go(self):
+        synthetic.write(self.file, small(duration=1.0))
+        pictures = self.folder / "pictures"
         pictures.mkdir()
-        (pictures / "rays.png").symlink_to("/dev/full")
-        self.assertIn("rays.png", self.refused(self.file, "-o", pictures, code=1))
+        fig, _ = style.figure("of an earlier run")
+        style.write(fig, pictures / "tracks.png")
+        self.assertEqual(plot(self.file, "-o", pictures)[0], 0)
+        self.assertFalse((pictures / "tracks.png").exists())
 
     def test_the_script_itself(self):
         """As the program calls it: a separate process, its exit code and its one line."""
