@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
+#include "raytrace/beam_error_text.h"
 
 namespace asdic::app {
 namespace {
@@ -156,9 +157,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   report.notes(result.notes);
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
   if (!options.like_bellhop && input.run_case.task == Task::field)
-    report.line(
-        fmt::format("error      more beams would change {} {:.2g} dB at 95 % of the receivers",
-                    result.beam_error_bounded ? "no more than" : "about", result.beam_error_db));
+    report.line("error      " + beam_error_text(result.beam_error_db, result.beam_error_bounded));
   report.line("");
   write_results(input, result, options, root, report);
   const double write = watch.lap();

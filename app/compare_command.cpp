@@ -21,6 +21,12 @@ struct Thresholds {
   std::optional<double> median_db, p95_db, level_db, relative_error;  // fields; arrivals: amplitude
   std::optional<double> matched_pct, strong_pct, delay_us, angle_deg;
   std::optional<double> distance_m;
+  std::optional<double> compared_pct;  ///< none: all must be, where any of the others is asked for
+
+  [[nodiscard]] bool any() const noexcept {
+    return median_db || p95_db || level_db || relative_error || matched_pct || strong_pct ||
+           delay_us || angle_deg || distance_m || compared_pct;
+  }
 };
 
 struct Options {
@@ -58,6 +64,14 @@ class Judge {
   std::vector<std::string> exceeded;
 };
 
+/// What cannot be compared has no difference that a threshold could catch. \param what  "cells"
+template <class Difference>
+void judge_left_out(Judge& judge, const Difference& d, const Thresholds& limits,
+                    const std::string& what) {
+  if (!limits.any()) return;
+  judge.at_least(what + " compared", d.compared_pct(), limits.compared_pct.value_or(100.0), " %");
+}
+
 double or_nan(double value, std::size_t count) { return count > 0 ? value : std::nan(""); }
 
 void judge(Judge& judge, const compare::FieldDifference& d, const Thresholds& limits) {
@@ -66,6 +80,7 @@ void judge(Judge& judge, const compare::FieldDifference& d, const Thresholds& li
   Judge::refuse("--max-delay-us", limits.delay_us.has_value(), "fields", "arrivals");
   Judge::refuse("--max-angle-deg", limits.angle_deg.has_value(), "fields", "arrivals");
   Judge::refuse("--max-distance", limits.distance_m.has_value(), "fields", "rays");
+  judge_left_out(judge, d, limits, "cells");
   const std::size_t n = d.compared;
   judge.at_most("median |dTL|", or_nan(d.tl_db.median, n), limits.median_db, " dB");
   judge.at_most("95 % |dTL|", or_nan(d.tl_db.p95, n), limits.p95_db, " dB");
@@ -76,6 +91,7 @@ void judge(Judge& judge, const compare::FieldDifference& d, const Thresholds& li
 void judge(Judge& judge, const compare::ArrivalDifference& d, const Thresholds& limits) {
   Judge::refuse("--max-error", limits.relative_error.has_value(), "arrivals", "fields");
   Judge::refuse("--max-distance", limits.distance_m.has_value(), "arrivals", "rays");
+  judge_left_out(judge, d, limits, "rows");
   const std::size_t n = d.matched;
   judge.at_least("paths matched", d.matched_pct(), limits.matched_pct, " %");
   judge.at_least("paths within 20 dB matched", d.strong_matched_pct(), limits.strong_pct, " %");
@@ -96,6 +112,7 @@ void judge(Judge& judge, const compare::RayDifference& d, const Thresholds& limi
   Judge::refuse("--min-strong", limits.strong_pct.has_value(), "rays", "arrivals");
   Judge::refuse("--max-delay-us", limits.delay_us.has_value(), "rays", "arrivals");
   Judge::refuse("--max-angle-deg", limits.angle_deg.has_value(), "rays", "arrivals");
+  judge_left_out(judge, d, limits, "rays");
   judge.at_least("rays paired", d.paired_pct(), limits.matched_pct, " %");
   judge.at_most("distance", or_nan(d.inside_m.max, d.paired), limits.distance_m, " m");
 }
@@ -193,6 +210,9 @@ void add_thresholds(const Command& command, Thresholds& limits) {
                 "paths, or rays, of B found in A");
   add_threshold(command, "--min-strong", limits.strong_pct, "%",
                 "paths within 20 dB of the strongest found in A");
+  add_threshold(command, "--min-compared", limits.compared_pct, "%",
+                "cells (rows of arrivals, rays) that can be compared: in both files, finite; 100 "
+                "where another threshold is given");
   add_threshold(command, "--max-delay-us", limits.delay_us, "US", "95 % of the delays [us]");
   add_threshold(command, "--max-angle-deg", limits.angle_deg, "DEG",
                 "95 % of launch and arrival angles [deg]");

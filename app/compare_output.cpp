@@ -81,6 +81,8 @@ std::string table_of(const CompareResult& result, const compare::ArrivalDifferen
                       d.matched, percent(d.matched_pct()), percent(d.energy_matched_pct),
                       d.strong_matched, d.strong_b, percent(d.strong_matched_pct()));
   text += fmt::format("energy    of A over B {} dB\n", figure(d.energy_db));
+  if (d.not_finite > 0)
+    text += fmt::format("left out  {} rows that are not finite\n", d.not_finite);
   if (d.matched > 0) {
     SpreadTable table;
     table.row("amplitude", "dB", d.amplitude_db);
@@ -103,6 +105,8 @@ std::string table_of(const CompareResult&, const compare::RayDifference& d) {
   std::string text =
       fmt::format("rays      {} in A ({} points), {} in B ({} points)\npaired    {}: {} of B\n",
                   d.rays_a, d.points_a, d.rays_b, d.points_b, d.paired, percent(d.paired_pct()));
+  if (d.not_finite > 0)
+    text += fmt::format("left out  {} rays that are not finite\n", d.not_finite);
   if (d.paired == 0) return text;
   SpreadTable table;
   table.row("path", "m", d.path_m);
@@ -121,7 +125,9 @@ ordered_json json_of(const compare::FieldDifference& d) {
   return {{"cells", d.cells},
           {"compared", d.compared},
           {"not_finite", d.not_finite},
+          {"one_sided", d.one_sided},
           {"one_sided_pct", d.one_sided_pct},
+          {"compared_pct", d.compared_pct()},
           {"tl_db", json_of(d.tl_db)},
           {"within_db_pct", within},
           {"tl_correlation", d.tl_correlation},
@@ -136,6 +142,7 @@ ordered_json json_of(const compare::ArrivalDifference& d) {
   return {{"receivers", d.receivers},
           {"rows_a", d.rows_a},
           {"rows_b", d.rows_b},
+          {"not_finite", d.not_finite},
           {"paths_a", d.paths_a},
           {"paths_b", d.paths_b},
           {"matched", d.matched},
@@ -157,6 +164,7 @@ ordered_json json_of(const compare::RayDifference& d) {
           {"rays_b", d.rays_b},
           {"points_a", d.points_a},
           {"points_b", d.points_b},
+          {"not_finite", d.not_finite},
           {"paired", d.paired},
           {"paired_pct", d.paired_pct()},
           {"path_m", json_of(d.path_m)},

@@ -10,6 +10,7 @@
 #include "io/compare/statistics.h"
 #include "io/environment_group.h"
 #include "io/scenario/propagation.h"
+#include "raytrace/beam_error_text.h"
 
 namespace asdic::app {
 namespace {
@@ -81,10 +82,8 @@ std::string field_text(const FieldResult& result, double wall) {
       fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
                   name(data.source), count_of(data.source_depths.size(), "depth"),
                   receivers_text(data.receivers));
-  text +=
-      fmt::format("beams      {} of kind {}; more would change {} {} dB at 95 % of the receivers\n",
-                  data.beams, data.beam_kind, data.beam_error_bounded ? "no more than" : "about",
-                  number(data.beam_error_db, 3));
+  text += fmt::format("beams      {} of kind {}; {}\n", data.beams, data.beam_kind,
+                      beam_error_text(data.beam_error_db, data.beam_error_bounded));
   text += loss_text(data.pressure);
   for (const std::string& note : result.notes) text += "note: " + note + '\n';
   return text + fmt::format("{}: {}, {}\n", result.output.string(),

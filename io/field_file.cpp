@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "io/finite_field.h"
 #include "io/hdf5/scale.h"
 
 namespace asdic {
@@ -34,6 +35,7 @@ constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-cohe
 }  // namespace
 
 void write_field(Hdf5File& file, const FieldData& field) {
+  require_finite(field.pressure);
   file.set_attribute("", "frequency_hz", field.frequency);
   file.set_attribute("", "field", field_kinds[static_cast<int>(field.kind)]);
   file.set_attribute("", "source", field.source == SourceKind::line ? "line" : "point");

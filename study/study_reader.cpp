@@ -8,6 +8,7 @@
 #include "study/measure_reader.h"
 #include "study/sampler.h"
 #include "study/study.h"
+#include "study/summary_parts.h"
 #include "study/summary_reader.h"
 #include "study/target_keys.h"
 #include "study/vary_reader.h"
@@ -113,6 +114,7 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   study.measure = read_measure(own.table("measure"), example_of(study));
   study.summary =
       read_summary(own.table("summary"), study.document.find("summary"), columns(study));
+  check_summary_names(study);
   return study;
 }
 

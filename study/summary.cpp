@@ -1,8 +1,11 @@
 #include "study/summary.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 
+#include "io/text/toml_value.h"
 #include "study/intervals.h"
 #include "study/summary_parts.h"
 
@@ -29,6 +32,16 @@ std::optional<std::size_t> first_question(std::span<const Column> columns) noexc
   return first;
 }
 
+std::string quantile_name(double probability) {
+  std::array<char, 400> fixed{};
+  const auto end = std::to_chars(fixed.data(), fixed.data() + fixed.size(), probability,
+                                 std::chars_format::fixed)
+                       .ptr;
+  std::string digits(fixed.data(), end);
+  std::erase(digits, '.');
+  return "q" + digits + std::string(4 - std::min<std::size_t>(4, digits.size()), '0');
+}
+
 bool counts(const Table& table, std::size_t row, std::size_t column) noexcept {
   return table.valid[row] != 0 && std::isfinite(table.values[column][row]);
 }
@@ -52,9 +65,7 @@ SummaryTable statistics_table(const SummaryPlan& plan, const Table& table) {
   column("least", of, "least value");
   column("greatest", of, "greatest value");
   for (const double p : plan.quantiles) {
-    std::string digits = std::to_string(std::lround(p * 1000.0));
-    column("q" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits, of,
-           "quantile, in thousandths");
+    column(quantile_name(p), of, "quantile at " + to_text(p));
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     Moments moments;

@@ -151,7 +151,9 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
     const Column& column = table.columns[c];
     if (column.role != Column::Role::measure) continue;
     if (!is_proportion(column)) {
-      others.push_back(c);
+      const bool along_itself =
+          std::any_of(axes.begin(), axes.end(), [&](const Axis& axis) { return axis.column == c; });
+      if (!along_itself) others.push_back(c);
       continue;
     }
     const std::string name = proportion_name(column);

@@ -17,6 +17,15 @@ namespace asdic::study {
 /// measures.
 [[nodiscard]] std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept;
 
+/// "q0500" of 0.5, "q09999" of 0.9999: the probability's digits without its point, at least three
+/// behind it.
+[[nodiscard]] std::string quantile_name(double probability);
+
+/// \throws InputError where two columns of the rows, two tables of [summary], or two columns of one
+/// of these would have one name; names the entry of `by` that brings the second. \param study whole
+/// but for its rows
+void check_summary_names(const Study& study);
+
 /// Whether a row counts for a column: valid, and finite there.
 [[nodiscard]] bool counts(const Table& table, std::size_t row, std::size_t column) noexcept;
 

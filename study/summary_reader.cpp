@@ -79,8 +79,13 @@ SummaryPlan read_summary(TomlTable table, const TomlValue* value,
       "confidence", {.noun = "probability", .low = 0.5, .high = 0.999999}, plan.confidence);
   if (table.choice("interval", {"wilson", "clopper_pearson"}, "wilson") == "clopper_pearson")
     plan.interval = ProportionInterval::clopper_pearson;
-  if (table.has("quantiles"))
+  if (table.has("quantiles")) {
     plan.quantiles = table.numbers("quantiles", {.noun = "probability", .low = 0.0, .high = 1.0});
+    for (std::size_t i = 1; i < plan.quantiles.size(); ++i)
+      if (const auto at = plan.quantiles.begin() + static_cast<std::ptrdiff_t>(i);
+          std::find(plan.quantiles.begin(), at, *at) != at)
+        throw table.fault("quantiles[" + std::to_string(i) + "]", "every probability once");
+  }
   if (table.has("by")) {
     const TomlValue& by = *value->find("by");
     const auto* items = std::get_if<TomlValue::Array>(&by.data);

@@ -5,6 +5,8 @@
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 #include "io/input_file.h"
+#include "io/scenario/sections.h"
+#include "raytrace/ocean/strongest_reflection.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -69,7 +71,8 @@ void read_section(CaseReading& reading, const std::vector<double>& depth,
     file.begin("speeds at " + shown(depth[j]) + " m");
     for (std::size_t i = 0; i < n; ++i) {
       const double c = file.need_real("speed");
-      if (!(c > 0.0)) file.fail("speed", shown(c) + " m/s", "a speed above 0 m/s");
+      if (!scenario::speed_of_sound.holds(c))
+        file.fail("speed", shown(c) + " m/s", scenario::speed_of_sound.expected());
       speed[i * depth.size() + j] = c;
     }
     file.end();
@@ -154,8 +157,11 @@ ReflectionTable read_reflection_table(CaseReading& reading, bool surface) {
       file.fail("angle", shown(angle.back()) + " degrees", "a grazing angle from 0 to 90 degrees");
     table.grazing.push_back(radians(angle.back()));
     table.magnitude.push_back(file.need_real("magnitude"));
-    if (table.magnitude.back() < 0.0)
-      file.fail("magnitude", shown(table.magnitude.back()), "at least 0");
+    if (table.magnitude.back() > 1.0 && table.magnitude.back() <= most_reflection)
+      table.magnitude.back() = 1.0;
+    if (!(table.magnitude.back() >= 0.0 && table.magnitude.back() <= 1.0))
+      file.fail("magnitude", shown(table.magnitude.back()),
+                "a magnitude from 0 to 1: no boundary reflects more than comes in");
     table.phase.push_back(radians(file.need_real("phase")));
     file.end();
   }

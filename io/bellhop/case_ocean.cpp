@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
+#include "io/scenario/sections.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -33,7 +34,8 @@ double attenuation_at_node(const CaseReading& reading) {
 void check_water(const CaseReading& reading) {
   const ListReader& env = reading.env;
   const MaterialRow& row = reading.row;
-  if (!(row.speed > 0.0)) env.fail("speed", shown(row.speed) + " m/s", "a speed above 0 m/s");
+  if (!scenario::speed_of_sound.holds(row.speed))
+    env.fail("speed", shown(row.speed) + " m/s", scenario::speed_of_sound.expected());
   if (!(row.density > 0.0))
     env.fail("density", shown(row.density) + " g/cm^3", "a density above 0 g/cm^3");
   if (row.attenuation < 0.0)

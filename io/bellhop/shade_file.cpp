@@ -5,6 +5,7 @@
 #include "io/bellhop/binary.h"
 #include "io/bellhop/file_bytes.h"
 #include "io/bellhop/list_reader.h"
+#include "io/finite_field.h"
 #include "io/input_file.h"
 
 namespace asdic::bellhop {
@@ -185,6 +186,7 @@ ShadeFile read_shade_file(const std::filesystem::path& path) {
 }
 
 void write_shade_file(const std::filesystem::path& path, const ShadeFile& file) {
+  require_finite(file.pressure);
   write_bytes(path, shade_file_bytes(file));
 }
 

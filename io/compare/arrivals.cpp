@@ -122,6 +122,9 @@ class Gatherer {
     ++result_.receivers;
     result_.rows_a += rows_a.size();
     result_.rows_b += rows_b.size();
+    for (const Rows* rows : {&rows_a, &rows_b})
+      result_.not_finite += rows->size() - static_cast<std::size_t>(
+                                               std::count_if(rows->begin(), rows->end(), finite));
     add_sum(rows_a, rows_b);
     const Rows a = join_beams(rows_a, frequency_, options_);
     const Rows b = join_beams(rows_b, frequency_, options_);
@@ -189,8 +192,10 @@ class Gatherer {
   /// The field at the receiver, as the rows give it.
   void add_sum(const Rows& a, const Rows& b) {
     Complex pa = 0.0, pb = 0.0;
-    for (const ArrivalRow& row : a) pa += pressure(row, frequency_, 0.0);
-    for (const ArrivalRow& row : b) pb += pressure(row, frequency_, 0.0);
+    for (const ArrivalRow& row : a)
+      if (finite(row)) pa += pressure(row, frequency_, 0.0);
+    for (const ArrivalRow& row : b)
+      if (finite(row)) pb += pressure(row, frequency_, 0.0);
     if (std::abs(pa) > 0.0 && std::abs(pb) > 0.0)
       sum_.push_back(20.0 * std::log10(std::abs(pb) / std::abs(pa)));  // ΔTL = TL(A) − TL(B)
   }
@@ -214,16 +219,12 @@ void check_receivers(const std::string& axis, const std::vector<double>& a,
       {.where = "receivers: " + axis, .got = got.str(), .expected = "the same in both"});
 }
 
-double share(std::size_t part, std::size_t all) {
-  return all == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
-}
-
 }  // namespace
 
-double ArrivalDifference::matched_pct() const noexcept { return share(matched, paths_b); }
+double ArrivalDifference::matched_pct() const noexcept { return share_pct(matched, paths_b); }
 
 double ArrivalDifference::strong_matched_pct() const noexcept {
-  return share(strong_matched, strong_b);
+  return share_pct(strong_matched, strong_b);
 }
 
 Rows join_beams(const Rows& arrivals, double frequency, const ArrivalOptions& options) {

@@ -27,7 +27,8 @@ struct MissedPath {
 /// path counts when it is within `below_strongest_db` of the strongest of either file there.
 struct ArrivalDifference {
   std::size_t receivers = 0;
-  std::size_t rows_a = 0, rows_b = 0;            ///< arrivals as written, all of them
+  std::size_t rows_a = 0, rows_b = 0;  ///< arrivals as written, all of them
+  std::size_t not_finite = 0;  ///< of these, those with a NaN or an infinity, which are left out
   std::size_t paths_a = 0, paths_b = 0;          ///< joined, and strong enough
   std::size_t matched = 0;                       ///< paths of B with a partner in A
   std::size_t strong_b = 0, strong_matched = 0;  ///< those within 20 dB of the strongest
@@ -37,6 +38,10 @@ struct ArrivalDifference {
   Spread sum_db;                   ///< TL of all arrivals of a receiver added up at B's frequency
   std::vector<MissedPath> missed;  ///< of B, strongest first
 
+  /// Of the rows of both files those that could be compared.
+  [[nodiscard]] double compared_pct() const noexcept {
+    return share_pct(rows_a + rows_b - not_finite, rows_a + rows_b);
+  }
   [[nodiscard]] double matched_pct() const noexcept;
   [[nodiscard]] double strong_matched_pct() const noexcept;
 };

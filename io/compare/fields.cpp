@@ -113,22 +113,22 @@ AlignedFields align(const bellhop::ShadeFile& a, const bellhop::ShadeFile& b, bo
 FieldDifference compare_fields(const AlignedFields& fields, const FieldOptions& options) {
   FieldDifference result{.cells = fields.b.size()};
   const std::size_t ranges = fields.receiver_ranges.size();
-  std::size_t either = 0, one_sided = 0;
+  std::size_t either = 0;
   std::vector<double> ta, tb, dtl, dphi;
   Complex inner = 0.0;                          // ⟨b, a⟩ = Σ r a b*
   double aa = 0.0, bb = 0.0, difference = 0.0;  // Σ r |·|²
   for (std::size_t i = 0; i < fields.b.size(); ++i) {
     const Complex a(fields.a[i]), b(fields.b[i]);
     const double range = fields.receiver_ranges[i % ranges];
+    if (range < options.min_range) continue;
     if (!finite(a) || !finite(b)) {
       ++result.not_finite;
       continue;
     }
-    if (range < options.min_range) continue;
     const double tl_a = tl(a), tl_b = tl(b);
     const bool in_a = tl_a < options.floor_db, in_b = tl_b < options.floor_db;
     if (in_a || in_b) ++either;
-    if (in_a != in_b) ++one_sided;
+    if (in_a != in_b) ++result.one_sided;
     if (!in_a || !in_b) continue;
     const double r = std::max(std::abs(range), 1e-9);
     ta.push_back(tl_a);
@@ -141,8 +141,7 @@ FieldDifference compare_fields(const AlignedFields& fields, const FieldOptions& 
     difference += r * std::norm(a - b);
   }
   result.compared = dtl.size();
-  if (either > 0)
-    result.one_sided_pct = 100.0 * static_cast<double>(one_sided) / static_cast<double>(either);
+  if (either > 0) result.one_sided_pct = share_pct(result.one_sided, either);
   if (dtl.empty()) return result;
   const auto n = static_cast<double>(dtl.size());
   for (std::size_t k = 0; k < result.within_pct.size(); ++k)

@@ -22,6 +22,7 @@ struct FieldOptions {
 struct FieldDifference {
   std::size_t cells = 0, compared = 0;
   std::size_t not_finite = 0;  ///< cells with a NaN or an infinity in either file
+  std::size_t one_sided = 0;   ///< cells below the floor in one file only
   double one_sided_pct = 0.0;  ///< of the cells below the floor in either: those in one only
   Spread tl_db;                ///< ΔTL
   static constexpr std::array within_db = {0.01, 0.1, 0.5, 1.0, 3.0};
@@ -32,6 +33,12 @@ struct FieldDifference {
   double mean_phase_deg = 0.0;                        ///< arg ⟨b, a⟩: by how much A leads
   Spread phase_deg;                                   ///< arg(a·b*)
   double level_db = 0.0;  ///< 10·log₁₀ Σ r|a|² / Σ r|b|²: the incoherent mean level of A over B's
+
+  /// Of the cells that should be compared (below the floor in either file, or not finite) those
+  /// that could be.
+  [[nodiscard]] double compared_pct() const noexcept {
+    return share_pct(compared, compared + one_sided + not_finite);
+  }
 };
 
 /// Fields that can be put side by side: B's grid, and A's pressures on it.

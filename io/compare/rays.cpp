@@ -20,13 +20,24 @@ double end_distance(const Ray& a, const Ray& b) {
   return std::hypot(a.range.back() - b.range.back(), a.depth.back() - b.depth.back());
 }
 
+bool finite(const Ray& ray) {
+  const auto all = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+  };
+  return std::isfinite(ray.launch_angle_deg) && all(ray.range) && all(ray.depth);
+}
+
+std::size_t not_finite(const std::vector<Ray>& rays) {
+  return rays.size() - static_cast<std::size_t>(std::count_if(rays.begin(), rays.end(), finite));
+}
+
 /// Rays of one history, in order of launch angle.
 using Families = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 
 Families families(const std::vector<Ray>& rays) {
   Families result;
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!rays[i].range.empty() && std::isfinite(rays[i].launch_angle_deg))
+    if (!rays[i].range.empty() && finite(rays[i]))
       result[{rays[i].surface_bounces, rays[i].bottom_bounces}].push_back(i);
   for (auto& [history, family] : result)
     std::stable_sort(family.begin(), family.end(), [&](std::size_t x, std::size_t y) {
@@ -121,16 +132,15 @@ Polyline::Nearest Polyline::nearest(double range, double depth) noexcept {
                         (best_segment + 1 == segments && best_place >= 1.0)};
 }
 
-double RayDifference::paired_pct() const noexcept {
-  return rays_b == 0 ? 100.0 : 100.0 * static_cast<double>(paired) / static_cast<double>(rays_b);
-}
+double RayDifference::paired_pct() const noexcept { return share_pct(paired, rays_b); }
 
 RayDifference compare_rays(const bellhop::RayFile& a, const bellhop::RayFile& b,
                            const RayOptions& options) {
   RayDifference result{.rays_a = a.rays.size(),
                        .rays_b = b.rays.size(),
                        .points_a = points(a.rays),
-                       .points_b = points(b.rays)};
+                       .points_b = points(b.rays),
+                       .not_finite = not_finite(a.rays) + not_finite(b.rays)};
   std::vector<Pair> pairs;
   Families fa = families(a.rays), fb = families(b.rays);
   for (auto& [history, ia] : fa) {

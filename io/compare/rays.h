@@ -20,6 +20,7 @@ struct RayOptions {
 /// steps need not be the same.
 struct RayDifference {
   std::size_t rays_a = 0, rays_b = 0, points_a = 0, points_b = 0;
+  std::size_t not_finite = 0;  ///< rays with a NaN or an infinity, which are left out
   std::size_t paired = 0;
   Spread path_m;    ///< of each pair the largest distance of A's points from B's path [m]
   Spread inside_m;  ///< the same without points beyond B's ends: the runs may end elsewhere
@@ -28,6 +29,10 @@ struct RayDifference {
     double launch_angle_deg = 0.0, range = 0.0, depth = 0.0, distance = 0.0;
   } worst;  ///< the point of A that is furthest from its path [m]
 
+  /// Of the rays of both files those that could be compared.
+  [[nodiscard]] double compared_pct() const noexcept {
+    return share_pct(rays_a + rays_b - not_finite, rays_a + rays_b);
+  }
   [[nodiscard]] double paired_pct() const noexcept;
 };
 

@@ -6,6 +6,10 @@
 
 namespace asdic::compare {
 
+double share_pct(std::size_t part, std::size_t all) noexcept {
+  return all == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
+}
+
 double quantile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

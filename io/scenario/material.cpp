@@ -6,6 +6,7 @@
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
 #include "io/text/quote.h"
+#include "raytrace/ocean/strongest_reflection.h"
 
 namespace asdic::scenario {
 namespace {
@@ -73,7 +74,8 @@ FluidHalfSpace read_fluid(TomlTable& table, double frequency) {
   return fluid;
 }
 
-ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading) {
+ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading,
+                              const WaterAtBoundary& water) {
   ElasticHalfSpace solid;
   const double f = reading.frequency;
   solid.speed = table.number("speed", material_speed, solid.speed);
@@ -84,6 +86,13 @@ ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading) {
       read_loss(table, "", solid.speed, f, solid.attenuation_db_per_wavelength);
   solid.shear_attenuation_db_per_wavelength =
       read_loss(table, "shear_", solid.shear_speed, f, solid.shear_attenuation_db_per_wavelength);
+  const StrongestReflection most = strongest_reflection(solid, water);
+  if (most.magnitude > most_reflection)
+    throw table.fault("kind",
+                      "a solid that reflects no more than comes in: attenuation x speed^2 at least "
+                      "4/3 of that of its shear waves",
+                      "one of reflection coefficient " + to_text(most.magnitude) + " at " +
+                          to_text(std::round(10.0 * degrees(most.grazing)) / 10.0) + " degrees");
   // A solid that takes energy in every deformation: Im of its bulk modulus not below 0.
   const double shear =
       4.0 / 3.0 * solid.shear_attenuation_db_per_wavelength * solid.shear_speed * solid.shear_speed;
@@ -91,7 +100,7 @@ ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading) {
     reading.notes.push_back(
         table.where("kind") +
         ": its shear waves lose so much more than its compressional waves that squeezing it would "
-        "give energy; it may reflect more than comes in");
+        "give energy; beside other water it may reflect more than comes in");
   return solid;
 }
 
@@ -107,7 +116,7 @@ ReflectionTable read_reflection(TomlTable& table, const OceanReading& reading) {
   ReflectionTable result;
   constexpr AngleQuantity grazing{.noun = "grazing angle", .low_deg = 0.0, .high_deg = 90.0};
   constexpr AngleQuantity phase{.noun = "phase", .low_deg = -36000.0, .high_deg = 36000.0};
-  constexpr Quantity magnitude{.noun = "magnitude", .low = 0.0, .high = 10.0};
+  constexpr Quantity magnitude{.noun = "magnitude", .low = 0.0, .high = 1.0};
   if (table.has("file")) {
     const CsvTable csv = read_csv_of(table, reading.folder);
     result.grazing = csv.column("grazing_deg");
@@ -124,6 +133,8 @@ ReflectionTable read_reflection(TomlTable& table, const OceanReading& reading) {
         throw fault("grazing_deg", result.grazing[i], "a grazing angle from 0 to 90 degrees");
       if (i > 0 && result.grazing[i] <= result.grazing[i - 1])
         throw fault("grazing_deg", result.grazing[i], "an angle above the one before it");
+      if (result.magnitude[i] > 1.0 && result.magnitude[i] <= most_reflection)
+        result.magnitude[i] = 1.0;
       if (!magnitude.holds(result.magnitude[i]))
         throw fault("magnitude", result.magnitude[i], magnitude.expected());
       result.grazing[i] = radians(result.grazing[i]);
@@ -157,7 +168,7 @@ BoundaryMaterial read_material(TomlTable& table, const OceanReading& reading,
   if (kind == Vacuum::name) return Vacuum{};
   if (kind == Rigid::name) return Rigid{};
   if (kind == FluidHalfSpace::name) return read_fluid(table, reading.frequency);
-  if (kind == ElasticHalfSpace::name) return read_elastic(table, reading);
+  if (kind == ElasticHalfSpace::name) return read_elastic(table, reading, water);
   if (kind == "grain-size") return read_grain_size(table, water);
   return read_reflection(table, reading);
 }

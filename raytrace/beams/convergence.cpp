@@ -34,8 +34,6 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
-constexpr double most_bound_db = 99.0;  // where the bound is as large as the field
-
 /// Rows of receivers that have no limit, [first, last).
 struct RowsLeftOut {
   std::size_t first = 0, last = 0, columns = 1;
@@ -58,7 +56,8 @@ RowsLeftOut rows_without_limit(const ReceiverGrid& grid, const LevelRays& level,
   return rows;
 }
 
-/// |ΔTL| that a bound allows [dB], of the cells where field or bound is above the floor.
+/// |ΔTL| that a bound allows [dB], ∞ where it is as large as the field; of the cells where field or
+/// bound is above the floor.
 std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
                               const std::vector<double>& bound, bool coherent,
                               const RowsLeftOut& rows = {}) {
@@ -69,9 +68,7 @@ std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
     const double p = std::abs(field[i]), x = coherent ? p : p * p;
     if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest || rows.hold(i))
       continue;
-    unsure.push_back(bound[i] < x
-                         ? std::min(most_bound_db, -factor * std::log10(1.0 - bound[i] / x))
-                         : most_bound_db);
+    unsure.push_back(bound[i] < x ? -factor * std::log10(1.0 - bound[i] / x) : infinity);
   }
   return unsure;
 }
@@ -141,7 +138,7 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
                     decimals(wanted_bound_db) + " dB at " +
                     percent(static_cast<double>(sure) / static_cast<double>(unsure.size())) +
                     " of the receivers" +
-                    (answer.error_db < most_bound_db
+                    (std::isfinite(answer.error_db)
                          ? ", to " + decimals(answer.error_db) + " dB at 95 %"
                          : std::string(", and less than 95 % of them to any number"));
       return answer;

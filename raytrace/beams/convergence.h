@@ -37,9 +37,9 @@ inline constexpr double wanted_bound_db = 0.5;  ///< |ΔTL| at 95 % of the cells
 inline constexpr double wanted_error_db = 0.2;  ///< the same where it can only be estimated
 inline constexpr int most_beams = 32'769;       ///< beyond this the error is told and left
 
-/// What a share of the cells is sure to, |ΔTL| [dB], no more than 99; of those where field or bound
-/// is above the floor of level_difference_db.
-/// \param bound  majorant of the error of a pressure or, if not coherent, of its square
+/// What a share of the cells is sure to, |ΔTL| [dB], ∞ where it is sure of no number; of those
+/// where field or bound is above the floor of level_difference_db. \param bound  majorant of the
+/// error of a pressure or, if not coherent, of its square
 [[nodiscard]] double bound_db(const std::vector<std::complex<double>>& field,
                               const std::vector<double>& bound, bool coherent, double share);
 

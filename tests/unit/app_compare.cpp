@@ -40,6 +40,13 @@ class Compare : public ::testing::Test {
     return file;
   }
 
+  static inline const std::complex<float> not_a_number{std::nanf(""), std::nanf("")};
+
+  /// asdic writes no field with NaN; other programs do.
+  void write_with_holes(const std::string& name, const bellhop::ShadeFile& file) {
+    static_cast<void>(folder.write(name, bellhop::shade_file_bytes(file)));
+  }
+
   static bellhop::ArrivalsFile arrivals(double later) {
     bellhop::ArrivalsFile file{.frequency = 1000.0,
                                .source_depths = {50.0},
@@ -89,6 +96,45 @@ TEST_F(Compare, EndsByTheThresholds) {
   EXPECT_EQ(asdic(folder, "compare a.ray b.ray --max-distance 2.9").status, 1);
   // Where nothing could be compared, nothing passes.
   EXPECT_EQ(asdic(folder, "compare a.shd b.shd --floor 10 --max-p95 5").status, 1);
+}
+
+// Half of a field that is not there, or not a number, has no difference that a threshold sees.
+TEST_F(Compare, WhatCannotBeComparedPassesNoThreshold) {
+  auto holed = field(1.0), silent = field(1.0);
+  for (std::size_t i = 0; i < holed.pressure.size(); i += 2) {
+    holed.pressure[i] = not_a_number;
+    silent.pressure[i] = 0.0F;
+  }
+  write_with_holes("holed.shd", holed);
+  bellhop::write_shade_file(folder / "silent.shd", silent);
+  for (const std::string& name : {std::string("holed.shd"), std::string("silent.shd")})
+    for (const std::string& order : {name + " b.shd", "b.shd " + name}) {
+      EXPECT_EQ(asdic(folder, "compare " + order).status, 0) << order;  // nothing was asked for
+      const auto run = asdic(folder, "compare " + order + " --max-p95 0.1");
+      EXPECT_EQ(run.status, 1) << order;
+      EXPECT_NE(run.out.find("outside   cells compared: 50 %, expected at least 100"),
+                std::string::npos)
+          << run.out;
+      EXPECT_EQ(asdic(folder, "compare " + order + " --max-p95 0.1 --min-compared 50").status, 0);
+      EXPECT_EQ(asdic(folder, "compare " + order + " --min-compared 51").status, 1);
+    }
+  const auto converted = asdic(folder, "convert holed.shd holed.h5");
+  EXPECT_EQ(converted.status, 1);
+  EXPECT_NE(converted.err.find("not a finite number at 20 of 40 receivers"), std::string::npos)
+      << converted.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "holed.h5"));
+  // Cells that nobody asks for may be anything: those nearer than --min-range.
+  auto near = field(1.0);
+  near.pressure[0] = near.pressure[20] = not_a_number;
+  write_with_holes("near.shd", near);
+  EXPECT_EQ(asdic(folder, "compare near.shd b.shd --max-p95 0.1").status, 1);
+  EXPECT_EQ(asdic(folder, "compare near.shd b.shd --max-p95 0.1 --min-range 600m").status, 0);
+
+  // Arrivals with NaN are refused when they are read.
+  auto rows = arrivals(0.0);
+  rows.arrivals[0].back().phase_deg = std::nan("");
+  bellhop::write_arrivals_file(folder / "holed.arr", rows);
+  EXPECT_EQ(asdic(folder, "compare holed.arr b.arr --max-delay-us 1").status, 2);
 }
 
 TEST_F(Compare, MissedPathsAreNamed) {

@@ -460,7 +460,10 @@ TEST(BellhopCase, EveryMalformedLineIsTold) {
       {5, "3 0.0 /",
        "case.env:5: profile: NPTS SIGMA DEPTH: bottom depth: found no value, expected a number"},
       {6, "0 -1500 /",
-       "case.env:6: profile row 1: speed: found -1500 m/s, expected a speed above 0 m/s"},
+       "case.env:6: profile row 1: speed: found -1500 m/s, expected a speed from 200 to 10000 "
+       "m/s"},
+      {6, "0 1.5 /",
+       "case.env:6: profile row 1: speed: found 1.5 m/s, expected a speed from 200 to 10000 m/s"},
       {6, "0 1500 0 0 /",
        "case.env:6: profile row 1: density: found 0 g/cm^3, expected a density above 0 g/cm^3"},
       {6, "0 1500 0 1 99 /",
@@ -565,7 +568,11 @@ TEST(BellhopCase, EveryMalformedCompanionIsTold) {
       {9, "'F'", ".brc", "2\n0 1 0\n95 1 0\n",
        "case.brc:3: row 2: angle: found 95 degrees, expected a grazing angle from 0 to 90 degrees"},
       {9, "'F'", ".brc", "1\n0 -1 0\n",
-       "case.brc:2: row 1: magnitude: found -1, expected at least 0"},
+       "case.brc:2: row 1: magnitude: found -1, expected a magnitude from 0 to 1: no boundary "
+       "reflects more than comes in"},
+      {9, "'F'", ".brc", "1\n0 1.2 0\n",
+       "case.brc:2: row 1: magnitude: found 1.2, expected a magnitude from 0 to 1: no boundary "
+       "reflects more than comes in"},
       {17, "'CG*'", ".sbp", "2\n0 0\n0 0\n",
        "case.sbp:3: row 2: angle: found 0 degrees, expected above the one before, 0 degrees"},
       {17, "'CG*'", ".sbp", "1\n0 0\n",

@@ -110,6 +110,33 @@ TEST(ScenarioOcean, AReflectionTableFromAFile) {
   EXPECT_EQ(table.phase, (std::vector<double>{radians(180.0), 0.0}));
 }
 
+TEST(ScenarioOcean, NoBoundaryReflectsMoreThanComesIn) {
+  const auto says = [](const std::string& text, const std::string& part) {
+    try {
+      static_cast<void>(bottom(text));
+      ADD_FAILURE() << text << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+  };
+  says("kind = \"table\"\ngrazing_deg = [0, 90]\nmagnitude = [1.01, 0.5]",
+       "magnitude[0]: found 1.01, expected a magnitude from 0 to 1");
+  const support::TemporaryDirectory folder;
+  const auto path = folder.write("bottom.csv", "grazing_deg,magnitude\n0,1.0000005\n90,1.2\n");
+  says("kind = \"table\"\nfile = \"" + path.string() + "\"", "bottom.csv:3: magnitude: found 1.2");
+  const auto rounded = folder.write("rounded.csv", "grazing_deg,magnitude\n0,1.0000005\n90,1\n");
+  EXPECT_EQ(
+      std::get<ReflectionTable>(bottom("kind = \"table\"\nfile = \"" + rounded.string() + "\""))
+          .magnitude[0],
+      1.0);
+  // |R| of eq. (3) of docs/theory/boundaries.md, by hand: 2.41 at 41.4 degrees beside water of 1500
+  // m/s and 1027 kg/m3.
+  says(
+      "kind = \"elastic\"\nspeed = 2000\nshear_speed = 1500\n"
+      "attenuation_db_per_wavelength = 0.01\nshear_attenuation_db_per_wavelength = 5.0",
+      "reflection coefficient 2.4");
+}
+
 TEST(ScenarioOcean, ASolidThatGivesEnergyIsNoted) {
   std::vector<std::string> notes;
   static_cast<void>(

@@ -145,6 +145,8 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
       {study + measure + "[summary]\nby = [{ axis = \"echo_level_db\", edges = [1, 1] }]\n",
        "study.toml:6: summary.by[0].edges[1]: found 1, expected an edge above the one before it, "
        "1"},
+      {study + measure + "[summary]\nquantiles = [0.5, 0.9, 0.5]\n",
+       "study.toml:6: summary.quantiles[2]: found 0.5, expected every probability once"},
       {study + measure + "[summary]\ninterval = \"normal\"\n",
        "study.toml:6: summary.interval: found \"normal\", expected \"wilson\" or "
        "\"clopper_pearson\""},
@@ -153,6 +155,39 @@ TEST(StudyFile, EveryFaultNamesLineKeyFoundAndExpected) {
     const std::string message = fault_of(fault.tables);
     EXPECT_EQ(message.substr(0, fault.message.size()), fault.message) << "whole: " << message;
   }
+}
+
+// What would end a study when its file is written, after all realisations, is said when it is read.
+TEST(StudyFile, SummariesThatCollideAreFoundAtReading) {
+  const std::string before =
+                        "[study]\nrealisations = 10\n[vary]\n"
+                        "\"target.0.depth\" = { law = \"uniform\", low = 50.0, high = 90.0 }\n"
+                        "\"environment.wind_speed\" = { law = \"grid\", values = [3.0, 5.0] }\n",
+                    measure = "[measure]\necho_level = true\ndetection = true\n[summary]\n";
+  const std::vector<Fault> faults{
+      {"by = [\"depth\",\n{ axis = \"depth\", bins = 3 }]\n",
+       "study.toml:11: summary.by[1]: found a second table \"pd_by_depth\", as of by[0], expected "
+       "every axis, or pair of axes, once"},
+      {"by = [[\"depth\", \"wind_speed\"], \"depth\",\n[\"depth\", \"wind_speed\"]]\n",
+       "study.toml:11: summary.by[2]: found a second table \"pd_by_depth_and_wind_speed\""},
+      {"by = [[\"depth\", \"depth\"]]\n",
+       "study.toml:10: summary.by[0]: found an axis that gives pd_by_depth_and_depth two columns "
+       "\"depth\""},
+  };
+  for (const Fault& fault : faults) {
+    const std::string message = fault_of(before + measure + fault.tables);
+    EXPECT_EQ(message.substr(0, fault.message.size()), fault.message) << "whole: " << message;
+  }
+  EXPECT_EQ(
+      fault_of(before +
+               "x = { keys = [\"environment.bottom.depth\"], name = \"count\", law = "
+               "\"list\", values = [900.0, 950.0] }\n" +
+               measure)
+          .find("summary.by (every input by itself): found an axis that gives pd_by_count two "
+                "columns \"count\""),
+      std::string("study.toml: ").size());
+  // A measure may be an axis; it has no mean along itself.
+  EXPECT_EQ(fault_of(before + measure + "by = [\"echo_level_db\", \"detected\"]\n"), "no fault");
 }
 
 TEST(StudyFile, KeysOfAScenarioBesideItsFileAreRefused) {

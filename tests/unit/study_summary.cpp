@@ -118,6 +118,21 @@ TEST(Summary, StatisticsOfEveryColumn) {
   EXPECT_NEAR(column(t, "q0500")[0], 0.5, 0.05);
 }
 
+// Two quantiles never share a name, and none bears that of another.
+TEST(Summary, QuantilesBearTheirOwnNames) {
+  const std::vector<std::pair<double, std::string>> names{
+      {0.0, "q0000"},     {0.05, "q0050"},  {0.5, "q0500"},    {0.975, "q0975"},
+      {0.9999, "q09999"}, {0.001, "q0001"}, {1e-5, "q000001"}, {1.0, "q1000"}};
+  Study study = asking({});
+  study.summary.quantiles.clear();
+  for (const auto& [p, name] : names) study.summary.quantiles.push_back(p);
+  const auto tables = summarise(study, made_up(100));
+  for (const auto& [p, name] : names)
+    EXPECT_NO_THROW(static_cast<void>(column(named(tables, "statistics"), name))) << p;
+  EXPECT_GE(column(named(tables, "statistics"), "q1000")[0],
+            column(named(tables, "statistics"), "q09999")[0]);
+}
+
 TEST(Summary, ProportionsFallIntoTheirBins) {
   const auto tables =
       summarise(asking({{{.column = "x", .edges = {0.0, 0.3, 0.5, 1.0}}}}), made_up(1000));
