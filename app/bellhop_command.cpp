@@ -106,10 +106,11 @@ PropagationResult search(const bellhop::Input& input, const Options& options) {
     return true;
   };
   try {
+    const MemoryBudget budget = MemoryBudget::without_key();
     PropagationResult result;
     until_interrupted([&] {
-      result = options.like_bellhop ? run_like_bellhop(input.run_case, progress)
-                                    : run(input.run_case, progress);
+      result = options.like_bellhop ? run_like_bellhop(input.run_case, progress, budget)
+                                    : run(input.run_case, progress, budget);
     });
     return result;
   } catch (const Interrupted&) {

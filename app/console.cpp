@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/printable.h"
 
 namespace asdic::app {
@@ -109,15 +110,7 @@ std::string duration(double seconds) {
   return seconds < 0.1 ? fmt::format("{:.4f} s", seconds) : fmt::format("{:.2f} s", seconds);
 }
 
-std::string byte_count(double bytes) {
-  constexpr const char* units[] = {"bytes", "kB", "MB", "GB", "TB"};
-  std::size_t unit = 0;
-  while (bytes >= 999.5 && unit + 1 < std::size(units)) {
-    bytes /= 1000.0;
-    ++unit;
-  }
-  return fmt::format("{:.{}f} {}", bytes, unit == 0 ? 0 : 1, units[unit]);
-}
+std::string byte_count(double bytes) { return bytes_text(bytes); }
 
 std::string count_of(std::size_t n, std::string_view thing) {
   return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s");

@@ -37,10 +37,11 @@ PropagationResult run_field_of(const PropagationCase& run_case, const Options& o
     return true;
   };
   try {
+    const MemoryBudget budget = read_budget(options.scenario.path, options.scenario.overrides);
     PropagationResult result;
     until_interrupted([&] {
-      result =
-          options.like_bellhop ? run_like_bellhop(run_case, progress) : run(run_case, progress);
+      result = options.like_bellhop ? run_like_bellhop(run_case, progress, budget)
+                                    : run(run_case, progress, budget);
     });
     return result;
   } catch (const Interrupted&) {

@@ -16,6 +16,7 @@
 #include "app/progress_bar.h"
 #include "app/provenance.h"
 #include "core/error.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "raytrace/propagation.h"
 #include "raytrace/stop.h"
@@ -72,7 +73,15 @@ int ping(const Options& options) {
     }
   };
   std::optional<PingSimulator> made;
-  call_off([&] { made.emplace(std::move(scenario)); });
+  call_off([&] {
+    made.emplace(std::move(scenario), nullptr,
+                 read_budget(options.scenario.path, options.scenario.overrides));
+    try {
+      static_cast<void>(made->memory());
+    } catch (const MemoryError& error) {
+      throw told_of_scenario(error, options.scenario.path, overrides(options));
+    }
+  });
   const PingSimulator& simulator = *made;
   const int count = simulator.pings();
   PingReport report(simulator.scenario());

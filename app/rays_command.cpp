@@ -120,7 +120,9 @@ RaysResult read(const Options& options, bool as_run) {
 std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case, const Options& options) {
   try {
     PropagationResult found;
-    until_interrupted([&] { found = run(run_case); });
+    until_interrupted([&] {
+      found = run(run_case, {}, read_budget(options.scenario.path, options.scenario.overrides));
+    });
     for (const std::string& note : found.notes) fmt::print(stderr, "asdic: note: {}\n", note);
     return std::move(found.rays);
   } catch (const Interrupted&) {

@@ -45,10 +45,13 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
   ProgressBar bar("%", 100, true);
   try {
     until_interrupted([&] {
-      all.result = run(all.run_case, [&](double share) {
-        bar.done(static_cast<int>(100.0 * share));
-        return true;
-      });
+      all.result = run(
+          all.run_case,
+          [&](double share) {
+            bar.done(static_cast<int>(100.0 * share));
+            return true;
+          },
+          read_budget(choice.path, overrides));
     });
   } catch (const Interrupted&) {
     throw RunError("interrupted");

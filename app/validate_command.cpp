@@ -11,6 +11,7 @@
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
+#include "raytrace/runs/memory.h"
 #include "sonar/ping.h"
 #include "sonar/sampling.h"
 #include "sonar/stream.h"
@@ -105,6 +106,16 @@ std::string size_text(const PingSimulator& simulator) {
       byte_count(bytes));
 }
 
+/// What a run asks for before it begins. \throws MemoryError if that is too much
+std::string memory_text(const MemoryBudget& budget, const char* of) {
+  std::string parts;
+  for (const MemoryNeed& need : budget.needs())
+    parts +=
+        fmt::format("{}{} for {}", parts.empty() ? "" : ", ", byte_count(need.bytes), need.what);
+  return fmt::format("memory     {} takes at most about {}: {}; it may take {}\n", of,
+                     byte_count(budget.taken()), parts, budget.text());
+}
+
 std::string axis_text(const std::vector<double>& values, double unit) {
   if (values.size() == 1) return fmt::format("{:g}", values[0] / unit);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -133,23 +144,33 @@ int validate_run(const ScenarioChoice& choice) {
   std::vector<std::string> notes;
   const PropagationCase run = read_propagation_case(choice.path, choice.overrides, notes);
   print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
-  print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run));
+  print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run) +
+        memory_text(run_memory(run, read_budget(choice.path, choice.overrides)), "the run"));
   for (const std::string& note : notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
 }
 
-int validate(const ScenarioChoice& choice) {
-  if (!has_sonar(choice.path, choice.overrides)) return validate_run(choice);
-  const PingSimulator simulator(read_scenario(choice.path, choice.overrides));
+int validate_sonar(const ScenarioChoice& choice) {
+  const PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
+                                read_budget(choice.path, choice.overrides));
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
-        transect_text(simulator) + sonar_text(simulator) + size_text(simulator));
+        transect_text(simulator) + sonar_text(simulator) + size_text(simulator) +
+        memory_text(simulator.memory(), "a ping"));
   for (const std::string& note : scenario.notes) print("note: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
+}
+
+int validate(const ScenarioChoice& choice) {
+  try {
+    return has_sonar(choice.path, choice.overrides) ? validate_sonar(choice) : validate_run(choice);
+  } catch (const MemoryError& error) {
+    throw told_of_scenario(error, choice.path, choice.overrides);
+  }
 }
 
 }  // namespace

@@ -11,6 +11,22 @@
 #include "io/text/toml_value.h"
 
 namespace asdic {
+namespace {
+
+/// run.memory (read_budget()), and for `asdic field` the rest: checked, and of no use to a ping.
+void read_run_of_sonar(TomlTable table, const TomlValue& value, double frequency,
+                       const Scenario& scenario) {
+  const auto* const keys = value.table();
+  const bool alone = scenario::read_memory(table) > 0.0 && keys != nullptr && keys->size() == 1;
+  if (alone) return;
+  PropagationCase run;
+  run.environment = scenario.environment;
+  run.frequency = frequency;
+  run.source_depths = {scenario.platforms[0].track.at(0.0).position.z()};
+  scenario::read_run(std::move(table), run);
+}
+
+}  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path, std::span<const std::string> overrides) {
   return parse_scenario(read_text_file(path, "a scenario file"), path, overrides);
@@ -88,13 +104,8 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
   scenario::read_reverberation(root.table("reverberation"), scenario);
   scenario::read_propagation(root.table("propagation"), scenario);
   scenario::read_pings(root.table("pings"), has_elevation, scenario);
-  if (root.has("run")) {  // for `asdic field`; checked, and then of no use to a ping
-    PropagationCase run;
-    run.environment = scenario.environment;
-    run.frequency = frequency;
-    run.source_depths = {scenario.platforms[0].track.at(0.0).position.z()};
-    scenario::read_run(root.table("run"), run);
-  }
+  if (const TomlValue* run = document.find("run"); root.has("run"))
+    read_run_of_sonar(root.table("run"), *run, frequency, scenario);
   root.finish();
   scenario::check_scenario(root, scenario);
   return scenario;

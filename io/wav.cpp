@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/input_file.h"
 #include "io/text/csv_table.h"
 
@@ -21,12 +22,28 @@ struct CloseSound {
 };
 using SoundFile = std::unique_ptr<SNDFILE, CloseSound>;
 
+/// \throws InputError for more samples than a pulse may have, or than there is memory for
+void check_length(const std::filesystem::path& path, std::size_t samples) {
+  constexpr std::size_t most = std::size_t{1} << 25;
+  constexpr double bytes_each = 200.0;  // with the spectrum and the analytic signal of a pulse
+  if (samples > most)
+    throw InputError({.where = path.string(),
+                      .got = "more than " + std::to_string(most) + " samples",
+                      .expected = "no more in a pulse"});
+  MemoryBudget budget = MemoryBudget::without_key();
+  budget.take({.where = path.string(),
+               .what = std::to_string(samples) + " samples of a pulse",
+               .bytes = bytes_each * static_cast<double>(samples),
+               .remedy = "a shorter pulse or a lower sample rate"});
+}
+
 SampledPulse read_csv_pulse(const std::filesystem::path& path) {
   const CsvTable csv = read_csv(path);
   const auto& time = csv.column("time");
   SampledPulse pulse{.samples = csv.column("pressure")};
   const std::size_t n = time.size();
   if (n < 2) throw InputError({.where = csv.file, .got = "one sample", .expected = "at least two"});
+  check_length(path, n);
   const double step = (time.back() - time.front()) / static_cast<double>(n - 1);
   for (std::size_t i = 1; i < n; ++i)  // times are often printed with few digits
     if (!(step > 0.0) || std::abs(time[i] - time[i - 1] - step) > 0.01 * step)
@@ -50,12 +67,19 @@ SampledPulse read_sound_pulse(const std::filesystem::path& path) {
     throw InputError({.where = path.string(),
                       .got = std::to_string(info.channels) + " channels",
                       .expected = "one channel"});
-  SampledPulse pulse{.samples = std::vector<double>(static_cast<std::size_t>(info.frames)),
-                     .sample_rate = static_cast<double>(info.samplerate)};
-  const auto read = sf_readf_double(file.get(), pulse.samples.data(), info.frames);
-  if (read != info.frames || read < 2)
+  // A header may claim what it likes: memory grows with what is read.
+  SampledPulse pulse{.samples = {}, .sample_rate = static_cast<double>(info.samplerate)};
+  constexpr sf_count_t block = 65536;
+  std::vector<double> samples(block);
+  while (const sf_count_t n = sf_readf_double(file.get(), samples.data(), block)) {
+    pulse.samples.insert(pulse.samples.end(), samples.begin(), samples.begin() + n);
+    check_length(path, pulse.samples.size());
+  }
+  const std::size_t read = pulse.samples.size();
+  if (static_cast<sf_count_t>(read) != info.frames || read < 2)
     throw InputError({.where = path.string(),
-                      .got = std::to_string(read) + " samples of " + std::to_string(info.frames),
+                      .got = std::to_string(read) + " samples, where its header claims " +
+                             std::to_string(info.frames),
                       .expected = "a whole file of at least two samples"});
   return pulse;
 }

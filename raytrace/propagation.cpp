@@ -6,6 +6,7 @@
 
 #include "raytrace/beams/field_run.h"
 #include "raytrace/runs/arrivals_run.h"
+#include "raytrace/runs/memory.h"
 #include "raytrace/runs/rays_run.h"
 
 namespace asdic {
@@ -54,7 +55,9 @@ PropagationResult run_task(const PropagationCase& run_case, const Progress& prog
 
 }  // namespace
 
-PropagationResult run(const PropagationCase& run_case, const Progress& progress) {
+PropagationResult run(const PropagationCase& run_case, const Progress& progress,
+                      const MemoryBudget& budget) {
+  static_cast<void>(run_memory(run_case, budget));
   PropagationResult result = run_task(run_case, progress);
   if (run_case.task != Task::rays && all_beyond_box(run_case))
     result.notes.push_back(beyond_box_text(run_case));

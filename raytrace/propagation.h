@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "raytrace/arrivals.h"
 #include "raytrace/propagation_case.h"
 #include "raytrace/ray_path.h"
@@ -39,12 +40,16 @@ class Interrupted : public std::runtime_error {
 using Progress = std::function<bool(double)>;
 
 /// Runs a case with asdic's own tracer. Results do not depend on the number of threads.
-/// \throws InputError if the case makes no sense (a source outside the water, no receivers)
-[[nodiscard]] PropagationResult run(const PropagationCase& run_case, const Progress& progress = {});
+/// \param budget  that the run keeps within
+/// \throws InputError if the case makes no sense (a source outside the water, no receivers);
+/// MemoryError if it is too large
+[[nodiscard]] PropagationResult run(const PropagationCase& run_case, const Progress& progress = {},
+                                    const MemoryBudget& budget = {});
 
 /// The same case as BELLHOP does it: its own steps, landing rules, beam formulas and merging, for
 /// comparison (docs/theory/like-bellhop.md). The field has asdic's sign.
 [[nodiscard]] PropagationResult run_like_bellhop(const PropagationCase& run_case,
-                                                 const Progress& progress = {});
+                                                 const Progress& progress = {},
+                                                 const MemoryBudget& budget = {});
 
 }  // namespace asdic

@@ -6,10 +6,8 @@
 
 namespace asdic::serve {
 
-/// Memory that a ping of a scenario may take: an upper bound out of its samples and returns.
-[[nodiscard]] double ping_bytes(const Scenario& scenario);
-
-/// \throws Refusal ("limit") naming what is past which limit
+/// What can be seen of a scenario before anything is traced. (A ping asks for all of its memory
+/// when it is made.) \throws Refusal ("limit") naming what is past which limit
 void check_caps(const Scenario& scenario, const SessionLimits& limits);
 
 }  // namespace asdic::serve

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <new>
 
+#include "io/scenario/document.h"
+#include "io/scenario/propagation.h"
 #include "serve/answers.h"
 #include "serve/places.h"
 #include "sonar/sampling.h"
@@ -33,6 +35,9 @@ Session::Session(const SessionSettings& settings, std::function<double()> clock)
       start_(clock_()),
       live_(settings.scenario, settings.data, settings.limits),
       turns_(live_.state().scenario),
+      budget_(budget_of(scenario::read_document(settings.scenario.text, settings.scenario.path,
+                                                settings.scenario.overrides))
+                  .share(static_cast<double>(settings.limits.memory_bytes), "memory_bytes")),
       propagation_(std::make_shared<SharedPropagation>(settings.limits.kept_bytes)) {}
 
 Answer Session::greeting() const {
@@ -57,6 +62,8 @@ Answer Session::execute(const Command& command) {
     return carry_out(command);
   } catch (const Refusal& refusal) {
     return refusal_answer(command.id, refusal.code(), refusal.what());
+  } catch (const MemoryError& error) {
+    return refusal_answer(command.id, "limit", error.what());
   } catch (const InputError& error) {  // out of building a simulator
     const Refusal refusal = live_.refusal(error, command.fields);
     return refusal_answer(command.id, refusal.code(), refusal.what());
@@ -130,7 +137,7 @@ const PingSimulator& Session::simulator_of(LiveScenario::State state) {
   if (found != simulators_.end()) {
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
-    auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_);
+    auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }

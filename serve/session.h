@@ -82,6 +82,7 @@ class Session {
   LiveScenario live_;
   Turns turns_;
   int pings_ = 0;                                   // done
+  MemoryBudget budget_;                             // of a ping
   std::shared_ptr<SharedPropagation> propagation_;  // what was traced
   std::list<Simulator> simulators_;                 // the latest used first
   std::filesystem::path folder_;                    // of this session's files

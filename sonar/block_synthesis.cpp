@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "raytrace/parallel.h"
 #include "sonar/spectrum_product.h"
+#include "sonar/synthesis_bytes.h"
 
 namespace asdic {
 namespace {
@@ -21,6 +22,30 @@ double cost_of_grid(std::size_t length) {
 }
 
 }  // namespace
+
+SynthesisBytes synthesis_bytes(const Synthesizer& synthesizer, std::size_t phones) {
+  const auto& plan = BlockSynthesis::plan_of(synthesizer);
+  const double row = sizeof(std::complex<float>) * static_cast<double>(plan.length);
+  const double rows = static_cast<double>(phones);
+  std::size_t nodes = 0, widest = 1;
+  for (const DopplerBand& band :
+       plan.expansion.bands_over({{1.0 - plan.max_doppler, 1.0 + plan.max_doppler}})) {
+    nodes += band.nodes.size();
+    widest = std::max(widest, std::min(ImpulseGrid::most_nodes, band.nodes.size()));
+  }
+  // A thread's grids of a phone, or its row and the passband's bins and samples.
+  const double passband =
+      plan.recording.is_complex() ? 0.0 : 8.0 * static_cast<double>(plan.passband_length);
+  const double of_thread = std::max(static_cast<double>(widest) * row, row + passband);
+  const double threads = static_cast<double>(std::min(phones, most_workers()));
+  const double spectra = sizeof(std::complex<float>) *
+                         static_cast<double>(plan.pulses.size() * nodes) *
+                         (2.0 * static_cast<double>(plan.highest_bin) + 1.0);
+  // Grids that are kept, or the returns of a batch.
+  const double grids = std::min(static_cast<double>(BlockSynthesis::most_kept),
+                                rows * static_cast<double>(nodes) * row);
+  return {.row = row, .all = rows * row + threads * of_thread + spectra + grids};
+}
 
 Baseband Synthesizer::baseband(std::span<const Return> returns,
                                std::span<const Vec3> phones) const {

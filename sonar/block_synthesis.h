@@ -21,6 +21,10 @@ class BlockSynthesis {
   BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
                  const ReturnSource& source, std::span<const Vec3> phones);
   [[nodiscard]] Baseband run();
+  /// The plan of a synthesizer, for those who ask how large it is.
+  [[nodiscard]] static const Synthesizer::Plan& plan_of(const Synthesizer& synthesizer) noexcept {
+    return *synthesizer.plan_;
+  }
 
   static constexpr std::size_t most_kept = std::size_t{64} << 20;
 

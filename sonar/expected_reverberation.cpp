@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t together = 64;  // rings that one task works through
 
-/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \return what they put out, in
-/// their order
+/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \param all  gets what they put
+/// out, in their order, behind what is there
 template <class Item, class F>
-std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
+void over_rings(std::uint32_t rings, std::uint32_t step, std::vector<Item>& all, F&& f) {
   const std::size_t visited = (rings + step - 1) / step;
   const std::size_t tasks = (visited + together - 1) / together;
   std::vector<std::vector<Item>> parts(tasks);
@@ -24,15 +24,13 @@ std::vector<Item> over_rings(std::uint32_t rings, std::uint32_t step, F&& f) {
     for (std::size_t i = b * together; i < std::min(visited, (b + 1) * together); ++i)
       f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
-  std::size_t total = 0;
+  std::size_t total = all.size();
   for (const auto& part : parts) total += part.size();
-  std::vector<Item> all;
   all.reserve(total);
   for (auto& part : parts) {
     all.insert(all.end(), part.begin(), part.end());
     part = {};
   }
-  return all;
 }
 
 /// Rings so near each other are sampled only once that eight still lie within a stretch.
@@ -49,35 +47,51 @@ struct Found {
   double scatterers;         // of that ring
 };
 
+/// The places of a field at which pairs are looked at: the middles of cells of a few sectors.
+struct Middles {
+  const ScatteringField& field;
+  std::uint32_t first_place;
+  std::vector<int> sectors = field.sample_sectors();
+  std::uint32_t step;
+
+  Middles(const ScatteringField& f, std::uint32_t first, double stretch)
+      : field(f), first_place(first), step(sample_step(f, stretch)) {}
+
+  [[nodiscard]] std::uint32_t count() const noexcept {
+    return static_cast<std::uint32_t>(sectors.size());
+  }
+  /// Adds the pairs of a ring.
+  void find(std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) const {
+    constexpr double faintest = 1e-8;  // of the loudest pair of a place
+    const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
+    for (std::uint32_t i = 0; i < count(); ++i) {
+      field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs);
+      const double share = double(stands_for) / count(), area = field.heard_area(ring);
+      double loudest = 0.0;
+      for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
+      for (const PathPair& pair : pairs.found) {
+        if (pair.power < faintest * loudest) continue;
+        out.push_back({{.place = first_place + ring * count() + i,
+                        .delay = pair.delay,
+                        .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
+                       pair.power * area,
+                       share,
+                       double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
+      }
+    }
+  }
+};
+
 std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double stretch) {
-  constexpr double faintest = 1e-8;  // of the loudest pair of a place
   std::vector<Found> all;
   std::uint32_t first_place = 0;
   for (const ScatteringField& field : fields) {
-    const std::vector<int> sectors = field.sample_sectors();
-    const auto count = static_cast<std::uint32_t>(sectors.size());
-    const std::uint32_t step = sample_step(field, stretch);
-    const auto found = over_rings<Found>(
-        field.grid.rings, step, [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
-          const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
-          for (std::uint32_t i = 0; i < count; ++i) {
-            field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs);
-            const double share = double(stands_for) / count, area = field.heard_area(ring);
-            double loudest = 0.0;
-            for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
-            for (const PathPair& pair : pairs.found) {
-              if (pair.power < faintest * loudest) continue;
-              out.push_back({{.place = first_place + ring * count + i,
-                              .delay = pair.delay,
-                              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
-                             pair.power * area,
-                             share,
-                             double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
-            }
-          }
-        });
-    first_place += field.grid.rings * count;
-    all.insert(all.end(), found.begin(), found.end());
+    const Middles middles(field, first_place, stretch);
+    over_rings<Found>(field.grid.rings, middles.step, all,
+                      [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+                        middles.find(ring, pairs, out);
+                      });
+    first_place += field.grid.rings * middles.count();
   }
   return all;
 }
@@ -90,6 +104,7 @@ std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
   };
   std::size_t stretches = 0;
   std::vector<std::size_t> stretch_of;
+  stretch_of.reserve(all.size());
   for (const Found& f : all) {
     stretch_of.push_back(static_cast<std::size_t>(f.sample.delay / stretch));
     stretches = std::max(stretches, stretch_of.back() + 1);
@@ -116,7 +131,41 @@ std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
   return least;
 }
 
+/// About how many pairs pairs_at_middles() finds, by those at a few rings of each field.
+double count_pairs(std::span<const ScatteringField> fields, double stretch, std::uint32_t at) {
+  double pairs = 0.0;
+  for (const ScatteringField& field : fields) {
+    const Middles middles(field, 0, stretch);
+    const std::uint32_t visited = (field.grid.rings + middles.step - 1) / middles.step;
+    const std::uint32_t every = std::max(1U, visited / at);
+    std::vector<Found> counted;
+    over_rings<Found>(field.grid.rings, every * middles.step, counted,
+                      [&](std::uint32_t ring, PathPairs& found, std::vector<Found>& out) {
+                        middles.find(ring, found, out);
+                      });
+    pairs += double(every) * static_cast<double>(counted.size());
+  }
+  return pairs;
+}
+
 }  // namespace
+
+MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
+                                       double pulse_duration) {
+  // Put together twice; then their stretches, their order and those that are kept are beside them.
+  constexpr double a_pair = 2.0 * sizeof(Found) + 2.0 * sizeof(std::size_t);
+  constexpr double little = 100e6;               // [bytes]
+  constexpr std::uint32_t few = 4, enough = 64;  // rings looked at
+  const double stretch = 0.25 * pulse_duration;
+  double pairs = count_pairs(fields, stretch, few);
+  if (pairs * a_pair > little) pairs = count_pairs(fields, stretch, enough);
+  return {.where = "reverberation.ground_spacing",
+          .what = std::to_string(std::llround(pairs)) + " pairs of paths to and from scatterers",
+          .bytes = pairs * a_pair,
+          .remedy =
+              "a larger spacing, fewer bounces (propagation.max_surface_bounces, "
+              "max_bottom_bounces) or fewer sheets of a layer"};
+}
 
 ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fields,
                                              double pulse_duration) {

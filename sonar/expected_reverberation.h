@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "sonar/propagation_memory.h"
 #include "sonar/pulse.h"
 #include "sonar/scattering_field.h"
@@ -30,6 +31,9 @@ struct ExpectedReverberation {
 
   /// \param pulse_duration  [s]
   ExpectedReverberation(std::span<const ScatteringField> fields, double pulse_duration);
+  /// What the constructor takes at its peak: pairs are counted at some rings.
+  [[nodiscard]] static MemoryNeed need(std::span<const ScatteringField> fields,
+                                       double pulse_duration);
   /// Of all that it depends on; none where a pattern has no key. \param kind  of what else depends
   /// on the same
   [[nodiscard]] static std::optional<ExactKey> key(std::span<const ScatteringField> fields,

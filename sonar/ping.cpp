@@ -12,6 +12,7 @@
 #include "sonar/echo.h"
 #include "sonar/levels.h"
 #include "sonar/ping_bounds.h"
+#include "sonar/ping_memory.h"
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_band.h"
 #include "sonar/reverberation_covariance.h"
@@ -37,8 +38,10 @@ double end_of(const Recording& recording) {
 
 }  // namespace
 
-PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedPropagation>& shared)
+PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedPropagation>& shared,
+                             MemoryBudget budget)
     : scenario_(std::move(scenario)),
+      budget_(std::move(budget)),
       transmissions_(asdic::transmissions(scenario_)),
       paths_(paths_of(scenario_, shared.get(), known_ocean_)),
       noise_(scenario_, *paths_),
@@ -112,14 +115,6 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
   return heard;
 }
 
-/// What a ping is for all who hear it.
-struct PingSimulator::Emission {
-  const Transmission& sent;
-  Transmitter projector;
-  const Pulse& pulse;
-  BeamPattern pattern;
-};
-
 PingSimulator::Emission PingSimulator::emit(const Transmission& sent) const {
   Transmitter projector = projector_of(scenario_, sent);
   const Pulse& sent_pulse = pulse(sent.transmitter);
@@ -147,19 +142,30 @@ EchoContext PingSimulator::echo_context(const Emission& emission, int array,
 }
 
 /// Reverberation: source → scatterer → array.
+ReverberationContext PingSimulator::reverberation_context(const Emission& emission, int array,
+                                                          PingRecord& record,
+                                                          std::span<const Vec3> phones,
+                                                          std::span<const BandPoint> band,
+                                                          MemoryBudget* budget) const {
+  return {.pattern = emission.pattern,
+          .pulse = emission.pulse,
+          .transmitter = emission.sent.transmitter,
+          .array = array,
+          .time = emission.sent.time,
+          .ping = static_cast<std::uint32_t>(record.ping),
+          .latest = end_of(record.recording),
+          .reuse = &record.reuse,
+          .phones = phones,
+          .band = band,
+          .budget = budget};
+}
+
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
                                                PingRecord& record, std::span<const Vec3> phones,
-                                               std::span<const BandPoint> band) const {
-  return reverberation_->ping({.pattern = emission.pattern,
-                               .pulse = emission.pulse,
-                               .transmitter = emission.sent.transmitter,
-                               .array = array,
-                               .time = emission.sent.time,
-                               .ping = static_cast<std::uint32_t>(record.ping),
-                               .latest = end_of(record.recording),
-                               .reuse = &record.reuse,
-                               .phones = phones,
-                               .band = band});
+                                               std::span<const BandPoint> band,
+                                               MemoryBudget budget) const {
+  return reverberation_->ping(
+      reverberation_context(emission, array, record, phones, band, &budget));
 }
 
 PingRecord PingSimulator::levels(int ping) const {
@@ -174,7 +180,7 @@ PingRecord PingSimulator::levels(int ping) const {
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
     auto at = heard.find(array);
     if (at == heard.end())
-      at = heard.emplace(array, reverberation(emission, array, record, {}, {})).first;
+      at = heard.emplace(array, reverberation(emission, array, record, {}, {}, budget_)).first;
     return at->second.expected_db(time);
   });
   record.timings.rays = watch.lap();
@@ -186,8 +192,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   paths_->memory().next_ping();
   const Emission emission = emit(sent);
   PingRecord record = blank_record(ping, sent);
-  record.pressure.assign(
-      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
+  MemoryBudget budget = budget_;
+  budget.take(record_need(scenario_, most_samples()));
   const double peak_pressure = std::numbers::sqrt2 *
                                amplitude_from_db(emission.projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
@@ -202,6 +208,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     coloured.emplace(band->synthesizer(emission.pulse, record.recording, max_doppler_));
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
+  budget.take(synthesis_need(coloured ? *coloured : synthesizer));
+  record.pressure.assign(
+      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
   record.timings.synthesis = watch.lap();
 
   // The reverberation's samples of the last ping of this thread, if few: memory that the system
@@ -223,7 +232,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();
     scattered.push_back(reverberation(emission, static_cast<int>(a), record, phones,
-                                      band ? band->points() : std::span<const BandPoint>()));
+                                      band ? band->points() : std::span<const BandPoint>(),
+                                      budget));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();

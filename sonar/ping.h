@@ -3,6 +3,7 @@
 #include <memory>
 #include <stop_token>
 
+#include "core/memory_budget.h"
 #include "raytrace/eigenrays.h"
 #include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
@@ -24,10 +25,11 @@ namespace asdic {
 class PingSimulator {
  public:
   /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
-  /// what comes out \throws InputError naming the key at fault ("pings.sample_rate",
-  /// "pulse.duration", …)
+  /// what comes out \param budget  of a ping \throws InputError naming the key at fault
+  /// ("pings.sample_rate", "pulse.duration", …)
   explicit PingSimulator(Scenario scenario,
-                         const std::shared_ptr<SharedPropagation>& shared = nullptr);
+                         const std::shared_ptr<SharedPropagation>& shared = nullptr,
+                         MemoryBudget budget = {});
 
   /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
   /// counted from 1
@@ -47,6 +49,11 @@ class PingSimulator {
   /// simulate(), bit for bit, and the places of things. Nothing is synthesised and no noise is
   /// drawn: pressure, level series, patches and interference stay empty.
   [[nodiscard]] PingRecord levels(int ping) const;
+
+  /// What simulate() asks for before it makes a ping: what that takes at its peak, by what takes
+  /// it, within its budget. Traces the paths to scatterers. \throws MemoryError if that is
+  /// too much, as simulate() does
+  [[nodiscard]] MemoryBudget memory(int ping = 1) const;
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
@@ -69,18 +76,33 @@ class PingSimulator {
   [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
   /// Echoes and direct blasts, also put into the record with their legs.
   std::vector<EchoPath> sparse_returns(const EchoContext& context, PingRecord& record) const;
-  struct Emission;
+  /// What a ping is for all who hear it.
+  struct Emission {
+    const Transmission& sent;
+    Transmitter projector;
+    const Pulse& pulse;
+    BeamPattern pattern;
+  };
   [[nodiscard]] Emission emit(const Transmission& sent) const;
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
+  [[nodiscard]] ReverberationContext reverberation_context(const Emission& emission, int array,
+                                                           PingRecord& record,
+                                                           std::span<const Vec3> phones,
+                                                           std::span<const BandPoint> band,
+                                                           MemoryBudget* budget) const;
   [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
                                                 PingRecord& record, std::span<const Vec3> phones,
-                                                std::span<const BandPoint> band) const;
+                                                std::span<const BandPoint> band,
+                                                MemoryBudget budget) const;
+  [[nodiscard]] double most_samples() const;
+  [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
                                                 std::int64_t samples) const;
   void blank(PingRecord& record) const;
 
   Scenario scenario_;
+  MemoryBudget budget_;  // of each ping
   std::vector<Transmission> transmissions_;
   std::vector<Pulse> pulses_;  // [transmitters]
   bool known_ocean_ = false;   // written before paths_

@@ -31,6 +31,7 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
       expected_(std::move(expected)),
       covariance_(std::move(covariance)) {
   context_.phones = {};  // of the caller's, who needs not keep them
+  context_.budget = nullptr;
   double one_by_one = 0.0;
   for (std::size_t i = 0; i < fields_.size(); ++i)
     if (!fields_[i].by_covariance) one_by_one += expected_->returns_of(i);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "sonar/boundary_fans.h"
 #include "sonar/expected_reverberation.h"
 #include "sonar/ping_record.h"
@@ -28,6 +29,7 @@ struct ReverberationContext {
   /// Of the array [m]; none: nothing is heard by its covariance, all of it one by one.
   std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
+  MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -135,6 +137,8 @@ class ReverberationModel {
   ReverberationModel(const Scenario& scenario, const PropagationPaths& paths, const Pulse& widest);
 
   [[nodiscard]] PingReverberation ping(const ReverberationContext& context) const;
+  /// What ping() would ask the context's budget for, though it may be known: takes it.
+  void take_memory(const ReverberationContext& context) const;
   [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
   /// Of everything that scatters.
   [[nodiscard]] std::vector<ScatteringSheet::Law> laws() const;
@@ -149,6 +153,8 @@ class ReverberationModel {
     std::uint64_t id;
     double thickness = 0.0;
   };
+  /// All that a ping hears.
+  [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context) const;
   /// Adds the fields of a part that a ping hears, one for every anchor.
   void meet(Part part, const ReverberationContext& context,
             std::vector<ScatteringField>& fields) const;

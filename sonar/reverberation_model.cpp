@@ -215,6 +215,8 @@ std::shared_ptr<const ExpectedReverberation> ReverberationModel::expected(
   auto known = key ? memory.find<ExpectedReverberation>(*key) : nullptr;
   if (known) return known;
   if (context.reuse != nullptr) context.reuse->expected_level = false;
+  if (context.budget != nullptr)
+    context.budget->take(ExpectedReverberation::need(fields, duration));
   auto made = std::make_shared<ExpectedReverberation>(fields, duration);
   const std::size_t bytes = made->bytes();
   return key ? memory.keep(*key, std::move(made), bytes) : made;
@@ -264,12 +266,23 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
   return key ? memory.keep(*key, std::move(made), bytes) : made;
 }
 
+std::vector<ScatteringField> ReverberationModel::fields(const ReverberationContext& context) const {
+  std::vector<ScatteringField> found;
+  for (Part& part : parts()) meet(std::move(part), context, found);
+  return found;
+}
+
+void ReverberationModel::take_memory(const ReverberationContext& context) const {
+  const std::vector<ScatteringField> heard = fields(context);
+  if (!heard.empty())
+    context.budget->take(ExpectedReverberation::need(heard, context.pulse.duration()));
+}
+
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
-  std::vector<ScatteringField> fields;
-  for (Part& part : parts()) meet(std::move(part), context, fields);
-  auto known = expected(fields, context);
-  auto by_covariance = covariance(fields, *known, context);
-  return {scenario_, context, std::move(fields), std::move(known), std::move(by_covariance)};
+  std::vector<ScatteringField> heard = fields(context);
+  auto known = expected(heard, context);
+  auto by_covariance = covariance(heard, *known, context);
+  return {scenario_, context, std::move(heard), std::move(known), std::move(by_covariance)};
 }
 
 }  // namespace asdic

@@ -10,8 +10,18 @@
 #include "sonar/stream.h"
 
 namespace asdic {
-
 namespace {
+
+/// Two pings in flight a thread keep the writer fed; more would only cost memory, and no more than
+/// there is memory for.
+std::size_t pings_in_flight(const PingSimulator& simulator) {
+  const int wanted = std::min(std::max(2, tbb::this_task_arena::max_concurrency()),
+                              std::max(1, simulator.pings()));
+  if (wanted == 1) return 1;
+  const MemoryBudget one = simulator.memory();
+  const double fit = one.taken() > 0.0 ? one.bytes() / one.taken() : 1.0 * wanted;
+  return static_cast<std::size_t>(std::clamp(fit, 1.0, 1.0 * wanted));
+}
 
 /// Null if it is called off meanwhile.
 std::shared_ptr<PingRecord> make_ping(const PingSimulator& simulator, int ping,
@@ -38,9 +48,7 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
   ReceiverElectronics::Carried carried;
   int next = 1, done = 0;
   bool over = false;
-  // Two pings in flight a thread keep the writer fed; more would only cost memory.
-  const auto in_flight =
-      static_cast<std::size_t>(std::max(2, tbb::this_task_arena::max_concurrency()));
+  const std::size_t in_flight = pings_in_flight(simulator);
   tbb::parallel_pipeline(
       in_flight,
       tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,

@@ -42,7 +42,12 @@ std::string identity(const Study& study) {
                      ";design=" + std::string(name(study.design)) + ";on_error=stop;";
   if (study.design == Design::latin_hypercube)
     text += "realisations=" + std::to_string(study.realisations) + ";";
-  write(study.scenario, "", study.scenario_path.parent_path(), text);
+  TomlValue scenario = study.scenario;  // without what changes no row
+  if (TomlValue* run = scenario.find("run")) {
+    erase_key(*run, "memory");
+    if (run->table() != nullptr && run->table()->empty()) erase_key(scenario, "run");
+  }
+  write(scenario, "", study.scenario_path.parent_path(), text);
   for (const char* table : {"vary", "measure"})
     if (const TomlValue* value = study.document.find(table))
       write(*value, "", study.path.parent_path(), text);

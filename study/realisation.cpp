@@ -1,11 +1,17 @@
 #include "study/realisation.h"
 
+#include <tbb/task_arena.h>
+
 #include <limits>
+#include <new>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/random.h"
+#include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "study/measures.h"
+#include "study/row_memory.h"
 #include "study/sampler.h"
 
 namespace asdic::study {
@@ -66,50 +72,84 @@ std::vector<Column> columns(const Study& study) {
 }
 
 struct Realiser::Impl {
-  explicit Impl(Study made)
-      : study(std::move(made)), sampler(study), measures(columns(study).size() - inputs()) {}
+  Impl(Study made, int processes)
+      : study(std::move(made)),
+        sampler(study),
+        measures(columns(study).size() - inputs()),
+        budget(budget_of(study.scenario, MemoryBudget(processes))),
+        memory(budget.bytes(), static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) {}
   [[nodiscard]] std::size_t inputs() const { return sampler.columns().size(); }
+  [[nodiscard]] Row make(std::uint64_t index, double bytes);
+  /// What it drew, and why it has no measures.
+  [[nodiscard]] Row skipped(std::uint64_t index, const Sampler::Drawn& draw,
+                            const std::string& fault) const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    Row row{.index = index, .valid = false, .fault = fault, .values = draw.values};
+    row.values.resize(inputs() + measures, none);
+    row.reuse.assign(reuse_columns().size(), none);
+    return row;
+  }
 
   Study study;
   Sampler sampler;
   std::size_t measures;
+  MemoryBudget budget;  // of all rows in hand
+  RowMemory memory;
   /// Bounded, so that memory stays flat: a target that moves never finds its paths again.
   std::shared_ptr<SharedPropagation> shared =
       std::make_shared<SharedPropagation>(std::size_t{64} << 20);
 };
 
-Realiser::Realiser(Study study) : impl_(std::make_unique<Impl>(std::move(study))) {}
+Realiser::Realiser(Study study, int processes)
+    : impl_(std::make_unique<Impl>(std::move(study), processes)) {}
 Realiser::~Realiser() = default;
 
 const Study& Realiser::study() const noexcept { return impl_->study; }
 
 Row Realiser::realise(std::uint64_t index) const {
-  const Study& study = impl_->study;
-  const Sampler::Drawn draw = impl_->sampler.draw(index);
+  Row row;
+  impl_->memory.within([&](double bytes) { row = impl_->make(index, bytes); });
+  return row;
+}
+
+Row Realiser::skipped(std::uint64_t index, const std::string& fault) const {
+  return impl_->skipped(index, impl_->sampler.draw(index), fault);
+}
+
+/// \param bytes  that it may take
+Row Realiser::Impl::make(std::uint64_t index, double bytes) {
+  const Sampler::Drawn draw = sampler.draw(index);
   Row row{.index = index, .values = draw.values};
-  try {
-    TomlValue tree = study.scenario;
-    impl_->sampler.apply(draw, tree);
-    Scenario scenario = scenario_of(tree, study.scenario_path);
-    scenario.seed = seed_of(study, index);
-    const PingSimulator simulator(std::move(scenario), impl_->shared);
-    Measured measured = measure(study, simulator);
-    row.reuse = reuse_of(measured.record.reuse);
-    row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
-    if (keeps_series(study.measure, index))
-      keep_series(measured.record, study, simulator.scenario(), row);
-  } catch (const InputError& error) {
-    const InputError fault = told(error, study.scenario_path, index, impl_->sampler.describe(draw));
+  const auto fails = [&](const InputError& error) {
+    const InputError fault = told(error, study.scenario_path, index, sampler.describe(draw));
     if (study.on_error == OnError::stop) {
       InputFault stop = fault.fault();
       stop.expected += ", or study.on_error = \"skip\"";
       throw InputError(stop);
     }
-    row.valid = false;
-    row.fault = fault.what();
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    row.values.resize(impl_->inputs() + impl_->measures, none);
-    row.reuse.assign(reuse_columns().size(), none);
+    row = skipped(index, draw, fault.what());
+  };
+  try {
+    TomlValue tree = study.scenario;
+    sampler.apply(draw, tree);
+    Scenario scenario = scenario_of(tree, study.scenario_path);
+    scenario.seed = seed_of(study, index);
+    const PingSimulator simulator(std::move(scenario), shared,
+                                  budget.share(bytes, "a row's share"));
+    Measured measured = measure(study, simulator);
+    row.reuse = reuse_of(measured.record.reuse);
+    row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
+    if (keeps_series(study.measure, index))
+      keep_series(measured.record, study, simulator.scenario(), row);
+  } catch (const MemoryError& error) {
+    if (bytes < memory.total()) throw;
+    fails(error);
+  } catch (const InputError& error) {
+    fails(error);
+  } catch (const std::bad_alloc&) {  // the system has less than run.memory allows
+    fails(InputError({.where = "run.memory",
+                      .got = "no more memory to be had",
+                      .expected = "as much as it allows, " + budget.text()}));
   }
   return row;
 }

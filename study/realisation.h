@@ -52,11 +52,14 @@ struct Row {
 /// its paths) for as long as they have it, which never changes a bit of a row.
 class Realiser {
  public:
-  explicit Realiser(Study study);
+  /// \param processes  on this machine, which share its memory where run.memory does not say
+  explicit Realiser(Study study, int processes = 1);
   ~Realiser();
 
   /// \throws InputError naming realisation, key and drawn value (on_error = "stop")
   [[nodiscard]] Row realise(std::uint64_t index) const;
+  /// One that is not made: what it drew, and why. Its measures are NaN.
+  [[nodiscard]] Row skipped(std::uint64_t index, const std::string& fault) const;
 
   [[nodiscard]] const Study& study() const noexcept;
 

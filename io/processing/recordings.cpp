@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/hdf5/scale.h"
 #include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
@@ -174,6 +175,15 @@ ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
                         .start = start_,
                         .sample_rate = rate_,
                         .carrier = carrier_};
+  std::size_t samples = 0;
+  for (const Piece& piece : pieces(row)) samples += piece.samples;
+  MemoryBudget budget = MemoryBudget::without_key();
+  budget.take(
+      {.where = file_.path().string() + ": pressure",
+       .what = std::to_string(samples) + " samples on " + std::to_string(phones) + " phones",
+       .bytes = 3.0 * sizeof(float) * (complex_samples() ? 2.0 : 1.0) *
+                static_cast<double>(samples) * static_cast<double>(phones),
+       .remedy = "a shorter record or fewer phones"});
   const auto places = file_.read<double>("phone_position", {row, first, 0}, {1, phones, 3});
   for (std::size_t n = 0; n < phones; ++n)
     result.phones.emplace_back(places[3 * n], places[3 * n + 1], places[3 * n + 2]);

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <functional>
 
+#include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
 #include "sonar/ping_bounds.h"
+#include "sonar/ping_memory.h"
 #include "sonar/sampling.h"
 #include "sonar/stream.h"
 #include "sonar/transmission.h"
@@ -250,7 +252,6 @@ void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettin
 }
 
 void check_size(TomlTable& root, const Scenario& scenario) {
-  constexpr double limit = 2147483648.0;  // 2 GiB
   const double rate = recorded_rate(scenario);
   const std::size_t longest = scenario.pings.continuous ? Stream::longest_part(scenario) : 0;
   const double samples =
@@ -266,14 +267,13 @@ void check_size(TomlTable& root, const Scenario& scenario) {
                       "a pulse no longer than the record, " + to_text(end) + " s",
                       to_text(scenario.pulse.duration) + " s");
   }
-  const std::size_t phones = channels_of(scenario);
-  const double bytes = samples * static_cast<double>(phones) * sizeof(float) *
-                       (scenario.pings.samples == Samples::baseband ? 2.0 : 1.0);
-  if (bytes > limit)
-    throw pings.fault("recording_duration", "at most 2 GiB of pressure a ping",
-                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz on " +
-                          std::to_string(phones) + " phones, " +
-                          to_text(std::round(bytes / 1073741824.0 * 10.0) / 10.0) + " GiB a ping");
+  constexpr double most = 1e9;  // lengths of transforms are whole numbers of 32 bits
+  if (samples > most)
+    throw pings.fault("recording_duration", "at most 1e9 samples a phone",
+                      to_text(samples / rate) + " s at " + to_text(rate) + " Hz");
+  TomlTable run = root.table("run");
+  MemoryBudget budget = MemoryBudget::of(read_memory(run));  // here, where the line is known
+  budget.take(record_need(scenario, samples, pings.where("recording_duration")));
 }
 
 void check_fathometer(TomlTable& root, const Scenario& scenario) {

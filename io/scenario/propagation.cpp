@@ -64,6 +64,20 @@ PropagationCase read_propagation_case(const std::filesystem::path& path,
   return parse_propagation_case(read_text_file(path, "a scenario file"), path, overrides, notes);
 }
 
+MemoryBudget read_budget(const std::filesystem::path& path,
+                         std::span<const std::string> overrides) {
+  return budget_of(
+      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides));
+}
+
+MemoryBudget budget_of(const TomlValue& document, MemoryBudget otherwise) {
+  const TomlValue* run = document.find("run");
+  if (run == nullptr) return otherwise;
+  TomlTable table(*run, "run");
+  const double bytes = scenario::read_memory(table);
+  return bytes > 0.0 ? MemoryBudget::of(bytes) : otherwise;
+}
+
 bool has_sonar(const std::filesystem::path& path, std::span<const std::string> overrides) {
   const TomlValue document =
       scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
@@ -87,6 +101,7 @@ InputError told_of_scenario(const InputError& error, const std::filesystem::path
   const std::pair<std::string_view, std::string_view> names[] = {
       {"beams.highest", "run.fan.highest"},
       {"beams.elevations", "run.fan.elevations"},
+      {"beams.count", "run.fan.count"},
       {"source_depths", "run.source.depth"},
       {"source depths", "run.source.depth"},
       {"receivers.depths", "run.receivers.depth"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/text/toml_table.h"
 #include "raytrace/propagation_case.h"
 
@@ -27,6 +28,12 @@ namespace asdic {
                                                      const std::filesystem::path& path,
                                                      std::span<const std::string> overrides,
                                                      std::vector<std::string>& notes);
+
+/// The budget that run.memory of a file, sonar's or not, sets; the default where it says nothing.
+[[nodiscard]] MemoryBudget read_budget(const std::filesystem::path& path,
+                                       std::span<const std::string> overrides);
+/// The same of a tree that was read before. \param otherwise  where it says nothing
+[[nodiscard]] MemoryBudget budget_of(const TomlValue& document, MemoryBudget otherwise = {});
 
 /// Whether a file describes a sonar: it has a [platform], or no [run] either.
 [[nodiscard]] bool has_sonar(const std::filesystem::path& path,
@@ -55,6 +62,9 @@ namespace scenario {
 
 /// `count` values from first to last, both included: what { first, last, count } stands for.
 [[nodiscard]] std::vector<double> evenly_spaced(double first, double last, std::size_t count);
+
+/// run.memory: bytes, or a text such as "4 GB" or "512 MiB"; 0 where it is not given.
+[[nodiscard]] double read_memory(TomlTable& table);
 
 /// [run] and its tables. `run_case` brings the environment, and a frequency and source depths for
 /// where none are given (a frequency of 0, no depths: they are required).

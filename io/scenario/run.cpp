@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include "io/scenario/angles.h"
@@ -213,7 +214,24 @@ std::vector<double> evenly_spaced(double first, double last, std::size_t count) 
   return values;
 }
 
+double read_memory(TomlTable& table) {
+  constexpr Quantity memory{.noun = "memory", .unit = "bytes", .low = 1e6, .high = 1e18};
+  if (!table.is_text("memory")) return table.number("memory", memory, 0.0);
+  const std::string text = table.text("memory");
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  while (unit.starts_with(' ')) unit.remove_prefix(1);
+  constexpr std::pair<std::string_view, double> units[] = {
+      {"MB", 1e6},        {"GB", 1e9},           {"TB", 1e12},
+      {"MiB", 1048576.0}, {"GiB", 1073741824.0}, {"TiB", 1099511627776.0}};
+  for (const auto& [name, scale] : units)
+    if (error == std::errc{} && unit == name && memory.holds(value * scale)) return value * scale;
+  throw table.fault("memory", memory.expected() + ", or a text such as \"4 GB\" or \"512 MiB\"");
+}
+
 void read_run(TomlTable table, PropagationCase& run) {
+  static_cast<void>(read_memory(table));  // of the process, not of the run: budget_of()
   run.task = one_of(table, "task", 5, run.task);
   run.field = one_of(table, "field", 3, run.field);
   constexpr Quantity frequency{

@@ -8,6 +8,7 @@
 #include "raytrace/like_bellhop/sinks.h"
 #include "raytrace/like_bellhop/trace.h"
 #include "raytrace/parallel.h"
+#include "raytrace/runs/memory.h"
 
 namespace asdic {
 namespace like_bellhop {
@@ -228,7 +229,10 @@ PropagationResult run_like_bellhop(const PropagationCase& run_case,
   return like_bellhop::Run(run_case, options, progress)();
 }
 
-PropagationResult run_like_bellhop(const PropagationCase& run_case, const Progress& progress) {
+PropagationResult run_like_bellhop(const PropagationCase& run_case, const Progress& progress,
+                                   const MemoryBudget& budget) {
+  like_bellhop::check(run_case);
+  static_cast<void>(run_memory(run_case, budget));
   return run_like_bellhop(run_case, LikeBellhopOptions{}, progress);
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/memory_budget.h"
 #include "raytrace/parallel.h"
 #include "raytrace/propagation.h"
 #include "sonar/processing/across_beams.h"
@@ -34,6 +35,27 @@ std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
   return moved;
 }
 
+/// Asks for what all beams and filters take. \throws MemoryError
+BeamGrid within_memory(BeamGrid grid, const Baseband& baseband, std::size_t filters,
+                       const DetectorSettings& settings) {
+  const auto number = [](std::size_t n) { return static_cast<double>(n); };
+  const double beams = number(grid.looks.size()), banks = number(filters);
+  const double row = 8.0 * number(baseband.samples);
+  // Spectra of beams, phones (twice by MVDR, in blocks) and filters; what all cells hold, if beams
+  // are compared; maps.
+  const double phones =
+      number(baseband.channels) * (settings.beamformer == Beamformer::mvdr ? 3.0 : 1.0);
+  const double cells = settings.normaliser.across_beams ? 0.5 * beams * banks * row : 0.0;
+  MemoryBudget budget = MemoryBudget::without_key();
+  budget.take({.where = "receiver",
+               .what = std::to_string(grid.looks.size()) + " beams and " + std::to_string(filters) +
+                       " Doppler filters of " + std::to_string(baseband.samples) + " samples",
+               .bytes = (beams + phones + banks) * row + cells +
+                        4.0 * (beams + banks) * number(settings.map_columns),
+               .remedy = "a lower max_speed, fewer elevations or phones, or a shorter record"});
+  return grid;
+}
+
 /// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
 /// them, also on a line that is towed far behind the point that delays refer to.
 class Search {
@@ -48,8 +70,9 @@ class Search {
         middle_(shape_of(phones, wavelength_).centre),
         phones_(about(middle_, phones)),
         shape_(shape_of(phones_, wavelength_)),
-        grid_(
-            beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation)),
+        grid_(within_memory(
+            beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation),
+            baseband, dopplers.size(), settings)),
         weights_(shading(phones_, settings.hann_shading)),
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),

@@ -366,9 +366,15 @@ const Fault faults[] = {
     {"NegativeRecording", "recording_duration = 60", "recording_duration = -60",
      "s.toml:32: pings.recording_duration: found -60 s, expected a duration above 0 and at most "
      "100000 s"},
-    {"TooBigForMemory", "recording_duration = 60", "recording_duration = 4000",
-     "s.toml:32: pings.recording_duration: found 4000 s at 16000 Hz on 16 phones, 3.8 GiB a ping, "
-     "expected at most 2 GiB of pressure a ping"},
+    {"TooBigForMemory", "recording_duration = 60",
+     "recording_duration = 4000\n[run]\nmemory = \"1 GB\"",
+     "s.toml:32: pings.recording_duration: found 64000000 samples on 16 phones, which take 4.1 GB "
+     "of memory, expected at most 1.0 GB, as run.memory says: a shorter record, fewer phones, a "
+     "lower sample rate or pings.samples = \"baseband\", or a larger run.memory"},
+    {"MemoryWithoutAUnit", "recording_duration = 60",
+     "recording_duration = 60\n[run]\nmemory = \"4 apples\"",
+     "s.toml:34: run.memory: found \"4 apples\", expected a memory from 1000000 to "
+     "1000000000000000000 bytes, or a text such as \"4 GB\" or \"512 MiB\""},
     {"PulseLongerThanTheRecord", "duration = 1.0", "duration = 61.0",
      "s.toml:19: pulse.duration: found 61 s, expected a pulse no longer than the record, 60 s"},
     {"SampledTooSlowly", "recording_duration = 60", "sample_rate = 8000",

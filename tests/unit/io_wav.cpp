@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sndfile.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -117,6 +118,34 @@ TEST(PulseFile, FaultsAreNamed) {
   const std::vector<float> stereo(20, 1.0F);
   write_wav(folder / "stereo.wav", stereo, 2, 8000.0);
   EXPECT_THAT(message(folder / "stereo.wav"), HasSubstr("found 2 channels, expected one channel"));
+}
+
+// What a header claims is not what is asked of the machine: 250 million samples are 2 GB.
+TEST(PulseFile, AHeaderMayClaimWhatItLikes) {
+  const std::filesystem::path data = ASDIC_TEST_DATA "/pulse-files";
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_THAT(message(data / "claims-250M-samples.flac"),
+              HasSubstr("found 0 samples, where its header claims 250000000, expected a whole"));
+  EXPECT_EQ(read_pulse_file(data / "lie.wav").samples.size(), 800U);
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 50'000);  // [kB]
+}
+
+TEST(PulseFile, TooLongIsSaid) {
+  const TemporaryDirectory folder;
+  SF_INFO info{};
+  info.samplerate = 8000;
+  info.channels = 1;
+  info.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_16;  // silence takes nothing there
+  SNDFILE* file = sf_open((folder / "long.flac").c_str(), SFM_WRITE, &info);
+  ASSERT_NE(file, nullptr);
+  const std::vector<short> block(1 << 20);
+  for (int i = 0; i < 33; ++i) sf_writef_short(file, block.data(), 1 << 20);
+  sf_close(file);
+  EXPECT_LT(std::filesystem::file_size(folder / "long.flac"), 1'000'000U);
+  EXPECT_THAT(message(folder / "long.flac"),
+              HasSubstr("found more than 33554432 samples, expected no more in a pulse"));
 }
 
 TEST(PulseFile, StandsInAScenario) {
