@@ -23,8 +23,7 @@ int study_run(const StudyOptions& options) {
       "once");
   order.run.stop = interrupt.token();
   const study::Realiser realiser(order.study);
-  const study::Work work = study::work_of(
-      order.study, [&realiser](std::uint64_t index) { return realiser.realise(index); });
+  const study::Work work = study::work_of(order.study, realiser);
   study::StudyOutcome outcome;
   {
     StudyProgress progress(!options.quiet);

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 
 #include "app/console.h"
@@ -64,6 +65,9 @@ void add_study_options(const Command& command, StudyOptions& options) {
       .type_name("HALF_WIDTH")
       .check(above_zero());
   command.add_flag("--fresh", options.fresh, "begin anew: what is there is written over");
+  command.add_flag("--retry", options.retry,
+                   "make rows again that were skipped, or passed over because processes died with "
+                   "them");
   add_threads_option(command, options.threads);
   command.add_flag("-q,--quiet", options.quiet, "print nothing unless something is wrong");
 }
@@ -79,6 +83,10 @@ StudyOrder order_of(const StudyOptions& options) {
   check_until(options, order);
   order.run.until = options.until;
   order.run.fresh = options.fresh;
+  order.run.retry = options.retry;
+  order.run.note = [](const std::string& text) {
+    std::fputs(("asdic: note: " + text + '\n').c_str(), stderr);
+  };
   order.run.assemble_only = options.assemble;
   order.run.session.made = provenance(order.threads);
   order.run.session.study_path = std::filesystem::absolute(options.path).string();

@@ -16,7 +16,7 @@ struct StudyOptions {
   std::vector<std::string> overrides;
   std::optional<int> threads;
   std::optional<double> until;
-  bool fresh = false, assemble = false, quiet = false;
+  bool fresh = false, assemble = false, retry = false, quiet = false;
 };
 
 /// STUDY, -o, --set, --until, --fresh, --threads, --quiet.

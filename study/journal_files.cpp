@@ -30,7 +30,7 @@ std::vector<std::filesystem::path> journals_of(const std::filesystem::path& outp
 
 void remove_journal(const std::filesystem::path& path) {
   std::error_code ignored;
-  for (const char* suffix : {"-wal", "-shm", ""})
+  for (const char* suffix : {"-wal", "-shm", "-hand", ""})
     std::filesystem::remove(path.string() + suffix, ignored);
 }
 

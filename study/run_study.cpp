@@ -1,5 +1,7 @@
 #include "study/run_study.h"
 
+#include <tbb/task_arena.h>
+
 #include <chrono>
 
 #include "core/error.h"
@@ -16,18 +18,32 @@ Work work_of(const Study& study, const Realise& realise) {
               },
           .summarise = [&study](const Table& table) { return summary_of(study, table); },
           .estimate = [&study] { return RunningEstimate(study); },
-          .skips = study.on_error == OnError::skip};
+          .skips = study.on_error == OnError::skip,
+          // With their time series rows are large, also when they are made and wait for their turn.
+          .in_flight = study.measure.series_every > 0
+                           ? static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())
+                           : 0};
+}
+
+Work work_of(const Study& study, const Realiser& realiser) {
+  Work work = work_of(study, [&realiser](std::uint64_t index) { return realiser.realise(index); });
+  work.skipped = [&realiser](std::uint64_t index, const std::string& fault) {
+    Row row = realiser.skipped(index, fault);
+    row.values.insert(row.values.end(), row.reuse.begin(), row.reuse.end());
+    return row;
+  };
+  return work;
 }
 
 Journals::Journals(const std::filesystem::path& output, const Work& work,
-                   const std::filesystem::path& own) {
+                   const std::filesystem::path& own, bool retry) {
   if (!own.empty()) {
     journals_.push_back(std::make_unique<Journal>(own, work.imprint));
     own_ = journals_.front().get();
   }
   for (const std::filesystem::path& path : journals_of(output))
     if (path != own) journals_.push_back(std::make_unique<Journal>(path, work.imprint));
-  if (work.skips) return;
+  if (work.skips && !retry) return;
   for (const auto& journal : journals_) journal->drop_skipped();
 }
 
@@ -133,6 +149,66 @@ void import_rows(const std::filesystem::path& path, IndexRange range, bool skipp
   for (const Session& session : file.sessions()) journal.add(session);
 }
 
+Deaths suspects_of(const StudyRun& run, const IndexSet& done) {
+  Deaths suspects;
+  if (!run.retry)
+    for (const auto& [index, deaths] : deaths_of(run.output))
+      if (index >= run.range.first && index < run.range.end && !done.contains(index))
+        suspects[index] = deaths;
+  return suspects;
+}
+
+Realise marked(const Realise& realise, RowsInHand& hand) {
+  return [realise, &hand](std::uint64_t index) {
+    const RowsInHand::Mark mark(hand, index);
+    return realise(index);
+  };
+}
+
+void settle_suspects(const Work& work, const StudyRun& run, RowsInHand& hand, Journal& journal,
+                     const std::function<void(Row&&)>& take) {
+  constexpr int given_up_after = 2;  // deaths
+  const auto note = [&](const std::string& text) {
+    if (run.note) run.note(text);
+  };
+  const auto keep = [&](Row&& row) {
+    journal.append(row);
+    journal.commit();
+    hand.clear(row.index);
+    take(std::move(row));
+  };
+  for (const auto& [suspect, deaths] : hand.suspects()) {
+    const std::uint64_t index = suspect;
+    const std::string name = "realisation " + std::to_string(index);
+    if (deaths >= given_up_after) {
+      const std::string died = std::to_string(deaths) + " processes that died while they made it";
+      if (!work.skips)
+        throw InputError({.where = run.output.string() + ": " + name,
+                          .got = died,
+                          .expected = "one that lives: study.on_error = \"skip\" passes over it, "
+                                      "--retry makes it again"});
+      note(name + " is passed over: it was in hand when " + std::to_string(deaths) +
+           " processes died; --retry makes it again");
+      keep(work.skipped(index, name + ": found " + died + ", expected one that lives"));
+      continue;
+    }
+    note(name + " was in hand when a process died: it is made again, alone");
+    bool drawn = false;
+    study::run(
+        marked(work.realise, hand),
+        [&]() -> std::optional<std::uint64_t> {
+          if (std::exchange(drawn, true)) return {};
+          return index;
+        },
+        [&](Row&& row) {
+          keep(std::move(row));
+          return true;
+        },
+        {.stop = run.stop});
+    if (run.stop.stop_requested()) return;
+  }
+}
+
 namespace {
 
 /// Indices that are missing, one after the other.
@@ -230,16 +306,16 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
   const Existing existing =
       run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
   const bool no_journals = journals_of(run.output).empty();
-  if (existing == Existing::complete && no_journals) {
+  if (existing == Existing::complete && no_journals && !run.retry) {
     outcome.was_complete = outcome.written = outcome.complete = true;
     outcome.before = outcome.total;
     return outcome;
   }
   if (run.assemble_only && existing == Existing::none && no_journals)
     throw nothing_to_assemble(run.output);
-  Journals journals(run.output, work, journal_of(run.output));
-  if (existing == Existing::partial && no_journals)
-    import_rows(run.output, run.range, work.skips, journals.own());
+  Journals journals(run.output, work, journal_of(run.output), run.retry);
+  if (existing != Existing::none && no_journals)
+    import_rows(run.output, run.range, work.skips && !run.retry, journals.own());
   journals.own().begin(run.session);
   const IndexSet done = journals.done().within(run.range);
   outcome.damaged = journals.damaged();
@@ -252,18 +328,25 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
   journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
 
   if (!run.assemble_only && !estimate.enough()) {
-    Remaining remaining(done.missing(run.range));
-    Teller teller(run, outcome.before, outcome.total);
+    RowsInHand hand(journals.own().path(), suspects_of(run, done));
+    forget_deaths(run.output, journals.own().path());
+    const std::stop_callback call_off(run.stop, [&hand] { hand.call_off(); });
+    settle_suspects(work, run, hand, journals.own(), [&](Row&& row) {
+      estimate.add(std::move(row));
+      ++outcome.made;
+    });
+    Remaining remaining(journals.done().within(run.range).missing(run.range));
+    Teller teller(run, outcome.before + outcome.made, outcome.total);
     teller.tell(estimate);
-    outcome.made = study::run(
-        work.realise, [&] { return remaining.next(); },
+    outcome.made += study::run(
+        marked(work.realise, hand), [&] { return remaining.next(); },
         [&](Row&& row) {
           journals.own().append(row);
           estimate.add(std::move(row));
           teller.row(estimate);
           return !estimate.enough();
         },
-        {.stop = run.stop});
+        {.stop = run.stop, .in_flight = work.in_flight});
   }
   outcome.estimate = estimate.estimate();
   const bool all = outcome.before + outcome.made == outcome.total || estimate.enough();

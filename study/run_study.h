@@ -8,6 +8,7 @@
 #include <stop_token>
 
 #include "study/assemble.h"
+#include "study/rows_in_hand.h"
 #include "study/run.h"
 #include "study/until.h"
 
@@ -19,11 +20,15 @@ struct Work {
   Realise realise{};
   Summarise summarise{};
   std::function<RunningEstimate()> estimate{};  ///< without a row
-  bool skips = true;  ///< rows that were skipped count as made (on_error = "skip")
+  bool skips = true;          ///< rows that were skipped count as made (on_error = "skip")
+  std::size_t in_flight = 0;  ///< rows that exist at a time; 0: four for each thread
+  std::function<Row(std::uint64_t index, const std::string& fault)> skipped{};  ///< a row that is
 };
 
 /// Its rows are the study's columns and then reuse_columns(). \param study  outlives the work
 [[nodiscard]] Work work_of(const Study& study, const Realise& realise);
+/// The same of a realiser, which outlives the work as well.
+[[nodiscard]] Work work_of(const Study& study, const Realiser& realiser);
 
 /// How far a run is.
 struct Progress {
@@ -39,10 +44,12 @@ struct StudyRun {
   std::optional<double> until{};  ///< half-width of the confidence interval to stop at
   bool fresh = false;             ///< begins anew, whatever is there
   bool assemble_only = false;     ///< makes no rows: a file of those that are there
+  bool retry = false;             ///< makes rows again that were skipped, or given up
   std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
   Session session{};
   std::stop_token stop{};                           ///< leaves the realisations in hand
   std::function<void(const Progress&)> progress{};  ///< a few times a second
+  std::function<void(const std::string&)> note{};   ///< what the user should know at once
 };
 
 struct StudyOutcome {
@@ -71,7 +78,9 @@ class Journals {
  public:
   /// \param own  that this process writes to; made if it is not there. "": none
   /// \param work  of which study; unless it skips, skipped rows are thrown away, to be made again
-  Journals(const std::filesystem::path& output, const Work& work, const std::filesystem::path& own);
+  /// \param retry  skipped rows are thrown away in any case
+  Journals(const std::filesystem::path& output, const Work& work, const std::filesystem::path& own,
+           bool retry = false);
 
   /// Only where a path for it was given.
   [[nodiscard]] Journal& own() noexcept {
@@ -91,6 +100,17 @@ class Journals {
   std::vector<std::unique_ptr<Journal>> journals_;
   Journal* own_ = nullptr;
 };
+
+/// Rows that processes died with, as deaths_of() tells: each is made before all others, alone, so
+/// that a second death is its own. One that two processes died with is given up: skipped, or, where
+/// a fault is to stop the study, told of. \param take  gets what was made
+/// \throws InputError naming the row that stops it; whatever a realisation throws
+void settle_suspects(const Work& work, const StudyRun& run, RowsInHand& hand, Journal& journal,
+                     const std::function<void(Row&&)>& take);
+/// realise(), with the row marked while it is in hand. \param hand  outlives it
+[[nodiscard]] Realise marked(const Realise& realise, RowsInHand& hand);
+/// The suspects of a range that are not made: what a run begins with.
+[[nodiscard]] Deaths suspects_of(const StudyRun& run, const IndexSet& done);
 
 /// What an output that is there already means for a run.
 enum class Existing {

@@ -56,11 +56,11 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   std::unique_ptr<StudyOrder> order;
   std::unique_ptr<study::Realiser> realiser;
   study::Work work;
+  const int ranks_here = session.ranks_here();
   int status = together(session, [&] {
     order = std::make_unique<StudyOrder>(order_of(options));
-    realiser = std::make_unique<study::Realiser>(order->study);
-    work =
-        study::work_of(order->study, [&](std::uint64_t index) { return realiser->realise(index); });
+    realiser = std::make_unique<study::Realiser>(order->study, ranks_here);
+    work = study::work_of(order->study, *realiser);
   });
   if (status != success) return status;
   order->ranks = session.size();

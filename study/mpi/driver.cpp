@@ -68,12 +68,20 @@ Start look_around(const Work& work, const StudyRun& run, OrderedEstimate& estima
   const Existing existing =
       run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
   const bool no_journals = journals_of(run.output).empty();
-  if (existing == Existing::complete && no_journals) return {.complete = true};
-  Journals journals(run.output, work, journal_of(run.output, 0));
-  if (existing == Existing::partial && no_journals)
-    import_rows(run.output, run.range, work.skips, journals.own());
+  if (existing == Existing::complete && no_journals && !run.retry) return {.complete = true};
+  Journals journals(run.output, work, journal_of(run.output, 0), run.retry);
+  if (existing != Existing::none && no_journals)
+    import_rows(run.output, run.range, work.skips && !run.retry, journals.own());
   journals.rows(run.range, [&](Row&& row) { estimate.add(std::move(row)); });
   outcome.damaged = journals.damaged();
+  {  // while the other ranks wait: alone
+    RowsInHand hand(journals.own().path(), suspects_of(run, journals.done()));
+    forget_deaths(run.output, journals.own().path());
+    const std::stop_callback call_off(run.stop, [&hand] { hand.call_off(); });
+    journals.own().begin(run.session);
+    settle_suspects(work, run, hand, journals.own(),
+                    [&](Row&& row) { estimate.add(std::move(row)); });
+  }
   const IndexSet done = journals.done().within(run.range);
   journals.close();  // each rank opens its own
   return {.done = done};

@@ -25,6 +25,15 @@ Session::~Session() {
   if (over == 0) MPI_Finalize();
 }
 
+int Session::ranks_here() const {
+  MPI_Comm here = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &here);
+  int count = 1;
+  MPI_Comm_size(here, &count);
+  MPI_Comm_free(&here);
+  return count;
+}
+
 int Session::first_with(bool here) const {
   int mine = here ? rank_ : size_, lowest = size_;
   MPI_Allreduce(&mine, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);

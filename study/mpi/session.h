@@ -13,6 +13,8 @@ class Session {
 
   [[nodiscard]] int rank() const noexcept { return rank_; }
   [[nodiscard]] int size() const noexcept { return size_; }
+  /// Ranks on this machine; called by all of them.
+  [[nodiscard]] int ranks_here() const;
   /// The lowest rank that says true; −1: none does.
   [[nodiscard]] int first_with(bool here) const;
   /// Rank 0's text.

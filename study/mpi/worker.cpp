@@ -34,9 +34,12 @@ std::uint64_t IndexQueue::left() {
 
 Worker::Worker(const Work& work, const StudyRun& run, int rank)
     : journal_(journal_of(run.output, rank), work.imprint),
-      in_flight_(4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) {
+      hand_(journal_.path()),
+      in_flight_(work.in_flight > 0
+                     ? work.in_flight
+                     : 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) {
   journal_.begin(run.session);
-  thread_ = std::thread([this, realise = work.realise] { work_on(realise); });
+  thread_ = std::thread([this, realise = marked(work.realise, hand_)] { work_on(realise); });
 }
 
 Worker::~Worker() {
@@ -69,6 +72,7 @@ void Worker::work_on(const Realise& realise) {
 }
 
 void Worker::stop() {
+  hand_.call_off();
   stop_.request_stop();
   queue_.close();
 }

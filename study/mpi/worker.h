@@ -47,6 +47,7 @@ class Worker {
   void work_on(const Realise& realise);
 
   Journal journal_;
+  RowsInHand hand_;
   IndexQueue queue_;
   std::size_t in_flight_;
   std::stop_source stop_;
