@@ -24,7 +24,7 @@ struct Options {
   int ping = 1;
   std::optional<double> source_depth, receiver_depth, range, frequency;
   std::optional<double> bearing;  // [°]
-  bool json = false;
+  bool json = false, force = false;
   std::string output;
 };
 
@@ -122,12 +122,13 @@ int arrivals_of_run(const Options& options) {
   set("run.receivers.depth", options.receiver_depth);
   set("run.receivers.range", options.range);
   set("run.frequency", options.frequency);
+  const OutputRules rules = rules_for(options.output, options.force, options.scenario.path);
   if (!options.output.empty()) {
-    check_output(options.output, options.scenario.path);
+    check_output(options.output, rules);
     check_kind(options.output, ".arr");
   }
   const RunArrivals found = find_run_arrivals(options.scenario, overrides);
-  if (!options.output.empty()) write_run_arrivals(options.output, found);
+  if (!options.output.empty()) write_run_arrivals(OutputFile(options.output, rules), found);
   if (options.json)
     print(run_arrivals_json(found));
   else if (options.output.empty())
@@ -152,10 +153,10 @@ int arrivals(const Options& options) {
       .legs = free ? std::vector{to_receiver(simulator, options)} : to_targets(simulator, options)};
   result.source_depth = options.source_depth.value_or(source.z());
   for (const Target& target : scenario.targets) result.targets.push_back(target.name);
-  if (!options.output.empty()) {
-    check_output(options.output, options.scenario.path);
-    write_arrivals_file(options.output, result);
-  }
+  if (!options.output.empty())
+    write_arrivals_file(
+        OutputFile(options.output, rules_for(options.output, options.force, options.scenario.path)),
+        result);
   if (options.json)
     print(arrivals_json(result));
   else if (options.output.empty())
@@ -207,6 +208,7 @@ void add_arrivals_command(Program& program) {
                   "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
                   "the table")
       .type_name("FILE");
+  add_force_option(command, options->force);
   command.footer(
       "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
       "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"

@@ -153,8 +153,8 @@ std::string arrivals_json(const ArrivalsResult& result) {
   return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result) {
-  Hdf5Output output(path);
+void write_arrivals_file(OutputFile&& to, const ArrivalsResult& result) {
+  Hdf5Output output(std::move(to));
   Hdf5File& file = output.file();
   write_root(file, "asdic arrivals", result.origin);
   file.set_attribute("", "frequency_hz", result.frequency);

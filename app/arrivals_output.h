@@ -23,7 +23,7 @@ struct ArrivalsResult {
 /// docs/formats/arrivals.md
 [[nodiscard]] std::string arrivals_json(const ArrivalsResult& result);
 /// docs/formats/arrivals.md \throws RunError
-void write_arrivals_file(const std::filesystem::path& path, const ArrivalsResult& result);
+void write_arrivals_file(OutputFile&& to, const ArrivalsResult& result);
 
 /// The parts of these for one list of paths.
 [[nodiscard]] std::string paths_table(const Arrivals& arrivals);

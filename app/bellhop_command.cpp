@@ -12,10 +12,10 @@
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/provenance.h"
-#include "app/text_output.h"
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
+#include "io/output/own_files.h"
 #include "raytrace/beam_error_text.h"
 
 namespace asdic::app {
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string root, output, dialect = "fortran";
-  bool like_bellhop = false, beams_as_written = false, quiet = false;
+  bool like_bellhop = false, beams_as_written = false, quiet = false, force = false;
   std::optional<int> threads;
 };
 
@@ -120,23 +120,40 @@ PropagationResult search(const bellhop::Input& input, const Options& options) {
   }
 }
 
+/// The results that a task has, ready to be written.
+struct ResultFiles {
+  std::optional<OutputFile> field{}, arrivals{}, rays{};
+
+  ResultFiles(Task task, const std::filesystem::path& root, bool force) {
+    const auto prepare = [&](std::optional<OutputFile>& file, const char* ending, Recognise own) {
+      file.emplace(with(root, ending), OutputRules{.own = own, .force = force});
+    };
+    if (task == Task::field) prepare(field, ".shd", own::shade_file);
+    if (task == Task::arrivals || task == Task::eigenrays_and_arrivals)
+      prepare(arrivals, ".arr", own::arrivals_file);
+    if (task != Task::arrivals && task != Task::field) prepare(rays, ".ray", own::ray_file);
+  }
+};
+
 void write_results(const bellhop::Input& input, const PropagationResult& result,
-                   const Options& options, const std::filesystem::path& root, Report& report) {
+                   const Options& options, const std::filesystem::path& root, ResultFiles&& files,
+                   Report& report) {
   const PropagationCase& run_case = input.run_case;
   const bellhop::Dialect dialect =
       options.dialect == "wide" ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
-  if (!result.field.empty()) {
-    bellhop::write_shade_file(with(root, ".shd"), bellhop::shade_file(run_case, result, dialect));
+  if (files.field) {
+    bellhop::write_shade_file(std::move(*files.field),
+                              bellhop::shade_file(run_case, result, dialect));
     report.file(with(root, ".shd"));
   }
-  if (run_case.task == Task::arrivals || run_case.task == Task::eigenrays_and_arrivals) {
+  if (files.arrivals) {
     bellhop::write_arrivals_file(
-        with(root, ".arr"),
+        std::move(*files.arrivals),
         bellhop::arrivals_file(run_case, result, input.binary_arrivals, dialect));
     report.file(with(root, ".arr"));
   }
-  if (run_case.task != Task::arrivals && run_case.task != Task::field) {
-    bellhop::write_ray_file(with(root, ".ray"), bellhop::ray_file(run_case, result));
+  if (files.rays) {
+    bellhop::write_ray_file(std::move(*files.rays), bellhop::ray_file(run_case, result));
     report.file(with(root, ".ray"));
   }
 }
@@ -153,6 +170,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   report.line(options.like_bellhop ? "traced     as BELLHOP does it, step by step"
                                    : "traced     by asdic's own tracer");
 
+  ResultFiles files(input.run_case.task, root, options.force);
   const PropagationResult result = search(input, options);
   const double search_time = watch.lap();
   report.notes(result.notes);
@@ -160,7 +178,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
   if (!options.like_bellhop && input.run_case.task == Task::field)
     report.line("error      " + beam_error_text(result.beam_error_db, result.beam_error_bounded));
   report.line("");
-  write_results(input, result, options, root, report);
+  write_results(input, result, options, root, std::move(files), report);
   const double write = watch.lap();
   report.line(fmt::format("time       parse {:.6f} s, search {:.6f} s, write {:.6f} s", parse,
                           search_time, write));
@@ -169,7 +187,8 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
 int bellhop_command(const Options& options) {
   const std::filesystem::path root =
       root_of(options.output.empty() ? options.root : options.output);
-  check_output(with(root, ".prt"), {});
+  OutputFile print_file(with(root, ".prt"),
+                        OutputRules{.own = own::print_file, .force = options.force});
   std::optional<tbb::global_control> limit;  // tasks are not even asked how many cores there are
   if (options.threads)
     limit.emplace(tbb::global_control::max_allowed_parallelism,
@@ -183,10 +202,10 @@ int bellhop_command(const Options& options) {
   } catch (const std::exception& error) {
     // scripts around BELLHOP look for these words
     report.line(fmt::format("FATAL ERROR: {}", error.what()));
-    write_text_file(with(root, ".prt"), report.text());
+    print_file.write(report.text());
     throw;
   }
-  write_text_file(with(root, ".prt"), report.text());
+  print_file.write(report.text());
   if (!options.quiet) print(report.text());
   return 0;
 }
@@ -215,6 +234,7 @@ void add_bellhop_command(Program& program) {
       .type_name("ROOT");
   add_threads_option(command, options->threads);
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  add_force_option(command, options->force);
   command.footer(
       "Ctrl-C stops; nothing half-written is left.\n"
       "Example:  asdic bellhop munk -o /tmp/munk\n");

@@ -229,6 +229,10 @@ void add_threads_option(const Command& command, std::optional<int>& threads) {
       .check(whole_number(1, 1024, "a number"));
 }
 
+void add_force_option(const Command& command, bool& force) {
+  command.add_flag("--force", force, "write over a file even if asdic did not write it");
+}
+
 double parse_length(const std::string& name, const std::string& text) {
   const auto wrong = [&] {
     return InputError(

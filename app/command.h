@@ -136,6 +136,7 @@ void add_convert_command(Program& program);
 void add_process_command(Program& program);
 void add_study_command(Program& program);
 void add_merge_command(Program& program);
+void add_recover_command(Program& program);
 void add_serve_command(Program& program);
 
 /// A scenario as the command line names it.
@@ -149,6 +150,9 @@ void add_scenario_options(const Command& command, ScenarioChoice& choice);
 
 /// --threads, as every command that computes has it.
 void add_threads_option(const Command& command, std::optional<int>& threads);
+
+/// --force, as every command that writes a file has it.
+void add_force_option(const Command& command, bool& force);
 
 /// Metres out of "60km", "500 m", "2.5e3". \throws InputError{where: `name`}
 [[nodiscard]] double parse_length(const std::string& name, const std::string& text);

@@ -11,6 +11,7 @@
 #include "app/picture_source.h"
 #include "app/pictures.h"
 #include "core/error.h"
+#include "io/output/own_files.h"
 #include "io/result_file.h"
 
 namespace asdic::app {
@@ -169,7 +170,8 @@ CompareResult compared(const Options& options, const PropagationFile& a, const P
 }
 
 void draw(const Options& options) {
-  check_output(options.picture, options.a);
+  check_output(options.picture,
+               {.own = own::picture, .force = options.force, .option = "--picture"});
   const TemporaryFolder folder;
   const auto a = picture_source(options.a, folder, "a"), b = picture_source(options.b, folder, "b");
   std::vector<std::string> words{
@@ -267,8 +269,7 @@ void add_compare_command(Program& program) {
   command.add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
   command.add_option("--picture", options->picture, "draw both and their difference")
       .type_name("FILE.png");
-  command.add_flag("--force", options->force,
-                   "write over the picture even if asdic did not draw it");
+  add_force_option(command, options->force);
   command.footer(
       "Differences are A - B; TL is -20 log10 |p|.\n"
       "Exit status: 0 within the thresholds, 1 outside, 2 the input is wrong.\n"

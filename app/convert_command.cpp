@@ -9,6 +9,7 @@
 #include "app/provenance.h"
 #include "core/error.h"
 #include "io/bellhop/case_writer.h"
+#include "io/output/own_files.h"
 #include "io/result_file.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/writer.h"
@@ -20,7 +21,7 @@ struct Options {
   std::string input, output;
   std::vector<std::string> overrides;
   std::optional<bool> wide, binary;  // none: as the input has it
-  bool quiet = false;
+  bool force = false, quiet = false;
 };
 
 std::string extension_of(const std::string& name) {
@@ -41,7 +42,8 @@ bool is_hdf5_name(const std::string& extension) {
 
 std::vector<std::string> env_to_toml(const Options& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.input));
-  write_text_file(options.output, to_toml(input.run_case));
+  OutputFile(options.output, rules_for(options.output, options.force))
+      .write(std::string("# ") + own::remark + " convert.\n" + to_toml(input.run_case));
   return input.notes;
 }
 
@@ -51,9 +53,7 @@ std::vector<std::string> toml_to_env(const Options& options) {
   const bellhop::Written written = bellhop::write_case(run_case, options.binary.value_or(false));
   std::filesystem::path root = options.output;
   root.replace_extension();
-  for (const auto& [extension, text] : written.texts.companions)
-    check_output(root.string() + extension, options.input);
-  bellhop::write_case_files(root, written.texts);
+  bellhop::write_case_files(root, written.texts, {.force = options.force});
   notes.insert(notes.end(), written.notes.begin(), written.notes.end());
   return notes;
 }
@@ -65,21 +65,22 @@ std::vector<std::string> convert_result(const Options& options, const std::strin
     if (!options.wide) return as_it_is;
     return *options.wide ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
   };
+  OutputFile to_file(options.output, rules_for(options.output, options.force));
   if (is_hdf5_name(to)) {
-    Hdf5Output output(options.output);
+    Hdf5Output output(std::move(to_file));
     output.file().set_attribute("", "program_version", provenance(1).program_version);
     write_hdf5_result(output.file(), result);
     output.finish();
   } else if (auto* field = std::get_if<bellhop::ShadeFile>(&result); field && to == ".shd") {
     field->dialect = dialect(field->dialect);
-    write_shade_file(options.output, *field);
+    write_shade_file(std::move(to_file), *field);
   } else if (auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result);
              arrivals && to == ".arr") {
     arrivals->dialect = dialect(arrivals->dialect);
     arrivals->binary = options.binary.value_or(arrivals->binary);
-    write_arrivals_file(options.output, *arrivals);
+    write_arrivals_file(std::move(to_file), *arrivals);
   } else if (const auto* rays = std::get_if<bellhop::RayFile>(&result); rays && to == ".ray") {
-    write_ray_file(options.output, *rays);
+    write_ray_file(std::move(to_file), *rays);
   } else {
     refuse(options, fmt::format("{} into .h5 or into their own kind of file (.shd, .arr, .ray)",
                                 kind_of(result)));
@@ -89,7 +90,7 @@ std::vector<std::string> convert_result(const Options& options, const std::strin
 
 int convert(const Options& options) {
   const std::string from = extension_of(options.input), to = extension_of(options.output);
-  check_output(options.output, options.input);
+  check_output(options.output, rules_for(options.output, options.force, options.input));
   std::vector<std::string> notes;
   if (from == ".env" && to == ".toml") {
     notes = env_to_toml(options);
@@ -138,6 +139,7 @@ void add_convert_command(Program& program) {
   either(options->binary, "--binary", "arrivals as a binary .arr (run type a)", "--ascii",
          "arrivals as text; by default as the input had them");
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  add_force_option(command, options->force);
   command.footer("Example:  asdic convert munk.env munk.toml");
   command.runs([options] { return convert(*options); });
 }

@@ -14,7 +14,7 @@ namespace {
 
 struct Options {
   std::string file, folder = ".";
-  bool wav = false;
+  bool wav = false, force = false;
   std::optional<int> ping;
 };
 
@@ -44,7 +44,8 @@ int export_wav(const Options& options) {
     }
     const std::filesystem::path path =
         std::filesystem::path(options.folder) / fmt::format("{}_ping{:03}.wav", stem, i + 1);
-    const WavScale scale = write_wav(path, pressure, file.channels(), file.sample_rate());
+    const WavScale scale =
+        write_wav(path, pressure, file.channels(), file.sample_rate(), {.force = options.force});
     print(fmt::format("{}: {}, {} Hz, full scale {:.6g} Pa\n", path.string(),
                       count_of(file.channels(), "channel"), scale.sample_rate,
                       scale.pascal_per_unit));
@@ -70,6 +71,7 @@ void add_export_command(Program& program) {
   command.add_option("--ping", options->ping, "this ping alone; default: all")
       .type_name("N")
       .check(above_zero());
+  add_force_option(command, options->force);
   command.footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
   command.runs([options] { return export_wav(*options); });
 }

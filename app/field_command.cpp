@@ -25,7 +25,7 @@ struct Options {
   ScenarioChoice scenario;
   std::string output;
   std::optional<int> threads;
-  bool like_bellhop = false, json = false, quiet = false;
+  bool like_bellhop = false, json = false, force = false, quiet = false;
 };
 
 bool is_shade_name(const std::filesystem::path& path) { return path.extension() == ".shd"; }
@@ -69,8 +69,8 @@ int field(const Options& options) {
   result.output = options.output.empty()
                       ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                       : options.output;
-  check_output(result.output, options.scenario.path);
   check_kind(result.output, ".shd");
+  OutputFile output(result.output, rules_for(result.output, options.force, options.scenario.path));
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -79,9 +79,9 @@ int field(const Options& options) {
   result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
   result.data = field_data(result.run_case, std::move(found));
   if (is_shade_name(result.output))
-    bellhop::write_shade_file(result.output, to_shade_file(result.data));
+    bellhop::write_shade_file(std::move(output), to_shade_file(result.data));
   else
-    write_field_file(result);
+    write_field_file(std::move(output), result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (options.json)
     print(field_json(result));
@@ -103,6 +103,7 @@ void add_field_command(Program& program) {
                   "scenario's name with .h5, in this folder")
       .type_name("FILE");
   add_threads_option(command, options->threads);
+  add_force_option(command, options->force);
   command.add_flag("--like-bellhop", options->like_bellhop,
                    "as BELLHOP does it, with its steps and beams; for comparison");
   command.add_flag("--json", options->json, "print a summary as JSON (docs/formats/field.md)");

@@ -63,8 +63,8 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .beam_error_bounded = result.beam_error_bounded};
 }
 
-void write_field_file(const FieldResult& result) {
-  Hdf5Output output(result.output);
+void write_field_file(OutputFile&& to, const FieldResult& result) {
+  Hdf5Output output(std::move(to));
   Hdf5File& file = output.file();
   write_root(file, "asdic field", result.origin);
   write_field(file, result.data);

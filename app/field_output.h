@@ -24,8 +24,8 @@ struct FieldResult {
 
 [[nodiscard]] FieldData field_data(const PropagationCase& run_case, PropagationResult&& result);
 
-/// Writes result.output, which gets its name when it is whole. \throws RunError
-void write_field_file(const FieldResult& result);
+/// docs/formats/field.md \throws RunError
+void write_field_file(OutputFile&& to, const FieldResult& result);
 
 /// A few lines for people. \param wall  [s]
 [[nodiscard]] std::string field_text(const FieldResult& result, double wall);

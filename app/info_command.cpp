@@ -9,11 +9,18 @@
 #include "app/result_info.h"
 #include "app/study_info.h"
 #include "core/error.h"
+#include "io/file_check.h"
 #include "io/ping_file.h"
 #include "io/result_file.h"
+#include "study/study_file.h"
 
 namespace asdic::app {
 namespace {
+
+struct Options {
+  std::string path;
+  bool check = false;
+};
 
 /// An attribute as text, "unknown" if it is not there.
 std::string attribute(const PingFile& file, const std::string& object, const std::string& key) {
@@ -98,18 +105,37 @@ int info(const std::string& path) {
   return 0;
 }
 
+/// Whether the data are what was written. \throws InputError where they are not
+int check(const std::string& path) {
+  if (is_study_file(path)) {
+    const study::StudyFile file(path);
+    file.check_parts();
+    file.verify();
+    print(path + ": every dataset matches the manifest\n");
+    return 0;
+  }
+  const FileCheck found = check_file(Hdf5File::open(path));
+  print(fmt::format("{}: {} match their checksums ({} numbers); {} without\n", path,
+                    count_of(found.checked, "dataset"), found.values,
+                    count_of(found.unchecked, "dataset")));
+  return 0;
+}
+
 }  // namespace
 
 void add_info_command(Program& program) {
-  auto path = std::make_shared<std::string>();
+  auto options = std::make_shared<Options>();
   const Command command = program.add_command("info", "Say what a file that asdic wrote holds.");
   command
-      .add_option("FILE", *path,
-                  "HDF5 of asdic ping (NAME.part too), process, study, merge, field, arrivals or "
-                  "rays, or .shd, .arr, .ray, .wav")
+      .add_option("FILE", options->path,
+                  "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, field, arrivals "
+                  "or rays, or .shd, .arr, .ray, .wav")
       .required();
-  command.footer("Example:  asdic info deep_ocean.h5");
-  command.runs([path] { return info(*path); });
+  command.add_flag("--check", options->check,
+                   "read all data and hold them against their checksums; exit status 2 where they "
+                   "differ");
+  command.footer("Example:  asdic info deep_ocean.h5 --check");
+  command.runs([options] { return options->check ? check(options->path) : info(options->path); });
 }
 
 }  // namespace asdic::app

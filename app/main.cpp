@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   add_process_command(program);
   add_study_command(program);
   add_merge_command(program);
+  add_recover_command(program);
   add_serve_command(program);
   return program.parse(argc, argv)();
 }

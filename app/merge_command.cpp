@@ -4,8 +4,8 @@
 
 #include "app/command.h"
 #include "app/console.h"
-#include "app/text_output.h"
 #include "core/error.h"
+#include "io/output/own_files.h"
 #include "io/scenario/embedded.h"
 #include "io/text/csv_table.h"
 #include "study/merge.h"
@@ -18,7 +18,7 @@ struct Options {
   std::vector<std::string> parts;
   std::string output, study;
   study::MergeOptions merge;
-  bool quiet = false;
+  bool force = false, quiet = false;
 };
 
 /// The study file that the parts were made of: the one that is named, or the one that they name,
@@ -79,12 +79,12 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
 int merge(const Options& options) {
   const study::Study study = study_of(options);
   std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
-  for (const auto& part : parts) check_output(options.output, part);
-  check_existing(options.output, study::identity(study));
+  OutputFile output(options.output, {.own = own::hdf5, .force = options.force, .inputs = parts});
+  if (!options.force) check_existing(options.output, study::identity(study));
   study::MergeOptions how = options.merge;
   if (!options.study.empty()) how.text = study.text;
   const study::MergeReport report = study::merge(
-      parts, options.output,
+      parts, output,
       [&](const study::Imprint&, const study::Table& table) {
         return study::summary_of(study, table);
       },
@@ -119,6 +119,7 @@ void add_merge_command(Program& program) {
                   "study file; default: where it was when the parts were made")
       .type_name("STUDY.toml");
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  add_force_option(command, options->force);
   command.footer("Example:  asdic merge part_*.h5 -o study.h5");
   command.runs([options] { return merge(*options); });
 }

@@ -8,6 +8,7 @@
 #include "app/output.h"
 #include "core/error.h"
 #include "io/climatology.h"
+#include "io/output/own_files.h"
 
 namespace asdic::app {
 namespace {
@@ -17,6 +18,7 @@ struct Options {
   std::optional<int> month;
   std::optional<double> bearing, range;  // [°], [m]
   std::string data, output;
+  bool force = false;
 };
 
 int ocean(const Options& options) {
@@ -24,7 +26,9 @@ int ocean(const Options& options) {
     throw InputError({.where = options.bearing ? "--range" : "--bearing",
                       .got = "nothing",
                       .expected = "a value: --bearing and --range go together"});
-  if (!options.output.empty()) check_output(options.output, {});
+  std::optional<OutputFile> output;
+  if (!options.output.empty())
+    output.emplace(options.output, OutputRules{.own = own::scenario, .force = options.force});
   const OceanSources sources =
       options.data.empty() ? default_ocean_sources() : default_ocean_sources(options.data);
   const OceanSample sample =
@@ -34,11 +38,11 @@ int ocean(const Options& options) {
     section = sample_section(sources, options.latitude, options.longitude, *options.bearing,
                              *options.range, options.month);
   const std::string fragment = write_scenario_fragment(sample, section);
-  if (options.output.empty()) {
+  if (!output) {
     print(fragment);
     return 0;
   }
-  write_text_file(options.output, fragment);
+  output->write(fragment);
   print(fmt::format("{}: {} to {:g} m, water {:g} m deep\n", options.output,
                     count_of(sample.depth.size(), "level"), sample.depth.back(),
                     sample.water_depth));
@@ -77,6 +81,7 @@ void add_ocean_command(Program& program) {
       .type_name("DIR");
   command.add_option("-o,--output", options->output, "file to write; default: standard output")
       .type_name("FILE.toml");
+  add_force_option(command, options->force);
   command.footer(
       "A scenario takes it with include = \"FILE.toml\".\n"
       "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");

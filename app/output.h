@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/text_output.h"
 #include "io/hdf5_file.h"
+#include "io/output/output_file.h"
 #include "sonar/scenario.h"
 
 namespace asdic::app {
@@ -12,19 +12,20 @@ namespace asdic::app {
 /// A small HDF5 file that gets its name when it is whole.
 class Hdf5Output {
  public:
-  explicit Hdf5Output(const std::filesystem::path& path);
-  ~Hdf5Output();  ///< without finish(): nothing is left
-  Hdf5Output(const Hdf5Output&) = delete;
-  Hdf5Output& operator=(const Hdf5Output&) = delete;
+  explicit Hdf5Output(OutputFile&& output);
 
   [[nodiscard]] Hdf5File& file() noexcept { return file_; }
   void finish();  ///< \throws RunError
 
  private:
-  std::filesystem::path path_, part_;
+  OutputFile output_;
   Hdf5File file_;
-  bool finished_ = false;
 };
+
+/// What may be written over by a result of this name: files of its kind, which the ending tells.
+/// \param input  of the run, which may not be read yet
+[[nodiscard]] OutputRules rules_for(const std::filesystem::path& path, bool force,
+                                    const std::filesystem::path& input = {});
 
 /// The scenario that results were made of.
 struct ResultOrigin {

@@ -29,7 +29,7 @@ struct Options {
   std::string output;
   std::optional<int> pings, threads;
   std::optional<std::int64_t> seed;
-  bool time_axis = false, quiet = false;
+  bool time_axis = false, force = false, quiet = false;
 };
 
 /// --pings and --seed are overrides like any other: so the file tells of them.
@@ -50,21 +50,35 @@ int interrupted(int done, int count, const std::filesystem::path& output) {
                              done, count_of(std::size_t(count), "ping"), output.string()));
 }
 
+/// What runs that did not end have left of this output.
+void tell_of_parts(const std::filesystem::path& output) {
+  std::error_code gone;
+  for (const std::filesystem::path& part : parts_of(output)) {
+    if (std::filesystem::file_size(part, gone) == 0 || gone) continue;
+    fmt::print(stderr,
+               "asdic: note: {} is of a run that did not end; asdic recover makes a file of its "
+               "pings\n",
+               part.string());
+  }
+}
+
 int ping(const Options& options) {
   const auto begin = std::chrono::steady_clock::now();
   Scenario scenario = read_scenario(options.scenario.path, overrides(options));
-  const std::filesystem::path output =
+  const std::filesystem::path path =
       options.output.empty() ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                              : options.output;
-  check_output(output, options.scenario.path);
+  OutputFile output(path, rules_for(path, options.force, options.scenario.path));
+  if (!options.quiet) tell_of_parts(path);
+  const std::string part = output.part().string();
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   const StopOnInterrupt interrupt(
       fmt::format("asdic: stopping now, the pings in hand are left; Ctrl-C again ends at once, "
-                  "then {}.part holds those before",
-                  output.string()));
+                  "then {} holds those before",
+                  part));
   const auto call_off = [&](const auto& work) {
     try {
       until_stopped(interrupt.token(), work);
@@ -85,7 +99,7 @@ int ping(const Options& options) {
   const PingSimulator& simulator = *made;
   const int count = simulator.pings();
   PingReport report(simulator.scenario());
-  PingFileWriter writer(output, simulator.scenario(), provenance(threads),
+  PingFileWriter writer(std::move(output), simulator.scenario(), provenance(threads),
                         options.time_axis ? SampleTimes::written_out : SampleTimes::start_and_step);
   int done = 0;
   try {
@@ -103,20 +117,20 @@ int ping(const Options& options) {
                 bar.done(++done);
               },
               {.stop = interrupt.token()});
-    writer.finish(done == count);
   } catch (const RunError& error) {
     if (done == 0) throw;
-    throw RunError(fmt::format("{}; {}.part holds the {} before", error.what(), output.string(),
+    throw RunError(fmt::format("{}; {} holds the {} before", error.what(), part,
                                done == 1 ? "ping" : fmt::format("{} pings", done)));
   }
+  writer.finish(done == count);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!options.quiet && done > 0) {
     print(report.text(wall.count()));
-    print(fmt::format("{}: {}\n", output.string(),
-                      byte_count(static_cast<double>(std::filesystem::file_size(output)))));
+    print(fmt::format("{}: {}\n", path.string(),
+                      byte_count(static_cast<double>(std::filesystem::file_size(path)))));
     flush_output();
   }
-  return done == count ? 0 : interrupted(done, count, output);
+  return done == count ? 0 : interrupted(done, count, path);
 }
 
 }  // namespace
@@ -141,6 +155,7 @@ void add_ping_command(Program& program) {
   add_threads_option(command, options->threads);
   command.add_flag("--time-axis", options->time_axis,
                    "write the time of every sample out as well, not start and step alone");
+  add_force_option(command, options->force);
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command.footer(
       "Ctrl-C leaves the pings in hand and closes the file; a second one ends at once.\n"

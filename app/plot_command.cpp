@@ -99,7 +99,7 @@ void add_plot_command(Program& program) {
                   "array of a ping file to draw; default: the first (range over bearing: the first "
                   "that tells bearings)")
       .type_name("NAME");
-  command.add_flag("--force", options->force, "write over files even if asdic did not write them");
+  add_force_option(command, options->force);
   command.footer(
       "Needs Debian's python3-h5py and python3-matplotlib.\n"
       "Example:  asdic plot deep_ocean.h5 -o pictures");

@@ -16,6 +16,7 @@
 #include "app/progress_bar.h"
 #include "app/provenance.h"
 #include "core/error.h"
+#include "io/output/own_files.h"
 #include "raytrace/propagation.h"
 
 namespace asdic::app {
@@ -29,7 +30,7 @@ struct Options {
   double mvdr_loading_db = -10.0;
   std::optional<double> from, until;
   ProcessingSettings settings;
-  bool json = false, quiet = false, no_maps = false, no_file = false;
+  bool json = false, quiet = false, no_maps = false, no_file = false, force = false;
 };
 
 /// Two numbers with a sign between: "3/4", "-20:20".
@@ -109,13 +110,23 @@ std::vector<std::string> told(const Options& o, const ProcessingSettings& s) {
   return list;
 }
 
-void write_tables(const std::string& folder, const std::string& file, const ProcessedRun& run) {
+/// A file of the folder of tables, which is made if need be.
+OutputFile table_output(const Options& options, const std::string& kind) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw RunError(folder + ": " + error.message());
-  const std::string stem = std::filesystem::path(file).stem().string();
-  write_text_file(std::filesystem::path(folder) / (stem + "_detections.csv"), detections_csv(run));
-  write_text_file(std::filesystem::path(folder) / (stem + "_tracks.csv"), tracks_csv(run));
+  std::filesystem::create_directories(options.csv, error);
+  if (error) throw RunError(options.csv + ": " + error.message());
+  const std::string stem = std::filesystem::path(options.file).stem().string();
+  return OutputFile(std::filesystem::path(options.csv) / (stem + kind),
+                    {.own = own::table, .force = options.force, .option = "--csv"});
+}
+
+/// The file to write: by default the one that is read, or what a link of that name leads to.
+OutputFile file_output(const Options& options) {
+  if (!options.output.empty() && options.output != options.file)
+    return OutputFile(options.output, rules_for(options.output, options.force, options.file));
+  static_cast<void>(Hdf5File::peek(options.file));  // says what is wrong with it, if anything
+  const auto read_next = [](const std::filesystem::path&) { return true; };
+  return OutputFile(std::filesystem::canonical(options.file), {.own = read_next});
 }
 
 int process(const Options& options) {
@@ -124,7 +135,12 @@ int process(const Options& options) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   const std::string output = options.output.empty() ? options.file : options.output;
-  if (output != options.file) check_output(output, options.file);
+  std::optional<OutputFile> file, detections, tracks;
+  if (!options.no_file) file.emplace(file_output(options));
+  if (!options.csv.empty()) {
+    detections.emplace(table_output(options, "_detections.csv"));
+    tracks.emplace(table_output(options, "_tracks.csv"));
+  }
   std::optional<std::filesystem::path> scenario;
   if (!options.scenario.empty()) scenario = options.scenario;
   ProcessedRun run;
@@ -156,8 +172,9 @@ int process(const Options& options) {
     else if (!options.quiet)
       print(process_report(run, recordings.scenario(), wall.count()));
   }  // the file is closed before it is written
-  if (!options.csv.empty()) write_tables(options.csv, options.file, run);
-  if (!options.no_file) write_processed(options.file, output, run, *first);
+  if (detections) detections->write(detections_csv(run));
+  if (tracks) tracks->write(tracks_csv(run));
+  if (file) write_processed(options.file, std::move(*file), run, *first);
   return 0;
 }
 
@@ -275,6 +292,7 @@ void add_process_command(Program& program) {
   add_detection_options(command, *options);
   add_place_options(command, *options);
   add_threads_option(command, options->threads);
+  add_force_option(command, options->force);
   command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
   command.footer(
       "The file is copied, changed and renamed: a stop at any moment leaves it whole.\n"

@@ -1,8 +1,12 @@
 #include "app/program.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -11,8 +15,15 @@
 #include "core/error.h"
 #include "core/instruction_level.h"
 #include "core/printable.h"
+#include "io/output/files_read.h"
 
 namespace asdic::app {
+
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDWR) != stream)
+      std::_Exit(failure);  // without /dev/null nothing is safe to open
+}
 
 void complain(const std::string& program, const std::string& message) {
   std::fflush(stdout);
@@ -39,12 +50,14 @@ int guarded(const std::function<void()>& act, std::string& said) {
 }
 
 int run_program(const std::string& program, const std::function<int()>& act) {
+  open_standard_streams();
   signal(SIGXFSZ, SIG_IGN);  // a file over its limit is a failed write, told as any other
   std::string said;
   int status = success;
   const int fault = guarded(
       [&] {
         check_instruction_level();
+        const FilesRead files;
         status = act();
         flush_output();
       },

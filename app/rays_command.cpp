@@ -29,6 +29,7 @@ struct Options {
   std::optional<int> bounces;
   bool json = false;
   std::string output;
+  bool force = false;
 
   [[nodiscard]] bool has_fan() const { return from || to || count || !elevations.empty(); }
 };
@@ -163,12 +164,13 @@ RaysResult trace(const Options& options) {
 
 int rays(const Options& options) {
   check(options);
+  const OutputRules rules = rules_for(options.output, options.force, options.scenario.path);
   if (!options.output.empty()) {
-    check_output(options.output, options.scenario.path);
+    check_output(options.output, rules);
     check_kind(options.output, ".ray");
   }
   const RaysResult result = trace(options);
-  if (!options.output.empty()) write_rays_file(options.output, result);
+  if (!options.output.empty()) write_rays_file(OutputFile(options.output, rules), result);
   if (options.json)
     print(rays_json(result));
   else if (options.output.empty())
@@ -220,6 +222,7 @@ void add_rays_command(Program& program) {
       .add_option("-o,--output", options->output,
                   "write HDF5 (docs/formats/rays.md), or by its ending .ray, instead of the table")
       .type_name("FILE");
+  add_force_option(command, options->force);
   command.footer(
       "Example:  asdic rays scenarios/deep_ocean.toml --from 0 --to 10 --count 11 --range 60km");
   command.runs([options] { return rays(*options); });

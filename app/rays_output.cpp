@@ -129,11 +129,11 @@ std::string rays_json(const RaysResult& result) {
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-void write_rays_file(const std::filesystem::path& path, const RaysResult& result) {
-  if (path.extension() == ".ray") {
-    bellhop::write_ray_file(
-        path, bellhop::ray_file(result.run_case,
-                                {.rays = result.rays_of_source, .beams = result.rays().size()}));
+void write_rays_file(OutputFile&& to, const RaysResult& result) {
+  if (to.target().extension() == ".ray") {
+    bellhop::write_ray_file(std::move(to),
+                            bellhop::ray_file(result.run_case, {.rays = result.rays_of_source,
+                                                                .beams = result.rays().size()}));
     return;
   }
   double least_range = 0.0, greatest_range = 0.0;
@@ -142,7 +142,7 @@ void write_rays_file(const std::filesystem::path& path, const RaysResult& result
       least_range = std::min(least_range, point.range);
       greatest_range = std::max(greatest_range, point.range);
     }
-  Hdf5Output output(path);
+  Hdf5Output output(std::move(to));
   Hdf5File& file = output.file();
   write_root(file, "asdic rays", result.origin);
   file.set_attribute("", "source_depth_m", result.source_depth());

@@ -24,6 +24,6 @@ struct RaysResult {
 /// docs/formats/rays.md
 [[nodiscard]] std::string rays_json(const RaysResult& result);
 /// docs/formats/rays.md, or a .ray file, by the name's ending \throws RunError
-void write_rays_file(const std::filesystem::path& path, const RaysResult& result);
+void write_rays_file(OutputFile&& to, const RaysResult& result);
 
 }  // namespace asdic::app

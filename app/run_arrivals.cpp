@@ -95,13 +95,13 @@ std::string run_arrivals_json(const RunArrivals& all) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-void write_run_arrivals(const std::filesystem::path& path, const RunArrivals& all) {
+void write_run_arrivals(OutputFile&& to, const RunArrivals& all) {
   const bellhop::ArrivalsFile arrivals = bellhop::arrivals_file(all.run_case, all.result, false);
-  if (path.extension() == ".arr") {
-    bellhop::write_arrivals_file(path, arrivals);
+  if (to.target().extension() == ".arr") {
+    bellhop::write_arrivals_file(std::move(to), arrivals);
     return;
   }
-  Hdf5Output output(path);
+  Hdf5Output output(std::move(to));
   write_hdf5_result(output.file(), arrivals);
   write_root(output.file(), "asdic arrivals", all.origin);
   if (!all.notes.empty()) output.file().set_attribute("", "notes", all.notes);

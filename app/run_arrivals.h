@@ -24,6 +24,6 @@ struct RunArrivals {
 /// docs/formats/arrivals.md
 [[nodiscard]] std::string run_arrivals_json(const RunArrivals& arrivals);
 /// HDF5 (docs/formats/arrivals.md) or, by the name's ending, .arr. \throws RunError
-void write_run_arrivals(const std::filesystem::path& path, const RunArrivals& arrivals);
+void write_run_arrivals(OutputFile&& to, const RunArrivals& arrivals);
 
 }  // namespace asdic::app

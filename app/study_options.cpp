@@ -8,9 +8,9 @@
 #include <cstdlib>
 
 #include "app/console.h"
+#include "app/output.h"
 #include "app/provenance.h"
 #include "app/study_progress.h"
-#include "app/text_output.h"
 #include "core/error.h"
 #include "study/shard.h"
 
@@ -69,6 +69,7 @@ void add_study_options(const Command& command, StudyOptions& options) {
                    "make rows again that were skipped, or passed over because processes died with "
                    "them");
   add_threads_option(command, options.threads);
+  add_force_option(command, options.force);
   command.add_flag("-q,--quiet", options.quiet, "print nothing unless something is wrong");
 }
 
@@ -79,10 +80,11 @@ StudyOrder order_of(const StudyOptions& options) {
   order.run.range = range_of(options, count);
   order.run.output = options.output.empty() ? default_output(options.path, order.run.range, count)
                                             : std::filesystem::path(options.output);
-  check_output(order.run.output, options.path);
+  check_output(order.run.output, rules_for(order.run.output, options.force, options.path));
   check_until(options, order);
   order.run.until = options.until;
   order.run.fresh = options.fresh;
+  order.run.force = options.force;
   order.run.retry = options.retry;
   order.run.note = [](const std::string& text) {
     std::fputs(("asdic: note: " + text + '\n').c_str(), stderr);

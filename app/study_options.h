@@ -16,10 +16,10 @@ struct StudyOptions {
   std::vector<std::string> overrides;
   std::optional<int> threads;
   std::optional<double> until;
-  bool fresh = false, assemble = false, retry = false, quiet = false;
+  bool fresh = false, force = false, assemble = false, retry = false, quiet = false;
 };
 
-/// STUDY, -o, --set, --until, --fresh, --threads, --quiet.
+/// STUDY, -o, --set, --until, --fresh, --force, --threads, --quiet.
 void add_study_options(const Command& command, StudyOptions& options);
 
 /// What is to be done: the study, and the run that the options describe, but for its stop token and

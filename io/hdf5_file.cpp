@@ -11,6 +11,7 @@
 #include "io/hdf5/gate.h"
 #include "io/hdf5/remote.h"
 #include "io/input_file.h"
+#include "io/output/files_read.h"
 
 namespace asdic {
 
@@ -36,9 +37,6 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   hdf5::prepare();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
-  // A link of that name is replaced, not followed: what it points to is somebody else's.
-  std::error_code ignored;
-  if (std::filesystem::is_symlink(path, ignored)) std::filesystem::remove(path, ignored);
   impl->file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   impl->check(impl->file, "", "creating the file");
   return Hdf5File(std::move(impl));
@@ -63,6 +61,11 @@ std::unique_ptr<Hdf5File::Impl> Hdf5File::open_existing(const std::filesystem::p
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  note_read(path);
+  return peek(path);
+}
+
+Hdf5File Hdf5File::peek(const std::filesystem::path& path) {
   hdf5::prepare();  // once here, so that children need not
   auto impl = std::make_unique<Impl>();
   impl->path = path;

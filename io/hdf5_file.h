@@ -44,6 +44,8 @@ class Hdf5File {
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& path);
   /// For reading.
   [[nodiscard]] static Hdf5File open(const std::filesystem::path& path);
+  /// The same for a look that does not make the file an input of the run (FilesRead).
+  [[nodiscard]] static Hdf5File peek(const std::filesystem::path& path);
   /// For reading and changing what is there.
   [[nodiscard]] static Hdf5File edit(const std::filesystem::path& path);
   Hdf5File(Hdf5File&&) noexcept;
@@ -65,7 +67,8 @@ class Hdf5File {
   /// A scalar string, of any length (UTF-8).
   void write_text(const std::string& dataset, std::string_view text);
 
-  /// A dataset whose first dimension grows by append().
+  /// A dataset whose first dimension grows by append(). Its chunks carry checksums (Fletcher-32):
+  /// no reader takes damaged ones for data.
   /// \param row    shape of one row, {} for a column   \param chunk_rows  rows stored together
   /// \param deflate  compression level 1..9, 0: none (faster)
   template <class T>
@@ -86,6 +89,12 @@ class Hdf5File {
   /// A dimension that has a length but no values, as netCDF keeps its dimensions without a
   /// variable: a scale that takes no room in the file, and reads as zeros.
   void make_dimension(const std::string& dataset, std::size_t size);
+  /// Whether a dataset's first dimension grows, and takes rows off its end.
+  [[nodiscard]] bool grows(const std::string& dataset) const;
+  void shrink(const std::string& dataset, std::size_t rows);
+  /// Whether its chunks carry checksums.
+  [[nodiscard]] bool has_checksums(const std::string& dataset) const;
+
   /// Makes a dataset the scale of a dimension, and hangs scales on the axes of another.
   void make_scale(const std::string& dataset, const std::string& dimension);
   void attach_scales(const std::string& dataset, const std::vector<std::string>& scales);

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "io/output/files_read.h"
 
 namespace asdic {
 namespace {
@@ -54,6 +55,7 @@ void require_file(const std::filesystem::path& path, const std::string& expected
 
 InputFile::InputFile(const std::filesystem::path& path, const std::string& expected)
     : path_(path), expected_(expected) {
+  note_read(path);
   require_file(path, expected);  // opening a device may already do something
   descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
   if (descriptor_ < 0) throw fault(path, reason(errno), expected);

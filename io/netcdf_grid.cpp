@@ -13,6 +13,7 @@
 #include "io/input_file.h"
 #include "io/isolated/child.h"
 #include "io/isolated/pack.h"
+#include "io/output/files_read.h"
 #include "io/text/quote.h"
 
 namespace asdic {
@@ -34,6 +35,7 @@ struct File {
 
   explicit File(const std::filesystem::path& where) : path(where) {
     hdf5::check_contents(path);  // of netCDF-4
+    note_read(path);
     if (const int status = nc_open(path.c_str(), NC_NOWRITE, &id); status != NC_NOERR) {
       id = -1;
       throw InputError(

@@ -5,37 +5,30 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "io/output/own_files.h"
 #include "io/ping/writer.h"
 
 namespace asdic {
 
 PingFileWriter::PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
                                const Provenance& provenance, SampleTimes times)
-    : impl_(std::make_unique<Impl>(path, scenario, times)) {
-  try {
-    ping_file::write_root(impl_->file, scenario, provenance);
-    ping_file::write_replicas(impl_->file, scenario, times);
-    ping_file::write_environment(impl_->file, scenario);
-    impl_->create_ping_datasets();
-    impl_->file.flush();  // readable from now on, whatever happens
-  } catch (...) {
-    remove_part();
-    throw;
-  }
+    : PingFileWriter(OutputFile(path, {.own = own::hdf5}), scenario, provenance, times) {}
+
+PingFileWriter::PingFileWriter(OutputFile output, const Scenario& scenario,
+                               const Provenance& provenance, SampleTimes times)
+    : impl_(std::make_unique<Impl>(std::move(output), scenario, times)) {
+  ping_file::write_root(impl_->file, scenario, provenance);
+  ping_file::write_replicas(impl_->file, scenario, times);
+  ping_file::write_environment(impl_->file, scenario);
+  impl_->create_ping_datasets();
+  impl_->file.flush();  // readable from now on, whatever happens
 }
 
 PingFileWriter::PingFileWriter(PingFileWriter&&) noexcept = default;
 
-PingFileWriter::~PingFileWriter() {
-  if (impl_ != nullptr && !impl_->finished && impl_->pings == 0) remove_part();
-}
+PingFileWriter::~PingFileWriter() = default;
 
-void PingFileWriter::remove_part() noexcept {
-  const std::filesystem::path part = impl_->part;
-  impl_.reset();  // closes
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-}
+const std::filesystem::path& PingFileWriter::part() { return impl_->output.part(); }
 
 void PingFileWriter::write_rays(const RayPaths& rays) {
   ping_file::write_rays(impl_->file, rays);
@@ -87,6 +80,7 @@ void PingFileWriter::append(const PingRecord& record) {
   to.file.append<std::int32_t>("ping", std::array{std::int32_t{record.ping}});
   to.file.flush();
   ++to.pings;
+  to.output.keep();  // hours of work are not thrown away by an exception
 }
 
 void PingFileWriter::finish(bool complete) {
@@ -95,15 +89,7 @@ void PingFileWriter::finish(bool complete) {
   if (complete) to.file.set_attribute("", "complete", std::int64_t{1});
   to.file.close();
   to.finished = true;
-  std::error_code error;
-  if (!complete && to.pings == 0) {
-    std::filesystem::remove(to.part, error);
-    return;
-  }
-  std::filesystem::rename(to.part, to.path, error);
-  if (error)
-    throw RunError(to.path.string() + ": cannot get its name from " + to.part.string() + ": " +
-                   error.message());
+  if (complete || to.pings > 0) to.output.finish();
 }
 
 }  // namespace asdic

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/hdf5_file.h"
+#include "io/output/output_file.h"
 #include "sonar/ping_record.h"
 #include "sonar/scenario.h"
 
@@ -41,17 +42,21 @@ struct RayPaths {
 /// well, for readers that want an axis (as large as half a phone's pressure).
 enum class SampleTimes { start_and_step, written_out };
 
-/// Writes docs/formats/ping.md while a run goes on: NAME.part, readable after every append() even
-/// if the program dies, renamed to NAME by finish(). All methods throw RunError when the world says
-/// no. One thread at a time (HDF5).
+/// Writes docs/formats/ping.md while a run goes on: a part of the output, readable after every
+/// append() even if the program dies, that gets its name by finish(). All methods throw RunError
+/// when the world says no. One thread at a time (HDF5).
 class PingFileWriter {
  public:
   PingFileWriter(const std::filesystem::path& path, const Scenario& scenario,
                  const Provenance& provenance, SampleTimes times = SampleTimes::start_and_step);
+  PingFileWriter(OutputFile output, const Scenario& scenario, const Provenance& provenance,
+                 SampleTimes times = SampleTimes::start_and_step);
   PingFileWriter(PingFileWriter&&) noexcept;
-  /// Without finish(): NAME.part stays if it holds a ping (hours of work are not thrown away by an
-  /// exception), else it goes.
+  /// Without finish(): the part stays if it holds a ping, else it goes.
   ~PingFileWriter();
+
+  /// Where it writes until it is finished.
+  [[nodiscard]] const std::filesystem::path& part();
 
   void write_rays(const RayPaths& rays);  ///< at most once
   /// \param record  as many phones as the scenario; no longer than the first record
@@ -60,8 +65,6 @@ class PingFileWriter {
   void finish(bool complete);
 
  private:
-  void remove_part() noexcept;
-
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "io/input_file.h"
+#include "io/output/own_files.h"
 #include "io/text/csv_table.h"
 
 namespace asdic {
@@ -36,6 +37,8 @@ void check_length(const std::filesystem::path& path, std::size_t samples) {
                .bytes = bytes_each * static_cast<double>(samples),
                .remedy = "a shorter pulse or a lower sample rate"});
 }
+
+constexpr const char* software = "asdic";
 
 SampledPulse read_csv_pulse(const std::filesystem::path& path) {
   const CsvTable csv = read_csv(path);
@@ -117,6 +120,17 @@ WavContent read_wav_content(const std::filesystem::path& path) {
   return content;
 }
 
+bool own::sound(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  SF_INFO info{};
+  const SoundFile file(sf_open(path.c_str(), SFM_READ, &info));
+  if (file == nullptr) return false;
+  const char* const said = sf_get_string(file.get(), SF_STR_SOFTWARE);
+  return (said != nullptr && std::string(said).starts_with(software)) ||
+         own::sound_scale(path.string() + ".json");
+}
+
 SampledPulse read_pulse_file(const std::filesystem::path& path) {
   SampledPulse pulse = path.extension() == ".csv" ? read_csv_pulse(path) : read_sound_pulse(path);
   double peak = 0.0;
@@ -134,7 +148,7 @@ SampledPulse read_pulse_file(const std::filesystem::path& path) {
 }
 
 WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
-                   std::size_t channels, double sample_rate) {
+                   std::size_t channels, double sample_rate, const OutputRules& rules) {
   if (channels == 0 || channels > 1024 || pressure.size() % channels != 0)
     throw InputError({.where = path.string(),
                       .got = std::to_string(pressure.size()) + " samples on " +
@@ -149,13 +163,18 @@ WavScale write_wav(const std::filesystem::path& path, std::span<const float> pre
   for (const float p : pressure) peak = std::max(peak, std::abs(p));
   const double scale = peak > 0.0F ? static_cast<double>(peak) : 1.0;
 
+  OutputRules of_sound = rules, of_scale = rules;
+  of_sound.own = own::sound;
+  of_scale.own = own::sound_scale;
+  OutputFile sound(path, of_sound), json(path.string() + ".json", of_scale);
   SF_INFO info{};
   info.samplerate = static_cast<int>(std::lround(sample_rate));
   info.channels = static_cast<int>(channels);
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
-  const SoundFile file(sf_open(path.c_str(), SFM_WRITE, &info));
+  SoundFile file(sf_open(sound.part().c_str(), SFM_WRITE, &info));
   if (file == nullptr)
     throw RunError(path.string() + ": cannot be written: " + sf_strerror(nullptr));
+  sf_set_string(file.get(), SF_STR_SOFTWARE, software);
   constexpr std::size_t block = 65536;  // frames at a time: phones are interleaved here
   std::vector<float> frames;
   for (std::size_t start = 0; start < samples; start += block) {
@@ -170,15 +189,15 @@ WavScale write_wav(const std::filesystem::path& path, std::span<const float> pre
       throw RunError(path.string() + ": cannot be written: " + sf_strerror(file.get()));
   }
 
-  const std::string json_path = json_beside(path);
-  std::ofstream json(json_path);
-  json << nlohmann::json{{"pascal_per_unit", scale},
-                         {"sample_rate_hz", sample_rate},
-                         {"channels", channels},
-                         {"samples", samples}}
-              .dump(2)
-       << '\n';
-  if (!json.flush()) throw RunError(json_path + ": cannot be written");
+  if (sf_close(file.release()) != 0) throw RunError(path.string() + ": cannot be written");
+
+  json.write(nlohmann::json{{"pascal_per_unit", scale},
+                            {"sample_rate_hz", sample_rate},
+                            {"channels", channels},
+                            {"samples", samples}}
+                 .dump(2) +
+             '\n');
+  sound.finish();
   return {.pascal_per_unit = scale, .sample_rate = sample_rate};
 }
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "io/output/output_file.h"
+
 namespace asdic {
 
 /// A pulse as sampled in a file.
@@ -37,8 +39,9 @@ struct WavContent {
 /// pascal_per_unit, sample_rate_hz, channels and samples.
 /// \param pressure  [channels × samples] row per phone [Pa]
 /// \return the scale that was used
-/// \throws RunError if the file cannot be written; InputError for a shape that does not fit
+/// \throws RunError if the file cannot be written; InputError for a shape that does not fit, or for
+/// files that are there and not ours (`rules` may force it)
 WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
-                   std::size_t channels, double sample_rate);
+                   std::size_t channels, double sample_rate, const OutputRules& rules = {});
 
 }  // namespace asdic

@@ -66,20 +66,21 @@ cd "$folder"
 interrupt_scenario kill.toml
 kills=20 bad=0 pings=0
 for ((i = 0; i < kills; ++i)); do
-  rm -f kill.h5 kill.h5.part
+  rm -f kill.h5 kill.h5.????.part
   "$ASDIC" ping kill.toml -q --set pings.recording_duration=15 --set target.0.position=[9000.0,0.0,200.0] -o kill.h5 &
   run=$!
-  wait_for_ping kill.h5.part
+  wait_for_ping kill.h5
   sleep "0.$(printf '%03d' $((RANDOM % 1000)))"
   kill -KILL "$run"
   wait "$run" 2>/dev/null || true
-  if [ -e kill.h5 ] || ! n=$(h5py_reads kill.h5.part 2>/dev/null) || ! "$ASDIC" info kill.h5.part >/dev/null 2>&1; then
+  part=$(part_of kill.h5)
+  if [ -e kill.h5 ] || ! n=$(h5py_reads "$part" 2>/dev/null) || ! "$ASDIC" info "$part" >/dev/null 2>&1; then
     bad=$((bad + 1))
   else
     pings=$((pings + n))
   fi
 done
-rm -f kill.h5 kill.h5.part
+rm -f kill.h5 kill.h5.????.part
 if [ "$bad" = 0 ]; then verdict kills good "$kills kills, $pings pings, all readable"; else verdict kills FAILED "$bad of $kills left a file that is not as it should be"; fi
 
 # Soak: the most memory ever used (VmHWM) after many small pings is that after some, within a tenth and 10 MB. What a ping of a

@@ -39,7 +39,7 @@ std::vector<Stretch> stretches(const std::vector<const Journal*>& journals, Inde
   return all;
 }
 
-bool assemble(const std::filesystem::path& output, const Imprint& imprint, IndexRange range,
+bool assemble(OutputFile& output, const Imprint& imprint, IndexRange range,
               const std::vector<const Journal*>& journals, const Summarise& summarise,
               const std::string& stopped_by) {
   StudyResults results{.imprint = imprint, .range = range, .stopped_by = stopped_by};

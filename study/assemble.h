@@ -16,7 +16,7 @@ using Summarise = std::function<Summary(const Table& table)>;
 /// \param range      that the file is to hold; rows outside of it are left out
 /// \return whether every index of the range is there
 /// \throws RunError
-bool assemble(const std::filesystem::path& output, const Imprint& imprint, IndexRange range,
+bool assemble(OutputFile& output, const Imprint& imprint, IndexRange range,
               const std::vector<const Journal*>& journals, const Summarise& summarise,
               const std::string& stopped_by = "");
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "io/output/own_files.h"
 
 namespace asdic::study {
 namespace {
@@ -200,7 +201,7 @@ void Collector::add(const Piece& piece) {
 
 }  // namespace
 
-MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
+MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
                   const SummariseImprint& summarise, const MergeOptions& options) {
   Parts parts(paths);
   Gathered all = gather(parts);
@@ -217,7 +218,7 @@ MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
   results.table.values.resize(all.imprint.columns.size());
   SeriesSource series;
   Collector collector(parts, results, series,
-                      output.has_parent_path() ? output.parent_path() : fs::path("."));
+                      output.target().has_parent_path() ? output.target().parent_path() : ".");
   for (const Piece& piece : all.pieces) collector.add(piece);
   std::vector<CataloguePart> catalogue = std::move(collector).catalogue();
   const std::vector<Kept> kept = std::move(collector).kept();
@@ -235,6 +236,12 @@ MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
   if (std::string mixed = mixed_builds(all.sessions); !mixed.empty())
     report.warnings.push_back(std::move(mixed));
   return report;
+}
+
+MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
+                  const SummariseImprint& summarise, const MergeOptions& options) {
+  OutputFile file(output, {.own = own::hdf5, .inputs = paths});
+  return merge(paths, file, summarise, options);
 }
 
 }  // namespace asdic::study

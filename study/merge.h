@@ -26,6 +26,10 @@ using SummariseImprint = std::function<Summary(const Imprint& imprint, const Tab
 /// Puts parts of a study together, in the order of their indices whatever order they are given in.
 /// \throws InputError for a part of another study, a part that is not what its manifest says, an
 /// index in two parts, or one in none
+MergeReport merge(const std::vector<std::filesystem::path>& parts, OutputFile& output,
+                  const SummariseImprint& summarise, const MergeOptions& options = {});
+
+/// The same into a file of this name, which may hold a result of asdic's.
 MergeReport merge(const std::vector<std::filesystem::path>& parts,
                   const std::filesystem::path& output, const SummariseImprint& summarise,
                   const MergeOptions& options = {});

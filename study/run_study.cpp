@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "io/output/own_files.h"
 
 namespace asdic::study {
 
@@ -112,6 +113,11 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
     if (fault.fault().expected.ends_with("--fresh to write over it")) throw;
     throw refuse(fault.fault().got);
   }
+}
+
+Existing look_at(const Work& work, const StudyRun& run) {
+  if (run.fresh || (run.force && !own::hdf5(run.output))) return Existing::none;
+  return look_at(run.output, work, run.range, run.until.has_value());
 }
 
 void import_rows(const std::filesystem::path& path, IndexRange range, bool skipped,
@@ -274,7 +280,7 @@ std::string until_text(double half_width) {
 }  // namespace
 
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
-                  Journals& journals, StudyOutcome& outcome) {
+                  Journals& journals, OutputFile& output, StudyOutcome& outcome) {
   Imprint imprint = work.imprint;
   std::string stopped_by;
   if (run.until && estimate.enough() && *estimate.enough() < run.range.size()) {
@@ -287,7 +293,7 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   outcome.left_out = estimate.left_out();
   outcome.question = estimate.name();
   outcome.complete =
-      assemble(run.output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
+      assemble(output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;
   std::vector<Session> sessions;
   for (const Journal* journal : journals.all())
@@ -299,12 +305,16 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
     journals.close();
 }
 
+OutputFile output_of(const StudyRun& run) {
+  return OutputFile(run.output, {.own = own::hdf5, .force = run.force});
+}
+
 StudyOutcome run_study(const Work& work, const StudyRun& run) {
   StudyOutcome outcome{.total = run.range.size(), .range = run.range};
+  OutputFile output = output_of(run);
   if (run.fresh)
     for (const auto& path : journals_of(run.output)) remove_journal(path);
-  const Existing existing =
-      run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
+  const Existing existing = look_at(work, run);
   const bool no_journals = journals_of(run.output).empty();
   if (existing == Existing::complete && no_journals && !run.retry) {
     outcome.was_complete = outcome.written = outcome.complete = true;
@@ -351,7 +361,7 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
   outcome.estimate = estimate.estimate();
   const bool all = outcome.before + outcome.made == outcome.total || estimate.enough();
   if (all || run.assemble_only)
-    write_output(work, run, estimate, journals, outcome);
+    write_output(work, run, estimate, journals, output, outcome);
   else
     journals.close();
   return outcome;

@@ -42,7 +42,8 @@ struct StudyRun {
   std::filesystem::path output{};
   IndexRange range{};
   std::optional<double> until{};  ///< half-width of the confidence interval to stop at
-  bool fresh = false;             ///< begins anew, whatever is there
+  bool fresh = false;             ///< begins anew, whatever results are there
+  bool force = false;             ///< even over a file that asdic did not write
   bool assemble_only = false;     ///< makes no rows: a file of those that are there
   bool retry = false;             ///< makes rows again that were skipped, or given up
   std::chrono::duration<double> silence{120.0};  ///< of a rank of MPI that is then taken for dead
@@ -66,6 +67,10 @@ struct StudyOutcome {
   std::optional<Estimate> estimate{};
   std::string warning{};  ///< mixed builds
 };
+
+/// The output of a run: while it lives, nobody else makes this file or its journals.
+/// \throws InputError, RunError as OutputFile
+[[nodiscard]] OutputFile output_of(const StudyRun& run);
 
 /// Makes the rows of a range that are not in the output's journals yet, and the file of them.
 /// Interrupted, it leaves the journal; the same call continues.
@@ -121,9 +126,11 @@ enum class Existing {
 /// \throws InputError if it is not this study's, so that nobody's results are written over
 [[nodiscard]] Existing look_at(const std::filesystem::path& output, const Work& work,
                                IndexRange range, bool until);
+/// The same before a run, which --fresh and --force let pass by what is there.
+[[nodiscard]] Existing look_at(const Work& work, const StudyRun& run);
 /// Makes the file of what the journals hold, and takes them away once it is complete.
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
-                  Journals& journals, StudyOutcome& outcome);
+                  Journals& journals, OutputFile& output, StudyOutcome& outcome);
 /// Puts the rows of a file into a journal, as if they had just been made.
 /// \param skipped  those that were skipped, too
 void import_rows(const std::filesystem::path& file, IndexRange range, bool skipped,

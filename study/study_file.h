@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/hdf5_file.h"
+#include "io/output/output_file.h"
 #include "study/imprint.h"
 #include "study/index_set.h"
 #include "study/summary.h"
@@ -49,12 +50,12 @@ struct CataloguePart {
   Shape series_shape{};                           ///< of the part's /time_series/pressure
 };
 
-/// Writes PATH.part and gives it its name when it is whole.
+/// Writes a part and gives it its name when it is whole.
 /// \param catalogue  empty: all data are in the file; else its table and time series show those
 /// of the parts
 /// \throws RunError
-void write_study_file(const std::filesystem::path& path, const StudyResults& results,
-                      const SeriesSource& series, const std::vector<CataloguePart>& catalogue = {});
+void write_study_file(OutputFile& output, const StudyResults& results, const SeriesSource& series,
+                      const std::vector<CataloguePart>& catalogue = {});
 
 /// A file of a study, opened.
 class StudyFile {

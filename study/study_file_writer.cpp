@@ -1,12 +1,7 @@
 // The rows of a study's file, and the file as a whole.
 #include "study/study_file_writer.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <functional>
 #include <numeric>
 
@@ -131,36 +126,10 @@ void StudyFileWriter::write_pressure(const SeriesSource& series, const Shape& ro
   note(path, all, digest.text());
 }
 
-namespace {
-
-/// What was written is on the disk, not on its way there: the journal goes once the file is there.
-void synchronise(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw RunError(path.string() + ": " + std::strerror(errno));
-  const bool done = fsync(file) == 0;
-  const int error = errno;
-  close(file);
-  if (!done && error != EINVAL && error != EROFS)
-    throw RunError(path.string() + ": " + std::strerror(error));
-}
-
-}  // namespace
-
-void write_study_file(const std::filesystem::path& path, const StudyResults& results,
-                      const SeriesSource& series, const std::vector<CataloguePart>& catalogue) {
-  const std::filesystem::path part = path.string() + ".part";
-  try {
-    StudyFileWriter(part, results, catalogue).write(series);
-    synchronise(part);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw;
-  }
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw RunError(path.string() + ": renaming " + part.string() + ": " + error.message());
-  synchronise(path.has_parent_path() ? path.parent_path() : ".");
+void write_study_file(OutputFile& output, const StudyResults& results, const SeriesSource& series,
+                      const std::vector<CataloguePart>& catalogue) {
+  StudyFileWriter(output.part(), results, catalogue).write(series);
+  output.finish();
 }
 
 }  // namespace asdic::study

@@ -2,8 +2,8 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
-#include "io/bellhop/file_bytes.h"
 #include "io/bellhop/fortran_format.h"
+#include "io/output/own_files.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -105,7 +105,11 @@ std::string arrivals_file_bytes(const ArrivalsFile& file) {
 }
 
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsFile& file) {
-  write_bytes(path, arrivals_file_bytes(file));
+  write_arrivals_file(OutputFile(path, {.own = own::arrivals_file}), file);
+}
+
+void write_arrivals_file(OutputFile&& output, const ArrivalsFile& file) {
+  output.write(arrivals_file_bytes(file));
 }
 
 }  // namespace asdic::bellhop

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/output/output_file.h"
+
 /// The files that BELLHOP writes, as plain data. Layouts: docs/formats/bellhop.md. In these structs
 /// as in the files: metres, seconds, Hz, degrees, angles positive down (declination).
 namespace asdic::bellhop {
@@ -71,9 +73,12 @@ struct RayFile {
 [[nodiscard]] ArrivalsFile read_arrivals_file(const std::filesystem::path& path);
 [[nodiscard]] RayFile read_ray_file(const std::filesystem::path& path);
 
-/// Writers: under a temporary name first, so that a file is never half-written.
+/// Writers. A path may have no file, or one of the kind. \throws InputError, RunError
 void write_shade_file(const std::filesystem::path& path, const ShadeFile& file);
 void write_arrivals_file(const std::filesystem::path& path, const ArrivalsFile& file);
 void write_ray_file(const std::filesystem::path& path, const RayFile& file);
+void write_shade_file(OutputFile&& output, const ShadeFile& file);
+void write_arrivals_file(OutputFile&& output, const ArrivalsFile& file);
+void write_ray_file(OutputFile&& output, const RayFile& file);
 
 }  // namespace asdic::bellhop

@@ -7,7 +7,7 @@
 #include "io/bellhop/attenuation.h"
 #include "io/bellhop/case_writer_parts.h"
 #include "io/bellhop/decimal.h"
-#include "io/bellhop/file_bytes.h"
+#include "io/output/own_files.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -182,13 +182,20 @@ Written write_case(const PropagationCase& run_case, bool binary_arrivals) {
   env += std::string("'") + letter_of(ocean.bottom) + (ocean.bottom.shape ? "~" : "") + "' 0\n";
   env += boundary_text(writing, ocean.bottom, false);
   env += run_text(writing, binary_arrivals);
+  env += std::string("! ") + own::remark + '\n';
   return std::move(writing.out);
 }
 
-void write_case_files(const std::filesystem::path& root, const Texts& texts) {
+void write_case_files(const std::filesystem::path& root, const Texts& texts,
+                      const OutputRules& rules) {
+  OutputRules these = rules;
+  these.own = own::case_companion;
+  std::vector<std::pair<OutputFile, const std::string*>> files;
   for (const auto& [extension, text] : texts.companions)
-    write_bytes(root.string() + extension, text);
-  write_bytes(root.string() + ".env", texts.env);
+    files.emplace_back(OutputFile(root.string() + extension, these), &text);
+  these.own = own::case_file;
+  files.emplace_back(OutputFile(root.string() + ".env", these), &texts.env);
+  for (auto& [file, text] : files) file.write(*text);
 }
 
 }  // namespace asdic::bellhop

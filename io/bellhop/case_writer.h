@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/bellhop/case_reader.h"
+#include "io/output/output_file.h"
 
 namespace asdic::bellhop {
 
@@ -19,7 +20,8 @@ struct Written {
 /// floor that is rigid here and fluid there
 [[nodiscard]] Written write_case(const PropagationCase& run_case, bool binary_arrivals = false);
 
-/// ROOT.env and its companions, each complete under its name. \throws RunError
-void write_case_files(const std::filesystem::path& root, const Texts& texts);
+/// ROOT.env and its companions: all may be written, or none is. \throws InputError, RunError
+void write_case_files(const std::filesystem::path& root, const Texts& texts,
+                      const OutputRules& rules = {});
 
 }  // namespace asdic::bellhop

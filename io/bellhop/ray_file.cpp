@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include "io/bellhop/bellhop_files.h"
-#include "io/bellhop/file_bytes.h"
 #include "io/bellhop/fortran_format.h"
 #include "io/bellhop/list_reader.h"
 #include "io/bellhop/number_stream.h"
 #include "io/input_file.h"
+#include "io/output/own_files.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -93,7 +93,11 @@ RayFile read_ray_file(const std::filesystem::path& path) {
 }
 
 void write_ray_file(const std::filesystem::path& path, const RayFile& file) {
-  write_bytes(path, ray_file_bytes(file));
+  write_ray_file(OutputFile(path, {.own = own::ray_file}), file);
+}
+
+void write_ray_file(OutputFile&& output, const RayFile& file) {
+  output.write(ray_file_bytes(file));
 }
 
 }  // namespace asdic::bellhop

@@ -3,10 +3,10 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
-#include "io/bellhop/file_bytes.h"
 #include "io/bellhop/list_reader.h"
 #include "io/finite_field.h"
 #include "io/input_file.h"
+#include "io/output/own_files.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -186,8 +186,12 @@ ShadeFile read_shade_file(const std::filesystem::path& path) {
 }
 
 void write_shade_file(const std::filesystem::path& path, const ShadeFile& file) {
+  write_shade_file(OutputFile(path, {.own = own::shade_file}), file);
+}
+
+void write_shade_file(OutputFile&& output, const ShadeFile& file) {
   require_finite(file.pressure);
-  write_bytes(path, shade_file_bytes(file));
+  output.write(shade_file_bytes(file));
 }
 
 }  // namespace asdic::bellhop

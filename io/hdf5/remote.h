@@ -46,10 +46,10 @@ struct Questions {
 using AllQuestions =
     Questions<&Hdf5File::has, &Hdf5File::datasets, &Hdf5File::info, &Hdf5File::virtual_files,
               &Hdf5File::read_text, &Hdf5File::attributes, &Hdf5File::has_attribute,
-              &Hdf5File::attribute_texts, &Hdf5File::attribute_number, read_all<std::int8_t>,
-              read_all<std::int32_t>, read_all<std::int64_t>, read_all<float>, read_all<double>,
-              read_block<std::int8_t>, read_block<std::int32_t>, read_block<std::int64_t>,
-              read_block<float>, read_block<double>>;
+              &Hdf5File::attribute_texts, &Hdf5File::attribute_number, &Hdf5File::has_checksums,
+              read_all<std::int8_t>, read_all<std::int32_t>, read_all<std::int64_t>,
+              read_all<float>, read_all<double>, read_block<std::int8_t>, read_block<std::int32_t>,
+              read_block<std::int64_t>, read_block<float>, read_block<double>>;
 
 template <class Method>
 struct ResultOf;

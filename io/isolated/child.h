@@ -65,6 +65,10 @@ class Child {
   int socket_ = -1;
 };
 
+/// Of writing: a disk may be slow.
+inline constexpr Limits patience{
+    .processor = std::chrono::minutes(10), .wall = std::chrono::hours(1), .memory = 0};
+
 /// Does something to a file in a child: what it changes in memory is lost, what it writes stays.
 /// \throws as Child
 void run(const std::filesystem::path& file, const std::string& library,

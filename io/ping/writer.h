@@ -12,7 +12,7 @@
 namespace asdic {
 
 struct PingFileWriter::Impl {
-  std::filesystem::path path, part;
+  OutputFile output;
   Hdf5File file;
   Scenario scenario;
   bool times_written_out = false;
@@ -24,10 +24,9 @@ struct PingFileWriter::Impl {
   std::size_t every = 1;
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
-  Impl(const std::filesystem::path& final_path, const Scenario& s, SampleTimes times)
-      : path(final_path),
-        part(final_path.string() + ".part"),
-        file(Hdf5File::create(part)),
+  Impl(OutputFile&& to, const Scenario& s, SampleTimes times)
+      : output(std::move(to)),
+        file(Hdf5File::create(output.part())),
         scenario(s),
         times_written_out(times == SampleTimes::written_out),
         arrivals(file),

@@ -1,8 +1,5 @@
 #include "io/processing/results.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -142,37 +139,6 @@ void write_ambiguity(Hdf5File& file, const Replica& replica) {
                      {"processed/ambiguity/doppler_factor", "processed/ambiguity/delay"});
 }
 
-/// To the disk, not only to the system's memory.
-void synchronise(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY);
-  const bool good = file >= 0 && ::fsync(file) == 0;
-  if (file >= 0) ::close(file);
-  if (!good) throw RunError(path.string() + ": cannot be brought to the disk");
-}
-
-/// The part goes unless it was given its name.
-class Part {
- public:
-  explicit Part(std::filesystem::path path) : path_(std::move(path)) {}
-  ~Part() {
-    std::error_code ignored;
-    if (!kept_) std::filesystem::remove(path_, ignored);
-  }
-  Part(const Part&) = delete;
-  Part& operator=(const Part&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  void rename(const std::filesystem::path& to) {
-    std::error_code error;
-    std::filesystem::rename(path_, to, error);
-    if (error) throw RunError(to.string() + ": " + error.message());
-    kept_ = true;
-  }
-
- private:
-  std::filesystem::path path_;
-  bool kept_ = false;
-};
-
 /// Writes /processed into a file, in place of one that is there.
 void add_results(const std::filesystem::path& path, const ProcessedRun& run,
                  const Replica& replica) {
@@ -196,25 +162,15 @@ void add_results(const std::filesystem::path& path, const ProcessedRun& run,
 
 }  // namespace
 
-void write_processed(const std::filesystem::path& input, const std::filesystem::path& output,
+void write_processed(const std::filesystem::path& input, OutputFile&& output,
                      const ProcessedRun& run, const Replica& replica) {
-  // A link stays a link: what it points to is what changes.
   std::error_code error;
-  std::filesystem::path target = std::filesystem::is_symlink(output, error)
-                                     ? std::filesystem::canonical(output, error)
-                                     : output;
-  if (target.empty()) target = output;
-  Part part(target.string() + ".part");
-  std::filesystem::copy_file(input, part.path(), std::filesystem::copy_options::overwrite_existing,
-                             error);
-  if (error) throw RunError(part.path().string() + ": " + error.message());
-  constexpr isolated::Limits patience{.processor = std::chrono::minutes(10),
-                                      .wall = std::chrono::hours(1),
-                                      .memory = 0};  // a disk may be slow
+  const std::filesystem::path& part = output.part();
+  std::filesystem::copy_file(input, part, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw RunError(part.string() + ": " + error.message());
   isolated::run(
-      part.path(), "HDF5", [&] { add_results(part.path(), run, replica); }, patience);
-  synchronise(part.path());
-  part.rename(target);
+      part, "HDF5", [&] { add_results(part, run, replica); }, isolated::patience);
+  output.finish();
 }
 
 }  // namespace asdic

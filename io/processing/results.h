@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "io/output/output_file.h"
 #include "sonar/processing/ping_processor.h"
 #include "sonar/processing/scoring.h"
 #include "sonar/processing/tracker.h"
@@ -43,10 +44,10 @@ struct ProcessedRun {
 /// A row of the detections table for every detection, in the order of `pings`.
 [[nodiscard]] int first_row(const ProcessedRun& run, std::size_t ping);
 
-/// Puts /processed into a ping file, in place of an earlier one: the file is copied to NAME.part,
-/// changed there and, once all is on disk, given its name, so that what is called NAME is at every
-/// moment either the old or the new file, whole. \param output  may be `input` \throws RunError
-void write_processed(const std::filesystem::path& input, const std::filesystem::path& output,
+/// Puts /processed into a ping file, in place of an earlier one: the file is copied to a part,
+/// changed there and, once all is on disk, given its name, so that what is called by it is at every
+/// moment either the old or the new file, whole. \param output  may be of `input` \throws RunError
+void write_processed(const std::filesystem::path& input, OutputFile&& output,
                      const ProcessedRun& run, const Replica& replica);
 
 /// The tables as text, one line a row, NaN as nothing.

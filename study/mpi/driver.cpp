@@ -1,6 +1,7 @@
 #include "study/mpi/driver.h"
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "core/error.h"
@@ -65,8 +66,7 @@ Start look_around(const Work& work, const StudyRun& run, OrderedEstimate& estima
                   StudyOutcome& outcome) {
   if (run.fresh)
     for (const auto& path : journals_of(run.output)) remove_journal(path);
-  const Existing existing =
-      run.fresh ? Existing::none : look_at(run.output, work, run.range, run.until.has_value());
+  const Existing existing = look_at(work, run);
   const bool no_journals = journals_of(run.output).empty();
   if (existing == Existing::complete && no_journals && !run.retry) return {.complete = true};
   Journals journals(run.output, work, journal_of(run.output, 0), run.retry);
@@ -92,7 +92,9 @@ StudyOutcome lead(const Work& work, const StudyRun& run, const Session& session)
   OrderedEstimate estimate(work.estimate(), run.range.first, run.until);
   Start start;
   std::exception_ptr fault;
+  std::optional<OutputFile> output;
   try {
+    output.emplace(output_of(run));
     start = look_around(work, run, estimate, outcome);
   } catch (...) {
     fault = std::current_exception();
@@ -113,7 +115,7 @@ StudyOutcome lead(const Work& work, const StudyRun& run, const Session& session)
   outcome.estimate = estimate.estimate();
   if (outcome.before + outcome.made == outcome.total || estimate.enough()) {
     Journals journals(run.output, work, {});
-    write_output(work, run, estimate, journals, outcome);
+    write_output(work, run, estimate, journals, *output, outcome);
   }
   return outcome;
 }

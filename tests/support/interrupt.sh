@@ -64,10 +64,20 @@ wait_until() {
   done
 }
 
-# Waits until FILE counts a ping, as a reader finds it while the program $run writes: for ever, but for a minute.
-# wait_for_ping FILE
+# The part of RESULT that is being written, or was left; "" if there is none. part_of RESULT
+part_of() {
+  local part
+  for part in "$1".????.part; do
+    [ -e "$part" ] && echo "$part"
+  done
+  return 0
+}
+
+# Waits until the part of RESULT counts a ping, as a reader finds it while the program $run writes: for ever, but for a minute.
+# wait_for_ping RESULT
 wait_for_ping() {
   HDF5_USE_FILE_LOCKING=FALSE /usr/bin/python3 - "$1" "$run" <<'PY' || fail "no ping in $1: the program ended, or a minute is over"
+import glob
 import os
 import sys
 import time
@@ -76,9 +86,10 @@ end = time.monotonic() + 60.0
 while time.monotonic() < end:
     os.kill(int(sys.argv[2]), 0)  # fails when it is gone
     try:
-        with h5py.File(sys.argv[1], "r") as f:
-            if f["ping"].shape[0] > 0:
-                sys.exit(0)
+        for part in glob.glob(glob.escape(sys.argv[1]) + ".????.part"):
+            with h5py.File(part, "r") as f:
+                if f["ping"].shape[0] > 0:
+                    sys.exit(0)
     except (OSError, KeyError, RuntimeError):
         pass  # not there yet, or in the middle of a change
     time.sleep(0.002)

@@ -6,11 +6,13 @@
 
 #include "core/error.h"
 #include "io/hdf5_file.h"
+#include "io/output/own_files.h"
 #include "io/ping_file.h"
 #include "io/processing/recordings.h"
 #include "io/processing/results.h"
 #include "io/scenario_reader.h"
 #include "sonar/ping.h"
+#include "support/left_of.h"
 #include "support/program.h"
 
 namespace asdic {
@@ -155,13 +157,15 @@ TEST(PingRecordingsTest, OtherFilesAreInputErrors) {
   EXPECT_THROW(PingRecordings(folder / "other.h5"), InputError);
 }
 
+OutputFile to(const std::filesystem::path& path) { return OutputFile(path, {.own = own::hdf5}); }
+
 TEST(WriteProcessed, KeepsTheDataAndReplacesEarlierResults) {
   const support::TemporaryDirectory folder;
   const std::filesystem::path path = ping_file(folder);
   const auto before = Hdf5File::open(path).read<float>("pressure");
   const auto names = Hdf5File::open(path).datasets().size();
   ProcessedRun run = some_run();
-  write_processed(path, path, run, tone());
+  write_processed(path, to(path), run, tone());
   {
     const Hdf5File file = Hdf5File::open(path);
     EXPECT_TRUE(file.read<float>("pressure") == before);
@@ -176,26 +180,27 @@ TEST(WriteProcessed, KeepsTheDataAndReplacesEarlierResults) {
   const auto size = std::filesystem::file_size(path);
   run.pings[0].array.result.detections.clear();
   run.pings[0].score.owner.clear();
-  for (int i = 0; i < 5; ++i) write_processed(path, path, run, tone());
+  for (int i = 0; i < 5; ++i) write_processed(path, to(path), run, tone());
   EXPECT_TRUE(Hdf5File::open(path).read<double>("processed/detections/time").empty());
   EXPECT_LT(std::filesystem::file_size(path), size + 200000);  // it does not grow without end
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  EXPECT_EQ(support::left_of(path), "");
 }
 
 TEST(WriteProcessed, LeavesTheInputAloneWhenAnotherFileIsWritten) {
   const support::TemporaryDirectory folder;
   const std::filesystem::path path = ping_file(folder);
   const std::string before = support::content(path);
-  write_processed(path, folder / "other.h5", some_run(), tone());
+  write_processed(path, to(folder / "other.h5"), some_run(), tone());
   EXPECT_TRUE(support::content(path) == before);
   EXPECT_TRUE(Hdf5File::open(folder / "other.h5").has("processed/detections/time"));
 }
 
-TEST(WriteProcessed, CannotBeWrittenIsARunErrorAndLeavesTheInput) {
+TEST(WriteProcessed, CannotBeWrittenIsToldAndLeavesTheInput) {
   const support::TemporaryDirectory folder;
   const std::filesystem::path path = ping_file(folder);
   const std::string before = support::content(path);
-  EXPECT_THROW(write_processed(path, folder / "none" / "out.h5", some_run(), tone()), RunError);
+  EXPECT_THROW(write_processed(path, to(folder / "none" / "out.h5"), some_run(), tone()),
+               InputError);
   EXPECT_TRUE(support::content(path) == before);
 }
 

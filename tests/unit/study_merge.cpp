@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "io/output/own_files.h"
 #include "study/merge.h"
+#include "support/left_of.h"
 #include "support/synthetic_study.h"
 
 namespace asdic::study {
@@ -26,12 +28,12 @@ class Merge : public testing::Test {
   std::string said(const std::vector<std::filesystem::path>& parts,
                    const MergeOptions& options = {}) {
     try {
+      OutputFile output(folder / "merged.h5", {.own = own::hdf5});
       report = merge(
-          parts, folder / "merged.h5", [](const Imprint&, const Table&) { return Summary{}; },
-          options);
+          parts, output, [](const Imprint&, const Table&) { return Summary{}; }, options);
     } catch (const InputError& error) {
       EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5"));
-      EXPECT_FALSE(std::filesystem::exists(folder / "merged.h5.part"));
+      EXPECT_EQ(support::left_of(folder / "merged.h5"), "");
       return error.what();
     }
     return "good";

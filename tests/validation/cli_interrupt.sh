@@ -15,12 +15,12 @@ ping() { start "$ASDIC" ping run.toml -o "$1.h5" >"$1.out" 2>"$1.err"; }
 # Ctrl-C, and SIGTERM: what is done is kept, the file gets its name, the status is 1.
 for signal in INT TERM; do
   ping "$signal"
-  wait_for_ping "$signal.h5.part"
+  wait_for_ping "$signal.h5"
   kill -"$signal" "$run"
   status=0
   wait "$run" || status=$?
   [ "$status" = 1 ] || fail "SIG$signal: exit status $status, expected 1"
-  [ ! -e "$signal.h5.part" ] || fail "SIG$signal left $signal.h5.part"
+  [ -z "$(part_of "$signal.h5")" ] || fail "SIG$signal left $(part_of "$signal.h5")"
   pings=$(h5py_reads "$signal.h5")
   [ "$pings" -ge 1 ] || fail "SIG$signal: no ping in the file"
   grep -qx "asdic: interrupted after $pings of 2000 pings; $signal.h5 holds them, marked as not complete" "$signal.err" ||
@@ -29,16 +29,16 @@ for signal in INT TERM; do
   echo "SIG$signal: $pings pings kept, and said so"
 done
 
-# A second Ctrl-C ends the program at once; what was done stays in NAME.part, unless that had just got its name.
+# A second Ctrl-C ends the program at once; what was done stays in its part, unless that had just got its name.
 ping twice
-wait_for_ping twice.h5.part
+wait_for_ping twice.h5
 kill -INT "$run"
 until sigint_was_taken; do :; done
 kill -INT "$run" 2>/dev/null || true
 status=0
 wait "$run" || status=$?
-left=$(ls twice.h5 twice.h5.part 2>/dev/null || true)
-[ "$left" = twice.h5 ] || [ "$left" = twice.h5.part ] || fail "two signals left \"$left\""
+left=$(ls twice.h5 2>/dev/null || part_of twice.h5)
+[ "$left" = twice.h5 ] || [ "$left" = "$(part_of twice.h5)" ] || fail "two signals left \"$left\""
 if [ "$status" = 130 ]; then
   echo "second SIGINT: ended at once, $(h5py_reads "$left") pings in $left"
 else # the pings in hand were done before it came
@@ -48,30 +48,31 @@ else # the pings in hand were done before it came
   echo "second SIGINT: came after the end"
 fi
 
-# kill -9: nothing under the final name; NAME.part can be read.
+# kill -9: nothing under the final name; its part can be read.
 for delay in 0.0 0.13 0.29; do
-  rm -f killed.h5.part
+  rm -f killed.h5.????.part
   ping killed
-  wait_for_ping killed.h5.part
+  wait_for_ping killed.h5
   sleep "$delay"
   kill -KILL "$run"
   wait "$run" 2>/dev/null || true
   [ ! -e killed.h5 ] || fail "kill -9 left killed.h5"
-  pings=$(h5py_reads killed.h5.part)
+  part=$(part_of killed.h5)
+  pings=$(h5py_reads "$part")
   [ "$pings" -ge 1 ] || fail "kill -9: the pings that were written cannot be read"
-  "$ASDIC" info killed.h5.part >info.out || fail "asdic info cannot read killed.h5.part"
-  echo "kill -9 after $delay s more: $pings pings in killed.h5.part"
+  "$ASDIC" info "$part" >info.out || fail "asdic info cannot read $part"
+  echo "kill -9 after $delay s more: $pings pings in $part"
 done
 
 # Ctrl-C as soon as the file is there: the pings that are done, or no file at all.
 sed -e 's/phones = 8/phones = 64/' run.toml >slow.toml
 mv slow.toml run.toml
 ping early
-wait_until "its file was there" test -e early.h5.part
+wait_until "its file was there" eval '[ -n "$(part_of early.h5)" ]'
 kill -INT "$run"
 status=0
 wait "$run" || status=$?
 [ "$status" = 1 ] || fail "early SIGINT: exit status $status, expected 1"
 [ "$(grep -vc "^asdic: stopping " early.err)" = 1 ] || fail "early SIGINT: said $(cat early.err)"
-[ ! -e early.h5.part ] || fail "early SIGINT left early.h5.part"
+[ -z "$(part_of early.h5)" ] || fail "early SIGINT left $(part_of early.h5)"
 echo "early SIGINT: $(cat early.err)"

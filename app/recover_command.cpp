@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "core/error.h"
+#include "io/output/own_files.h"
+#include "io/ping/recovery.h"
+
+namespace asdic::app {
+namespace {
+
+struct Options {
+  std::string part, output;
+  bool force = false, quiet = false;
+};
+
+/// The name that the run would have given it.
+std::filesystem::path output_of(const Options& options) {
+  if (!options.output.empty()) return options.output;
+  std::filesystem::path target = target_of(options.part);
+  if (target.empty())
+    throw InputError({.where = options.part,
+                      .got = "a name that does not tell what the file was to become",
+                      .expected = "NAME.XXXX.part, or -o FILE.h5"});
+  return target;
+}
+
+/// What is there is another run's, perhaps a better one.
+void check_free(const std::filesystem::path& output, bool force) {
+  std::error_code ignored;
+  if (!force && std::filesystem::exists(output, ignored))
+    throw InputError({.where = "--output",
+                      .got = '"' + output.string() + "\", which is there already",
+                      .expected = "another name (-o), or --force to write over it"});
+}
+
+int recover(const Options& options) {
+  const std::filesystem::path output = output_of(options), written = target_of(options.part);
+  check_free(output, options.force);
+  std::optional<OutputLock> still_at_work;  // the run that writes the part
+  if (!written.empty() && written != output) still_at_work.emplace(written);
+  const Recovery found = recover_ping_file(
+      options.part,
+      OutputFile(output, {.own = own::hdf5, .force = options.force, .inputs = {options.part}}));
+  if (!options.quiet)
+    print(fmt::format("{}: {} of {}{}; {} is of no more use\n", output.string(), found.pings,
+                      count_of(found.requested, "ping"),
+                      found.pings < found.requested ? ", marked as not complete" : "",
+                      options.part));
+  return 0;
+}
+
+}  // namespace
+
+void add_recover_command(Program& program) {
+  auto options = std::make_shared<Options>();
+  const Command command = program.add_command(
+      "recover",
+      "Make a ping file of the part that a run left which was killed, or out of power or disk.");
+  command.add_option("FILE", options->part, "what is left of asdic ping, NAME.XXXX.part")
+      .required();
+  command
+      .add_option("-o,--output", options->output,
+                  "file to write; default: NAME, if it is not there")
+      .type_name("FILE.h5");
+  add_force_option(command, options->force);
+  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+  command.footer(
+      "The part stays as it is. A study needs no recovery: the same command goes on.\n"
+      "Example:  asdic recover ping.h5.k3f9.part");
+  command.runs([options] { return recover(*options); });
+}
+
+}  // namespace asdic::app
