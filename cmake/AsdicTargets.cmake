@@ -77,5 +77,4 @@ function(asdic_program folder)
   set_target_properties(asdic_${folder} PROPERTIES OUTPUT_NAME asdic RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_link_libraries(asdic_${folder} PRIVATE asdic_commands asdic_warnings asdic_build_options)
   asdic_allocator(asdic_${folder})
-  add_custom_target(asdic_full DEPENDS asdic_${folder})  # the former name of the whole program
 endfunction()
