@@ -30,7 +30,7 @@ std::size_t utf8_length(std::string_view text) {
 }
 
 /// A basic string of TOML. Bytes that are not UTF-8 are taken as Latin-1, as old files have them.
-std::string quoted(std::string_view text) {
+std::string toml_quoted(std::string_view text) {
   std::string result = "\"";
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -67,7 +67,7 @@ struct Inline {
   std::string operator()(bool flag) const { return flag ? "true" : "false"; }
   std::string operator()(std::int64_t number) const { return std::to_string(number); }
   std::string operator()(double number) const { return toml_number(number); }
-  std::string operator()(const std::string& text) const { return quoted(text); }
+  std::string operator()(const std::string& text) const { return toml_quoted(text); }
   std::string operator()(const TomlValue::Array& items) const {
     std::string result;
     for (const TomlValue& item : items) result += (result.empty() ? "" : ", ") + inline_toml(item);
@@ -76,7 +76,8 @@ struct Inline {
   std::string operator()(const TomlValue::Table& entries) const {
     std::string result;
     for (const TomlEntry& entry : entries)
-      result += (result.empty() ? "" : ", ") + quoted(entry.key) + " = " + inline_toml(entry.value);
+      result +=
+          (result.empty() ? "" : ", ") + toml_quoted(entry.key) + " = " + inline_toml(entry.value);
     return "{" + result + "}";
   }
 };
@@ -126,7 +127,9 @@ void TomlWriter::integer(std::string_view key, long long value) {
 
 void TomlWriter::flag(std::string_view key, bool value) { line(key, value ? "true" : "false"); }
 
-void TomlWriter::text(std::string_view key, std::string_view value) { line(key, quoted(value)); }
+void TomlWriter::text(std::string_view key, std::string_view value) {
+  line(key, toml_quoted(value));
+}
 
 void TomlWriter::numbers(std::string_view key, std::span<const double> values) {
   std::vector<std::string> items;
