@@ -241,7 +241,8 @@ struct Told {
 
 std::vector<Told> told_by(const std::string& manifest) {
   std::vector<Told> all;
-  for (const auto& [dataset, told] : Json::parse(manifest).at("datasets").items())
+  const Json json = Json::parse(manifest);  // outlives the loop
+  for (const auto& [dataset, told] : json.at("datasets").items())
     all.push_back({dataset, told.at("sha256"), told.at("shape")});
   return all;
 }

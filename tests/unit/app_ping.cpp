@@ -91,9 +91,12 @@ TEST_F(PingCommand, SaysWhenTheEchoComes) {
 
 TEST_F(PingCommand, AFileThatIsThereIsReplacedOnlyByAWholeOne) {
   static_cast<void>(folder.write("small.h5", "precious"));
-  const auto failed = asdic(folder, "ping small.toml", "ulimit -f 20;");
-  EXPECT_EQ(failed.status, 1);
+  EXPECT_EQ(asdic(folder, "ping small.toml -q").status, 2);  // not asdic's
   EXPECT_EQ(support::content(folder / "small.h5"), "precious");
+  ASSERT_EQ(asdic(folder, "ping small.toml -q --force").status, 0);
+  const std::string before = support::content(folder / "small.h5");
+  EXPECT_EQ(asdic(folder, "ping small.toml", "ulimit -f 20;").status, 1);
+  EXPECT_EQ(support::content(folder / "small.h5"), before);
   ASSERT_EQ(asdic(folder, "ping small.toml -q").status, 0);
   EXPECT_TRUE(PingFile(folder / "small.h5").complete());
 }

@@ -374,7 +374,7 @@ const Fault faults[] = {
     {"MemoryWithoutAUnit", "recording_duration = 60",
      "recording_duration = 60\n[run]\nmemory = \"4 apples\"",
      "s.toml:34: run.memory: found \"4 apples\", expected a memory from 1000000 to "
-     "1000000000000000000 bytes, or a text such as \"4 GB\" or \"512 MiB\""},
+     "1e+18 bytes, or a text such as \"4 GB\" or \"512 MiB\""},
     {"PulseLongerThanTheRecord", "duration = 1.0", "duration = 61.0",
      "s.toml:19: pulse.duration: found 61 s, expected a pulse no longer than the record, 60 s"},
     {"SampledTooSlowly", "recording_duration = 60", "sample_rate = 8000",
