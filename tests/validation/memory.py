@@ -88,7 +88,7 @@ def kept(command, scenario, settings, most):
     """A run that is not refused stays within what validate tells of it, and that is no wild guess."""
     status, said, _ = run("validate", scenario, *sets(settings))
     check(status == 0, f"validate {settings}: {said}")
-    number, unit = re.search(r"takes at most about ([0-9.]+) (\\w+)", said).groups()
+    number, unit = re.search(r"takes at most about ([0-9.]+) (\w+)", said).groups()
     told = float(number) * {"bytes": 1.0, "kB": 1e3, "MB": 1e6, "GB": 1e9}[unit]
     status, said, memory = run(*command, scenario, *sets(settings), "-q")
     check(status == 0, f"{command} {settings}: {said}")
