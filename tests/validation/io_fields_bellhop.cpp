@@ -13,7 +13,7 @@
 #include "raytrace/beams/field_run.h"
 
 // Fields of our own tracer beside what BELLHOP converges to (tests/data/bellhop; the docs are
-// docs/theory/fields.md and docs/guide/from-bellhop.md). Bounds are issue 3's: a figure may be as
+// docs/theory/fields.md and docs/guide/from-bellhop.md). Bounds are as asked: a figure may be as
 // large as the one stated or as the residual of the reference, whichever is larger.
 namespace asdic {
 namespace {
