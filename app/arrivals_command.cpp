@@ -8,6 +8,7 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "app/run_arrivals.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
@@ -128,6 +129,7 @@ int arrivals_of_run(const Options& options) {
     check_kind(options.output, ".arr");
   }
   const RunArrivals found = find_run_arrivals(options.scenario, overrides);
+  warn(found.notes);
   if (!options.output.empty()) write_run_arrivals(OutputFile(options.output, rules), found);
   if (options.json)
     print(run_arrivals_json(found));
@@ -142,6 +144,7 @@ int arrivals(const Options& options) {
   if (!options.output.empty()) check_kind(options.output, "");
   const PingSimulator simulator(read_scenario(options.scenario.path, options.scenario.overrides));
   const Scenario& scenario = simulator.scenario();
+  warn(scenario.notes);
   const bool free = options.receiver_depth || options.range;
   const Vec3 source = source_of(simulator, options.ping);
   ArrivalsResult result{

@@ -12,6 +12,7 @@
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/bellhop/bellhop_files.h"
 #include "io/scenario/propagation.h"
@@ -54,8 +55,9 @@ PropagationResult run_field_of(const PropagationCase& run_case, const Options& o
 int field(const Options& options) {
   const auto begin = std::chrono::steady_clock::now();
   FieldResult result;
+  std::vector<std::string> warnings;
   result.run_case =
-      read_propagation_case(options.scenario.path, options.scenario.overrides, result.notes);
+      read_propagation_case(options.scenario.path, options.scenario.overrides, warnings);
   if (asks_for_rays(options.scenario.path, options.scenario.overrides))
     throw InputError({.where = options.scenario.path + ": run.task",
                       .got = '"' + std::string(name(result.run_case.task)) + '"',
@@ -65,12 +67,14 @@ int field(const Options& options) {
   result.origin = {.title = result.run_case.title,
                    .path = options.scenario.path,
                    .text = read_text_file(options.scenario.path, "a scenario file"),
-                   .overrides = options.scenario.overrides};
+                   .overrides = options.scenario.overrides,
+                   .warnings = warnings};
   result.output = options.output.empty()
                       ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                       : options.output;
   check_kind(result.output, ".shd");
   OutputFile output(result.output, rules_for(result.output, options.force, options.scenario.path));
+  if (!options.quiet) warn(warnings);
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

@@ -113,6 +113,7 @@ std::string field_json(const FieldResult& result) {
                             {"beam_error_bounded", data.beam_error_bounded},
                             {"tl_db", loss},
                             {"silent_pct", silent_pct(data.pressure.size(), tl.size())},
+                            {"warnings", result.origin.warnings},
                             {"notes", result.notes}};
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }

@@ -101,6 +101,9 @@ int info(const std::string& path) {
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
   if (file.file().has_attribute("", "overrides"))
     print(fmt::format("changed by   {}\n", root("overrides")));
+  if (file.file().has_attribute("", "warnings"))
+    for (const std::string& one : file.file().attribute_texts("", "warnings"))
+      print(fmt::format("warning      {}\n", one));
   print(processed(file.file()) + summary(file));
   return 0;
 }

@@ -49,7 +49,8 @@ ResultOrigin origin_of(const Scenario& scenario) {
   return {.title = scenario.title,
           .path = scenario.path,
           .text = scenario.text,
-          .overrides = scenario.overrides};
+          .overrides = scenario.overrides,
+          .warnings = scenario.notes};
 }
 
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin) {
@@ -60,6 +61,7 @@ void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin&
   file.set_attribute("", "build", made.build);
   file.set_attribute("", "scenario_sha256", sha256(origin.text));
   if (!origin.overrides.empty()) file.set_attribute("", "overrides", origin.overrides);
+  if (!origin.warnings.empty()) file.set_attribute("", "warnings", origin.warnings);
   file.write_text("scenario", origin.text);
   describe(file, "scenario", "the scenario file, verbatim");
 }

@@ -31,6 +31,7 @@ class Hdf5Output {
 struct ResultOrigin {
   std::string title{}, path{}, text{};
   std::vector<std::string> overrides{};
+  std::vector<std::string> warnings{};  ///< that were told of it
 };
 
 /// That a name does not end like a file of BELLHOP's of another kind (.arr .ray .shd), which would

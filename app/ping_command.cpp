@@ -15,6 +15,7 @@
 #include "app/ping_report.h"
 #include "app/progress_bar.h"
 #include "app/provenance.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
@@ -69,7 +70,10 @@ int ping(const Options& options) {
       options.output.empty() ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                              : options.output;
   OutputFile output(path, rules_for(path, options.force, options.scenario.path));
-  if (!options.quiet) tell_of_parts(path);
+  if (!options.quiet) {
+    warn(scenario.notes);
+    tell_of_parts(path);
+  }
   const std::string part = output.part().string();
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());

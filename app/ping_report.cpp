@@ -63,7 +63,6 @@ void PingReport::add(const PingRecord& record) {
 std::string PingReport::text(double wall) const {
   std::string result =
       fmt::format("{}\n", emphasised(scenario_.title.empty() ? scenario_.path : scenario_.title));
-  for (const std::string& note : scenario_.notes) result += fmt::format("note: {}\n", note);
   if (band_error_ > ReverberationBand::error)
     result += fmt::format(
         "note: reverberation across the band is right to {:.1e} of its largest amplitude, not to "

@@ -10,6 +10,7 @@
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/rays_output.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
@@ -96,7 +97,8 @@ RaysResult read(const Options& options, bool as_run) {
   result.origin = {.title = result.run_case.title,
                    .path = options.scenario.path,
                    .text = read_text_file(options.scenario.path, "a scenario file"),
-                   .overrides = options.scenario.overrides};
+                   .overrides = options.scenario.overrides,
+                   .warnings = notes};
   if (options.bearing) result.run_case.environment = plane_along(options, *options.bearing);
   std::vector<double>& sources = result.run_case.source_depths;
   if (options.depth)
@@ -170,6 +172,7 @@ int rays(const Options& options) {
     check_kind(options.output, ".ray");
   }
   const RaysResult result = trace(options);
+  warn(result.origin.warnings);
   if (!options.output.empty()) write_rays_file(OutputFile(options.output, rules), result);
   if (options.json)
     print(rays_json(result));

@@ -41,7 +41,8 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
   all.origin = {.title = all.run_case.title,
                 .path = choice.path,
                 .text = read_text_file(choice.path, "a scenario file"),
-                .overrides = overrides};
+                .overrides = overrides,
+                .warnings = all.notes};
   ProgressBar bar("%", 100, true);
   try {
     until_interrupted([&] {

@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
+#include "app/warn.h"
 
 namespace asdic::app {
 namespace {
@@ -24,6 +25,7 @@ int study_run(const StudyOptions& options) {
   order.run.stop = interrupt.token();
   const study::Realiser realiser(order.study);
   const study::Work work = study::work_of(order.study, realiser);
+  if (!options.quiet) warn(work.imprint.warnings);
   study::StudyOutcome outcome;
   {
     StudyProgress progress(!options.quiet);

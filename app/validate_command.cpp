@@ -146,7 +146,7 @@ int validate_run(const ScenarioChoice& choice) {
   print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
   print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run) +
         memory_text(run_memory(run, read_budget(choice.path, choice.overrides)), "the run"));
-  for (const std::string& note : notes) print("note: " + note + '\n');
+  for (const std::string& note : notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
 }
@@ -160,7 +160,7 @@ int validate_sonar(const ScenarioChoice& choice) {
                          scenario.wind_speed) +
         transect_text(simulator) + sonar_text(simulator) + size_text(simulator) +
         memory_text(simulator.memory(), "a ping"));
-  for (const std::string& note : scenario.notes) print("note: " + note + '\n');
+  for (const std::string& note : scenario.notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;
 }

@@ -9,6 +9,7 @@
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
+#include "sonar/warnings/warnings.h"
 
 namespace asdic {
 namespace {
@@ -87,10 +88,6 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
     scenario.pulse = scenario::read_pulse(transmitters[0].table("pulse"), folder);
   const Pulse pulse(scenario.pulse);
   const double frequency = pulse.centre_frequency();
-  if (scenario.pulse.kind != PulseKind::file && 0.5 * pulse.bandwidth_40db() >= frequency)
-    scenario.notes.push_back("pulse: its band, " + to_text(pulse.bandwidth_40db()) +
-                             " Hz wide about " + to_text(frequency) +
-                             " Hz, reaches down to 0 Hz: frequencies are in Hz, not kHz");
   scenario::read_environment(root.table("environment"), folder, frequency, scenario);
   scenario::read_platforms(root.one_or_more("platform"), scenario);
   const bool has_elevation = std::any_of(
@@ -108,6 +105,7 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
     read_run_of_sonar(root.table("run"), *run, frequency, scenario);
   root.finish();
   scenario::check_scenario(root, scenario);
+  add_warnings(warnings(scenario), scenario.notes);
   return scenario;
 }
 

@@ -68,16 +68,23 @@ Json samples(const PingRecord& record) {
   return all;
 }
 
+/// What the client should know before it trusts a number; nothing where there is nothing.
+void add_warnings(const Scenario& scenario, Json& line) {
+  if (!scenario.notes.empty()) line["warnings"] = scenario.notes;
+}
+
 }  // namespace
 
 std::string greeting_line(const Scenario& scenario, const Pace& pace, const std::string& version) {
-  return text({{"asdic", 1},
-               {"ok", true},
-               {"version", version},
-               {"scenario", scenario.title},
-               {"pace", name_of(pace)},
-               {"channels", channels_of(scenario)},
-               {"sample_rate", recorded_rate(scenario)}});
+  Json line{{"asdic", 1},
+            {"ok", true},
+            {"version", version},
+            {"scenario", scenario.title},
+            {"pace", name_of(pace)},
+            {"channels", channels_of(scenario)},
+            {"sample_rate", recorded_rate(scenario)}};
+  add_warnings(scenario, line);
+  return text(line);
 }
 
 std::string ping_line(const ServedPing& served, const PingRecord& record,
@@ -108,14 +115,17 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
                     {"reverberation", record.reuse.reverberation},
                     {"expected_level", record.reuse.expected_level}};
   line["timings"] = timings(record.timings, served.prepare);
+  add_warnings(scenario, line);
   line["latency"] = served.latency;
   line["behind"] = served.behind;
   return text(line);
 }
 
-std::string update_line(const std::string& id, double now, double seconds) {
+std::string update_line(const std::string& id, const Scenario& scenario, double now,
+                        double seconds) {
   Json line = answer(id, true);
   line["time"] = now;
+  add_warnings(scenario, line);
   line["latency"] = seconds;
   return text(line);
 }

@@ -24,7 +24,8 @@ struct ServedPing {
                                         const std::string& version);
 [[nodiscard]] std::string ping_line(const ServedPing& served, const PingRecord& record,
                                     const Scenario& scenario);
-[[nodiscard]] std::string update_line(const std::string& id, double now, double seconds);
+[[nodiscard]] std::string update_line(const std::string& id, const Scenario& scenario, double now,
+                                      double seconds);
 /// \param now  time of the scenario [s]   \param next  number of the next ping
 [[nodiscard]] std::string state_line(const std::string& id, const Scenario& scenario, double now,
                                      int next, const LatencyLog& latency);

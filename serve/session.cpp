@@ -192,7 +192,9 @@ Answer Session::ping(const Command& command) {
 
 Answer Session::update(const Command& command) {
   live_.update(command.fields, now());
-  return {.line = update_line(command.id, now(), clock_() - command.received), .samples = {}};
+  return {
+      .line = update_line(command.id, live_.state().scenario, now(), clock_() - command.received),
+      .samples = {}};
 }
 
 Answer Session::state(const Command& command) const {

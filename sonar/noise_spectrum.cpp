@@ -9,6 +9,7 @@ namespace asdic {
 namespace {
 
 constexpr double lowest_frequency = 1.0;  // of Wenz's curves [Hz]
+constexpr double knot = 1852.0 / 3600.0;  // [m/s]
 
 /// Straight between (x, y), constant beyond.
 double interpolated(std::span<const double> x, std::span<const double> y, double at) noexcept {
@@ -20,6 +21,12 @@ double interpolated(std::span<const double> x, std::span<const double> y, double
 
 }  // namespace
 
+const Validity& wenz_validity() noexcept {
+  static constexpr ValidRange ranges[] = {{"frequency", "Hz", lowest_frequency, 1e5}};
+  static constexpr Validity validity{"Wenz's noise", "JASA 34, 1936, 1962", ranges};
+  return validity;
+}
+
 double level_db(const WenzNoise& law, double frequency) noexcept {
   const double f = std::max(frequency, lowest_frequency) / 1000.0;
   const double lg_f = std::log10(f);
@@ -29,6 +36,13 @@ double level_db(const WenzNoise& law, double frequency) noexcept {
   const double wind =
       50.0 + 7.5 * std::sqrt(law.wind_speed) + 20.0 * lg_f - 40.0 * std::log10(f + 0.4);
   return db_from_power(power_from_db(turbulence) + power_from_db(shipping) + power_from_db(wind));
+}
+
+const Validity& knudsen_validity() noexcept {
+  static constexpr ValidRange ranges[] = {{"frequency", "Hz", 100.0, 25000.0},
+                                          {"wind speed", "m/s", 0.0, 30.5 * knot}};
+  static constexpr Validity validity{"Knudsen's noise", "J. Mar. Res. 7, 410, 1948", ranges};
+  return validity;
 }
 
 double level_db(const KnudsenNoise& law, double frequency) noexcept {
@@ -55,7 +69,6 @@ double thermal_level_db(double frequency) noexcept {
 double sea_state_of_wind(double wind_speed) noexcept {
   constexpr std::array knots = {0.5, 2.0, 5.0, 8.5, 13.5, 19.0, 24.5, 30.5};
   constexpr std::array sea_states = {0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
-  constexpr double knot = 1852.0 / 3600.0;  // [m/s]
   return interpolated(knots, sea_states, wind_speed / knot);
 }
 

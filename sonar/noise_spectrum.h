@@ -1,4 +1,5 @@
 #pragma once
+#include "core/validity.h"
 #include "sonar/noise_settings.h"
 
 namespace asdic {
@@ -12,8 +13,15 @@ namespace asdic {
 /// f in kHz, w in m/s. Coates, Underwater Acoustic Systems (1990). Below 1 Hz that of 1 Hz.
 [[nodiscard]] double level_db(const WenzNoise& law, double frequency) noexcept;
 
+/// At which frequencies [Hz] Wenz's curves are.
+[[nodiscard]] const Validity& wenz_validity() noexcept;
+
 /// Knudsen's N(1 kHz) − 17 lg f_kHz; below 100 Hz, where the curves end, that of 100 Hz.
 [[nodiscard]] double level_db(const KnudsenNoise& law, double frequency) noexcept;
+
+/// At which frequencies [Hz] Knudsen's curves are, and up to which wind speed [m/s] there are sea
+/// states: beyond, that of the strongest wind is taken.
+[[nodiscard]] const Validity& knudsen_validity() noexcept;
 
 [[nodiscard]] double level_db(const NoiseTable& law, double frequency) noexcept;
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "study/design.h"
+#include "study/warnings.h"
 
 namespace asdic::study {
 
@@ -55,6 +56,7 @@ Imprint imprint_of(const Study& study) {
           .text = study.text,
           .scenario_text = study.scenario_text,
           .overrides = study.overrides,
+          .warnings = warnings(study),
           .columns = std::move(all)};
 }
 

@@ -18,7 +18,8 @@ struct Imprint {
   std::string design{};            ///< "random", …
   std::string text{}, scenario_text{};
   std::vector<std::string> overrides{};
-  std::vector<Column> columns{};  ///< with those that tell what was reused
+  std::vector<std::string> warnings{};  ///< what is to be known before the numbers are trusted
+  std::vector<Column> columns{};        ///< with those that tell what was reused
 };
 
 [[nodiscard]] Imprint imprint_of(const Study& study);

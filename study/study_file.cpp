@@ -66,6 +66,8 @@ StudyFile::StudyFile(const std::filesystem::path& path)
         .scenario_text = file_.read_text("scenario"),
         .overrides = file_.has_attribute("", "overrides") ? file_.attribute_texts("", "overrides")
                                                           : std::vector<std::string>{},
+        .warnings = file_.has_attribute("", "warnings") ? file_.attribute_texts("", "warnings")
+                                                        : std::vector<std::string>{},
         .columns = columns_from_json(manifest.at("columns").dump())};
   } catch (const Json::exception& error) {
     throw no_manifest(path, error);

@@ -39,6 +39,7 @@ void StudyFileWriter::write_root() {
   file_.set_attribute("", "complete", std::int64_t{results_.complete()});
   if (!results_.stopped_by.empty()) file_.set_attribute("", "stopped_by", results_.stopped_by);
   if (!imprint.overrides.empty()) file_.set_attribute("", "overrides", imprint.overrides);
+  if (!imprint.warnings.empty()) file_.set_attribute("", "warnings", imprint.warnings);
   const auto& sessions = results_.sessions;
   const auto version = [](const Session& s) { return s.made.program_version; };
   const auto build = [](const Session& s) { return s.made.build; };

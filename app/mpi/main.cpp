@@ -11,6 +11,7 @@
 #include "app/provenance.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "study/mpi/driver.h"
 
@@ -80,6 +81,7 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   order->run.stop = interrupt.token();
   order->run.silence = std::chrono::duration<double>(silence);
   const StopTeller teller(session, order->run);
+  if (!options.quiet && session.rank() == 0) warn(work.imprint.warnings);
   study::StudyOutcome outcome;
   std::string said;
   {

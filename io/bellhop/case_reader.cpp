@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "io/bellhop/case_parts.h"
 #include "io/input_file.h"
+#include "raytrace/warnings/warnings.h"
 
 namespace asdic::bellhop {
 namespace {
@@ -42,6 +43,7 @@ Input read_case(const Texts& texts, const std::string& root_name) {
   if (reading.options.bathymetry) shape_of(reading, reading.ocean().bottom, false);
   read_receivers(reading);
   read_run(reading);
+  add_warnings(warnings(reading.run_case()), reading.input.notes);
   reading.input.echo = echo(reading);
   reading.input.file = reading.env.file();
   return std::move(reading.input);

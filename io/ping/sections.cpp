@@ -48,6 +48,7 @@ void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& prov
       static_cast<std::int64_t>(scenario.pings.count) * std::ssize(scenario.transmitters));
   file.set_attribute("", "complete", std::int64_t{0});
   if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
+  if (!scenario.notes.empty()) file.set_attribute("", "warnings", scenario.notes);
   file.write_text("scenario", scenario.text);
   describe(file, "scenario", "the scenario file, verbatim");
 

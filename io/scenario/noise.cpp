@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "io/scenario/angles.h"
 #include "io/scenario/columns.h"
@@ -18,9 +19,16 @@ NoiseTable read_table(TomlTable& table, const std::filesystem::path& folder) {
   return {columns.values[0], columns.values[1]};
 }
 
+/// A warning when a wind has no sea state of its own.
+void note_wind(double wind_speed, Scenario& scenario) {
+  const std::array<Asked, 1> asked{{{"wind speed", wind_speed, wind_speed}}};
+  if (const std::string text = outside(knudsen_validity(), asked); !text.empty())
+    scenario.notes.push_back("noise.wind_speed: " + text);
+}
+
 /// The spectrum: `kind` and its keys.
-void read_spectrum(TomlTable& table, const std::filesystem::path& folder, const Scenario& scenario,
-                   NoiseSettings& noise) {
+void read_spectrum(TomlTable& table, const std::filesystem::path& folder, Scenario& scenario) {
+  NoiseSettings& noise = scenario.noise;
   const bool level = table.has("spectral_level_db");
   const std::vector<std::string> kinds{"white", "wenz", "knudsen", "table"};
   const bool any = table.has("kind") || table.has("coherence") || table.has("thermal");
@@ -34,7 +42,9 @@ void read_spectrum(TomlTable& table, const std::filesystem::path& folder, const 
         .wind_speed = table.number("wind_speed", wind, scenario.wind_speed)};
   if (kind == "knudsen") {
     if (table.has("wind_speed")) exclude(table, "wind_speed", {"sea_state"});
-    const double by_wind = sea_state_of_wind(table.number("wind_speed", wind, scenario.wind_speed));
+    const double wind_speed = table.number("wind_speed", wind, scenario.wind_speed);
+    const double by_wind = sea_state_of_wind(wind_speed);
+    if (!table.has("sea_state")) note_wind(wind_speed, scenario);
     noise.law = KnudsenNoise{
         table.number("sea_state", {.noun = "sea state", .low = 0.0, .high = 6.0}, by_wind)};
   }
@@ -82,7 +92,7 @@ void read_coherence(TomlTable& table, const Scenario& scenario, NoiseSettings& n
 
 void read_noise(TomlTable table, const std::filesystem::path& folder, Scenario& scenario) {
   NoiseSettings& noise = scenario.noise;
-  read_spectrum(table, folder, scenario, noise);
+  read_spectrum(table, folder, scenario);
   if (noise.any()) read_coherence(table, scenario, noise);
   table.finish();
 }

@@ -5,6 +5,7 @@
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/warnings/warnings.h"
 
 namespace asdic {
 namespace {
@@ -37,6 +38,7 @@ PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesyste
   environment.finish();
   scenario::read_run(std::move(table), run);
   root.finish();
+  add_warnings(warnings(run), notes);
   return run;
 }
 
@@ -53,6 +55,7 @@ PropagationCase of_sonar(const TomlValue& document, const Scenario& scenario,
   run.source_depths = {platform.z()};
   TomlTable root(document);
   scenario::read_run(run_of(root), run);
+  add_warnings(warnings(run), notes);
   return run;
 }
 

@@ -7,6 +7,7 @@
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
 #include "raytrace/ocean/seawater.h"
+#include "raytrace/warnings/warnings.h"
 
 namespace asdic::scenario {
 namespace {
@@ -125,29 +126,28 @@ void read_section(TomlTable& table, const OceanReading& reading, Environment& oc
   check_reach(table, table.has("file") ? "file" : "depth", depth, ocean.section->speeds(), ocean);
 }
 
-/// A note when an equation is asked about water that it was not measured in.
-void note_range(const std::string& equation, std::span<const double> temperature,
-                std::span<const double> salinity, std::vector<std::string>& notes) {
-  struct Bounds {
-    double coldest, warmest, freshest, saltiest;
-  };
-  const Bounds bounds = equation == "mackenzie"    ? Bounds{2.0, 30.0, 25.0, 40.0}
-                        : equation == "del-grosso" ? Bounds{0.0, 30.0, 30.0, 40.0}
-                                                   : Bounds{0.0, 40.0, 0.0, 40.0};
+/// A warning when an equation is asked about water that it was not measured in: temperature,
+/// salinity and depth of all levels. \param latitude_deg  for the pressure
+void note_range(SeawaterEquation equation, std::span<const double> depth,
+                std::span<const double> temperature, std::span<const double> salinity,
+                double latitude_deg, std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < temperature.size(); ++i) {
-    if (temperature[i] >= bounds.coldest && temperature[i] <= bounds.warmest &&
-        salinity[i] >= bounds.freshest && salinity[i] <= bounds.saltiest)
-      continue;
-    notes.push_back("environment.sound_speed: " + to_text(temperature[i]) + " degC and " +
-                    to_text(salinity[i]) + " psu lie outside the range of " + equation + ", " +
-                    to_text(bounds.coldest) + " to " + to_text(bounds.warmest) + " degC and " +
-                    to_text(bounds.freshest) + " to " + to_text(bounds.saltiest) + " psu");
+    const double megapascal = 1e-6 * gauge_pressure(depth[i], latitude_deg);
+    const std::array<Asked, 4> asked{{{"temperature", temperature[i], temperature[i]},
+                                      {"salinity", salinity[i], salinity[i]},
+                                      {"depth", depth[i], depth[i]},
+                                      {"pressure", megapascal, megapascal}}};
+    const std::string text = outside(validity(equation), asked);
+    if (text.empty()) continue;
+    notes.push_back("environment.sound_speed: at " + to_text(depth[i]) + " m " + text);
     return;
   }
 }
 
 SoundSpeedProfile read_temperature_salinity(TomlTable& table, const OceanReading& reading,
-                                            Interpolation interpolation, double bottom_depth) {
+                                            Interpolation interpolation, const Environment& ocean) {
+  const double bottom_depth =
+      ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
   static const std::array<std::pair<std::string, SeawaterEquation>, 3> equations{
       {{"chen-millero", SeawaterEquation::chen_millero},
        {"mackenzie", SeawaterEquation::mackenzie},
@@ -166,7 +166,11 @@ SoundSpeedProfile read_temperature_salinity(TomlTable& table, const OceanReading
                                         {"temperature", temperature_quantity},
                                         {"salinity", salinity_quantity}});
   require_increasing(columns, "m");
-  note_range(name, columns.values[1], columns.values[2], reading.notes);
+  note_range(equation, columns.values[0], columns.values[1], columns.values[2], latitude,
+             reading.notes);
+  add_warnings({checks::profile_reach(columns.values[0].front(), columns.values[0].back(), ocean,
+                                      "the water is like that at the first and last")},
+               reading.notes);
   std::vector<double> depth, speed;
   const auto add = [&](double z, std::size_t level) {
     depth.push_back(z);
@@ -201,8 +205,7 @@ void read_sound_speed(TomlTable table, const OceanReading& reading, Environment&
   if (kind == "table") {
     read_table(table, reading, interpolation, ocean);
   } else if (kind == "temperature-salinity") {
-    const double deepest = ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-    ocean.water = read_temperature_salinity(table, reading, interpolation, deepest);
+    ocean.water = read_temperature_salinity(table, reading, interpolation, ocean);
   } else if (kind == "section") {
     read_section(table, reading, ocean);
   } else if (kind == "isovelocity") {

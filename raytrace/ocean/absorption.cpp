@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/ocean/absorption_validity.h"
+
 namespace asdic {
 namespace {
 
@@ -13,6 +15,10 @@ double law(const Thorp& /*thorp*/, double frequency) noexcept {
   const double f2 = khz * khz;
   return 3.3e-3 + 0.11 * f2 / (1.0 + f2) + 44.0 * f2 / (4100.0 + f2) + 3e-4 * f2;
 }
+
+// For about 4 °C, pH 8 and 1 km of depth; Jensen et al. (2011), §1.5.
+constexpr ValidRange thorp_ranges[] = {{"frequency", "Hz", 100.0, 5e4}};
+constexpr Validity thorp_validity{"Thorp's formula", "JASA 42, 270, 1967", thorp_ranges};
 
 /// One relaxation: its strength A·P at a relaxation frequency f_r adds A·P·f_r·f²/(f_r² + f²).
 double relaxation(double strength, double relaxation_khz, double khz) noexcept {
@@ -43,7 +49,37 @@ double law(const FrancoisGarrison& water, double frequency) noexcept {
   return relaxation(a1, f1, khz) + relaxation(a2 * p2, f2, khz) + a3 * p3 * khz * khz;
 }
 
+// Part II, and the limits of reliability of its parts: where magnesium sulphate decides, and above
+// 500 kHz, where the water itself does.
+constexpr ValidRange francois_garrison_ranges[] = {{"frequency", "Hz", 200.0, 1e6},
+                                                   {"temperature", "degC", -2.0, 22.0},
+                                                   {"salinity", "psu", 30.0, 35.0},
+                                                   {"depth", "m", 0.0, 3500.0}};
+constexpr ValidRange francois_garrison_above_500_khz[] = {{"frequency", "Hz", 200.0, 1e6},
+                                                          {"temperature", "degC", 0.0, 30.0},
+                                                          {"salinity", "psu", 0.0, 40.0},
+                                                          {"depth", "m", 0.0, 10000.0}};
+constexpr std::string_view francois_garrison_name = "Francois and Garrison's formula";
+constexpr std::string_view francois_garrison_source = "JASA 72, 896 and 1879, 1982";
+
+std::optional<Validity> law_validity(const NoAbsorption& /*none*/, double /*frequency*/) {
+  return std::nullopt;
+}
+std::optional<Validity> law_validity(const Thorp& /*thorp*/, double /*frequency*/) {
+  return thorp_validity;
+}
+std::optional<Validity> law_validity(const FrancoisGarrison& /*water*/, double frequency) {
+  const bool of_water_itself = frequency > 5e5;
+  return Validity{francois_garrison_name, francois_garrison_source,
+                  of_water_itself ? std::span<const ValidRange>(francois_garrison_above_500_khz)
+                                  : std::span<const ValidRange>(francois_garrison_ranges)};
+}
+
 }  // namespace
+
+std::optional<Validity> validity(const Absorption& absorption, double frequency) {
+  return std::visit([&](const auto& model) { return law_validity(model, frequency); }, absorption);
+}
 
 double absorption_db_per_km(const Absorption& absorption, double frequency) noexcept {
   return std::visit([&](const auto& model) { return law(model, std::abs(frequency)); }, absorption);

@@ -50,6 +50,36 @@ std::string_view name(SeawaterEquation equation) noexcept {
   return "";
 }
 
+namespace {
+
+constexpr ValidRange chen_millero_ranges[] = {{"temperature", "degC", 0.0, 40.0},
+                                              {"salinity", "psu", 0.0, 40.0},
+                                              {"pressure", "MPa", 0.0, 100.0}};
+constexpr ValidRange mackenzie_ranges[] = {{"temperature", "degC", 2.0, 30.0},
+                                           {"salinity", "psu", 25.0, 40.0},
+                                           {"depth", "m", 0.0, 8000.0}};
+constexpr ValidRange del_grosso_ranges[] = {{"temperature", "degC", 0.0, 30.0},
+                                            {"salinity", "psu", 30.0, 40.0},
+                                            {"pressure", "MPa", 0.0, 98.0665}};
+
+}  // namespace
+
+const Validity& validity(SeawaterEquation equation) noexcept {
+  static constexpr Validity chen_millero{"chen-millero", "JASA 62, 1129, 1977",
+                                         chen_millero_ranges};
+  static constexpr Validity mackenzie{"mackenzie", "JASA 70, 807, 1981", mackenzie_ranges};
+  static constexpr Validity del_grosso{"del-grosso", "JASA 56, 1084, 1974", del_grosso_ranges};
+  switch (equation) {
+    case SeawaterEquation::mackenzie:
+      return mackenzie;
+    case SeawaterEquation::del_grosso:
+      return del_grosso;
+    case SeawaterEquation::chen_millero:
+      break;
+  }
+  return chen_millero;
+}
+
 double sound_speed_chen_millero(double t, double s, double gauge_pressure) noexcept {
   const double p = gauge_pressure / pascal_per_bar;
   const auto row = [&](const auto& x0, const auto& x1, const auto& x2, const auto& x3) {

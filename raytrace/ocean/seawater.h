@@ -1,6 +1,8 @@
 #pragma once
 #include <string_view>
 
+#include "core/validity.h"
+
 namespace asdic {
 
 /// Which measurements the speed of sound in sea water is taken from.
@@ -12,6 +14,9 @@ enum class SeawaterEquation {
 
 /// "chen-millero", "mackenzie", "del-grosso"
 [[nodiscard]] std::string_view name(SeawaterEquation equation) noexcept;
+
+/// Where an equation holds: temperature [degC], salinity [psu], and depth [m] or pressure [MPa].
+[[nodiscard]] const Validity& validity(SeawaterEquation equation) noexcept;
 
 /// Speed of sound in sea water [m/s].
 ///

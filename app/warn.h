@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace asdic::app {
+
+/// What a user should know before he trusts the numbers: "asdic: warning: ..." a line, on standard
+/// error.
+void warn(const std::vector<std::string>& warnings);
+
+}  // namespace asdic::app

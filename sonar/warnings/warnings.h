@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "raytrace/warnings/warnings.h"
+#include "sonar/scenario.h"
+
+namespace asdic {
+
+/// Of a sonar's scenario, its ocean included: what a user should know before he trusts a number, in
+/// one line each, "KEY: what is the matter". Every check is a file of this folder.
+[[nodiscard]] std::vector<std::string> warnings(const Scenario& scenario);
+
+namespace checks {
+
+/// Frequencies that a pulse goes through, from the lowest to the highest [Hz].
+struct PulseFrequencies {
+  double lowest = 0.0, highest = 0.0;
+};
+/// Of all transmitters.
+[[nodiscard]] PulseFrequencies pulse_frequencies(const Scenario& scenario);
+
+/// A pulse whose band reaches down to 0 Hz: written in kHz, most likely.
+[[nodiscard]] std::string pulse_band(const Scenario& scenario);
+/// Wenz's or Knudsen's noise asked about frequencies that its curves do not have.
+[[nodiscard]] std::string noise_law_range(const Scenario& scenario);
+/// Measured noise asked about frequencies at which it was not measured: beyond its ends the level
+/// stays what it is there.
+[[nodiscard]] std::string noise_table_band(const Scenario& scenario);
+/// Scattering at the sea surface by a law that was not measured for this frequency or wind.
+[[nodiscard]] std::string surface_scattering_range(const Scenario& scenario);
+
+}  // namespace checks
+}  // namespace asdic
