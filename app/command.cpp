@@ -215,8 +215,8 @@ void add_scenario_options(const Command& command, ScenarioChoice& choice) {
   command
       .add_option(
           "--set", choice.overrides,
-          "replace one value of the scenario by its path, in SI units as in the file; "
-          "may be repeated: --set transmitter.elevation_deg=12 --set target.0.strength_db=20")
+          "replace one value of the scenario by its path, in SI units as in the file or with its "
+          "unit; may be repeated: --set target.0.range=25km --set target.0.strength_db=20")
       .type_name("KEY=VALUE")
       .one_at_a_time();
 }

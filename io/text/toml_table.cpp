@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "io/text/measured.h"
 #include "io/text/quote.h"
 
 namespace asdic {
@@ -32,6 +33,17 @@ std::string dotted(const std::string& path) {
 
 std::string element(const std::string& key, std::size_t index) {
   return key + "[" + std::to_string(index) + "]";
+}
+
+bool is_override(const TomlValue& value) { return value.origin.starts_with("--set "); }
+
+/// A number with its unit, which --set takes where that unit is meant; a file has bare numbers.
+std::optional<double> measured(const TomlValue& value, std::string_view unit) {
+  const auto* text = std::get_if<std::string>(&value.data);
+  if (text == nullptr || !is_override(value)) return std::nullopt;
+  const std::optional<Measured> number = parse_measured(*text);
+  if (!number || !unit_fits(number->unit, unit)) return std::nullopt;
+  return number->value;
 }
 
 /// A string such as "12 m/s" or "12".
@@ -125,10 +137,15 @@ double TomlTable::checked(const TomlValue& value, const std::string& key,
     number = static_cast<double>(*integer);
   else if (const auto* real = std::get_if<double>(&value.data))
     number = *real;
+  else if (const std::optional<double> with_unit = measured(value, quantity.unit))
+    number = *with_unit;
   else
-    throw fault_at(value, key, quantity.expected() + (holds_number(value) ? bare_number : ""));
+    throw fault_at(
+        value, key,
+        quantity.expected() + (holds_number(value) && !is_override(value) ? bare_number : ""));
   if (quantity.holds(number)) return number;
-  const bool show_unit = std::isfinite(number) && !quantity.unit.empty();
+  const bool bare = !std::holds_alternative<std::string>(value.data);
+  const bool show_unit = bare && std::isfinite(number) && !quantity.unit.empty();
   throw fault_at(value, key, quantity.expected(),
                  value.describe() + (show_unit ? " " + std::string(quantity.unit) : ""));
 }
