@@ -15,6 +15,7 @@
 #include "app/process_run.h"
 #include "app/progress_bar.h"
 #include "app/provenance.h"
+#include "app/warn.h"
 #include "core/error.h"
 #include "io/output/own_files.h"
 #include "raytrace/propagation.h"
@@ -163,6 +164,7 @@ int process(const Options& options) {
       throw RunError("interrupted; " + output +
                      (output == options.file ? " is as it was" : " was not written"));
     }
+    if (!options.quiet) warn(run.warnings);
     run.options = told(options, settings);
     run.program_version = provenance(threads).program_version;
     run.maps = !options.no_maps;

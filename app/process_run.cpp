@@ -85,6 +85,7 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
                           std::optional<int> ping, const std::function<void(int)>& done,
                           const std::function<bool()>& proceed) {
   ProcessedRun run;
+  run.warnings = recordings.scenario().notes;
   const std::size_t first = ping ? recordings.row_of(*ping) : 0;
   const std::size_t end = ping ? first + 1 : recordings.pings();
   const int arrays = static_cast<int>(recordings.scenario().arrays.size());
@@ -101,7 +102,13 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
       ProcessedPing made{.transmitter = recordings.transmitter(row),
                          .ping_time = recordings.ping_time(row)};
       std::vector<TrueEcho> echoes = recordings.echoes(row, array);
-      made.array = processor.process(recordings.recording(row, array), proceed, echoes);
+      const ArrayRecording heard = recordings.recording(row, array);
+      if (recordings.not_finite() > 0)
+        run.warnings.push_back(
+            fmt::format("pressure of ping {}, array {}: {} samples are not finite and were taken "
+                        "as silence",
+                        heard.ping, array, recordings.not_finite()));
+      made.array = processor.process(heard, proceed, echoes);
       for (std::size_t i = 0; i < echoes.size(); ++i)
         echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);

@@ -187,7 +187,13 @@ ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
   const auto places = file_.read<double>("phone_position", {row, first, 0}, {1, phones, 3});
   for (std::size_t n = 0; n < phones; ++n)
     result.phones.emplace_back(places[3 * n], places[3 * n + 1], places[3 * n + 2]);
-  const auto finite = [](float x) { return std::isfinite(x) ? x : 0.0F; };
+  std::size_t all = 0, wrong = 0;
+  const auto finite = [&](float x) {
+    ++all;
+    if (std::isfinite(x)) return x;
+    ++wrong;
+    return 0.0F;
+  };
   for (std::size_t n = 0; n < phones; ++n)
     for (const Piece& piece : pieces(row)) {
       if (piece.samples == 0) continue;
@@ -202,6 +208,12 @@ ArrayRecording PingRecordings::recording(std::size_t row, int array) const {
         std::transform(values.begin(), values.end(), std::back_inserter(result.pressure), finite);
       }
     }
+  if (all > 0 && wrong == all)
+    throw InputError({.where = path_.string() + ": pressure of ping " +
+                               std::to_string(numbers_[row]) + ", array " + std::to_string(array),
+                      .got = "no finite sample",
+                      .expected = "a recording"});
+  not_finite_ = wrong;
   return result;
 }
 

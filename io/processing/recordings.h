@@ -36,7 +36,11 @@ class PingRecordings {
 
   /// [transmitters] what each sends
   [[nodiscard]] std::vector<Replica> replicas() const;
+  /// Samples that are not finite are taken as silence, and counted.
+  /// \throws InputError if none of them is finite: that is no recording
   [[nodiscard]] ArrayRecording recording(std::size_t row, int array) const;
+  /// Samples of the recording read last that were not finite.
+  [[nodiscard]] std::size_t not_finite() const noexcept { return not_finite_; }
   /// When the recording of a row ends, after the ping's start [s].
   [[nodiscard]] double end(std::size_t row) const;
 
@@ -68,6 +72,7 @@ class PingRecordings {
   bool continuous_ = false;
   std::vector<TrueEcho> all_echoes_;
   std::vector<int> echo_ping_, echo_array_;
+  mutable std::size_t not_finite_ = 0;
 };
 
 }  // namespace asdic

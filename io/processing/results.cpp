@@ -148,6 +148,7 @@ void add_results(const std::filesystem::path& path, const ProcessedRun& run,
   file.set_attribute("processed", "version", "1.1");
   file.set_attribute("processed", "program_version", run.program_version);
   if (!run.options.empty()) file.set_attribute("processed", "options", run.options);
+  if (!run.warnings.empty()) file.set_attribute("processed", "warnings", run.warnings);
   write_table(file, "detections", "detection", processing::detections_table(run));
   write_table(file, "tracks", "point", processing::tracks_table(run));
   write_table(file, "targets", "row", processing::targets_table(run));

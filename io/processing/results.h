@@ -36,7 +36,8 @@ struct ProcessedTrack {
 struct ProcessedRun {
   std::vector<ProcessedPing> pings;  ///< [pings × arrays], in order
   std::vector<ProcessedTrack> tracks;
-  std::vector<std::string> options;  ///< "name=value" of what was asked for
+  std::vector<std::string> options;   ///< "name=value" of what was asked for
+  std::vector<std::string> warnings;  ///< what is to be known before it is trusted
   std::string program_version;
   bool maps = true;
 };
