@@ -24,7 +24,7 @@ std::vector<Table::Column> summary_columns() {
           {"all paths", "dB re 1 µPa"},
           {"reverberation", "dB re 1 µPa"},
           {"noise in band", "dB re 1 µPa"},
-          {"signal excess", "dB"}};
+          {"echo to background", "dB"}};
 }
 
 std::vector<std::string> summary_row(int ping, double elevation_deg, const TargetSummary& target) {
@@ -81,7 +81,7 @@ std::string PingReport::text(double wall) const {
     result +=
         "echo: the strongest path; all paths: the peak of their sum; reverberation: expected at "
         "that time; noise: in the "
-        "pulse's -40 dB band; excess: all paths over both, before processing gain\n";
+        "pulse's -40 dB band; echo to background: all paths over both, before any processing\n";
     // T·B of a CW is some 2 to 6 at −40 dB; a sweep's paths overlap in the record only.
     const Pulse pulse(scenario_.pulse);
     if (pulse.duration() * pulse.bandwidth_40db() > 10.0)

@@ -76,7 +76,8 @@ std::vector<TargetSummary> PingFile::summary(std::size_t ping) const {
   const auto present = column("present"), paths = column("paths"), time = column("echo_time"),
              level = column("echo_level_db"), reverberation = column("reverberation_db"),
              noise = column("noise_db"), peak = column("echo_peak_db"),
-             excess = column("signal_excess_db");
+             excess = column(file_.has("summary/echo_to_background_db") ? "echo_to_background_db"
+                                                                        : "signal_excess_db");
   // Files of before have no such column: the first array's, in most of them the only one.
   const auto array = file_.has("summary/array") ? column("array") : std::vector<double>(n, 0.0);
   std::vector<std::string> names = file_.attribute_texts("target_index", "names");

@@ -35,7 +35,8 @@ Json targets(const PingRecord& record) {
       one["echo_peak_db"] = target.echo_peak_db;
       one["reverberation_db"] = target.reverberation_db;
       one["noise_db"] = target.noise_db;
-      one["signal_excess_db"] = target.signal_excess_db;
+      one["echo_to_background_db"] = target.signal_excess_db;
+      one["signal_excess_db"] = target.signal_excess_db;  // its old name
     }
     all.push_back(std::move(one));
   }

@@ -178,28 +178,6 @@ class Busy {
   std::vector<Span> spans_;
 };
 
-/// (∫|S|²df)²/∫|S|⁴df [Hz]: answers that far apart in 1/B are independent in white noise.
-double noise_bandwidth(const Pulse& pulse) {
-  const double rate = 2.0 * pulse.bandwidth_40db();
-  const auto samples =
-      static_cast<std::size_t>(std::clamp(pulse.duration() * rate, 64.0, 1048576.0));
-  const ComplexFft<double> transform(fast_fft_length(2 * samples));
-  FftBuffer<std::complex<double>> x(transform.length());
-  const double step = pulse.duration() / static_cast<double>(samples);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const double t = (static_cast<double>(k) + 0.5) * step;
-    x[k] = pulse.analytic(t) * std::polar(1.0, -2.0 * pi * pulse.centre_frequency() * t);
-  }
-  transform.forward(x.data());
-  double second = 0.0, fourth = 0.0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double power = std::norm(x[k]);
-    second += power;
-    fourth += power * power;
-  }
-  return second * second / fourth / (step * static_cast<double>(transform.length()));
-}
-
 /// The nearest free cells on both sides, whole cells away: `reference_cells` on either; where the
 /// record has fewer on one side, the other makes up for them. Empty where there are fewer than
 /// half of what is asked for: a threshold over a handful of cells detects next to nothing.
@@ -226,6 +204,27 @@ std::vector<std::ptrdiff_t> reference_cells(const MatchedFilterPlan& plan, const
 }
 
 }  // namespace
+
+double noise_bandwidth(const Pulse& pulse) {
+  const double rate = 2.0 * pulse.bandwidth_40db();
+  const auto samples =
+      static_cast<std::size_t>(std::clamp(pulse.duration() * rate, 64.0, 1048576.0));
+  const ComplexFft<double> transform(fast_fft_length(2 * samples));
+  FftBuffer<std::complex<double>> x(transform.length());
+  const double step = pulse.duration() / static_cast<double>(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double t = (static_cast<double>(k) + 0.5) * step;
+    x[k] = pulse.analytic(t) * std::polar(1.0, -2.0 * pi * pulse.centre_frequency() * t);
+  }
+  transform.forward(x.data());
+  double second = 0.0, fourth = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double power = std::norm(x[k]);
+    second += power;
+    fourth += power * power;
+  }
+  return second * second / fourth / (step * static_cast<double>(transform.length()));
+}
 
 FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                            const MatchedFilterPlan& plan, int array, int target,

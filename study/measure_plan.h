@@ -33,13 +33,14 @@ struct DetectionPlan {
 
 /// What is measured in every realisation.
 struct MeasurePlan {
-  int ping = 1;                      ///< of the scenario, counted from 1
-  int array = 0;                     ///< an index
-  std::vector<std::size_t> levels;   ///< which of level_measures()
-  bool strongest_path = false;       ///< its delay, level, Doppler factor, angles
-  bool series_level = false;         ///< rms and peak of what the phones record
-  bool matched = false;              ///< the matched filter's answers are columns
-  MatchedFilterPlan matched_filter;  ///< and how they are had
+  int ping = 1;                          ///< of the scenario, counted from 1
+  int array = 0;                         ///< an index
+  std::vector<std::size_t> levels;       ///< which of level_measures()
+  bool strongest_path = false;           ///< its delay, level, Doppler factor, angles
+  bool detection_signal_excess = false;  ///< over the threshold that `detection` sets
+  bool series_level = false;             ///< rms and peak of what the phones record
+  bool matched = false;                  ///< the matched filter's answers are columns
+  MatchedFilterPlan matched_filter;      ///< and how they are had
   std::optional<DetectionPlan> detection;
   bool localisation = false;       ///< how far off the receiver's place is
   ProcessingSettings receiver;     ///< of detection by = "receiver", localisation

@@ -88,6 +88,10 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   plan.series_level = table.flag("series_level", false);
   plan.matched = table.flag("snr_matched", false);
   if (read_wanted(table, "detection")) plan.detection = read_detection(table);
+  plan.detection_signal_excess = table.flag("detection_signal_excess", false);
+  if (plan.detection_signal_excess && !plan.detection)
+    throw table.fault("detection_signal_excess",
+                      "a detection with it, whose receiver and false-alarm probability it is of");
   plan.localisation = table.flag("localisation_error", false);
   plan.series_every = read_series(table);
   const auto phones =

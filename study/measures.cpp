@@ -7,6 +7,7 @@
 
 #include "study/echo_filter.h"
 #include "study/receiver_measure.h"
+#include "study/signal_excess.h"
 
 namespace asdic::study {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* level_unit = "dB re 1 µPa";
 
-constexpr std::array<LevelMeasure, 6> by_level{{
+constexpr std::array<LevelMeasure, 7> by_level{{
     {"echo_level", "echo_level_db", "dB re 1 µPa",
      "all paths together, the peak of their envelope/√2; −∞: none",
      [](const TargetSummary& t) { return t.echo_peak_db; }},
@@ -23,8 +24,10 @@ constexpr std::array<LevelMeasure, 6> by_level{{
      [](const TargetSummary& t) { return t.reverberation_db; }},
     {"noise_level", "noise_level_db", "dB re 1 µPa", "of the noise in the pulse's band",
      [](const TargetSummary& t) { return t.noise_db; }},
-    {"signal_excess", "signal_excess_db", "dB",
-     "echo over reverberation and noise in the band; −∞: no path",
+    {"echo_to_background", "echo_to_background_db", "dB",
+     "echo over reverberation and noise in the band, before any processing; −∞: no path",
+     [](const TargetSummary& t) { return t.signal_excess_db; }},
+    {"signal_excess", "signal_excess_db", "dB", "old name of echo_to_background_db; will go",
      [](const TargetSummary& t) { return t.signal_excess_db; }},
     {"paths", "paths", "1", "pairs of paths there and back",
      [](const TargetSummary& t) { return static_cast<double>(t.paths); }},
@@ -145,6 +148,20 @@ void receiver(const MeasurePlan& plan, const ReceiverAnswer& answer, Collector& 
   }
 }
 
+/// The receiver whose threshold [measure.detection] sets. \param plan  with a detection
+ListeningReceiver receiver_of(const MeasurePlan& plan) {
+  ListeningReceiver receiver{.array = plan.array,
+                             .false_alarm_probability = plan.detection->false_alarm_probability};
+  if (plan.detection->by == DetectionPlan::By::receiver) {
+    receiver.cells = 2.0 * plan.receiver.detector.normaliser.reference_cells;
+    return receiver;
+  }
+  receiver.phone = plan.matched_filter.phone;
+  const bool known = plan.matched_filter.background == MatchedFilterPlan::Background::noise;
+  receiver.cells = known ? infinity : 2.0 * plan.matched_filter.reference_cells;
+  return receiver;
+}
+
 /// The ping with its samples, or without where nothing needs them.
 PingRecord heard(const PingSimulator& simulator, const MeasurePlan& plan) {
   return plan.needs_samples() ? simulator.simulate(plan.ping) : simulator.levels(plan.ping);
@@ -164,6 +181,12 @@ void walk(const MeasurePlan& plan, const Scenario& scenario, const PingSimulator
     for (const std::size_t i : plan.levels)
       to.add(by_level[i].column, by_level[i].unit, by_level[i].meaning,
              record == nullptr ? none : by_level[i].of(record->summary[t]));
+    if (plan.detection_signal_excess)
+      to.add("detection_signal_excess_db", "dB",
+             "echo over what the receiver detects half of the time; −∞: no path",
+             record == nullptr
+                 ? none
+                 : detection_signal_excess_db(*simulator, *record, receiver_of(plan), target));
     if (plan.strongest_path) strongest_path(record, plan.array, target, to);
     if (plan.uses_matched_filter()) matched_filter(plan, simulator, record, target, to);
     if (plan.uses_receiver()) receiver(plan, heard.targets[t], to);

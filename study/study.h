@@ -36,6 +36,7 @@ struct Study {
   std::string text;                     ///< the study file, verbatim
   std::filesystem::path path;
   std::vector<std::string> overrides;  ///< "key.path=value"
+  std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
 
 /// Reads a study file (docs/formats/study.md) and checks all of it, the scenario included.

@@ -112,6 +112,10 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   if (study.realisations == 0) study.realisations = grid_points(study.variables);
   make_room(study.variables, study.scenario_path, study.scenario);
   study.measure = read_measure(own.table("measure"), example_of(study));
+  if (own.table("measure").has("signal_excess"))
+    study.warnings.push_back(own.table("measure").where("signal_excess") +
+                             ": old name of echo_to_background, before any processing; it will "
+                             "go. detection_signal_excess counts processing gain and threshold");
   study.summary =
       read_summary(own.table("summary"), study.document.find("summary"), columns(study));
   check_summary_names(study);

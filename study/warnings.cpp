@@ -11,7 +11,7 @@ namespace asdic::study {
 
 std::vector<std::string> warnings(const Study& study) {
   constexpr std::uint64_t most = 32;
-  std::vector<std::string> all;
+  std::vector<std::string> all = study.warnings;
   const Sampler sampler(study);
   std::set<std::string> keys;
   for (std::uint64_t index = 0; index < std::min(most, study.realisations); ++index) {

@@ -51,8 +51,11 @@ void PingFileWriter::Impl::create_ping_datasets() {
                   cf::pressure_level);
   growing<double>("summary/echo_peak_db", "peak of all paths together", "dB", scale, {targets},
                   cf::level);
-  growing<double>("summary/signal_excess_db", "peak over reverberation plus noise", "dB", scale,
+  growing<double>("summary/echo_to_background_db",
+                  "peak over reverberation plus noise, before any processing", "dB", scale,
                   {targets});
+  growing<double>("summary/signal_excess_db", "old name of echo_to_background_db; will go", "dB",
+                  scale, {targets});
 }
 
 void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {

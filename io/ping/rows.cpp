@@ -115,7 +115,8 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   file.append<double>("summary/reverberation_db", reverberation);
   file.append<double>("summary/noise_db", noise);
   file.append<double>("summary/echo_peak_db", peak);
-  file.append<double>("summary/signal_excess_db", excess);
+  for (const char* name : {"echo_to_background_db", "signal_excess_db"})  // and its old name
+    file.append<double>(std::string("summary/") + name, excess);
 }
 
 }  // namespace asdic

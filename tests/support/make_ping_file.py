@@ -184,7 +184,7 @@ def write_levels_and_rays(f, s, result):
         put(summary, "array", np.zeros(rows.shape[:2]), "array that hears it best", None,
             (f["ping"], f["target_index"]), np.int32)
         for name, value in (("reverberation_db", 60.0), ("noise_db", 50.0),
-                            ("echo_peak_db", 91.0), ("signal_excess_db", 10.0)):
+                            ("echo_peak_db", 91.0), ("echo_to_background_db", 10.0), ("signal_excess_db", 10.0)):
             put(summary, name, np.full(rows.shape[:2], value), name.replace("_", " "), "dB",
                 (f["ping"], f["target_index"]))
     axis = s.elevations[0]

@@ -71,7 +71,7 @@ TABLES = {
         "arrival_elevation_deg scattering_strength_db level_db",
 }
 ROWS = {"arrivals": "arrival", "bounces": "bounce", "echoes": "echo", "patches": "patch"}
-SUMMARY = "present array paths echo_time echo_level_db echo_peak_db reverberation_db noise_db signal_excess_db"
+SUMMARY = "present array paths echo_time echo_level_db echo_peak_db reverberation_db noise_db echo_to_background_db signal_excess_db"
 TIMINGS = "rays eigenrays patches synthesis noise write"
 REUSE = "reuse_ocean legs_searched legs_reused reuse_reverberation reuse_expected_level band_points band_error"
 INTEGERS = {"ping", "leg", "target", "channel", "highlight", "path", "outgoing", "returning",

@@ -1,0 +1,24 @@
+#pragma once
+
+namespace asdic {
+
+/// Probability that a steady echo is detected whose matched filter's power is compared with its
+/// background.
+///
+/// T = |y|²/b, with y complex Gaussian about the echo's own y, and b the background's mean, known
+/// or averaged over m independent free cells. In noise alone the threshold is passed with
+/// probability P_fa; with an echo of SNR S = |y_echo|²/E|y_noise|²
+///
+///   P_d = Σ_j e^{−S} S^j/j! · C_j,   C_j = Σ_{i ≤ j} w_i
+///   w_i = x^i e^{−x}/i!,  x = −ln P_fa               (known: P_d is Marcum's Q₁(√2S, √2x))
+///   w_i = (m)_i/i! · q^i (1 − q)^m,  1 − q = P_fa^{1/m}  (averaged: cell averaging, CA-CFAR)
+///
+/// docs/theory/studies.md, eq. (8). \param snr  S, a ratio   \param cells  m; ∞: known
+[[nodiscard]] double detection_probability(double snr, double false_alarm_probability,
+                                           double cells);
+
+/// The SNR at which that probability is reached [dB]. \param probability  above P_fa, below 1
+[[nodiscard]] double detection_threshold_db(double false_alarm_probability, double cells,
+                                            double probability = 0.5);
+
+}  // namespace asdic
