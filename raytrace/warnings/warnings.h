@@ -28,6 +28,9 @@ namespace checks {
 [[nodiscard]] std::string profile_reach(const Environment& ocean);
 /// Absorption asked about frequencies or water that its law was not measured in.
 [[nodiscard]] std::string absorption_range(const Environment& ocean, double lowest, double highest);
+/// A solid behind the surface or the bottom that reflects more than comes in. Scenarios refuse it;
+/// BELLHOP's files, and materials node by node, run as they stand.
+[[nodiscard]] std::string gaining_boundary(const Environment& ocean);
 /// Cerveny beams of no width, which carry no sound.
 [[nodiscard]] std::string silent_beams(const PropagationCase& run_case);
 
