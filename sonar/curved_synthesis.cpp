@@ -27,8 +27,6 @@ struct GridSpan {
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
 };
 
-constexpr std::size_t block = Turning::block;
-
 /// A return of amplitude 1, sample by sample.
 using Shape = std::vector<std::complex<float>>;
 
@@ -145,11 +143,12 @@ class CurvedSynthesis {
   [[nodiscard]] Shape shape(const DelayCurve& curve, const Waveforms& w) const {
     Shape found;
     found.reserve(w.lags.size() * w.span.size());
-    std::array<double, block> heard, since, cycles, re, im;  // since: from the pulse's middle, u
+    std::array<double, Turning::block> heard, since, cycles, re,
+        im;  // since: from the pulse's middle, u
     for (const double lag : w.lags)
       for (std::ptrdiff_t i = w.span.begin; i < w.span.end;) {
         const auto count = static_cast<std::size_t>(
-            std::min<std::ptrdiff_t>(w.span.end - i, static_cast<std::ptrdiff_t>(block)));
+            std::min<std::ptrdiff_t>(w.span.end - i, static_cast<std::ptrdiff_t>(Turning::block)));
         for (std::size_t j = 0; j < count; ++j)
           heard[j] = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
         curve.sent_at({heard.data(), count}, {since.data(), count});
@@ -239,8 +238,8 @@ class CurvedSynthesis {
       Turning turning(-cycles, -per_sample);
       while (i < end) {
         const auto count = static_cast<std::size_t>(
-            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(block)));
-        std::array<float, 2 * block> sum{};
+            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(Turning::block)));
+        std::array<float, 2 * Turning::block> sum{};
         for (std::size_t k = 0; k < weight.size(); ++k) {
           const float* value = reinterpret_cast<const float*>(
               w.values.data() + k * w.span.size() + static_cast<std::size_t>(i - w.span.begin));

@@ -2,14 +2,15 @@
 
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/lanes.h"
+#include "raytrace/beams/larger.h"
 #include "raytrace/beams/tube_error.h"
 
 // What a ray foretells of its neighbours where it crosses the columns.
 namespace asdic {
 namespace {
 
-inline double larger(double a, double b) noexcept { return a > b ? a : b; }
-inline double smaller(double a, double b) noexcept { return a < b ? a : b; }
+using beams::larger;
+using beams::smaller;
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/lanes.h"
+#include "raytrace/beams/larger.h"
 
 namespace asdic {
 
@@ -12,8 +13,8 @@ namespace {
 
 const double root_of_two_pi = std::sqrt(2.0 * pi);
 
-inline double larger(double a, double b) noexcept { return a > b ? a : b; }
-inline double smaller(double a, double b) noexcept { return a < b ? a : b; }
+using beams::larger;
+using beams::smaller;
 
 }  // namespace
 
