@@ -18,7 +18,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ArrivalsOptions {
   ScenarioChoice scenario;
   std::vector<std::string> legs;  // "target", "array"; both when empty
   std::optional<int> target;      // from 0
@@ -40,7 +40,7 @@ Vec3 source_of(const PingSimulator& simulator, int ping) {
 }
 
 /// From the platform's depth (or another) to any depth and range.
-Leg to_receiver(const PingSimulator& simulator, const Options& options) {
+Leg to_receiver(const PingSimulator& simulator, const ArrivalsOptions& options) {
   if (!options.receiver_depth || !options.range)
     throw InputError({.where = options.range ? "--receiver-depth" : "--range",
                       .got = "nothing",
@@ -69,7 +69,7 @@ Leg to_receiver(const PingSimulator& simulator, const Options& options) {
   return leg;
 }
 
-std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& options) {
+std::vector<Leg> to_targets(const PingSimulator& simulator, const ArrivalsOptions& options) {
   const Scenario& scenario = simulator.scenario();
   const int n = static_cast<int>(scenario.targets.size());
   if (n == 0)
@@ -110,7 +110,7 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const Options& optio
 }
 
 /// Of a scenario with [run] and without a sonar: at all its receivers, or at the one asked for.
-int arrivals_of_run(const Options& options) {
+int arrivals_of_run(const ArrivalsOptions& options) {
   if (!options.legs.empty() || options.target)
     throw InputError({.where = options.scenario.path + ": platform",
                       .got = "none",
@@ -129,7 +129,7 @@ int arrivals_of_run(const Options& options) {
     check_kind(options.output, ".arr");
   }
   const RunArrivals found = find_run_arrivals(options.scenario, overrides);
-  warn(found.notes);
+  warn(found.origin.warnings);
   if (!options.output.empty()) write_run_arrivals(OutputFile(options.output, rules), found);
   if (options.json)
     print(run_arrivals_json(found));
@@ -138,7 +138,7 @@ int arrivals_of_run(const Options& options) {
   return 0;
 }
 
-int arrivals(const Options& options) {
+int arrivals(const ArrivalsOptions& options) {
   if (!has_sonar(options.scenario.path, options.scenario.overrides))
     return arrivals_of_run(options);
   if (!options.output.empty()) check_kind(options.output, "");
@@ -170,7 +170,7 @@ int arrivals(const Options& options) {
 }  // namespace
 
 void add_arrivals_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ArrivalsOptions>();
   const Command command = program.add_command(
       "arrivals",
       "Every eigenray from the platform to the targets and back, or to any depth and range; of a "

@@ -36,13 +36,14 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
   std::vector<std::string> overrides = choice.overrides;
   overrides.insert(overrides.end(), more_overrides.begin(), more_overrides.end());
   RunArrivals all;
-  all.run_case = read_propagation_case(choice.path, overrides, all.notes);
+  std::vector<std::string> warnings;
+  all.run_case = read_propagation_case(choice.path, overrides, warnings);
   all.run_case.task = Task::arrivals;
   all.origin = {.title = all.run_case.title,
                 .path = choice.path,
                 .text = read_text_file(choice.path, "a scenario file"),
                 .overrides = overrides,
-                .warnings = all.notes};
+                .warnings = warnings};
   ProgressBar bar("%", 100, true);
   try {
     until_interrupted([&] {
@@ -59,8 +60,7 @@ RunArrivals find_run_arrivals(const ScenarioChoice& choice,
   } catch (const InputError& error) {
     throw told_of_scenario(error, choice.path, overrides);
   }
-  all.notes.insert(all.notes.end(), all.result.notes.begin(), all.result.notes.end());
-  for (const std::string& note : all.notes) fmt::print(stderr, "asdic: note: {}\n", note);
+  for (const std::string& note : all.result.notes) fmt::print(stderr, "asdic: note: {}\n", note);
   return all;
 }
 
@@ -91,7 +91,8 @@ std::string run_arrivals_json(const RunArrivals& all) {
                              {"title", all.origin.title},
                              {"scenario", all.origin.path},
                              {"frequency_hz", all.run_case.frequency},
-                             {"notes", all.notes},
+                             {"warnings", all.origin.warnings},
+                             {"notes", all.result.notes},
                              {"legs", legs}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
@@ -105,7 +106,7 @@ void write_run_arrivals(OutputFile&& to, const RunArrivals& all) {
   Hdf5Output output(std::move(to));
   write_hdf5_result(output.file(), arrivals);
   write_root(output.file(), "asdic arrivals", all.origin);
-  if (!all.notes.empty()) output.file().set_attribute("", "notes", all.notes);
+  if (!all.result.notes.empty()) output.file().set_attribute("", "notes", all.result.notes);
   output.finish();
 }
 

@@ -13,7 +13,6 @@ struct RunArrivals {
   ResultOrigin origin{};
   PropagationCase run_case{};
   PropagationResult result{};
-  std::vector<std::string> notes{};
 };
 
 /// Reads a scenario with [run] and finds the arrivals; Ctrl-C ends it. \throws InputError, RunError

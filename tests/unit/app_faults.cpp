@@ -91,10 +91,10 @@ INSTANTIATE_TEST_SUITE_P(
               2,
               {"--set target.0.rnage: found an unknown key", "(did you mean \"range\"?)"}},
         Fault{"validate small.toml --set target.0.velcoity=3", 2, {"did you mean \"velocity\"?"}},
-        Fault{"validate small.toml --set environment.wind_speed='\"12 m/s\"'",
+        Fault{"validate small.toml --set environment.wind_speed='\"12 km\"'",
               2,
-              {"wind_speed: found \"12 m/s\", expected a wind speed from 0 to 60 m/s, as a number "
-               "without quotes and unit"}},
+              {"--set environment.wind_speed: found \"12 km\", expected a wind speed from 0 to 60 "
+               "m/s"}},
         Fault{"validate small.toml --set array.kind=towed --set array.behind=[]",
               2,
               {"array.behind: found an array of 0, expected an array of numbers", "one at least"}},

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "io/hdf5_file.h"
@@ -30,6 +31,7 @@ class Honest : public testing::Test {
           "[run]\nfrequency = 1000.0\n[run.source]\ndepth = 100.0\n"
           "[run.receivers]\ndepth = [50.0]\nrange = [1000.0, 2000.0]\n";
     run.erase(run.find("seed = 3\n"), 9);
+    run.replace(run.find("\"rigid\""), 7, "\"fluid\"");
     static_cast<void>(folder.write("run.toml", run));
   }
   [[nodiscard]] std::vector<std::string> warnings_of(const std::string& file) const {
@@ -93,10 +95,12 @@ TEST_F(Honest, ARecordWithoutANumberIsNotProcessed) {
     std::vector<float> values = file.read<float>("pressure");
     const std::size_t of_ping = shape[1] * shape[2];
     for (std::size_t i = keep; i < rows * of_ping; ++i) values[i] = std::nanf("");
-    const double rate = file.attribute_number("pressure", "sample_rate_hz");
+    std::map<std::string, double> kept;
+    for (const std::string key : {"sample_rate_hz", "time_start", "time_step"})
+      kept[key] = file.attribute_number("pressure", key);
     file.remove("pressure");
     file.write<float>("pressure", values, shape);
-    file.set_attribute("pressure", "sample_rate_hz", rate);
+    for (const auto& [key, value] : kept) file.set_attribute("pressure", key, value);
     file.close();
   };
   spoil(1, 4000);  // a fifth of one phone of the first ping is left

@@ -9,16 +9,18 @@
 namespace asdic {
 namespace {
 
-/// ∫ P_d(S)·e^{−S/s}/s dS by Simpson's rule over u = S/s: what a target of Swerling 1 is detected
-/// with. Steps of 0.01 to 40: the rule's error and the rest are below 1e-9.
+/// ∫ P_d(S)·e^{−S/s}/s dS by Simpson's rule over t, S = 40·s·t³: what a target of Swerling 1 is
+/// detected with. The steps are fine where P_d rises; the rule's error and the rest are below 1e-9.
 double over_swerling_1(double mean, double false_alarm, double cells) {
   constexpr int steps = 4000;
   double sum = 0.0;
   for (int i = 0; i <= steps; ++i) {
-    const double u = 0.01 * i, weight = i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-    sum += weight * std::exp(-u) * detection_probability(mean * u, false_alarm, cells);
+    const double t = 1.0 / steps * i, u = 40.0 * t * t * t;
+    const double weight = i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+    sum +=
+        weight * 120.0 * t * t * std::exp(-u) * detection_probability(mean * u, false_alarm, cells);
   }
-  return sum * 0.01 / 3.0;
+  return sum / steps / 3.0;
 }
 
 TEST(DetectionThreshold, WithoutAnEchoTheProbabilityIsThatOfAFalseAlarm) {
