@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct BellhopOptions {
   std::string root, output, dialect = "fortran";
   bool like_bellhop = false, beams_as_written = false, quiet = false, force = false;
   std::optional<int> threads;
@@ -98,7 +98,7 @@ void fix_fan(PropagationCase& run_case) {
     beams.elevations.push_back(std::lerp(beams.lowest, beams.highest, double(i) / (n - 1)));
 }
 
-PropagationResult search(const bellhop::Input& input, const Options& options) {
+PropagationResult search(const bellhop::Input& input, const BellhopOptions& options) {
   constexpr int steps = 100;
   ProgressBar bar("hundredth", steps, !options.quiet);
   const Progress progress = [&](double share) {
@@ -136,8 +136,8 @@ struct ResultFiles {
 };
 
 void write_results(const bellhop::Input& input, const PropagationResult& result,
-                   const Options& options, const std::filesystem::path& root, ResultFiles&& files,
-                   Report& report) {
+                   const BellhopOptions& options, const std::filesystem::path& root,
+                   ResultFiles&& files, Report& report) {
   const PropagationCase& run_case = input.run_case;
   const bellhop::Dialect dialect =
       options.dialect == "wide" ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
@@ -158,7 +158,7 @@ void write_results(const bellhop::Input& input, const PropagationResult& result,
   }
 }
 
-void run_case(const Options& options, const std::filesystem::path& root, Report& report) {
+void run_case(const BellhopOptions& options, const std::filesystem::path& root, Report& report) {
   StopWatch watch;
   bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
   if (!options.like_bellhop) choose_single_beam(input.run_case, input.notes);
@@ -184,7 +184,7 @@ void run_case(const Options& options, const std::filesystem::path& root, Report&
                           search_time, write));
 }
 
-int bellhop_command(const Options& options) {
+int bellhop_command(const BellhopOptions& options) {
   const std::filesystem::path root =
       root_of(options.output.empty() ? options.root : options.output);
   OutputFile print_file(with(root, ".prt"),
@@ -213,7 +213,7 @@ int bellhop_command(const Options& options) {
 }  // namespace
 
 void add_bellhop_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BellhopOptions>();
   const Command command = program.add_command(
       "bellhop",
       "Run a BELLHOP case: reads ROOT.env and its companions, writes ROOT.shd, ROOT.arr or\n"

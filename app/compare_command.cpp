@@ -30,7 +30,7 @@ struct Thresholds {
   }
 };
 
-struct Options {
+struct CompareOptions {
   std::string a, b, picture;
   compare::FieldOptions field;
   compare::ArrivalOptions arrivals;
@@ -137,7 +137,8 @@ std::vector<std::string> missed_paths(const compare::ArrivalDifference& d,
   return lines;
 }
 
-CompareResult compared(const Options& options, const PropagationFile& a, const PropagationFile& b) {
+CompareResult compared(const CompareOptions& options, const PropagationFile& a,
+                       const PropagationFile& b) {
   if (a.index() != b.index())
     throw InputError(
         {.where = options.a + " and " + options.b,
@@ -169,7 +170,7 @@ CompareResult compared(const Options& options, const PropagationFile& a, const P
   return result;
 }
 
-void draw(const Options& options) {
+void draw(const CompareOptions& options) {
   check_output(options.picture,
                {.own = own::picture, .force = options.force, .option = "--picture"});
   const TemporaryFolder folder;
@@ -183,7 +184,7 @@ void draw(const Options& options) {
   if (status != 0) throw RunError(options.picture + ": the picture was not drawn");
 }
 
-int compare_files(const Options& options) {
+int compare_files(const CompareOptions& options) {
   const PropagationFile a = read_result(options.a), b = read_result(options.b);
   const CompareResult result = compared(options, a, b);
   print(options.json ? comparison_json(result) : comparison_table(result));
@@ -225,7 +226,7 @@ void add_thresholds(const Command& command, Thresholds& limits) {
 }  // namespace
 
 void add_compare_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   const Command command = program.add_command(
       "compare", "How far two fields, lists of arrivals or sets of rays are apart.");
   command.add_option("A", options->a, ".shd, .arr, .ray, or HDF5 of asdic field, arrivals, rays")

@@ -17,7 +17,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ConvertOptions {
   std::string input, output;
   std::vector<std::string> overrides;
   std::optional<bool> wide, binary;  // none: as the input has it
@@ -34,20 +34,20 @@ bool is_hdf5_name(const std::string& extension) {
   return extension == ".h5" || extension == ".hdf5" || extension == ".nc";
 }
 
-[[noreturn]] void refuse(const Options& options, const std::string& expected) {
+[[noreturn]] void refuse(const ConvertOptions& options, const std::string& expected) {
   throw InputError({.where = "convert",
                     .got = fmt::format("\"{}\" to \"{}\"", options.input, options.output),
                     .expected = expected});
 }
 
-std::vector<std::string> env_to_toml(const Options& options) {
+std::vector<std::string> env_to_toml(const ConvertOptions& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.input));
   OutputFile(options.output, rules_for(options.output, options.force))
       .write(std::string("# ") + own::remark + " convert.\n" + to_toml(input.run_case));
   return input.notes;
 }
 
-std::vector<std::string> toml_to_env(const Options& options) {
+std::vector<std::string> toml_to_env(const ConvertOptions& options) {
   std::vector<std::string> notes;
   const PropagationCase run_case = read_propagation_case(options.input, options.overrides, notes);
   const bellhop::Written written = bellhop::write_case(run_case, options.binary.value_or(false));
@@ -59,7 +59,7 @@ std::vector<std::string> toml_to_env(const Options& options) {
 }
 
 /// A field, arrivals or rays from one kind of file to another.
-std::vector<std::string> convert_result(const Options& options, const std::string& to) {
+std::vector<std::string> convert_result(const ConvertOptions& options, const std::string& to) {
   PropagationFile result = read_result(options.input);
   const auto dialect = [&](bellhop::Dialect as_it_is) {
     if (!options.wide) return as_it_is;
@@ -88,7 +88,7 @@ std::vector<std::string> convert_result(const Options& options, const std::strin
   return {};
 }
 
-int convert(const Options& options) {
+int convert(const ConvertOptions& options) {
   const std::string from = extension_of(options.input), to = extension_of(options.output);
   check_output(options.output, rules_for(options.output, options.force, options.input));
   std::vector<std::string> notes;
@@ -112,7 +112,7 @@ int convert(const Options& options) {
 }  // namespace
 
 void add_convert_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertOptions>();
   const Command command = program.add_command(
       "convert",
       "Convert BELLHOP's files: a case (.env and companions) to a scenario (.toml) and back, a\n"

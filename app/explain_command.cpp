@@ -14,14 +14,14 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ExplainChoice {
   std::string root;
   ExplainOptions finer;
   std::optional<int> threads;
   bool json = false, quiet = false;
 };
 
-int explain_case(const Options& options) {
+int explain_case(const ExplainChoice& options) {
   const bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
   const tbb::global_control limit(
       tbb::global_control::max_allowed_parallelism,
@@ -45,7 +45,7 @@ int explain_case(const Options& options) {
 }  // namespace
 
 void add_explain_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainChoice>();
   const Command command = program.add_command(
       "explain", "A BELLHOP case as BELLHOP does it and as it should be, and why they differ.");
   command.add_option("ROOT", options->root, "the case: ROOT.env and its companions")

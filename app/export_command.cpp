@@ -12,13 +12,13 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string file, folder = ".";
   bool wav = false, force = false;
   std::optional<int> ping;
 };
 
-int export_wav(const Options& options) {
+int export_wav(const ExportOptions& options) {
   const PingFile file(options.file);
   if (options.ping && static_cast<std::size_t>(*options.ping) > file.pings())
     throw InputError({.where = "--ping",
@@ -56,7 +56,7 @@ int export_wav(const Options& options) {
 }  // namespace
 
 void add_export_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   const Command command =
       program.add_command("export", "Write the phones of a ping file in another format.");
   command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping").required();

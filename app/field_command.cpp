@@ -22,7 +22,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct FieldOptions {
   ScenarioChoice scenario;
   std::string output;
   std::optional<int> threads;
@@ -31,7 +31,7 @@ struct Options {
 
 bool is_shade_name(const std::filesystem::path& path) { return path.extension() == ".shd"; }
 
-PropagationResult run_field_of(const PropagationCase& run_case, const Options& options) {
+PropagationResult run_field_of(const PropagationCase& run_case, const FieldOptions& options) {
   ProgressBar bar("%", 100, !options.quiet);
   const Progress progress = [&](double share) {
     bar.done(static_cast<int>(100.0 * share));
@@ -52,7 +52,7 @@ PropagationResult run_field_of(const PropagationCase& run_case, const Options& o
   }
 }
 
-int field(const Options& options) {
+int field(const FieldOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   FieldResult result;
   std::vector<std::string> warnings;
@@ -97,7 +97,7 @@ int field(const Options& options) {
 }  // namespace
 
 void add_field_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FieldOptions>();
   const Command command = program.add_command(
       "field", "The pressure field of a source over range and depth: transmission loss.");
   add_scenario_options(command, options->scenario);

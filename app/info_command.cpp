@@ -17,7 +17,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct InfoOptions {
   std::string path;
   bool check = false;
 };
@@ -127,7 +127,7 @@ int check(const std::string& path) {
 }  // namespace
 
 void add_info_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   const Command command = program.add_command("info", "Say what a file that asdic wrote holds.");
   command
       .add_option("FILE", options->path,

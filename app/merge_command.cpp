@@ -14,7 +14,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::string> parts;
   std::string output, study;
   study::MergeOptions merge;
@@ -23,7 +23,7 @@ struct Options {
 
 /// The study file that the parts were made of: the one that is named, or the one that they name,
 /// which must not have changed.
-std::filesystem::path find_study(const Options& options, const study::StudyFile& part) {
+std::filesystem::path find_study(const MergeOptions& options, const study::StudyFile& part) {
   if (!options.study.empty()) return options.study;
   const std::filesystem::path name = [&] {
     const auto sessions = part.sessions();
@@ -39,7 +39,7 @@ std::filesystem::path find_study(const Options& options, const study::StudyFile&
 }
 
 /// Reads it as the parts did.
-study::Study study_of(const Options& options) {
+study::Study study_of(const MergeOptions& options) {
   const study::StudyFile part(options.parts.front());
   const std::filesystem::path path = find_study(options, part);
   if (options.study.empty()) {  // nothing but the part says so: it must not lead to other files
@@ -76,7 +76,7 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
                                 "); another output"});
 }
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   const study::Study study = study_of(options);
   std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   OutputFile output(options.output, {.own = own::hdf5, .force = options.force, .inputs = parts});
@@ -94,7 +94,7 @@ int merge(const Options& options) {
   print(fmt::format("{}: {} of {}", options.output, count_of(report.rows, "realisation"),
                     count_of(parts.size(), "part")));
   if (!report.missing.empty())
-    print(fmt::format(", not complete: without {}", study::to_text(report.missing)));
+    print(fmt::format(", not complete: without {}", study::index_text(report.missing)));
   print(options.merge.copy ? "\n" : "; the rows stay in the parts: keep them together\n");
   return 0;
 }
@@ -102,7 +102,7 @@ int merge(const Options& options) {
 }  // namespace
 
 void add_merge_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   const Command command = program.add_command(
       "merge", "Put the parts of a study together: a catalogue of them, or one file.");
   command.add_option("PARTS", options->parts, "files of asdic study --realisations or --shard")

@@ -13,7 +13,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct OceanOptions {
   double latitude = 0.0, longitude = 0.0;  // [°]
   std::optional<int> month;
   std::optional<double> bearing, range;  // [°], [m]
@@ -21,7 +21,7 @@ struct Options {
   bool force = false;
 };
 
-int ocean(const Options& options) {
+int ocean(const OceanOptions& options) {
   if (options.bearing.has_value() != options.range.has_value())
     throw InputError({.where = options.bearing ? "--range" : "--bearing",
                       .got = "nothing",
@@ -55,7 +55,7 @@ int ocean(const Options& options) {
 }  // namespace
 
 void add_ocean_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OceanOptions>();
   const Command command = program.add_command(
       "ocean", "Write the [environment] of a real place, out of measured climatologies.");
   command.add_option("--latitude", options->latitude, "degrees north")

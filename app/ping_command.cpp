@@ -25,7 +25,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct PingOptions {
   ScenarioChoice scenario;
   std::string output;
   std::optional<int> pings, threads;
@@ -34,7 +34,7 @@ struct Options {
 };
 
 /// --pings and --seed are overrides like any other: so the file tells of them.
-std::vector<std::string> overrides(const Options& options) {
+std::vector<std::string> overrides(const PingOptions& options) {
   std::vector<std::string> all = options.scenario.overrides;
   if (options.pings) all.push_back(fmt::format("pings.count={}", *options.pings));
   if (options.seed) all.push_back(fmt::format("seed={}", *options.seed));
@@ -63,7 +63,7 @@ void tell_of_parts(const std::filesystem::path& output) {
   }
 }
 
-int ping(const Options& options) {
+int ping(const PingOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Scenario scenario = read_scenario(options.scenario.path, overrides(options));
   const std::filesystem::path path =
@@ -140,7 +140,7 @@ int ping(const Options& options) {
 }  // namespace
 
 void add_ping_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PingOptions>();
   const Command command = program.add_command(
       "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.");
   add_scenario_options(command, options->scenario);

@@ -15,7 +15,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::string file, folder, array;
   std::optional<int> ping;
   bool force = false;
@@ -51,7 +51,7 @@ void check_drawable(const std::filesystem::path& file) {
   if (type != ".shd" && type != ".arr" && type != ".ray") throw wrong("a file that is not HDF5");
 }
 
-int plot(const Options& options) {
+int plot(const PlotOptions& options) {
   check_drawable(options.file);
   const TemporaryFolder folder;
   std::filesystem::path file = options.file;
@@ -80,7 +80,7 @@ int plot(const Options& options) {
 }  // namespace
 
 void add_plot_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlotOptions>();
   const Command command = program.add_command(
       "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).");
   command

@@ -23,7 +23,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ProcessOptions {
   std::string file, output, scenario, csv;
   std::optional<int> ping, threads;
   std::string beamformer = "conventional", shading = "none", normaliser = "split-window";
@@ -53,7 +53,7 @@ std::pair<double, double> two_numbers(const std::string& option, const std::stri
           number_of(text_begin + at + 1, text_begin + text.size())};
 }
 
-ProcessingSettings settings_of(const Options& options, const std::vector<Replica>& replicas,
+ProcessingSettings settings_of(const ProcessOptions& options, const std::vector<Replica>& replicas,
                                double record_start) {
   ProcessingSettings s = options.settings;
   s.detector.beamformer =
@@ -89,7 +89,7 @@ ProcessingSettings settings_of(const Options& options, const std::vector<Replica
 }
 
 /// What was asked for, as the file tells it.
-std::vector<std::string> told(const Options& o, const ProcessingSettings& s) {
+std::vector<std::string> told(const ProcessOptions& o, const ProcessingSettings& s) {
   std::vector<std::string> list{
       "beamformer=" + o.beamformer,
       "shading=" + o.shading,
@@ -112,7 +112,7 @@ std::vector<std::string> told(const Options& o, const ProcessingSettings& s) {
 }
 
 /// A file of the folder of tables, which is made if need be.
-OutputFile table_output(const Options& options, const std::string& kind) {
+OutputFile table_output(const ProcessOptions& options, const std::string& kind) {
   std::error_code error;
   std::filesystem::create_directories(options.csv, error);
   if (error) throw RunError(options.csv + ": " + error.message());
@@ -122,7 +122,7 @@ OutputFile table_output(const Options& options, const std::string& kind) {
 }
 
 /// The file to write: by default the one that is read, or what a link of that name leads to.
-OutputFile file_output(const Options& options) {
+OutputFile file_output(const ProcessOptions& options) {
   if (!options.output.empty() && options.output != options.file)
     return OutputFile(options.output, rules_for(options.output, options.force, options.file));
   static_cast<void>(Hdf5File::peek(options.file));  // says what is wrong with it, if anything
@@ -130,7 +130,7 @@ OutputFile file_output(const Options& options) {
   return OutputFile(std::filesystem::canonical(options.file), {.own = read_next});
 }
 
-int process(const Options& options) {
+int process(const ProcessOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -180,7 +180,7 @@ int process(const Options& options) {
   return 0;
 }
 
-void add_detection_options(const Command& command, Options& o) {
+void add_detection_options(const Command& command, ProcessOptions& o) {
   NormaliserSettings& normaliser = o.settings.detector.normaliser;
   command.add_option("--beamformer", o.beamformer, "of the arrays")
       .show_default()
@@ -232,7 +232,7 @@ void add_detection_options(const Command& command, Options& o) {
   command.add_option("--until", o.until, "nor after [s]").type_name("S").check(not_negative());
 }
 
-void add_place_options(const Command& command, Options& o) {
+void add_place_options(const Command& command, ProcessOptions& o) {
   command.add_length(
       "--target-depth", o.settings.target_depth,
       "depth of what answers; default: where the ray came from if the array tells elevation, else "
@@ -266,7 +266,7 @@ void add_place_options(const Command& command, Options& o) {
 }  // namespace
 
 void add_process_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ProcessOptions>();
   const Command command = program.add_command(
       "process",
       "What a sonar makes of a ping file: beams, matched filters, detections, places, tracks, and "

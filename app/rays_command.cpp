@@ -21,7 +21,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct RaysOptions {
   ScenarioChoice scenario;
   std::optional<double> from, to;  // [Â°]
   std::optional<int> count;
@@ -40,7 +40,7 @@ constexpr double usual_from = -20.0, usual_to = 20.0, usual_range = 50e3;  // [Â
 constexpr int usual_count = 41, usual_bounces = 100;
 constexpr int usual_count_of_run = 50;  // as raytrace/runs/rays_run.cpp
 
-void check(const Options& options) {
+void check(const RaysOptions& options) {
   std::vector<double> given = options.elevations;
   for (const auto& end : {options.from, options.to})
     if (end) given.push_back(*end);
@@ -58,7 +58,7 @@ void check(const Options& options) {
 
 /// Launch elevations [rad]: the command line's, and what it leaves open as [run.fan] has it in a
 /// run of rays, else the usual ones.
-std::vector<double> elevations(const Options& options, const BeamSettings& fan, bool as_run) {
+std::vector<double> elevations(const RaysOptions& options, const BeamSettings& fan, bool as_run) {
   std::vector<double> all;
   for (const double elevation : options.elevations) all.push_back(radians(elevation));
   if (!all.empty()) return all;
@@ -74,7 +74,7 @@ std::vector<double> elevations(const Options& options, const BeamSettings& fan, 
 }
 
 /// The vertical plane through the platform of a sonar scenario along a bearing [deg].
-Environment plane_along(const Options& options, double bearing) {
+Environment plane_along(const RaysOptions& options, double bearing) {
   if (!has_sonar(options.scenario.path, options.scenario.overrides))
     throw InputError({.where = "--bearing",
                       .got = fmt::format("{} deg and a run without a platform", bearing),
@@ -87,7 +87,7 @@ Environment plane_along(const Options& options, double bearing) {
 
 /// The ocean and the source out of a sonar scenario, or one of an ocean and a run.
 /// \param as_run  [run] asks for rays: its box and its task stand
-RaysResult read(const Options& options, bool as_run) {
+RaysResult read(const RaysOptions& options, bool as_run) {
   std::vector<std::string> overrides = options.scenario.overrides, notes;
   if (!as_run) overrides.push_back("run.task=rays");
   if (options.range || !as_run)
@@ -120,7 +120,8 @@ RaysResult read(const Options& options, bool as_run) {
   return result;
 }
 
-std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case, const Options& options) {
+std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case,
+                                         const RaysOptions& options) {
   try {
     PropagationResult found;
     until_interrupted([&] {
@@ -137,7 +138,7 @@ std::vector<std::vector<RayPath>> run_of(const PropagationCase& run_case, const 
 
 /// Traces what is asked for. A run of rays or eigenrays goes as `asdic bellhop` goes; a fan of the
 /// command line beside a run of eigenrays stands instead of them, and so does a limit of bounces.
-RaysResult trace(const Options& options) {
+RaysResult trace(const RaysOptions& options) {
   const bool asked = asks_for_rays(options.scenario.path, options.scenario.overrides);
   RaysResult result = read(options, asked);
   PropagationCase& run_case = result.run_case;
@@ -164,7 +165,7 @@ RaysResult trace(const Options& options) {
   return result;
 }
 
-int rays(const Options& options) {
+int rays(const RaysOptions& options) {
   check(options);
   const OutputRules rules = rules_for(options.output, options.force, options.scenario.path);
   if (!options.output.empty()) {
@@ -184,7 +185,7 @@ int rays(const Options& options) {
 }  // namespace
 
 void add_rays_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RaysOptions>();
   const Command command =
       program.add_command("rays",
                           "Trace a fan of rays from the platform, or from the "

@@ -12,13 +12,13 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct RecoverOptions {
   std::string part, output;
   bool force = false, quiet = false;
 };
 
 /// The name that the run would have given it.
-std::filesystem::path output_of(const Options& options) {
+std::filesystem::path output_of(const RecoverOptions& options) {
   if (!options.output.empty()) return options.output;
   std::filesystem::path target = target_of(options.part);
   if (target.empty())
@@ -37,7 +37,7 @@ void check_free(const std::filesystem::path& output, bool force) {
                       .expected = "another name (-o), or --force to write over it"});
 }
 
-int recover(const Options& options) {
+int recover(const RecoverOptions& options) {
   const std::filesystem::path output = output_of(options), written = target_of(options.part);
   check_free(output, options.force);
   std::optional<OutputLock> still_at_work;  // the run that writes the part
@@ -56,7 +56,7 @@ int recover(const Options& options) {
 }  // namespace
 
 void add_recover_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecoverOptions>();
   const Command command = program.add_command(
       "recover",
       "Make a ping file of the part that a run left which was killed, or out of power or disk.");

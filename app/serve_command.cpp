@@ -18,7 +18,7 @@
 namespace asdic::app {
 namespace {
 
-struct Options {
+struct ServeOptions {
   ScenarioChoice scenario;
   std::string socket, data_dir, output_dir, token_file, pace = "fast";
   std::optional<std::uint16_t> port;
@@ -32,7 +32,7 @@ void report(const std::string& text) {
 }
 
 /// Out of a file, of the environment, or a new one, which is told.
-std::string token_for(const Options& options) {
+std::string token_for(const ServeOptions& options) {
   if (!options.token_file.empty()) return serve::read_token(options.token_file);
   if (const char* given = std::getenv("ASDIC_TOKEN")) {
     serve::check_token(given, "ASDIC_TOKEN");
@@ -43,7 +43,7 @@ std::string token_for(const Options& options) {
   return token;
 }
 
-serve::SessionSettings settings_of(const Options& options, int threads) {
+serve::SessionSettings settings_of(const ServeOptions& options, int threads) {
   serve::SessionSettings settings;
   settings.scenario = {.text = read_text_file(options.scenario.path, "a scenario file"),
                        .path = options.scenario.path,
@@ -64,7 +64,7 @@ serve::SessionSettings settings_of(const Options& options, int threads) {
   return settings;
 }
 
-int serve_scenario(const Options& options) {
+int serve_scenario(const ServeOptions& options) {
   signal(SIGPIPE, SIG_IGN);  // a client that has gone is a failed write
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -82,7 +82,7 @@ int serve_scenario(const Options& options) {
 }  // namespace
 
 void add_serve_command(Program& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ServeOptions>();
   const Command command = program.add_command(
       "serve", "Ping on command: a line of JSON each, by standard input, a Unix socket or TCP.");
   add_scenario_options(command, options->scenario);

@@ -75,7 +75,7 @@ int study_info(const std::string& path) {
                     byte_count(static_cast<double>(std::filesystem::file_size(path))),
                     file.complete() ? "complete" : "not complete"));
   print(fmt::format("holds        {}, {} of {}", count_of(table.index.size(), "realisation"),
-                    study::to_text(file.range()), imprint.realisations));
+                    study::index_text(file.range()), imprint.realisations));
   if (valid < table.index.size()) print(fmt::format("; {} skipped", table.index.size() - valid));
   if (const auto kept = file.series_index(); !kept.empty())
     print(fmt::format("; {} time series", kept.size()));

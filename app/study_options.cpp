@@ -41,7 +41,7 @@ void check_until(const StudyOptions& options, const StudyOrder& order) {
   study::check_until(order.study);
   if (order.run.range != study::IndexRange{0, order.study.realisations})
     throw InputError({.where = "--until",
-                      .got = "a part of the study (" + study::to_text(order.run.range) + ")",
+                      .got = "a part of the study (" + study::index_text(order.run.range) + ")",
                       .expected = "the whole of it: a part cannot know when all have enough"});
 }
 

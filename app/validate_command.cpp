@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/sonar_text.h"
+#include "core/units.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
@@ -18,8 +19,6 @@
 
 namespace asdic::app {
 namespace {
-
-const double db_per_neper = 20.0 / std::log(10.0);
 
 /// Lowest and highest speed in the water: of a section's samples, or looked at in 5000 depths.
 std::pair<double, double> speeds(const Environment& ocean) {

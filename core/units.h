@@ -16,6 +16,7 @@ using Vec3 = Eigen::Vector3d;  // of 24 bytes: never aligned
 using Vec2 = SmallMatrix<2, 1>;
 
 inline constexpr double pi = std::numbers::pi;
+inline constexpr double db_per_neper = 8.685889638065036553;  // 20·log₁₀ e
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double micropascal = 1e-6;  ///< the reference pressure of underwater levels [Pa]
 

@@ -8,27 +8,29 @@
 namespace asdic::serve {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Bytes that are not UTF-8 (of a scenario's title, say) are replaced; numbers that are not finite
 /// are null.
-std::string text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string text(const OrderedJson& json) {
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-Json answer(const std::string& id, bool ok) { return {{"id", Json::parse(id)}, {"ok", ok}}; }
+OrderedJson answer(const std::string& id, bool ok) {
+  return {{"id", OrderedJson::parse(id)}, {"ok", ok}};
+}
 
-Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+OrderedJson vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json moving(const std::string& name, const Kinematics& state) {
+OrderedJson moving(const std::string& name, const Kinematics& state) {
   return {
       {"name", name}, {"position", vector(state.position)}, {"velocity", vector(state.velocity)}};
 }
 
-Json targets(const PingRecord& record) {
-  Json all = Json::array();
+OrderedJson targets(const PingRecord& record) {
+  OrderedJson all = OrderedJson::array();
   for (const TargetSummary& target : record.summary) {
-    Json one{{"name", target.name}, {"present", target.present}, {"paths", target.paths}};
+    OrderedJson one{{"name", target.name}, {"present", target.present}, {"paths", target.paths}};
     if (target.present && target.paths > 0) {
       one["echo_time"] = target.echo_time;
       one["echo_level_db"] = target.echo_level_db;
@@ -43,54 +45,54 @@ Json targets(const PingRecord& record) {
   return all;
 }
 
-Json percentiles(const LatencyLog& latency) {
+OrderedJson percentiles(const LatencyLog& latency) {
   return {{"pings", latency.count()},
           {"p50", latency.percentile(0.5)},
           {"p99", latency.percentile(0.99)},
           {"longest", latency.longest()}};
 }
 
-Json timings(const Timings& t, double prepare) {
+OrderedJson timings(const Timings& t, double prepare) {
   return {{"prepare", prepare},   {"rays", t.rays},           {"eigenrays", t.eigenrays},
           {"patches", t.patches}, {"synthesis", t.synthesis}, {"noise", t.noise},
           {"write", t.write}};
 }
 
 /// What the samples are, in a file or after the line.
-Json samples(const PingRecord& record) {
+OrderedJson samples(const PingRecord& record) {
   const Recording& recording = record.recording;
-  Json shape{record.phones.size(), recording.samples};
+  OrderedJson shape{record.phones.size(), recording.samples};
   if (recording.is_complex()) shape.push_back(2);
-  Json all{{"shape", shape},
-           {"unit", "Pa"},
-           {"sample_rate", recording.sample_rate},
-           {"start", recording.start}};
+  OrderedJson all{{"shape", shape},
+                  {"unit", "Pa"},
+                  {"sample_rate", recording.sample_rate},
+                  {"start", recording.start}};
   if (recording.is_complex()) all["carrier"] = recording.carrier;
   return all;
 }
 
 /// What the client should know before it trusts a number; nothing where there is nothing.
-void add_warnings(const Scenario& scenario, Json& line) {
+void add_warnings(const Scenario& scenario, OrderedJson& line) {
   if (!scenario.notes.empty()) line["warnings"] = scenario.notes;
 }
 
 }  // namespace
 
 std::string greeting_line(const Scenario& scenario, const Pace& pace, const std::string& version) {
-  Json line{{"asdic", 1},
-            {"ok", true},
-            {"version", version},
-            {"scenario", scenario.title},
-            {"pace", name_of(pace)},
-            {"channels", channels_of(scenario)},
-            {"sample_rate", recorded_rate(scenario)}};
+  OrderedJson line{{"asdic", 1},
+                   {"ok", true},
+                   {"version", version},
+                   {"scenario", scenario.title},
+                   {"pace", name_of(pace)},
+                   {"channels", channels_of(scenario)},
+                   {"sample_rate", recorded_rate(scenario)}};
   add_warnings(scenario, line);
   return text(line);
 }
 
 std::string ping_line(const ServedPing& served, const PingRecord& record,
                       const Scenario& scenario) {
-  Json line = answer(served.id, true);
+  OrderedJson line = answer(served.id, true);
   line["ping"] = record.ping;
   line["time"] = record.start_time;
   line["transmitter"] = scenario.transmitters[static_cast<std::size_t>(record.transmitter)].name;
@@ -124,7 +126,7 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
 
 std::string update_line(const std::string& id, const Scenario& scenario, double now,
                         double seconds) {
-  Json line = answer(id, true);
+  OrderedJson line = answer(id, true);
   line["time"] = now;
   add_warnings(scenario, line);
   line["latency"] = seconds;
@@ -133,18 +135,18 @@ std::string update_line(const std::string& id, const Scenario& scenario, double 
 
 std::string state_line(const std::string& id, const Scenario& scenario, double now, int next,
                        const LatencyLog& latency) {
-  Json line = answer(id, true);
+  OrderedJson line = answer(id, true);
   line["time"] = now;
   line["next_ping"] = next;
   line["seed"] = scenario.seed;
   line["wind_speed"] = scenario.wind_speed;
-  line["platforms"] = Json::array();
+  line["platforms"] = OrderedJson::array();
   for (const Platform& platform : scenario.platforms)
     line["platforms"].push_back(moving(platform.name, platform.track.at(now)));
-  line["arrays"] = Json::array();
+  line["arrays"] = OrderedJson::array();
   for (const ReceiverArray& array : scenario.arrays)
     line["arrays"].push_back({{"name", array.name}, {"phones", array.phones.size()}});
-  line["targets"] = Json::array();
+  line["targets"] = OrderedJson::array();
   for (const Target& target : scenario.targets)
     line["targets"].push_back(moving(target.name, target.track.at(now)));
   line["sample_rate"] = recorded_rate(scenario);
@@ -153,13 +155,13 @@ std::string state_line(const std::string& id, const Scenario& scenario, double n
 }
 
 std::string limits_line(const std::string& id, const SessionLimits& limits) {
-  Json line = answer(id, true);
+  OrderedJson line = answer(id, true);
   for (const LimitName& one : limit_names()) line["limits"][one.name] = limits.*one.value;
   return text(line);
 }
 
 std::string quit_line(const std::string& id, int pings, const LatencyLog& latency) {
-  Json line = answer(id, true);
+  OrderedJson line = answer(id, true);
   line["pings"] = pings;
   line["latency"] = percentiles(latency);
   return text(line);
@@ -167,7 +169,7 @@ std::string quit_line(const std::string& id, int pings, const LatencyLog& latenc
 
 std::string refusal_line(const std::string& id, const std::string& code,
                          const std::string& message) {
-  Json line = answer(id, false);
+  OrderedJson line = answer(id, false);
   line["error"] = {{"code", code}, {"message", message}};
   return text(line);
 }

@@ -11,7 +11,7 @@ namespace asdic {
 namespace {
 
 /// One path out and one path back, met where things are by then.
-struct PathPair {
+struct TwoWayPaths {
   Kinematics source, target;
   MetPath there, home;
 };
@@ -76,7 +76,7 @@ class EchoFinder {
         const Arrival* path = moved ? same_path(home.leg.arrivals, back.leg.arrivals[j], layered_)
                                     : &back.leg.arrivals[j];
         if (path == nullptr) continue;  // by then it is gone
-        const PathPair pair{
+        const TwoWayPaths pair{
             .source = source,
             .target = struck,
             .there = there,
@@ -95,7 +95,7 @@ class EchoFinder {
   struct Slownesses {
     Vec3 at_source, into_target, out_of_target, at_phone;
   };
-  Slownesses slownesses(const PathPair& pair) const {
+  Slownesses slownesses(const TwoWayPaths& pair) const {
     const auto speed = [&](const Kinematics& k) { return context_.paths.speed_at(k.position); };
     const double c_source = speed(pair.source), c_target = speed(pair.target),
                  c_phone = speed(pair.home.way.end);
@@ -106,7 +106,7 @@ class EchoFinder {
             .at_phone = slowness_vector(home, pair.home.path.arrival_elevation, c_phone)};
   }
 
-  Vec3 lag_of(const PathPair& pair) const {
+  Vec3 lag_of(const TwoWayPaths& pair) const {
     const Slownesses s = slownesses(pair);
     return BodyLag{.into = s.into_target,
                    .out = s.out_of_target,
@@ -117,7 +117,7 @@ class EchoFinder {
   }
 
   /// What all glints of the target send back by one pair of paths.
-  std::vector<EchoPath> answer(const PathPair& pair, const Vec3& offset, int channel) const {
+  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Vec3& offset, int channel) const {
     const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
     const Vec3 lag = lag_of(pair);
     const Kinematics& phone = pair.home.way.end;
@@ -160,8 +160,8 @@ class EchoFinder {
   }
 
   /// Gives the echoes curves where the ranges change at changing rates during the pulse.
-  void bend(const PathPair& pair, const Vec3& offset, int channel, const std::vector<Glint>& seen,
-            std::vector<EchoPath>& echoes) const {
+  void bend(const TwoWayPaths& pair, const Vec3& offset, int channel,
+            const std::vector<Glint>& seen, std::vector<EchoPath>& echoes) const {
     if (context_.pulse == nullptr || echoes.empty()) return;
     const Pulse& pulse = *context_.pulse;
     double aperture = channel < 0 ? radius(phones_) : 0.0;
@@ -190,7 +190,7 @@ class EchoFinder {
   };
 
   /// pulse_moments(), out of what is kept for equal ways and paths.
-  std::vector<PulseMoment> moments_of(const MovingPath& path, const PathPair& pair,
+  std::vector<PulseMoment> moments_of(const MovingPath& path, const TwoWayPaths& pair,
                                       const Vec3& offset) const {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
@@ -222,7 +222,7 @@ class EchoFinder {
     return found.along;
   }
 
-  MovingPath follow(const PathPair& pair, const Vec3& offset, double highest) const {
+  MovingPath follow(const TwoWayPaths& pair, const Vec3& offset, double highest) const {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
     const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
@@ -242,8 +242,9 @@ class EchoFinder {
   }
 
   /// The same pair of paths for what leaves `sent` after the leading edge.
-  std::optional<PulseMoment> moment(const PathPair& pair, const Vec3& offset, double sent) const {
-    PathPair then;
+  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Vec3& offset,
+                                    double sent) const {
+    TwoWayPaths then;
     then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
     const Way out = closely_.way(then.source.position, sent, target_.track, Vec3::Zero(),
                                  std::span(&pair.there.path, 1));

@@ -10,11 +10,10 @@
 #include "sonar/noise_spectrum.h"
 #include "sonar/processing/normaliser.h"
 #include "sonar/scenario.h"
+#include "study/no_value.h"
 
 namespace asdic::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// When, how fast and from where one phone hears the echo.
 struct Heard {
@@ -239,7 +238,7 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
   const auto cell = static_cast<std::ptrdiff_t>(std::ceil(rate / noise_bandwidth(pulse)));
 
   const auto compare = [&](std::ptrdiff_t at, double& statistic, double& threshold) {
-    statistic = threshold = none;
+    statistic = threshold = no_value;
     if (!filter.inside(at)) return false;
     if (plan.background == MatchedFilterPlan::Background::noise) {
       statistic =
@@ -259,7 +258,7 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
 
   FilterAnswer answer;
   compare(0, answer.present, answer.threshold);
-  answer.absent = answer.absent_threshold = none;
+  answer.absent = answer.absent_threshold = no_value;
   const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration * rate));
   const auto most = static_cast<std::ptrdiff_t>(record.recording.samples) / step + 1;
   for (std::ptrdiff_t k = 2; k <= most; ++k)  // the nearest free time, earlier ones first

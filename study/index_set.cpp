@@ -4,7 +4,7 @@
 
 namespace asdic::study {
 
-std::string to_text(const IndexRange& range) {
+std::string index_text(const IndexRange& range) {
   return std::to_string(range.first) + ":" + std::to_string(range.end);
 }
 
@@ -59,12 +59,12 @@ IndexSet IndexSet::within(IndexRange range) const {
   return result;
 }
 
-std::string to_text(const IndexSet& set) {
+std::string index_text(const IndexSet& set) {
   constexpr std::size_t most = 4;
   if (set.empty()) return "none";
   std::string text;
   for (std::size_t i = 0; i < std::min(most, set.ranges().size()); ++i)
-    text += (i > 0 ? ", " : "") + to_text(set.ranges()[i]);
+    text += (i > 0 ? ", " : "") + index_text(set.ranges()[i]);
   if (set.ranges().size() > most)
     text += " and " + std::to_string(set.ranges().size() - most) + " more";
   return text;

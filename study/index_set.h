@@ -17,7 +17,7 @@ struct IndexRange {
 };
 
 /// "17:42", as --realisations takes it.
-[[nodiscard]] std::string to_text(const IndexRange& range);
+[[nodiscard]] std::string index_text(const IndexRange& range);
 
 /// A set of indices, as ranges: small where they are mostly in a row, however many there are.
 class IndexSet {
@@ -44,6 +44,6 @@ class IndexSet {
 };
 
 /// "0:100, 200:300 and 7 more"; "none".
-[[nodiscard]] std::string to_text(const IndexSet& set);
+[[nodiscard]] std::string index_text(const IndexSet& set);
 
 }  // namespace asdic::study

@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "study/law.h"
+#include "study/no_value.h"
 
 namespace asdic::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The continued fraction of I_x(a, b), for x < (a + 1)/(a + b + 2).
 double beta_fraction(double a, double b, double x) {
@@ -78,10 +77,10 @@ double incomplete_beta(double a, double b, double x) {
   return 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
 }
 
-double Moments::mean() const noexcept { return count_ > 0.0 ? mean_ : none; }
+double Moments::mean() const noexcept { return count_ > 0.0 ? mean_ : no_value; }
 
 double Moments::deviation() const noexcept {
-  return count_ > 1.0 ? std::sqrt(squares_ / (count_ - 1.0)) : none;
+  return count_ > 1.0 ? std::sqrt(squares_ / (count_ - 1.0)) : no_value;
 }
 
 Interval Moments::mean_interval(double confidence) const noexcept {

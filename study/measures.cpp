@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "study/echo_filter.h"
+#include "study/no_value.h"
 #include "study/receiver_measure.h"
 #include "study/signal_excess.h"
 
 namespace asdic::study {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* level_unit = "dB re 1 µPa";
 
 constexpr std::array<LevelMeasure, 7> by_level{{
@@ -72,7 +72,7 @@ void strongest_path(const PingRecord* record, int array, int target, Collector& 
       if (echo.array == array && echo.target == target &&
           (best == nullptr || echo.level_db > best->level_db))
         best = &echo;
-  const auto value = [&](auto of) { return best == nullptr ? none : of(*best); };
+  const auto value = [&](auto of) { return best == nullptr ? no_value : of(*best); };
   to.add("path_delay", "s", "strongest pair of paths: delay of its leading edge",
          value([](const EchoPath& e) { return e.heard.delay; }));
   to.add("path_level_db", level_unit, "strongest pair of paths: peak envelope/√2, not windowed",
@@ -108,7 +108,7 @@ void series_level(const PingRecord* record, const Scenario& scenario, int array,
     return db_from_power(0.5 * envelope_squared / (micropascal * micropascal));
   };
   to.add("series_rms_db", level_unit, "rms of all samples of the array",
-         count == 0 ? none : level(sum / static_cast<double>(count)));
+         count == 0 ? no_value : level(sum / static_cast<double>(count)));
   to.add("series_peak_db", level_unit, "greatest of all samples: envelope/√2, of pressure |p|",
          level(peak));
 }
@@ -121,7 +121,7 @@ void matched_filter(const MeasurePlan& plan, const PingSimulator* simulator,
                            plan.detection ? plan.detection->false_alarm_probability : 1e-4);
   if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
     const auto over = [](double statistic, double threshold) {
-      if (std::isnan(statistic)) return none;  // not known, which is not the same as missed
+      if (std::isnan(statistic)) return no_value;  // not known, which is not the same as missed
       return statistic > threshold ? 1.0 : 0.0;
     };
     to.add("detected", "1", "matched filter over its threshold at the echo's time; NaN: not known",
@@ -180,12 +180,12 @@ void walk(const MeasurePlan& plan, const Scenario& scenario, const PingSimulator
     const int target = static_cast<int>(t);
     for (const std::size_t i : plan.levels)
       to.add(by_level[i].column, by_level[i].unit, by_level[i].meaning,
-             record == nullptr ? none : by_level[i].of(record->summary[t]));
+             record == nullptr ? no_value : by_level[i].of(record->summary[t]));
     if (plan.detection_signal_excess)
       to.add("detection_signal_excess_db", "dB",
              "echo over what the receiver detects half of the time; −∞: no path",
              record == nullptr
-                 ? none
+                 ? no_value
                  : detection_signal_excess_db(*simulator, *record, receiver_of(plan), target));
     if (plan.strongest_path) strongest_path(record, plan.array, target, to);
     if (plan.uses_matched_filter()) matched_filter(plan, simulator, record, target, to);

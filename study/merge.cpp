@@ -69,10 +69,10 @@ void check_once(const std::vector<Piece>& pieces, const Parts& parts) {
     const Piece &a = pieces[i - 1], &b = pieces[i];
     if (b.range.first >= a.range.end) continue;
     const IndexRange both{b.range.first, std::min(a.range.end, b.range.end)};
-    throw InputError(
-        {.where = parts.name(b.part),
-         .got = "realisations " + to_text(both) + ", which are in " + parts.name(a.part) + " too",
-         .expected = "every realisation in one part"});
+    throw InputError({.where = parts.name(b.part),
+                      .got = "realisations " + index_text(both) + ", which are in " +
+                             parts.name(a.part) + " too",
+                      .expected = "every realisation in one part"});
   }
 }
 
@@ -80,7 +80,7 @@ void check_gaps(const IndexSet& missing, std::uint64_t count) {
   if (missing.empty()) return;
   throw InputError({.where = "merge",
                     .got = "no part with " + std::to_string(missing.size()) + " of " +
-                           std::to_string(count) + " realisations: " + to_text(missing),
+                           std::to_string(count) + " realisations: " + index_text(missing),
                     .expected = "all of them, or --allow-gaps"});
 }
 
@@ -132,9 +132,9 @@ struct Kept {
 };
 
 /// Everything but the summary, piece by piece.
-class Collector {
+class PartsCollector {
  public:
-  Collector(Parts& parts, StudyResults& results, SeriesSource& series, const fs::path& folder)
+  PartsCollector(Parts& parts, StudyResults& results, SeriesSource& series, const fs::path& folder)
       : parts_(parts), results_(results), series_(series), folder_(folder) {}
 
   void add(const Piece& piece);
@@ -159,7 +159,7 @@ class Collector {
   Shape series_shape_;
 };
 
-void Collector::open(std::size_t part) {
+void PartsCollector::open(std::size_t part) {
   if (here_ == part) return;
   const StudyFile& file = parts_.at(part);
   table_ = file.table();
@@ -170,7 +170,7 @@ void Collector::open(std::size_t part) {
   here_ = part;
 }
 
-void Collector::add(const Piece& piece) {
+void PartsCollector::add(const Piece& piece) {
   open(piece.part);
   add_rows(results_.table, table_, piece);
   const auto at = [&](std::uint64_t index) {
@@ -217,8 +217,8 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
   results.table.columns = all.imprint.columns;
   results.table.values.resize(all.imprint.columns.size());
   SeriesSource series;
-  Collector collector(parts, results, series,
-                      output.target().has_parent_path() ? output.target().parent_path() : ".");
+  PartsCollector collector(parts, results, series,
+                           output.target().has_parent_path() ? output.target().parent_path() : ".");
   for (const Piece& piece : all.pieces) collector.add(piece);
   std::vector<CataloguePart> catalogue = std::move(collector).catalogue();
   const std::vector<Kept> kept = std::move(collector).kept();

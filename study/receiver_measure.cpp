@@ -6,11 +6,10 @@
 
 #include "sonar/processing/truth.h"
 #include "sonar/pulse.h"
+#include "study/no_value.h"
 
 namespace asdic::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 ArrayRecording recording_of(const Scenario& scenario, const PingRecord& record, int array) {
   const Recording& r = record.recording;
@@ -74,10 +73,10 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   ReceiverAnswers answers{.false_alarms = score.false_alarms};
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,
-                          .snr_db = none,
-                          .position_error = none,
-                          .range_error = none,
-                          .bearing_error = none};
+                          .snr_db = no_value,
+                          .position_error = no_value,
+                          .range_error = no_value,
+                          .bearing_error = no_value};
     if (target.hit) {
       answer.snr_db =
           processed.result.detections[static_cast<std::size_t>(target.detection)].snr_db;

@@ -20,7 +20,7 @@ namespace {
 
 // Lines of one length, each written by one call.
 constexpr std::size_t line_length = 64;
-constexpr const char* format = "asdic rows in hand 1";
+constexpr const char* first_line = "asdic rows in hand 1";
 
 /// Another one after every start of the machine.
 std::string boot_id() {
@@ -56,7 +56,7 @@ RowsInHand::RowsInHand(const std::filesystem::path& journal, Deaths suspects)
   };
   check(file_ >= 0);
   const std::string boot = boot_id();
-  for (const std::string& text : {std::string(format), boot}) {
+  for (const std::string& text : {std::string(first_line), boot}) {
     const auto line = line_of(text);
     check(::write(file_, line.data(), line.size()) == static_cast<ssize_t>(line.size()));
   }
@@ -148,7 +148,7 @@ Deaths deaths_of(const std::filesystem::path& output) {
     constexpr std::size_t most = 1 << 20;
     std::istringstream in(InputFile(hand, "what asdic study left there").read(most));
     std::string line, boot;
-    if (!std::getline(in, line) || !line.starts_with(format) || !(in >> boot)) continue;
+    if (!std::getline(in, line) || !line.starts_with(first_line) || !(in >> boot)) continue;
     const bool same_boot = boot == boot_id();
     char state = 0;
     std::uint64_t index = 0;

@@ -102,8 +102,8 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
     const bool whole = file.complete() && file.stopped_by().empty();
     if (there.first < range.first || there.end > range.end || (until && whole))
       throw InputError({.where = output.string(),
-                        .got = "realisations " + to_text(there) + " of this study",
-                        .expected = "none beyond the " + to_text(range) +
+                        .got = "realisations " + index_text(there) + " of this study",
+                        .expected = "none beyond the " + index_text(range) +
                                     " that are asked for, which would be all that is kept; another "
                                     "output, or --fresh to write over it"});
     const bool same = whole && there == range && file.imprint().text == work.imprint.text &&

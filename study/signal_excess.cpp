@@ -54,7 +54,7 @@ double gain_over_reverberation(const Beam& beam) {
   return -db_from_power(kept / (n * n * steps));
 }
 
-const EchoPath* strongest(const PingRecord& record, int array, int target) {
+const EchoPath* loudest(const PingRecord& record, int array, int target) {
   const EchoPath* best = nullptr;
   for (const EchoPath& echo : record.echoes)
     if (echo.array == array && echo.target == target &&
@@ -73,7 +73,7 @@ double detection_signal_excess_db(const PingSimulator& simulator, const PingReco
   const Scenario& scenario = simulator.scenario();
   const Pulse& pulse = simulator.pulse(record.transmitter);
   Beam beam{.phones = {},
-            .slowness = strongest(record, receiver.array, target)->heard.slowness,
+            .slowness = loudest(record, receiver.array, target)->heard.slowness,
             .angular_frequency = 2.0 * pi * pulse.centre_frequency()};
   const std::size_t first = first_channel(scenario, receiver.array);
   const std::size_t count = scenario.arrays[static_cast<std::size_t>(receiver.array)].phones.size();

@@ -10,8 +10,6 @@
 namespace asdic::bellhop {
 namespace {
 
-constexpr std::int64_t most = 2'000'000'000;
-
 /// Where the items of an arrivals file come from, one after another.
 class AsciiSource {
  public:
@@ -24,12 +22,12 @@ class AsciiSource {
   }
   double frequency() { return text_.real("frequency"); }
   std::vector<double> vector(const char* item) {
-    const std::int64_t n = text_.integer(item, 1, most);
+    const std::int64_t n = text_.integer(item, 1, most_of_a_count);
     std::vector<double> x;
     for (std::int64_t i = 0; i < n; ++i) x.push_back(single(item));
     return x;
   }
-  std::int64_t count(const char* item) { return text_.integer(item, 0, most); }
+  std::int64_t count(const char* item) { return text_.integer(item, 0, most_of_a_count); }
   ArrivalRow row() {
     ArrivalRow a;
     a.amplitude = single("amplitude");
@@ -38,8 +36,8 @@ class AsciiSource {
     a.delay_imaginary = single("imaginary delay");
     a.launch_angle_deg = single("launch angle");
     a.arrival_angle_deg = single("arrival angle");
-    a.surface_bounces = int(text_.integer("surface bounces", 0, most));
-    a.bottom_bounces = int(text_.integer("bottom bounces", 0, most));
+    a.surface_bounces = int(text_.integer("surface bounces", 0, most_of_a_count));
+    a.bottom_bounces = int(text_.integer("bottom bounces", 0, most_of_a_count));
     return a;
   }
   bool at_end() { return text_.at_end(); }
@@ -104,7 +102,7 @@ class BinarySource {
     double x[8];
     for (std::size_t i = 0; i < 8; ++i) x[i] = number(content, 4 * i, false, "arrival");
     for (const double bounces : {x[6], x[7]})
-      if (!(bounces >= 0.0 && bounces <= double(most)))
+      if (!(bounces >= 0.0 && bounces <= double(most_of_a_count)))
         fail("bounces", shown(bounces), "a number of at least 0");
     return {.amplitude = x[0],
             .phase_deg = x[1],

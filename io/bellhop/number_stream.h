@@ -5,6 +5,9 @@
 
 namespace asdic::bellhop {
 
+/// No file says of anything that it has more: what would not fit in an int is no count.
+inline constexpr std::int64_t most_of_a_count = 2'000'000'000;
+
 /// The numbers of a long text one after another, wherever its lines end: what list-directed WRITEs
 /// of BELLHOP leave. Blanks and commas part them; `3*0.5` is three.
 class NumberStream {

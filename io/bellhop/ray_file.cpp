@@ -10,8 +10,6 @@
 namespace asdic::bellhop {
 namespace {
 
-constexpr std::int64_t most = 2'000'000'000;
-
 /// The first line without its quotes and the blanks around.
 std::string title_of(std::string_view line) {
   const auto strip = [&](std::string_view these) {
@@ -35,11 +33,11 @@ RayFile parse_ray_file(std::string_view bytes, const std::string& name) {
   file.frequency = text.real("frequency");
   if (!(file.frequency > 0.0))
     text.fail("frequency", shown(file.frequency) + " Hz", "a frequency above 0 Hz");
-  file.sources_x = int(text.integer("number of source x", 0, most));
-  file.sources_y = int(text.integer("number of source y", 0, most));
-  file.sources_z = int(text.integer("number of source depths", 0, most));
-  file.angles = int(text.integer("number of launch angles", 0, most));
-  (void)text.integer("number of bearings", 0, most);
+  file.sources_x = int(text.integer("number of source x", 0, most_of_a_count));
+  file.sources_y = int(text.integer("number of source y", 0, most_of_a_count));
+  file.sources_z = int(text.integer("number of source depths", 0, most_of_a_count));
+  file.angles = int(text.integer("number of launch angles", 0, most_of_a_count));
+  (void)text.integer("number of bearings", 0, most_of_a_count);
   file.surface_depth = text.real("surface depth");
   file.bottom_depth = text.real("bottom depth");
   if (const std::string_view word = unquoted(text.word()); word != "rz")
@@ -47,9 +45,9 @@ RayFile parse_ray_file(std::string_view bytes, const std::string& name) {
   while (!text.at_end()) {
     RayFile::Ray& ray = file.rays.emplace_back();
     ray.launch_angle_deg = text.real("launch angle");
-    const std::int64_t n = text.integer("number of points", 0, most);
-    ray.surface_bounces = int(text.integer("surface bounces", 0, most));
-    ray.bottom_bounces = int(text.integer("bottom bounces", 0, most));
+    const std::int64_t n = text.integer("number of points", 0, most_of_a_count);
+    ray.surface_bounces = int(text.integer("surface bounces", 0, most_of_a_count));
+    ray.bottom_bounces = int(text.integer("bottom bounces", 0, most_of_a_count));
     for (std::int64_t i = 0; i < n; ++i) {
       ray.range.push_back(text.real("range"));
       ray.depth.push_back(text.real("depth"));

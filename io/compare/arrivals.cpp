@@ -63,13 +63,13 @@ ArrivalRow join(Rows::const_iterator first, Rows::const_iterator last, double fr
   return path;
 }
 
-struct Pair {
+struct ArrivalPair {
   std::size_t a, b;
 };
 
 /// Paths of the same bounces, the nearest in delay first, each used once; the launch angle breaks
 /// ties: a degree counts as the whole tolerance.
-std::vector<Pair> pair_up(const Rows& a, const Rows& b, double tolerance) {
+std::vector<ArrivalPair> pair_up(const Rows& a, const Rows& b, double tolerance) {
   struct Candidate {
     double cost;
     std::size_t a, b;
@@ -94,7 +94,7 @@ std::vector<Pair> pair_up(const Rows& a, const Rows& b, double tolerance) {
     return std::tie(x.cost, x.a, x.b) < std::tie(y.cost, y.a, y.b);
   });
   std::vector<char> used_a(a.size(), 0), used_b(b.size(), 0);
-  std::vector<Pair> pairs;
+  std::vector<ArrivalPair> pairs;
   for (const Candidate& c : candidates) {
     if (used_a[c.a] != 0 || used_b[c.b] != 0) continue;
     used_a[c.a] = used_b[c.b] = 1;
@@ -138,7 +138,7 @@ class Gatherer {
       }
     // All are paired before weak ones are dropped: a pair at the edge must not be split by it.
     std::vector<char> found(b.size(), 0);
-    for (const Pair& pair : pair_up(a, b, options_.max_delay_difference)) {
+    for (const ArrivalPair& pair : pair_up(a, b, options_.max_delay_difference)) {
       const double sa = strength(a[pair.a], frequency_), sb = strength(b[pair.b], frequency_);
       if (sa == 0.0 || sb == 0.0) continue;
       found[pair.b] = 1;

@@ -12,7 +12,7 @@ using Ray = bellhop::RayFile::Ray;
 
 constexpr double same_angle_deg = 1e-6;  // printed and read again
 
-struct Pair {
+struct RayPair {
   std::size_t a, b;
 };
 
@@ -20,7 +20,7 @@ double end_distance(const Ray& a, const Ray& b) {
   return std::hypot(a.range.back() - b.range.back(), a.depth.back() - b.depth.back());
 }
 
-bool finite(const Ray& ray) {
+bool finite_ray(const Ray& ray) {
   const auto all = [](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
   };
@@ -28,7 +28,8 @@ bool finite(const Ray& ray) {
 }
 
 std::size_t not_finite(const std::vector<Ray>& rays) {
-  return rays.size() - static_cast<std::size_t>(std::count_if(rays.begin(), rays.end(), finite));
+  return rays.size() -
+         static_cast<std::size_t>(std::count_if(rays.begin(), rays.end(), finite_ray));
 }
 
 /// Rays of one history, in order of launch angle.
@@ -37,7 +38,7 @@ using Families = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 Families families(const std::vector<Ray>& rays) {
   Families result;
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!rays[i].range.empty() && finite(rays[i]))
+    if (!rays[i].range.empty() && finite_ray(rays[i]))
       result[{rays[i].surface_bounces, rays[i].bottom_bounces}].push_back(i);
   for (auto& [history, family] : result)
     std::stable_sort(family.begin(), family.end(), [&](std::size_t x, std::size_t y) {
@@ -49,7 +50,8 @@ Families families(const std::vector<Ray>& rays) {
 /// Rays within the tolerance of angle, nearest ends first; those that found a partner leave the
 /// lists.
 void pair_up(const std::vector<Ray>& a, const std::vector<Ray>& b, double angle_deg,
-             std::vector<std::size_t>& ia, std::vector<std::size_t>& ib, std::vector<Pair>& pairs) {
+             std::vector<std::size_t>& ia, std::vector<std::size_t>& ib,
+             std::vector<RayPair>& pairs) {
   struct Candidate {
     double distance;
     std::size_t a, b;
@@ -141,7 +143,7 @@ RayDifference compare_rays(const bellhop::RayFile& a, const bellhop::RayFile& b,
                        .points_a = points(a.rays),
                        .points_b = points(b.rays),
                        .not_finite = not_finite(a.rays) + not_finite(b.rays)};
-  std::vector<Pair> pairs;
+  std::vector<RayPair> pairs;
   Families fa = families(a.rays), fb = families(b.rays);
   for (auto& [history, ia] : fa) {
     const auto other = fb.find(history);
@@ -151,7 +153,7 @@ RayDifference compare_rays(const bellhop::RayFile& a, const bellhop::RayFile& b,
   }
   result.paired = pairs.size();
   std::vector<double> path, inside, ends;
-  for (const Pair& pair : pairs) {
+  for (const RayPair& pair : pairs) {
     const Ray& ray = a.rays[pair.a];
     Polyline line(b.rays[pair.b].range, b.rays[pair.b].depth);
     double largest = 0.0, largest_inside = 0.0;

@@ -16,8 +16,6 @@ using bellhop::ArrivalRow;
 using bellhop::ArrivalsFile;
 using Type = ElementType;
 
-const double db_per_neper = 20.0 / std::log(10.0);
-
 /// Im τ that takes so many decibels at a frequency: A·exp(ω Im τ).
 double imaginary_delay(double absorption_db, double frequency) {
   return frequency > 0.0 ? -absorption_db / db_per_neper / (2.0 * pi * frequency) : 0.0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/units.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
@@ -12,8 +13,6 @@ namespace asdic::scenario {
 namespace {
 
 constexpr double fastest_gas = 500.0;  // of sound in it: air above ice or water is no slip [m/s]
-
-const double db_per_neper = 20.0 / std::log(10.0);
 
 /// One way to say how much a wave loses, and what it comes to.
 struct LossUnit {

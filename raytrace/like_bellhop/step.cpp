@@ -10,7 +10,7 @@ constexpr double shortest_share = 1e-6;  // of the step: none is shorter
 constexpr double parallel = 1e-300;      // a direction component below this reaches nothing
 
 /// What cuts a step, nearest first.
-struct Cut {
+struct StepCut {
   enum class By { nothing, row, column, surface, bottom, node, box_range, box_depth };
   double length;
   By by = By::nothing;
@@ -19,42 +19,42 @@ struct Cut {
 };
 
 /// The largest part of a step of `length` along the unit vector u that crosses nothing.
-Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayPlace& place,
-             double length) noexcept {
-  Cut cut{.length = length};
+StepCut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayPlace& place,
+                 double length) noexcept {
+  StepCut cut{.length = length};
   const Vec2 end = x + length * u;
-  const auto consider = [&cut](double h, Cut::By by, double coordinate = 0.0) {
+  const auto consider = [&cut](double h, StepCut::By by, double coordinate = 0.0) {
     if (h < cut.length) cut = {h, by, coordinate};
   };
-  const auto vertical = [&](double line, Cut::By by) {
+  const auto vertical = [&](double line, StepCut::By by) {
     if (std::abs(u.x()) > parallel) consider((line - x.x()) / u.x(), by, line);
   };
-  const auto horizontal = [&](double line, Cut::By by) {
+  const auto horizontal = [&](double line, StepCut::By by) {
     if (std::abs(u.y()) > parallel) consider((line - x.y()) / u.y(), by, line);
   };
   const double upper = ocean.water.upper(place.cell), lower = ocean.water.lower(place.cell);
-  if (end.y() < upper) horizontal(upper, Cut::By::row);
-  if (end.y() > lower) horizontal(lower, Cut::By::row);
-  const auto boundary = [&](const BoundaryLine& line, std::size_t segment, Cut::By by) {
+  if (end.y() < upper) horizontal(upper, StepCut::By::row);
+  if (end.y() > lower) horizontal(lower, StepCut::By::row);
+  const auto boundary = [&](const BoundaryLine& line, std::size_t segment, StepCut::By by) {
     if (line.outside(end, segment) <= 0.0) return;
     const double h = -line.outside(x, segment) / u.dot(line.normal(segment));
     // before a node at the same place
     if (h <= cut.length) cut = {h, by, line.is_flat(segment) ? line.node(segment).y() : 0.0};
   };
-  boundary(ocean.surface, place.surface, Cut::By::surface);
-  boundary(ocean.bottom, place.bottom, Cut::By::bottom);
+  boundary(ocean.surface, place.surface, StepCut::By::surface);
+  boundary(ocean.bottom, place.bottom, StepCut::By::bottom);
   const double left = std::max(ocean.surface.left(place.surface), ocean.bottom.left(place.bottom));
   const double right =
       std::min(ocean.surface.right(place.surface), ocean.bottom.right(place.bottom));
-  if (end.x() < left) vertical(left, Cut::By::node);
-  if (end.x() > right) vertical(right, Cut::By::node);
+  if (end.x() < left) vertical(left, StepCut::By::node);
+  if (end.x() > right) vertical(right, StepCut::By::node);
   const double first = ocean.water.left(place.cell), last = ocean.water.right(place.cell);
-  if (end.x() < first) vertical(first, Cut::By::column);
-  if (end.x() > last) vertical(last, Cut::By::column);
+  if (end.x() < first) vertical(first, StepCut::By::column);
+  if (end.x() > last) vertical(last, StepCut::By::column);
   if (std::abs(end.x()) > ocean.box_range)
-    vertical(std::copysign(ocean.box_range, end.x()), Cut::By::box_range);
+    vertical(std::copysign(ocean.box_range, end.x()), StepCut::By::box_range);
   if (std::abs(end.y()) > ocean.box_depth)
-    horizontal(std::copysign(ocean.box_depth, end.y()), Cut::By::box_depth);
+    horizontal(std::copysign(ocean.box_depth, end.y()), StepCut::By::box_depth);
   // A step that would be shorter goes past what cut it; what it was is still known.
   if (const double least = shortest_share * ocean.step; cut.length < least) {
     cut.length = least;
@@ -64,27 +64,27 @@ Cut cut_step(const LiteralOcean& ocean, const Vec2& x, const Vec2& u, const RayP
 }
 
 /// The end of a cut step, exactly on what cut it.
-Vec2 land(const Vec2& x, const Vec2& u, const Cut& cut, const LiteralOcean& ocean,
+Vec2 land(const Vec2& x, const Vec2& u, const StepCut& cut, const LiteralOcean& ocean,
           const RayPlace& place) noexcept {
   Vec2 end = x + cut.length * u;
   if (!cut.exact) return end;
   switch (cut.by) {
-    case Cut::By::row:
-    case Cut::By::box_depth:
+    case StepCut::By::row:
+    case StepCut::By::box_depth:
       end.y() = cut.coordinate;
       break;
-    case Cut::By::surface:
+    case StepCut::By::surface:
       if (ocean.surface.is_flat(place.surface)) end.y() = cut.coordinate;
       break;
-    case Cut::By::bottom:
+    case StepCut::By::bottom:
       if (ocean.bottom.is_flat(place.bottom)) end.y() = cut.coordinate;
       break;
-    case Cut::By::column:
-    case Cut::By::node:
-    case Cut::By::box_range:
+    case StepCut::By::column:
+    case StepCut::By::node:
+    case StepCut::By::box_range:
       end.x() = cut.coordinate;
       break;
-    case Cut::By::nothing:
+    case StepCut::By::nothing:
       break;
   }
   return end;
@@ -115,7 +115,7 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
 
   // Phase 1: half an Euler step.
   const Vec2 u0 = w0.c * from.t;
-  const Cut cut0 = cut_step(ocean, from.x, u0, place, ocean.step);
+  const StepCut cut0 = cut_step(ocean, from.x, u0, place, ocean.step);
   const double half = 0.5 * cut0.length;
   const double bend0 = bending(w0, from.t);
   const Vec2 x1 = from.x + half * u0;
@@ -133,7 +133,7 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
   const double h = cut_step(ocean, from.x, u1, at_begin, cut0.length).length;
   const double weight1 = h / (2.0 * half), weight0 = 1.0 - weight1;
   const Vec2 u2 = weight0 * u0 + weight1 * u1;
-  const Cut cut = cut_step(ocean, from.x, u2, at_begin, ocean.step);  // anew from the full step
+  const StepCut cut = cut_step(ocean, from.x, u2, at_begin, ocean.step);  // anew from the full step
   const double h0 = cut.length * weight0, h1 = cut.length * weight1;
   const double bend1 = bending(w1, t1);
 
@@ -147,9 +147,9 @@ LiteralPoint step(const LiteralOcean& ocean, const LiteralPoint& from, RayPlace&
   y.tau = from.tau + h0 / std::complex<double>(w0.c, w0.c_loss) +
           h1 / std::complex<double>(w1.c, w1.c_loss);
 
-  landing = cut.by == Cut::By::surface  ? Landing::surface
-            : cut.by == Cut::By::bottom ? Landing::bottom
-                                        : Landing::water;
+  landing = cut.by == StepCut::By::surface  ? Landing::surface
+            : cut.by == StepCut::By::bottom ? Landing::bottom
+                                            : Landing::water;
   ocean.water.locate(y.x, y.t, place.cell);
   const WaterPoint w2 = ocean.water.at(y.x, place.cell);
   y.c = w2.c;

@@ -14,7 +14,7 @@ namespace asdic {
 namespace {
 
 constexpr int usual_count = 50;
-constexpr double faintest = 0.005;
+constexpr double faintest_ray = 0.005;
 
 std::vector<double> elevations_of(const BeamSettings& beams) {
   if (!beams.elevations.empty()) return beams.elevations;
@@ -44,7 +44,7 @@ PropagationResult run_rays(const PropagationCase& run_case, const Progress& prog
   check_sources(run_case);
   const RayTracer tracer = tracer_of(run_case);
   TraceLimits limits = box_of(run_case);
-  limits.faintest = faintest;
+  limits.faintest = faintest_ray;
   const std::vector<double> elevations = elevations_of(run_case.beams);
   const std::size_t sources = run_case.source_depths.size(), rays = elevations.size();
   PropagationResult result;

@@ -15,13 +15,13 @@ constexpr double margin = 0.25;
 constexpr std::size_t deepest = 14;
 
 /// The depths that rays between two neighbours pass, by the cubic.
-struct DepthSpan {
+struct FamilySpan {
   double low, high;
 };
-DepthSpan span_of(const HermiteNode& a, const HermiteNode& b) {
+FamilySpan span_of(const HermiteNode& a, const HermiteNode& b) {
   const Hermite cubic(a, b);
   const auto turns = cubic.extrema();
-  DepthSpan span{std::min(a.value, b.value), std::max(a.value, b.value)};
+  FamilySpan span{std::min(a.value, b.value), std::max(a.value, b.value)};
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const double z = cubic.value(turns.x[i]);
     span.low = std::min(span.low, z - margin);
@@ -43,7 +43,7 @@ std::size_t RootFinder::expected(const FanRay& a, const FanRay& b, std::size_t f
       const auto za = a.crossing_or_continued(a.legs[i], k, columns_[k].range);
       const auto zb = b.crossing_or_continued(b.legs[i], k, columns_[k].range);
       if (!za || !zb) continue;
-      const DepthSpan span =
+      const FamilySpan span =
           span_of({a.angle, za->depth, za->slope}, {b.angle, zb->depth, zb->slope});
       const auto wanted = columns_[k].between(span.low, span.high);
       count += wanted.last - wanted.first;
@@ -101,7 +101,7 @@ bool RootFinder::search_family(const FamilyRays& rays, std::size_t leg) {
   double before_angle = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
     const double range = columns_[k].range;
-    DepthSpan span{1e300, -1e300};
+    FamilySpan span{1e300, -1e300};
     bool covered = true;
     std::optional<ColumnCrossing> before;
     for (const WholeRay* ray : rays) {
@@ -109,8 +109,8 @@ bool RootFinder::search_family(const FamilyRays& rays, std::size_t leg) {
       covered = covered && l.covers(k);
       const auto z = ray->fan.crossing_or_continued(l, k, range);
       if (z && before) {
-        const DepthSpan here = span_of({before_angle, before->depth, before->slope},
-                                       {ray->fan.angle, z->depth, z->slope});
+        const FamilySpan here = span_of({before_angle, before->depth, before->slope},
+                                        {ray->fan.angle, z->depth, z->slope});
         span.low = std::min(span.low, here.low);
         span.high = std::max(span.high, here.high);
       }

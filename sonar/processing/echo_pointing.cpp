@@ -7,11 +7,7 @@
 #include "sonar/fft.h"
 
 namespace asdic {
-namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 EchoPointing::EchoPointing(const Baseband& baseband, std::span<const Vec3> phones,
                            double sound_speed, const Replica& replica, const ArrayShape& shape,
@@ -85,9 +81,9 @@ double EchoPointing::power_at(const Detection& d) const {
 }
 
 void EchoPointing::point(Detection& d, const Vec3& beam) const {
-  d.cosine = none;
-  d.bearing = none;
-  d.elevation = none;
+  d.cosine = std::nan("");
+  d.bearing = std::nan("");
+  d.elevation = std::nan("");
   d.look = beam;
   if (shape_.kind == ArrayKind::point) return;
   auto x = snapshot(d.time, d.doppler, beam);

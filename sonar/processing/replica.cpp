@@ -13,7 +13,7 @@ namespace {
 
 // The spectrum of a pulse of length T, its middle at 0, is a signal "of band ±T/2" over frequency;
 // at this many samples per 1/T it is oversampled four times, twice what SampledSignal asks for.
-constexpr std::size_t oversampling = 4;
+constexpr std::size_t points_per_sample = 4;
 
 void check(std::size_t samples, double sample_rate) {
   if (samples < 2)
@@ -31,7 +31,7 @@ void check(std::size_t samples, double sample_rate) {
 Replica::Replica(std::span<const float> samples, double sample_rate) {
   check(samples.size(), sample_rate);
   duration_ = static_cast<double>(samples.size()) / sample_rate;
-  const std::size_t n = fast_fft_length(oversampling * samples.size());
+  const std::size_t n = fast_fft_length(points_per_sample * samples.size());
   FftBuffer<double> real(n);
   std::copy(samples.begin(), samples.end(), real.data());
   const RealFft<double> fft(n);
@@ -47,7 +47,7 @@ Replica::Replica(std::span<const std::complex<float>> envelope, double sample_ra
                  double carrier) {
   check(envelope.size(), sample_rate);
   duration_ = static_cast<double>(envelope.size()) / sample_rate;
-  const std::size_t n = fast_fft_length(oversampling * envelope.size());
+  const std::size_t n = fast_fft_length(points_per_sample * envelope.size());
   FftBuffer<std::complex<double>> bins(n);
   std::copy(envelope.begin(), envelope.end(), bins.data());
   ComplexFft<double>(n).forward(bins.data());

@@ -9,8 +9,6 @@
 namespace asdic {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 /// How far a direction is from where an echo comes from, in what the array can tell.
 double off_direction(const Detection& d, const TrueEcho& echo, const ArrayShape& shape,
                      double direction) {
@@ -82,9 +80,9 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
   for (const TrueTarget& target : targets) {
     TargetScore row{.target = target.target,
                     .present = target.present,
-                    .position_error = none,
-                    .range_error = none,
-                    .bearing_error = none};
+                    .position_error = std::nan(""),
+                    .range_error = std::nan(""),
+                    .bearing_error = std::nan("")};
     row.audible = std::any_of(echoes.begin(), echoes.end(), [&](const TrueEcho& echo) {
       return echo.target == target.target && echo.time >= first && echo.time <= last &&
              together(echoes, echo, resolution.time).power_db >= echo.threshold_db;
@@ -107,10 +105,10 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
                                                        : std::hypot(off.x(), off.y());
         if (!std::isnan(row.position_error) && error >= row.position_error) continue;
         const Separation seen = separation(heard_at, place.position);
-        row.position_error = std::isnan(place.bearing) ? none : error;
+        row.position_error = std::isnan(place.bearing) ? std::nan("") : error;
         row.range_error = (std::isnan(place.bearing) ? place.range : seen.range) - truth.range;
         row.bearing_error = std::isnan(place.bearing)
-                                ? none
+                                ? std::nan("")
                                 : std::remainder(seen.bearing - truth.bearing, 2.0 * pi);
       }
     }

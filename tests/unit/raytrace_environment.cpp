@@ -11,8 +11,6 @@
 namespace asdic {
 namespace {
 
-const double db_per_neper = 20.0 / std::log(10.0);
-
 TEST(Environment, LossIsTheSumOfLawLayersAndTable) {
   Environment ocean;
   ocean.absorption = Thorp{};

@@ -41,9 +41,9 @@ TEST(IndexSet, IsASetOfIndices) {
 
 TEST(IndexSet, SaysWhatItHolds) {
   IndexSet set;
-  EXPECT_EQ(to_text(set), "none");
+  EXPECT_EQ(index_text(set), "none");
   for (std::uint64_t k = 0; k < 12; k += 2) set.add(k);
-  EXPECT_EQ(to_text(set), "0:1, 2:3, 4:5, 6:7 and 2 more");
+  EXPECT_EQ(index_text(set), "0:1, 2:3, 4:5, 6:7 and 2 more");
 }
 
 // Parts cover everything once, and no two differ by more than one, at any count.
