@@ -146,6 +146,11 @@ void write_rays_file(OutputFile&& to, const RaysResult& result) {
   Hdf5File& file = output.file();
   write_root(file, "asdic rays", result.origin);
   file.set_attribute("", "source_depth_m", result.source_depth());
+  // What a .ray holds in its header: the file may become one (asdic convert).
+  const bellhop::RayFile header = bellhop::ray_file(result.run_case, {});
+  file.set_attribute("", "frequency_hz", header.frequency);
+  file.set_attribute("", "surface_depth_m", header.surface_depth);
+  file.set_attribute("", "bottom_depth_m", header.bottom_depth);
   write_environment_group(file, result.run_case.environment, least_range, greatest_range);
 
   RaysGroup group(file, result.rays());

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -75,6 +76,8 @@ TEST_F(Commands, RaysTableAndFile) {
             (std::vector<double>{-20.0, -10.0, 0.0, 10.0, 20.0}));
   EXPECT_EQ(file.info("rays/depth").shape, file.info("rays/range").shape);
   EXPECT_EQ(support::left_of(folder / "rays.h5"), "");
+  EXPECT_EQ(asdic(folder, "convert rays.h5 rays.ray").status, 0);
+  EXPECT_THAT(asdic(folder, "info rays.ray").out, testing::HasSubstr("frequency  1000 Hz"));
 }
 
 // The direct path: √(3000² + 300²) m; delay at 1500 m/s, spherical spreading, no absorption.
