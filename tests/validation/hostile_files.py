@@ -33,6 +33,7 @@ taper = "omnidirectional"
 kind = "cw"
 frequency = 1000.0
 duration = 0.02
+window = "hann"
 [array]
 kind = "horizontal"
 phones = 4
