@@ -107,10 +107,14 @@ class Packing {
 };
 
 /// A square of [8 × 8] numbers, turned over its diagonal. \param row  from row to row
-inline void transpose_eight(const float* from, float* to, std::size_t row) noexcept {
+template <std::size_t row>
+[[gnu::always_inline]] inline void transpose_eight(const float* from, float* to) noexcept {
   using Eight [[gnu::vector_size(32)]] = float;
   Eight r[8], t[8];
-  for (std::size_t i = 0; i < 8; ++i) std::memcpy(&r[i], from + i * row, sizeof r[i]);
+  if constexpr (row == 8)  // in one piece: GCC 12 keeps the rows in registers then
+    std::memcpy(r, from, sizeof r);
+  else
+    for (std::size_t i = 0; i < 8; ++i) std::memcpy(&r[i], from + i * row, sizeof r[i]);
   for (int i = 0; i < 8; i += 2) {  // half by half, each shuffle one instruction
     t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
     t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
@@ -125,18 +129,21 @@ inline void transpose_eight(const float* from, float* to, std::size_t row) noexc
     t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
-  for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + i * row, &t[i], sizeof t[i]);
+  if constexpr (row == 8)
+    std::memcpy(to, t, sizeof t);
+  else
+    for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + i * row, &t[i], sizeof t[i]);
 }
 
 /// A square of [lanes × lanes] numbers, in place.
 inline void transpose(float* square) noexcept {
   if constexpr (lanes == 8) {
-    transpose_eight(square, square, lanes);
+    transpose_eight<lanes>(square, square);
   } else if constexpr (lanes == 16) {
     std::array<float, 16 * 16> turned;
     for (std::size_t i = 0; i < 16; i += 8)
       for (std::size_t j = 0; j < 16; j += 8)
-        transpose_eight(square + i * 16 + j, &turned[j * 16 + i], 16);
+        transpose_eight<16>(square + i * 16 + j, &turned[j * 16 + i]);
     std::memcpy(square, turned.data(), sizeof turned);
   } else {
     for (std::size_t i = 0; i < lanes; ++i)
