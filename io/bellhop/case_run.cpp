@@ -211,10 +211,22 @@ Value choice(const ListReader& env, const char* item, char letter,
   env.fail(item, shown(std::string(1, letter)), expected);
 }
 
-CervenyBeams read_cerveny(ListReader& env) {
+/// BELLHOP takes the pressure for a letter that it does not know, so also for the "!" of a comment.
+CervenyBeams::Component cerveny_component(CaseReading& reading, char letter) {
+  using Component = CervenyBeams::Component;
+  if (letter == 'V') return Component::vertical;
+  if (letter == 'H') return Component::horizontal;
+  if (letter != 'P' && letter != '!')
+    reading.note(reading.env.where("component") + ": " + shown(std::string(1, letter)) +
+                 " is none of P (pressure), V (vertical) and H (horizontal); the pressure, as "
+                 "BELLHOP does");
+  return Component::pressure;
+}
+
+CervenyBeams read_cerveny(CaseReading& reading) {
   using Width = CervenyBeams::Width;
   using Curvature = CervenyBeams::Curvature;
-  using Component = CervenyBeams::Component;
+  ListReader& env = reading.env;
   CervenyBeams beams;
   env.begin("Cerveny beams: width and curvature, EPSMULT, RLOOP");
   std::string letters;
@@ -247,10 +259,7 @@ CervenyBeams read_cerveny(ListReader& env) {
     env.fail("window", std::to_string(window), "a whole number above 0");
   std::string component = "P";
   env.text(component, "component");
-  beams.component = choice<Component>(
-      env, "component", component.empty() ? ' ' : component[0],
-      {{'P', Component::pressure}, {'V', Component::vertical}, {'H', Component::horizontal}},
-      "P (pressure), V (vertical) or H (horizontal)");
+  beams.component = cerveny_component(reading, component.empty() ? ' ' : component[0]);
   env.end();
   beams.images = int(images);
   beams.window = int(window);
@@ -266,7 +275,7 @@ void read_run(CaseReading& reading) {
   note_short_section(reading);
   const BeamKind kind = reading.run_case().beams.kind;
   if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred)
-    reading.run_case().beams.cerveny = read_cerveny(reading.env);
+    reading.run_case().beams.cerveny = read_cerveny(reading);
 }
 
 }  // namespace asdic::bellhop

@@ -376,6 +376,24 @@ TEST(BellhopCase, CervenysLines) {
   EXPECT_EQ(run_case.beams.cerveny->window, 4);
 }
 
+// The third item of the line is the component, so the "!" of a comment is read as one.
+TEST(BellhopCase, ACommentAfterCervenysWindowIsThePressure) {
+  Texts texts = small_case(17, "'CC'");
+  texts.env += "'MS' 1.0 20.0\n";
+  const auto read = [&](const char* line) {
+    Texts with_line = texts;
+    with_line.env += line;
+    return read_case(with_line, "case");
+  };
+  const Input comment = read("2 5 ! NIMAGE, IBWIN\n");
+  EXPECT_EQ(comment.run_case.beams.cerveny->images, 2);
+  EXPECT_EQ(comment.run_case.beams.cerveny->window, 5);
+  EXPECT_EQ(comment.run_case.beams.cerveny->component, CervenyBeams::Component::pressure);
+  EXPECT_EQ(comment.notes.size() + 1, read("2 5 X\n").notes.size());  // a letter by mistake is told
+  EXPECT_EQ(read("2 5 V ! NIMAGE\n").run_case.beams.cerveny->component,
+            CervenyBeams::Component::vertical);
+}
+
 TEST(BellhopCase, LongBathymetryHasMaterialsPerFacet) {
   Texts texts = small_case(9, "'A~' 0");
   texts.companions.emplace_back(".bty", "'LL'\n2\n0 90 1600 0 1.5 0.2 0\n1 80 2000 800 2.0 0 0\n");
