@@ -2,11 +2,14 @@
 """The 16 reference cases of BELLHOP run by asdic, and how far everything is from everything.
 
     ASDIC=path/to/asdic scripts/compare_bellhop.sh [--times] [CASE ...]
+    ASDIC=path/to/asdic scripts/compare_bellhop.sh --emulation
 
 For each case of tests/data/bellhop: BELLHOP's default run against its converged one; asdic's own run
 of case.env against the converged one; asdic's rays with exactly the fan of converged/case.env against
 the converged one; and --like-bellhop against the default run. Everything by `asdic compare`. Prints
-Markdown; --times adds asdic's wall times. Exit code: 0, 1 when a run failed, 2 when there is nothing to run.
+Markdown; --times adds asdic's wall times; --emulation prints how far --like-bellhop is from the forty
+small cases of tests/data/bellhop-emulation instead. Exit code: 0, 1 when a run failed, 2 when there is
+nothing to run.
 """
 import json
 import os
@@ -177,7 +180,42 @@ def ray_rows(case):
                 *ray_cells(case.against(like, case.default)))]
 
 
+def emulation():
+    """Prints the table of the emulation's cases. → exit code"""
+    faults, fields, arrivals = [], [], []
+    root = DATA.parent / "bellhop-emulation"
+    with tempfile.TemporaryDirectory(prefix="asdic_bellhop_") as work:
+        for env in sorted(root.rglob("case.env")):
+            name = env.parent.relative_to(root).as_posix()
+            outputs = env.with_suffix(".shd"), env.with_suffix(".arr")
+            output = next(file for file in outputs if file.exists())
+            ours = Path(work) / name.replace("/", "-") / "case"
+            ours.parent.mkdir()
+            try:
+                asdic("bellhop", env.with_suffix(""), "--like-bellhop", "-o", ours)
+                d = compare(ours.with_suffix(output.suffix), output)
+            except Failed as fault:
+                faults.append(f"{name}: {fault}")
+                continue
+            if output.suffix == ".shd":
+                tl = d["tl_db"]
+                fields.append(row(f"`{name}`", *(f"{tl[k]:.1e}" for k in ("median", "p99", "max")),
+                                  f"{d['one_sided_pct']:.2g}"))
+            else:
+                arrivals.append(row(f"`{name}`", d["rows_a"], d["rows_b"], f"{d['matched_pct']:g}",
+                                    *(f"{d[k]['p99']:.1e}" for k in ("delay_us", "amplitude_db"))))
+    print("Fields: |ΔTL| [dB]\n")
+    print(table(["case", "median", "99 %", "max", "one-sided cells %"], fields))
+    print("\nArrivals: at 99 %\n")
+    print(table(["case", "rows", "BELLHOP's", "matched %", "delay µs", "amplitude dB"], arrivals))
+    for fault in faults:
+        print(f"compare_bellhop: {fault}", file=sys.stderr)
+    return 1 if faults else 0
+
+
 def main(names):
+    if names == ["--emulation"]:
+        return emulation()
     times = "--times" in names
     names = [name for name in names if name != "--times"]
     every = sorted(p.parent.name for p in DATA.glob("*/meta.json"))

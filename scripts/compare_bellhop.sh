@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The 16 reference cases of BELLHOP (tests/data/bellhop) run by asdic, and how far everything is from everything, as Markdown.
 #   ASDIC=path/to/asdic scripts/compare_bellhop.sh [CASE ...]
+#   ASDIC=path/to/asdic scripts/compare_bellhop.sh --emulation
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 : "${ASDIC:=$root/build/release/bin/asdic}"

@@ -15,6 +15,7 @@ struct Beam {
   double step = 0.0;                               ///< STEP [m]
   double surface_depth = 0.0, bottom_depth = 0.0;  ///< over which images are mirrored [m]
   SourceKind source = SourceKind::point;
+  bool apart = false;  ///< for arrivals or eigenrays, not for a sum
 
   [[nodiscard]] double omega() const noexcept { return 2.0 * pi * frequency; }
   /// q of a ray whose beam is 1 m wide: |q|/q₀ is the distance to the neighbouring ray.
@@ -52,29 +53,37 @@ class BeamSink {
  public:
   virtual ~BeamSink() = default;
   virtual void take(const Contribution& c) = 0;
-  /// Of a beam that is no ray tube: a pressure, spreading by range left out.
-  virtual void take_pressure(std::size_t row, std::size_t column, std::complex<double> p) = 0;
+  /// Of a beam that is no ray tube: a pressure on its axis or beside it, spreading by range left
+  /// out, and a weight: pressures add p·weight, intensities |p|²·weight.
+  virtual void take_pressure(std::size_t row, std::size_t column, std::complex<double> p,
+                             double weight) = 0;
 };
 
 /// The phase that caustics have added up to the beginning of a segment, and what a receiver gets.
 class CausticPhase {
  public:
+  /// \param before  q before the ray begins
+  explicit CausticPhase(double before = 0.0) noexcept : before_(before) {}
   /// To be called with q at the beginning of every segment in turn.
   void pass(double q) noexcept {
     if (changed(q)) phase_ += 0.5 * pi;
     before_ = q;
   }
-  /// The phase at a receiver where q is as given: with the reflections', but *without* them where q
+  /// The caustics' phase at a receiver where q is as given.
+  [[nodiscard]] double at(double q) const noexcept {
+    return changed(q) ? phase_ + 0.5 * pi : phase_;
+  }
+  /// The same with the reflections', but *without* them where q
   /// has changed sign since the segment's beginning. That is BELLHOP's, and an error.
   [[nodiscard]] double at(double q, double reflections) const noexcept {
-    return changed(q) ? phase_ + 0.5 * pi : reflections + phase_;
+    return changed(q) ? at(q) : reflections + phase_;
   }
 
  private:
   [[nodiscard]] bool changed(double q) const noexcept {
     return (q <= 0.0 && before_ > 0.0) || (q >= 0.0 && before_ < 0.0);
   }
-  double phase_ = 0.0, before_ = 0.0;
+  double phase_ = 0.0, before_;
 };
 
 /// Lays a beam of its kind over a block of receivers. The contributions come in the order of the

@@ -68,8 +68,9 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
     if (a.x.x() == b.x.x()) continue;
     const Complex ha = vertical_curvature(a, epsilon), hb = vertical_curvature(b, epsilon);
     columns.over(a.x.x(), b.x.x(), [&](std::size_t column) {
-      // BELLHOP leaves out the last of several ranges (all but a few beams there).
-      if (column > 0 && column + 1 == block.grid.ranges.size()) return;
+      // BELLHOP leaves out the first of several ranges, and the last (all but a few beams there).
+      const std::size_t last = block.grid.ranges.size() - 1;
+      if (last > 0 && (column == 0 || column == last)) return;
       const double w = (block.grid.ranges[column] - a.x.x()) / (b.x.x() - a.x.x());
       const double z = a.x.y() + w * (b.x.y() - a.x.y());
       const double t_z = a.t.y() + w * (b.t.y() - a.t.y());
@@ -89,7 +90,7 @@ void lay_cerveny_cartesian(const Beam& beam, const CervenyBeams& kind, const Rec
           sum += image.sign * component(kind, b.t, k) * taper(std::abs(dz), wavelength) *
                  amplitude * std::exp(Complex(0.0, -1.0) * phase);
         }
-        if (sum != 0.0) sink.take_pressure(row, column, sum);
+        if (sum != 0.0) sink.take_pressure(row, column, sum, 1.0);
       }
     });
   }

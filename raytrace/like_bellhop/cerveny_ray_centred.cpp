@@ -20,8 +20,11 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
   for_each_depth_line(block, [&](double depth, std::size_t row, const ReceiverBlock& line) {
     for (int k = 0; k < kind.images; ++k) {
       const Image image = image_of(beam, depth, k);
+      // Seen from below the bottom the normals lean as those of the ray's own mirror image would,
+      // which is BELLHOP's, and an error: its foot is on the wrong side of the ray.
+      const double side = k == 2 ? -1.0 : 1.0;
       double branch = 1.0;
-      follow_depth_line(beam.ray, image.depth, line, [&](const LineSegment& s) {
+      follow_depth_line(beam.ray, image.depth, side, line, [&](const LineSegment& s) {
         const Complex qa = q_of(s.a), qb = q_of(s.b);
         const Complex ma = curvature_of(s.a), mb = curvature_of(s.b);
         s.over_columns([&](std::size_t column, double w) {
@@ -32,9 +35,9 @@ void lay_cerveny_ray_centred(const Beam& beam, const CervenyBeams& kind, const R
           const Complex phase = omega * (tau + 0.5 * m * n * n) - s.a.phase;
           sink.take_pressure(row, column,
                              image.sign * component(kind, s.b.t, k) * factor * s.b.amplitude *
-                                 taper(std::abs(n), wavelength) * next_branch(branch, qa, q) *
-                                 std::sqrt(c * std::abs(epsilon) / q) *
-                                 std::exp(Complex(0.0, -1.0) * phase));
+                                 next_branch(branch, qa, q) * std::sqrt(c * std::abs(epsilon) / q) *
+                                 std::exp(Complex(0.0, -1.0) * phase),
+                             taper(std::abs(n), wavelength));
         });
         branch = next_branch(branch, qa, qb);
       });

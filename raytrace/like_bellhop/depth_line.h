@@ -30,12 +30,15 @@ struct LineSegment {
   }
 
  private:
-  /// The last receiver at or before a range; −1 if all lie beyond.
+  /// The last receiver at or before a range. If all lie beyond, the first of several, which so
+  /// never lies between two: it gets nothing, as BELLHOP has it.
   [[nodiscard]] long index_of(double range) const noexcept {
     const std::vector<double>& r = block.grid.ranges;
     const double spacing = (r.back() - r.front()) / static_cast<double>(r.size());
     const double nearly = range + 1e-6 * spacing;  // on a receiver but for rounding
-    return static_cast<long>(std::upper_bound(r.begin(), r.end(), nearly) - r.begin()) - 1;
+    const long index =
+        static_cast<long>(std::upper_bound(r.begin(), r.end(), nearly) - r.begin()) - 1;
+    return r.size() > 1 ? std::max(index, 0L) : index;
   }
 };
 
@@ -54,17 +57,18 @@ void for_each_depth_line(const ReceiverBlock& block, auto&& visit) {
 
 /// Calls visit(LineSegment) for the segments of a ray in turn, the reflections left out. Where a
 /// ray is almost vertical its normals run along the line and do not meet it.
-void follow_depth_line(const LiteralRay& ray, double depth, const ReceiverBlock& block,
+/// \param side  1: the normals as they are; −1: leaning the other way in range
+void follow_depth_line(const LiteralRay& ray, double depth, double side, const ReceiverBlock& block,
                        auto&& visit) {
   const auto& points = ray.points;
   struct Foot {
     double range, length;
   };
-  const auto foot = [depth](const LiteralPoint& y) {
+  const auto foot = [depth, side](const LiteralPoint& y) {
     const Vec2 normal(-y.c * y.t.y(), y.c * y.t.x());
     if (std::abs(normal.y()) < 1e-10) return Foot{infinity, 0.0};
     const double length = (depth - y.x.y()) / normal.y();
-    return Foot{y.x.x() + length * normal.x(), length};
+    return Foot{y.x.x() + side * length * normal.x(), length};
   };
   for (std::size_t i = 1; i < points.size(); ++i) {
     const LiteralPoint &a = points[i - 1], &b = points[i];

@@ -11,14 +11,13 @@ namespace {
 void lay(const Beam& beam, const ReceiverBlock& block, BeamSink& sink, auto&& weigh) {
   for_each_depth_line(block, [&](double depth, std::size_t row, const ReceiverBlock& line) {
     CausticPhase caustics;
-    follow_depth_line(beam.ray, depth, line, [&](const LineSegment& s) {
+    follow_depth_line(beam.ray, depth, 1.0, line, [&](const LineSegment& s) {
       caustics.pass(s.a.q1);
-      const Vec2 chord = s.b.x - s.a.x;
       Contribution c;
       c.row = row;
       c.segment = s.index;
       c.end = &s.b;
-      c.arrival_declination = std::atan2(chord.y(), chord.x());
+      c.arrival_declination = std::atan2(s.b.t.y(), s.b.t.x());
       s.over_columns([&](std::size_t column, double w) {
         const double n = std::abs(s.na + w * (s.nb - s.na));
         const double q = s.a.q1 + w * (s.b.q1 - s.a.q1);

@@ -61,9 +61,10 @@ class TaskSink final : public BeamSink {
     if (results_.arrivals64) results_.arrivals64->add(receiver, c, declination_, omega_);
     if (results_.eigenrays) hits.push_back({beam_, c.segment, c.column, c.row});
   }
-  void take_pressure(std::size_t row, std::size_t column, std::complex<double> p) override {
-    if (results_.field32) results_.field32->add(row, column, p);
-    if (results_.field64) results_.field64->add(row, column, p);
+  void take_pressure(std::size_t row, std::size_t column, std::complex<double> p,
+                     double weight) override {
+    if (results_.field32) results_.field32->add(row, column, p, weight);
+    if (results_.field64) results_.field64->add(row, column, p, weight);
   }
 
   std::vector<EigenrayHit> hits;
@@ -180,7 +181,8 @@ class Run {
             .step = ocean_.step,
             .surface_depth = ocean_.water.first_depth(),
             .bottom_depth = ocean_.water.last_depth(),
-            .source = case_.beams.source};
+            .source = case_.beams.source,
+            .apart = case_.task != Task::field};
   }
 
   /// Rays or eigenrays of the rays just traced, in the order of the beams and, in a beam, of its

@@ -26,14 +26,13 @@ void FieldSums<Real>::add(const Contribution& c, double omega) noexcept {
 }
 
 template <class Real>
-void FieldSums<Real>::add(std::size_t row, std::size_t column,
-                          std::complex<double> pressure) noexcept {
+void FieldSums<Real>::add(std::size_t row, std::size_t column, std::complex<double> pressure,
+                          double weight) noexcept {
   auto& sum = sum_[row * columns_ + column];
   if (kind_ == FieldKind::coherent)
-    sum +=
-        std::complex<Real>(static_cast<Real>(pressure.real()), static_cast<Real>(pressure.imag()));
+    sum += std::complex<Real>(weight * pressure);
   else
-    sum += static_cast<Real>(std::norm(pressure));
+    sum += static_cast<Real>(weight * std::norm(pressure));
 }
 
 template class FieldSums<float>;

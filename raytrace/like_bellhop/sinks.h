@@ -16,8 +16,9 @@ class FieldSums {
 
   /// Adds a contribution of a geometric beam: A·exp(−i(ωτ − φ)), or (A·e^{ω·Im τ})²·W.
   void add(const Contribution& c, double omega) noexcept;
-  /// Adds a pressure (coherent) or its squared magnitude.
-  void add(std::size_t row, std::size_t column, std::complex<double> pressure) noexcept;
+  /// Adds a pressure times its weight (coherent), or its squared magnitude times the weight.
+  void add(std::size_t row, std::size_t column, std::complex<double> pressure,
+           double weight) noexcept;
 
   [[nodiscard]] FieldKind kind() const noexcept { return kind_; }
   [[nodiscard]] const std::vector<std::complex<Real>>& sums() const noexcept { return sum_; }
