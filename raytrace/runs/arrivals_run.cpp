@@ -51,10 +51,10 @@ double left_out(const Arrivals& arrivals) {
 class ArrivalSearch {
  public:
   ArrivalSearch(const PropagationCase& run_case, const PathSelection& selection)
-      : case_(run_case),
-        selection_(selection),
-        solver_(run_case.environment),
-        receivers_(points_of(run_case.receivers)) {}
+      : case_(run_case), selection_(selection), receivers_(points_of(run_case.receivers)) {
+    // Marched rays need no solver, nor water everywhere: a bottom may come up to the surface.
+    if (is_layered(run_case.environment)) solver_.emplace(run_case.environment);
+  }
 
   /// Made when first asked for: layered runs without drawn rays need none.
   [[nodiscard]] const RayTracer& tracer() const {
@@ -68,14 +68,14 @@ class ArrivalSearch {
                              std::vector<std::string>& notes) const {
     const BeamSettings& beams = case_.beams;
     std::vector<Arrivals> found;
-    if (solver_.layered() && within_box(case_) && forward_only(beams) && !beams.displacement) {
+    if (solver_ && within_box(case_) && forward_only(beams) && !beams.displacement) {
       const PathLimits limits{
           .max_surface_bounces = most_bounces,
           .max_bottom_bounces = most_bounces,
           .max_launch_angle = std::max(std::abs(beams.lowest), std::abs(beams.highest)),
           .max_vertices = 2 * most_bounces,
           .faintest = selection_.faintest_reflection};
-      found = solver_.find(source_depth, receivers_, case_.frequency, limits);
+      found = solver_->find(source_depth, receivers_, case_.frequency, limits);
     } else {
       const TraceLimits box = box_of(case_);
       const FanLimits limits{.lowest = beams.lowest,
@@ -164,7 +164,7 @@ class ArrivalSearch {
 
   const PropagationCase& case_;
   PathSelection selection_;
-  EigenraySolver solver_;
+  std::optional<EigenraySolver> solver_;  ///< of a layered ocean
   mutable std::optional<RayTracer> tracer_;
   std::vector<ReceiverPoint> receivers_;
 };
