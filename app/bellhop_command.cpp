@@ -70,25 +70,6 @@ class Report {
   std::string text_;
 };
 
-/// The one beam wanted, of a ray run: the fan is that ray alone. \param notes  what is said of it
-/// else
-void choose_single_beam(PropagationCase& run_case, std::vector<std::string>& notes) {
-  if (!run_case.literal.single_beam) return;
-  if (run_case.task != Task::rays) {
-    notes.push_back("a single beam is asked for: only --like-bellhop obeys, here all are traced");
-    return;
-  }
-  BeamSettings& beams = run_case.beams;
-  const int n = run_case.literal.beams, i = *run_case.literal.single_beam - 1;  // by declination
-  double elevation = beams.highest;
-  if (beams.elevations.size() == std::size_t(n))
-    elevation = beams.elevations[std::size_t(n - 1 - i)];
-  else if (n > 1)
-    elevation = std::lerp(beams.highest, beams.lowest, double(i) / (n - 1));
-  beams.elevations = {elevation};
-  beams.count = 1;
-}
-
 /// As many beams as the file says, no more: asdic's rays, BELLHOP's fan.
 void fix_fan(PropagationCase& run_case) {
   BeamSettings& beams = run_case.beams;
@@ -161,7 +142,6 @@ void write_results(const bellhop::Input& input, const PropagationResult& result,
 void run_case(const BellhopOptions& options, const std::filesystem::path& root, Report& report) {
   StopWatch watch;
   bellhop::Input input = bellhop::read_case(std::filesystem::path(options.root));
-  if (!options.like_bellhop) choose_single_beam(input.run_case, input.notes);
   if (options.beams_as_written) fix_fan(input.run_case);
   const double parse = watch.lap();
   for (const std::string& leak : input.leaks) fmt::print(stderr, "asdic: note: {}\n", leak);

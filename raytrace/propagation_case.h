@@ -78,7 +78,8 @@ struct BeamSettings {
   int count = 0;   ///< rays of a ray run; least number of beams otherwise; 0: by our own rule
 };
 
-/// What an input file of BELLHOP says and only a literal run obeys (docs/guide/from-bellhop.md).
+/// What an input file of BELLHOP says and only a literal run obeys, but for the single beam
+/// (docs/guide/from-bellhop.md).
 struct LiteralSettings {
   double step = 0.0;               ///< [m]; 0: a tenth of the depth
   int beams = 0;                   ///< as written; 0: by BELLHOP's rule
@@ -96,7 +97,7 @@ struct PropagationCase {
   FieldKind field = FieldKind::coherent;
   BeamSettings beams;
   double box_range = 0.0;  ///< rays end at this distance from the source [m]
-  double box_depth = 0.0;  ///< rays end below this depth [m]
+  double box_depth = 0.0;  ///< rays end this far below and above depth 0 [m]
   LiteralSettings literal;
 };
 

@@ -11,6 +11,8 @@
 #include "raytrace/beams/field_parts.h"
 #include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
+#include "raytrace/runs/rays_run.h"
+#include "raytrace/runs/single_beam.h"
 
 namespace asdic {
 
@@ -73,7 +75,7 @@ TraceLimits field_limits(const PropagationCase& run_case) {
       limits.min_range = -run_case.box_range;
     }
   }
-  if (run_case.box_depth > 0.0) limits.max_depth = run_case.box_depth;
+  limit_depth(run_case, limits);
   return limits;
 }
 
@@ -211,6 +213,7 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
   check(run_case);
   const RayTracer tracer = tracer_of(run_case);
+  const std::optional<SingleBeam> single = single_beam(run_case);
   PropagationResult result;
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
@@ -222,6 +225,13 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
                 .note = "the source at " + std::to_string(depth) +
                         " m is on a boundary with a vacuum, which reflects all it sends with the "
                         "opposite sign: there is no field, and no beam was traced"};
+    } else if (single) {
+      const BeamFan fan{.elevation = {single->elevation}, .spacing = single->spacing};
+      answer = {.field = field_of_fan(run_case, tracer, depth, fan, progress).field,
+                .beams = 1,
+                .note =
+                    "one beam is wanted: the field is that beam's alone, as wide as its fan "
+                    "makes it"};
     } else if (run_case.beams.elevations.empty()) {
       answer = converged_field(
           run_case,

@@ -31,7 +31,8 @@ std::optional<LayeredCrossings> LayeredCrossings::make(const Environment& enviro
       !environment.surface.roughness.smooth() || !environment.bottom.roughness.smooth();
   if (!c_linear || rough || environment.section || environment.surface.shape ||
       environment.bottom.shape || !alpha.is_constant() || limits.max_depth <= bottom ||
-      ranges.front() < 0.0 || !(source_depth > top && source_depth < bottom))
+      limits.min_depth >= top || ranges.front() < 0.0 ||
+      !(source_depth > top && source_depth < bottom))
     return std::nullopt;
   constexpr double same_line = 1e-7;  // [m]
   LayeredCrossings result;

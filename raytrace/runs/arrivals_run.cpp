@@ -13,6 +13,7 @@
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/drawn_path.h"
 #include "raytrace/runs/rays_run.h"
+#include "raytrace/runs/single_beam.h"
 #include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
@@ -28,7 +29,9 @@ constexpr double edge_of_fan = 1e-12;
 
 /// The layered solver knows no box: it serves where all of the water is within it.
 bool within_box(const PropagationCase& run_case) {
-  return !(run_case.box_depth > 0.0) || run_case.box_depth >= run_case.environment.bottom.depth;
+  const Environment& ocean = run_case.environment;
+  return !(run_case.box_depth > 0.0) ||
+         (run_case.box_depth >= ocean.bottom.depth && -run_case.box_depth <= ocean.surface.depth);
 }
 
 bool forward_only(const BeamSettings& beams) {
@@ -84,6 +87,7 @@ class ArrivalSearch {
                              .max_bottom_bounces = most_bounces,
                              .max_turns = 2 * most_bounces,
                              .faintest = selection_.faintest_reflection,
+                             .min_depth = box.min_depth,
                              .max_depth = box.max_depth,
                              .min_range = box.min_range,
                              .max_range = box.max_range};
@@ -193,6 +197,16 @@ std::vector<RayPath> drawn(const PropagationCase& run_case, const RayTracer& tra
 
 PropagationResult search(const PropagationCase& run_case, const Progress& progress,
                          const PathSelection& selection, bool with_rays, bool with_arrivals) {
+  if (const auto beam = single_beam(run_case)) {
+    const PropagationCase narrow = narrowed_to(*beam, run_case);
+    PropagationResult result = search(narrow, progress, selection, with_rays, with_arrivals);
+    result.notes.push_back(
+        "one beam is wanted: the paths told are those it stands for, launched "
+        "within half a spacing of it, " +
+        std::to_string(degrees(narrow.beams.lowest)) + " to " +
+        std::to_string(degrees(narrow.beams.highest)) + " deg (positive up)");
+    return result;
+  }
   check_sources(run_case);
   check_receivers(run_case);
   const ArrivalSearch paths(run_case, selection);

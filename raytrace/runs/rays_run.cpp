@@ -9,6 +9,7 @@
 #include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/drawn_path.h"
+#include "raytrace/runs/single_beam.h"
 
 namespace asdic {
 namespace {
@@ -29,6 +30,12 @@ std::vector<double> elevations_of(const BeamSettings& beams) {
 
 }  // namespace
 
+void limit_depth(const PropagationCase& run_case, TraceLimits& limits) noexcept {
+  if (!(run_case.box_depth > 0.0)) return;
+  limits.max_depth = run_case.box_depth;
+  limits.min_depth = -run_case.box_depth;
+}
+
 TraceLimits box_of(const PropagationCase& run_case) {
   TraceLimits limits;
   double range = run_case.box_range;
@@ -36,7 +43,7 @@ TraceLimits box_of(const PropagationCase& run_case) {
     for (const double r : run_case.receivers.ranges) range = std::max(range, r);
   limits.max_range = range;
   limits.min_range = -range;
-  if (run_case.box_depth > 0.0) limits.max_depth = run_case.box_depth;
+  limit_depth(run_case, limits);
   return limits;
 }
 
@@ -45,7 +52,9 @@ PropagationResult run_rays(const PropagationCase& run_case, const Progress& prog
   const RayTracer tracer = tracer_of(run_case);
   TraceLimits limits = box_of(run_case);
   limits.faintest = faintest_ray;
-  const std::vector<double> elevations = elevations_of(run_case.beams);
+  const std::optional<SingleBeam> single = single_beam(run_case);
+  const std::vector<double> elevations =
+      single ? std::vector{single->elevation} : elevations_of(run_case.beams);
   const std::size_t sources = run_case.source_depths.size(), rays = elevations.size();
   PropagationResult result;
   result.beams = rays;

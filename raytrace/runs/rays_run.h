@@ -10,6 +10,9 @@ namespace asdic {
 [[nodiscard]] PropagationResult run_rays(const PropagationCase& run_case,
                                          const Progress& progress = {});
 
+/// Ends rays where the box of a case does, below and above.
+void limit_depth(const PropagationCase& run_case, TraceLimits& limits) noexcept;
+
 /// Where the rays of a case end.
 [[nodiscard]] TraceLimits box_of(const PropagationCase& run_case);
 

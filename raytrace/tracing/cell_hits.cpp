@@ -186,6 +186,7 @@ std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
                                    double frequency, const FanLimits& limits) {
   // As many bounces before the hit as allowed: a hit on a boundary is itself one more.
   TraceLimits trace{.max_range = max_range + spacing,
+                    .min_depth = limits.min_depth,
                     .max_depth = limits.max_depth,
                     .max_surface_bounces = limits.max_surface_bounces,
                     .max_bottom_bounces = limits.max_bottom_bounces,

@@ -166,6 +166,7 @@ void March::snap() {
     case Event::greatest_range:
       next_.range = limits_.max_range;
       break;
+    case Event::least_depth:
     case Event::greatest_depth:
     case Event::none:
       break;
@@ -278,6 +279,7 @@ bool March::answer() {
       return true;
     case Event::least_range:
     case Event::greatest_range:
+    case Event::least_depth:
     case Event::greatest_depth:
       return end(RayEnd::box);
     case Event::none:

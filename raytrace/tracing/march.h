@@ -35,6 +35,7 @@ class March {
     turn,  ///< ζ = 0
     least_range,
     greatest_range,
+    least_depth,
     greatest_depth,
   };
 

@@ -55,6 +55,8 @@ void March::plan_closed(bool down, double longest) {
     take_range(Event::column_begin, ocean_.column_begin(column_));
     take_range(Event::least_range, limits_.min_range);
   }
+  if (y_.depth - limits_.min_depth <= within)
+    take(Event::least_depth, course_.to_line({.depth = limits_.min_depth, .nz = 1.0}));
   if (limits_.max_depth - y_.depth <= within)
     take(Event::greatest_depth, course_.to_line({.depth = limits_.max_depth, .nz = -1.0}));
 }
@@ -134,6 +136,7 @@ void March::plan_series(bool down, double longest) {
   }
   take(Event::least_range, behind(limits_.min_range));
   take(Event::greatest_range, in_front(limits_.max_range));
+  take(Event::least_depth, {.depth = limits_.min_depth, .nz = 1.0});
   take(Event::greatest_depth, {.depth = limits_.max_depth, .nz = -1.0});
 }
 

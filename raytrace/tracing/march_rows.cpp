@@ -133,7 +133,8 @@ bool March::cross_rows() {
     if (cell_->law == Law::munk || std::abs(tz) < 0.05) break;
     const bool down = tz > 0.0, in_section = cell_->law == Law::bilinear;
     const double line = down ? cell_->row->bottom : cell_->row->top;
-    if (line == y_.depth || std::abs(line) > 1e29 || line > limits_.max_depth) break;
+    if (line == y_.depth || std::abs(line) > 1e29) break;
+    if (line < limits_.min_depth || line > limits_.max_depth) break;
     const bool is_dear = in_section || cell_->law == Law::cubic;
     if (is_dear && (down ? near_bottom_ && stopped_before(line, BoundaryKind::bottom)
                          : near_surface_ && stopped_before(line, BoundaryKind::surface)))

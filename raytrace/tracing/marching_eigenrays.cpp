@@ -63,7 +63,8 @@ TraceLimits trace_limits(const Environment& ocean, double source_range,
                          std::span<const ReceiverColumn> columns, const FanLimits& limits) {
   const double first = std::min(source_range, columns.front().range);
   const double last = std::max(source_range, columns.back().range);
-  TraceLimits trace{.max_depth = limits.max_depth,
+  TraceLimits trace{.min_depth = limits.min_depth,
+                    .max_depth = limits.max_depth,
                     .max_surface_bounces = limits.max_surface_bounces,
                     .max_bottom_bounces = limits.max_bottom_bounces,
                     .faintest = limits.faintest};

@@ -15,7 +15,7 @@ struct FanLimits {
   int max_surface_bounces = 1 << 20, max_bottom_bounces = 1 << 20;
   int max_turns = 256;    ///< in the water: in a duct ever smaller cycles have no end
   double faintest = 0.0;  ///< product of reflection magnitudes below which a path is not followed
-  double max_depth = 1e300;                      ///< rays end there [m]
+  double min_depth = -1e300, max_depth = 1e300;  ///< rays end there [m]
   double min_range = -1e300, max_range = 1e300;  ///< and there [m]
 };
 

@@ -9,8 +9,8 @@ namespace asdic {
 
 /// Where a ray is followed no further.
 struct TraceLimits {
-  double min_range = -1e300, max_range = 1e5;  ///< [m]
-  double max_depth = 1e300;                    ///< [m]
+  double min_range = -1e300, max_range = 1e5;    ///< [m]
+  double min_depth = -1e300, max_depth = 1e300;  ///< [m]
   int max_surface_bounces = 1 << 20, max_bottom_bounces = 1 << 20;
   double faintest = 0.0;  ///< product of reflection magnitudes below which a ray is dropped
   int max_segments = 1'000'000;
