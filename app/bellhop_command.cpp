@@ -155,7 +155,7 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   const double search_time = watch.lap();
   report.notes(result.notes);
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
-  if (!options.like_bellhop && input.run_case.task == Task::field)
+  if (!options.like_bellhop && input.run_case.task == Task::field && result.beams > 0)
     report.line("error      " + beam_error_text(result.beam_error_db, result.beam_error_bounded));
   report.line("");
   write_results(input, result, options, root, std::move(files), report);

@@ -82,8 +82,11 @@ std::string field_text(const FieldResult& result, double wall) {
       fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
                   name(data.source), count_of(data.source_depths.size(), "depth"),
                   receivers_text(data.receivers));
-  text += fmt::format("beams      {} of kind {}; {}\n", data.beams, data.beam_kind,
-                      beam_error_text(data.beam_error_db, data.beam_error_bounded));
+  if (data.beams > 0)
+    text += fmt::format("beams      {} of kind {}; {}\n", data.beams, data.beam_kind,
+                        beam_error_text(data.beam_error_db, data.beam_error_bounded));
+  else
+    text += "beams      none: the note tells why\n";
   text += loss_text(data.pressure);
   for (const std::string& note : result.notes) text += "note: " + note + '\n';
   return text + fmt::format("{}: {}, {}\n", result.output.string(),

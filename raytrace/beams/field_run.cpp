@@ -5,12 +5,14 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_parts.h"
 #include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
+#include "raytrace/runs/image_field.h"
 #include "raytrace/runs/rays_run.h"
 #include "raytrace/runs/single_beam.h"
 
@@ -232,6 +234,8 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
                 .note =
                     "one beam is wanted: the field is that beam's alone, as wide as its fan "
                     "makes it"};
+    } else if (auto images = image_field(run_case, depth, progress)) {
+      answer = std::move(*images);
     } else if (run_case.beams.elevations.empty()) {
       answer = converged_field(
           run_case,
