@@ -12,6 +12,16 @@ namespace asdic::hdf5 {
 /// HDF5's name for an element of Hdf5File in this machine's memory.
 template <class T>
 [[nodiscard]] std::int64_t native_type();
+template <>
+std::int64_t native_type<std::int8_t>();
+template <>
+std::int64_t native_type<std::int32_t>();
+template <>
+std::int64_t native_type<std::int64_t>();
+template <>
+std::int64_t native_type<float>();
+template <>
+std::int64_t native_type<double>();
 
 /// UTF-8 of a fixed length, filled with zeros at the end; at least one byte. Text of variable
 /// length lies apart from its owner, in heaps of the file that damage makes HDF5 crash on.
