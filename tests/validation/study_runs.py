@@ -202,10 +202,13 @@ def interrupted():
 
 
 def killed():
-    """Rows that were committed a second before a kill are there after it."""
+    """Rows that were committed a second before a kill are there after it.
+
+    --retry: a kill from outside, twice while the same row is made, looks like a row that kills.
+    """
     kept = 0
     for k in range(KILLS):
-        run_ = start("study", "study.toml", "-o", "k.h5", "--threads", 1 + k % 3, "-q")
+        run_ = start("study", "study.toml", "-o", "k.h5", "--threads", 1 + k % 3, "--retry", "-q")
         wait_for_journal("k.h5.journal", run_)
         time.sleep(random.uniform(0.0, 1.0 / KILLS))
         run_.kill()
@@ -215,7 +218,7 @@ def killed():
         now = rows_in("k.h5.journal")
         check(now >= kept, f"kill {k}: {kept} rows had been there, now {now}")
         kept = now
-    run("study", "study.toml", "-o", "k.h5", "-q")
+    run("study", "study.toml", "-o", "k.h5", "--retry", "-q")
     same("k.h5", f"killed {KILLS} times, {kept} rows kept")
 
 
