@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/units.h"
+#include "sonar/phone_groups.h"
 #include "sonar/pulse.h"
 #include "sonar/reverberation_band.h"
 #include "sonar/sampling.h"
@@ -51,6 +52,7 @@ void PingReport::add(const PingRecord& record) {
     table_.row(summary_row(record.ping, degrees(record.elevation), target));
   }
   band_error_ = std::max(band_error_, record.band.error);
+  plane_wave_error_ = std::max(plane_wave_error_, record.plane_waves.error);
   const Timings& t = record.timings;
   total_.rays += t.rays;
   total_.eigenrays += t.eigenrays;
@@ -68,6 +70,12 @@ std::string PingReport::text(double wall) const {
         "note: reverberation across the band is right to {:.1e} of its largest amplitude, not to "
         "{:.0e}: a law has a kink there\n",
         band_error_, ReverberationBand::error);
+  if (plane_wave_error_ > reverberation_periods)
+    result += fmt::format(
+        "note: plane waves of reverberation are up to {:.2g} periods off at the worst phone, where "
+        "the nearest scatterers or a turn of the line are heard: sectors or a covariance stand for "
+        "too many returns; propagation.exact_per_phone = true hears every phone by itself\n",
+        plane_wave_error_);
   const PingSchedule& p = scenario_.pings;
   result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
                         count_of(channels_of(scenario_), "phone"), p.recording_duration,

@@ -26,7 +26,8 @@ class PingReport {
  private:
   const Scenario& scenario_;
   Table table_{summary_columns()};
-  double band_error_ = 0.0;  // of reverberation, where it is more than asked for
+  double band_error_ = 0.0;        // of reverberation, where it is more than asked for
+  double plane_wave_error_ = 0.0;  // of reverberation [periods]
   int pings_ = 0, lines_ = 0, left_out_ = 0;
   Timings total_;
 };

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "raytrace/propagation.h"
+#include "sonar/carried.h"
 #include "sonar/geometry.h"
 
 namespace asdic::app {
@@ -26,6 +29,31 @@ int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>&
   const auto most = std::max_element(
       votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == votes.end() ? -1 : most->first;
+}
+
+/// What a user should know of a towed line that bends while it listens: beams are formed for the
+/// shape at the ping. Empty if no phone moves by an eighth of a wavelength. \param end  [s]
+std::string bending(const PingProcessor& processor, const ProcessedArray& made,
+                    const ArrayRecording& heard, double end) {
+  const Scenario& scenario = processor.scenario();
+  if (!deforms(scenario, heard.array)) return "";
+  const auto phones = [&](double time) {
+    return phones_at(scenario, heard.array, heard.ping, time);
+  };
+  const std::vector<Vec3> at_ping = phones(heard.ping_time), later = phones(heard.ping_time + end);
+  double moved = 0.0, turned = 0.0;
+  for (std::size_t n = 0; n < at_ping.size(); ++n) {
+    const double off = (later[n] - at_ping[n]).norm();
+    moved = std::max(moved, off);
+    turned = std::max(turned, off / std::max(at_ping[n].norm(), 0.25 * made.shape.length));
+  }
+  const double wavelength =
+      made.sound_speed / processor.replica(heard.transmitter).centre_frequency();
+  if (moved < 0.125 * wavelength) return "";
+  return fmt::format(
+      "array {}, ping {}: the line turns and bends by up to {:.1f} m while it listens; beams are "
+      "those of its shape at the ping, and bearings may be up to {:.1f} degrees off",
+      heard.array, heard.ping, moved, degrees(std::min(turned, pi)));
 }
 
 double error_of(const ProcessedTrack& made, const TrackPoint& p, const ProcessedPing& ping,
@@ -109,6 +137,9 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
                         "as silence",
                         heard.ping, array, recordings.not_finite()));
       made.array = processor.process(heard, proceed, echoes);
+      if (const std::string bends = bending(processor, made.array, heard, recordings.end(row));
+          !bends.empty())
+        run.warnings.push_back(bends);
       for (std::size_t i = 0; i < echoes.size(); ++i)
         echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);

@@ -56,6 +56,11 @@ void PingFileWriter::append(const PingRecord& record) {
   to.append_summary(record);
   to.file.append<std::int32_t>("run/band_points", std::array{std::int32_t{record.band.points}});
   to.file.append<double>("run/band_error", std::array{record.band.error});
+  if (to.long_arrays) {
+    to.file.append<std::int32_t>("run/phone_groups",
+                                 std::array{std::int32_t{record.plane_waves.groups}});
+    to.file.append<double>("run/plane_wave_error", std::array{record.plane_waves.error});
+  }
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});
   const Timings& t = record.timings;

@@ -2,20 +2,24 @@
 
 #include <algorithm>
 
+#include "sonar/carried.h"
 #include "sonar/doppler.h"
 #include "sonar/moving_paths.h"
+#include "sonar/plane_wave.h"
 
 namespace asdic {
 namespace {
 
 /// The curve of a path's delay, where its Doppler factor changes during the pulse.
 std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics& source,
-                                   const Track& track, const Vec3& offset, int channel,
-                                   const MetPath& met, const Return& heard) {
+                                   const Carried& hearer, int channel, const MetPath& met,
+                                   const Return& heard) {
   if (context.pulse == nullptr) return std::nullopt;
   const Scenario& scenario = context.scenario;
   const Pulse& pulse = *context.pulse;
   const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
+  const Track& track = hearer.track;
+  const Vec3& offset = hearer.offset;
   double aperture = 0.0;
   if (channel < 0)
     for (const Vec3& phone : phones_at(scenario, context.array, context.ping, context.ping_time))
@@ -63,16 +67,16 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
 void hear(const EchoContext& context, int channel, DirectBlast& blast) {
   const Scenario& scenario = context.scenario;
   const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
-  const Track& track = scenario.platforms[static_cast<std::size_t>(array.platform)].track;
-  const Vec3 offset =
-      channel < 0
-          ? array.offset
-          : Vec3(array.offset + phones_at(scenario, context.array, context.ping,
-                                          context.ping_time)[static_cast<std::size_t>(channel)]);
+  const Carried hearer = channel < 0 ? reference_of(scenario, context.array)
+                                     : phone_of(scenario, context.array, context.ping, channel);
+  // Of the phone from the reference point, as it was at the ping: what its return is laid down by.
+  const Vec3 x = channel < 0 ? Vec3::Zero()
+                             : phones_at(scenario, context.array, context.ping,
+                                         context.ping_time)[static_cast<std::size_t>(channel)];
   const Kinematics source = transmitter_at(scenario, context.transmitter, context.ping_time);
   const MovingPaths moving(context.paths, limits_of(scenario.propagation), context.frequency,
                            context.ping_time, 1e-7, context.reuse);
-  Way way = moving.way(source.position, 0.0, track, offset);
+  Way way = moving.way(source.position, 0.0, hearer.track, hearer.offset);
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;
   way.leg.channel = channel;
@@ -83,7 +87,7 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
     });
   const double c_source = context.paths.speed_at(source.position);
   for (const Arrival& path : way.leg.arrivals) {
-    const MetPath met = moving.meet(source.position, 0.0, track, offset, way, path);
+    const MetPath met = moving.meet(source.position, 0.0, hearer.track, hearer.offset, way, path);
     const double c_array = context.paths.speed_at(met.way.end.position);
     const Vec3 leaving = slowness_vector(met.way.leg.bearing, met.path.launch_elevation, c_source);
     const Vec3 at_array = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation, c_array);
@@ -92,7 +96,7 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
     path_heard.target = -1;
     path_heard.array = context.array;
     path_heard.heard = {
-        .delay = met.time - arriving.dot(offset - array.offset),  // at the reference point
+        .delay = met.time - arriving.dot(x),  // at the reference point
         .amplitude = met.path.amplitude *
                      context.pattern.towards(met.way.leg.bearing, met.path.launch_elevation),
         .doppler = leg_doppler({source.velocity, leaving}, {met.way.end.velocity, at_array}),
@@ -102,10 +106,17 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
                          .bearing = met.way.leg.bearing,
                          .elevation = met.path.launch_elevation,
                          .without_pattern = met.path.amplitude};
-    path_heard.curve = curve_of(context, source, track, offset, channel, met, path_heard.heard);
+    path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard);
     blast.heard.push_back(std::move(path_heard));
   }
   blast.legs.push_back(std::move(way.leg));
+}
+
+/// Whether all that is heard at the reference point is a plane wave to the phones.
+bool plane_waves(const EchoContext& context, const DirectBlast& blast) {
+  return std::all_of(blast.heard.begin(), blast.heard.end(), [&](const EchoPath& path) {
+    return is_plane_wave(context, path.heard, path.colour.path_length);
+  });
 }
 
 }  // namespace
@@ -113,12 +124,20 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
 DirectBlast direct_blast(const EchoContext& context) {
   DirectBlast blast;
   const Scenario& scenario = context.scenario;
-  if (!scenario.propagation.exact_per_phone) {
-    hear(context, -1, blast);
+  const auto phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones.size();
+  const auto hear_at_phones = [&](DirectBlast& into) {
+    for (std::size_t n = 0; n < phones; ++n) hear(context, static_cast<int>(n), into);
+  };
+  if (scenario.propagation.exact_per_phone) {
+    hear_at_phones(blast);
     return blast;
   }
-  const auto phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones.size();
-  for (std::size_t n = 0; n < phones; ++n) hear(context, static_cast<int>(n), blast);
+  hear(context, -1, blast);
+  if (context.listens && !plane_waves(context, blast)) {
+    DirectBlast at_phones;
+    hear_at_phones(at_phones);
+    blast.heard = std::move(at_phones.heard);
+  }
   return blast;
 }
 

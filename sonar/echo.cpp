@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/carried.h"
 #include "sonar/doppler.h"
 #include "sonar/moving_paths.h"
+#include "sonar/plane_wave.h"
 #include "sonar/target_response.h"
 
 namespace asdic {
@@ -29,7 +31,7 @@ class EchoFinder {
         scenario_(context.scenario),
         array_(scenario_.arrays[static_cast<std::size_t>(context.array)]),
         phones_(phones_at(scenario_, context.array, context.ping, context.ping_time)),
-        array_track_(scenario_.platforms[static_cast<std::size_t>(array_.platform)].track),
+        reference_(reference_of(scenario_, context.array)),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
         layered_(context.paths.layered()),
@@ -49,17 +51,33 @@ class EchoFinder {
     if (scenario_.propagation.exact_per_phone) {
       for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, static_cast<int>(n), result);
-    } else {
-      pair_up(source, out, -1, result);
+      return result;
+    }
+    pair_up(source, out, -1, result);
+    if (context_.listens && !plane_waves(result)) {
+      TargetEchoes at_phones;
+      for (std::size_t n = 0; n < phones_.size(); ++n)
+        pair_up(source, out, static_cast<int>(n), at_phones);
+      result.at_phones = std::move(at_phones.echoes);
     }
     return result;
   }
 
  private:
+  /// Whether all echoes are plane waves to the phones. \param found  at the reference point
+  bool plane_waves(const TargetEchoes& found) const {
+    const Arrivals& home = found.legs.back().arrivals;
+    return std::all_of(found.echoes.begin(), found.echoes.end(), [&](const EchoPath& echo) {
+      return is_plane_wave(context_, echo.heard,
+                           home[static_cast<std::size_t>(echo.returning)].path_length);
+    });
+  }
+
+  /// \param channel  phone that hears it; −1: the reference point
   void pair_up(const Kinematics& source, const Way& out, int channel, TargetEchoes& result) const {
-    const Vec3 offset =
-        array_.offset + (channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)]);
-    Way back = moving_.way(out.end.position, out.reference_time, array_track_, offset);
+    const Carried hearer =
+        channel < 0 ? reference_ : phone_of(scenario_, context_.array, context_.ping, channel);
+    Way back = moving_.way(out.end.position, out.reference_time, hearer.track, hearer.offset);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
     back.leg.channel = channel;
@@ -69,19 +87,19 @@ class EchoFinder {
           moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
       const Kinematics struck = target_.track.at(context_.ping_time + there.time);
       const bool moved = struck.position != out.end.position;
-      const Way home =
-          moved ? moving_.way(struck.position, there.time, array_track_, offset, back.leg.arrivals)
-                : back;
+      const Way home = moved ? moving_.way(struck.position, there.time, hearer.track, hearer.offset,
+                                           back.leg.arrivals)
+                             : back;
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
         const Arrival* path = moved ? same_path(home.leg.arrivals, back.leg.arrivals[j], layered_)
                                     : &back.leg.arrivals[j];
         if (path == nullptr) continue;  // by then it is gone
-        const TwoWayPaths pair{
-            .source = source,
-            .target = struck,
-            .there = there,
-            .home = moving_.meet(struck.position, there.time, array_track_, offset, home, *path)};
-        for (EchoPath& echo : answer(pair, offset, channel)) {
+        const TwoWayPaths pair{.source = source,
+                               .target = struck,
+                               .there = there,
+                               .home = moving_.meet(struck.position, there.time, hearer.track,
+                                                    hearer.offset, home, *path)};
+        for (EchoPath& echo : answer(pair, hearer, channel)) {
           echo.outgoing = static_cast<int>(i);
           echo.returning = static_cast<int>(j);
           result.echoes.push_back(std::move(echo));
@@ -117,7 +135,7 @@ class EchoFinder {
   }
 
   /// What all glints of the target send back by one pair of paths.
-  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Vec3& offset, int channel) const {
+  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Carried& hearer, int channel) const {
     const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
     const Vec3 lag = lag_of(pair);
     const Kinematics& phone = pair.home.way.end;
@@ -143,7 +161,7 @@ class EchoFinder {
     const std::vector<Glint> seen = glints(scenario_, index_, look, into_target, out_of_target,
                                            context_.ping_time + pair.there.time);
     // A return tells of the reference point, also where its path is a phone's own.
-    const Vec3 x = offset - array_.offset;
+    const Vec3 x = channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)];
     std::vector<EchoPath> echoes;
     for (const Glint& glint : seen) {
       echo.highlight = glint.highlight;
@@ -155,19 +173,19 @@ class EchoFinder {
           db_from_amplitude(std::abs(echo.heard.amplitude));
       echoes.push_back(echo);
     }
-    bend(pair, offset, channel, seen, echoes);
+    bend(pair, hearer, channel, seen, echoes);
     return echoes;
   }
 
   /// Gives the echoes curves where the ranges change at changing rates during the pulse.
-  void bend(const TwoWayPaths& pair, const Vec3& offset, int channel,
+  void bend(const TwoWayPaths& pair, const Carried& hearer, int channel,
             const std::vector<Glint>& seen, std::vector<EchoPath>& echoes) const {
     if (context_.pulse == nullptr || echoes.empty()) return;
     const Pulse& pulse = *context_.pulse;
     double aperture = channel < 0 ? radius(phones_) : 0.0;
     for (const Glint& glint : seen) aperture = std::max(aperture, 2.0 * glint.offset.norm());
     const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
-    const MovingPath path = follow(pair, offset, highest);
+    const MovingPath path = follow(pair, hearer, highest);
     const Vec3 out = pair.target.velocity - pair.source.velocity,
                back = pair.home.way.end.velocity - pair.target.velocity;
     const double c = context_.paths.speed_at(pair.target.position);
@@ -178,7 +196,7 @@ class EchoFinder {
     const bool turns =
         !(path.source_turns.empty() && path.target_turns.empty() && path.array_turns.empty());
     if (phase < negligible_phase && !turns) return;
-    const std::vector<PulseMoment> moments = moments_of(path, pair, offset);
+    const std::vector<PulseMoment> moments = moments_of(path, pair, hearer);
     for (std::size_t i = 0; i < echoes.size(); ++i)
       echoes[i].curve = delay_curve(moments, echoes[i].heard, seen[i].offset, highest, aperture);
   }
@@ -191,18 +209,18 @@ class EchoFinder {
 
   /// pulse_moments(), out of what is kept for equal ways and paths.
   std::vector<PulseMoment> moments_of(const MovingPath& path, const TwoWayPaths& pair,
-                                      const Vec3& offset) const {
+                                      const Carried& hearer) const {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
     const PathLimits limits = limits_of(scenario_.propagation);
     ExactKey key = context_.paths.key(Kept::pulse_moments);
     key.add_all(context_.ping_time, context_.frequency, path.pulse_duration, transmitter.offset,
-                offset, limits.max_surface_bounces, limits.max_bottom_bounces,
+                hearer.offset, limits.max_surface_bounces, limits.max_bottom_bounces,
                 limits.max_launch_angle, limits.max_vertices, limits.faintest);
     key.add_all(path.source_turns, path.target_turns, path.array_turns);
     for (const Track* track :
          {&scenario_.platforms[static_cast<std::size_t>(transmitter.platform)].track,
-          &target_.track, &array_track_}) {
+          &target_.track, &hearer.track}) {
       key.add_all(track->start.position, track->start.velocity, track->waypoints.size());
       for (const Waypoint& point : track->waypoints) key.add_all(point.time, point.position);
     }
@@ -222,7 +240,7 @@ class EchoFinder {
     return found.along;
   }
 
-  MovingPath follow(const TwoWayPaths& pair, const Vec3& offset, double highest) const {
+  MovingPath follow(const TwoWayPaths& pair, const Carried& hearer, double highest) const {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
     const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
@@ -233,16 +251,16 @@ class EchoFinder {
       });
       return turns;
     };
-    return {.moment = [this, &pair, offset](double sent) { return moment(pair, offset, sent); },
+    return {.moment = [this, &pair, &hearer](double sent) { return moment(pair, hearer, sent); },
             .pulse_duration = context_.pulse->duration(),
             .frequency = highest,
             .source_turns = near(turns_of(carrier.track, context_.ping_time), 0.0),
             .target_turns = near(turns_of(target_.track, context_.ping_time), pair.there.time),
-            .array_turns = near(turns_of(array_track_, context_.ping_time), pair.home.time)};
+            .array_turns = near(turns_of(hearer.track, context_.ping_time), pair.home.time)};
   }
 
   /// The same pair of paths for what leaves `sent` after the leading edge.
-  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Vec3& offset,
+  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Carried& hearer,
                                     double sent) const {
     TwoWayPaths then;
     then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
@@ -252,12 +270,12 @@ class EchoFinder {
     if (path == nullptr) return std::nullopt;
     then.there = closely_.meet(then.source.position, sent, target_.track, Vec3::Zero(), out, *path);
     then.target = target_.track.at(context_.ping_time + then.there.time);
-    const Way home = closely_.way(then.target.position, then.there.time, array_track_, offset,
-                                  std::span(&pair.home.path, 1));
+    const Way home = closely_.way(then.target.position, then.there.time, hearer.track,
+                                  hearer.offset, std::span(&pair.home.path, 1));
     path = same_path(home.leg.arrivals, pair.home.path, layered_);
     if (path == nullptr) return std::nullopt;
-    then.home =
-        closely_.meet(then.target.position, then.there.time, array_track_, offset, home, *path);
+    then.home = closely_.meet(then.target.position, then.there.time, hearer.track, hearer.offset,
+                              home, *path);
     const Slownesses s = slownesses(then);
     return PulseMoment{.sent = sent,
                        .struck = then.there.time,
@@ -270,7 +288,7 @@ class EchoFinder {
   const Scenario& scenario_;
   const ReceiverArray& array_;
   std::vector<Vec3> phones_;
-  const Track& array_track_;
+  Carried reference_;
   const Target& target_;
   int index_;
   bool layered_;

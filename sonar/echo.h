@@ -21,6 +21,7 @@ struct EchoContext {
   int turn = 1;                  ///< of the transmitter's own pings, counted from 1
   const Pulse* pulse = nullptr;  ///< none: its leading edge alone is followed
   Reuse* reuse = nullptr;        ///< counts the eigenrays that were known
+  bool listens = true;           ///< false: nobody asks for the phones' samples
 };
 
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
@@ -28,6 +29,9 @@ struct EchoContext {
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;
+  /// What each phone hears by paths of its own, where a plane wave about the reference point is not
+  /// what they hear (sonar/plane_wave.h), nor exact_per_phone has been asked for; else empty.
+  std::vector<EchoPath> at_phones;
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is

@@ -86,20 +86,31 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
     }
     for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
       const int array = static_cast<int>(a);
-      for (Heard& one : heard_at(ship, array, clock.time(clock.first - later), false)) {
+      const Carried reference = reference_of(scenario_, array);
+      for (Heard& one : heard_at(ship, array, reference, clock.time(clock.first - later), false)) {
         one.path.interferer = static_cast<int>(ship_index);
         record.interference.push_back(std::move(one.path));
       }
-      const std::vector<Stretch> all = stretches(ship, array, clock);
-      if (all.empty()) continue;
-      const std::vector<Vec3> phones = phones_at(scenario_, array, record.ping, record.start_time);
+      std::vector<Vec3> phones = phones_at(scenario_, array, record.ping, record.start_time);
+      std::vector<std::vector<Stretch>> heard;  // by all phones together, or by each
+      if (scenario_.propagation.exact_per_phone || !plane_waves(ship, array, record, clock)) {
+        for (std::size_t n = 0; n < phones.size(); ++n)
+          heard.push_back(stretches(
+              ship, array, phone_of(scenario_, array, record.ping, static_cast<int>(n)), clock));
+        std::fill(phones.begin(), phones.end(), Vec3::Zero());
+      } else {
+        heard.push_back(stretches(ship, array, reference, clock));
+      }
+      if (std::all_of(heard.begin(), heard.end(), [](const auto& all) { return all.empty(); }))
+        continue;
       // The source's samples that any phone hears.
       double reach = 0.0, least = infinity, most = -infinity;
       for (const Vec3& phone : phones) reach = std::max(reach, phone.norm() / 1000.0);
-      for (const Stretch& s : all) {
-        least = std::min({least, s.delay[0], s.delay[1]});
-        most = std::max({most, s.delay[0], s.delay[1]});
-      }
+      for (const std::vector<Stretch>& all : heard)
+        for (const Stretch& s : all) {
+          least = std::min({least, s.delay[0], s.delay[1]});
+          most = std::max({most, s.delay[0], s.delay[1]});
+        }
       constexpr std::int64_t margin = 2 * FractionalDelay::taps;
       const auto begin =
           static_cast<std::int64_t>(
@@ -126,6 +137,7 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
       const auto per_phone = static_cast<std::size_t>(chunks);
       in_parallel(phones.size() * per_phone, [&](std::size_t task) {
         const std::size_t n = task / per_phone;
+        const std::vector<Stretch>& all = heard[heard.size() > 1 ? n : 0];
         // Whole chunks of the absolute grid, of which the record may want a part.
         const std::int64_t sample =
             (floor_div(clock.first, chunk) + static_cast<std::int64_t>(task % per_phone)) * chunk;

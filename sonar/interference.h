@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sonar/block_noise.h"
+#include "sonar/carried.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/scenario.h"
@@ -17,9 +18,10 @@ namespace asdic {
 /// hears it along the eigenrays from where the ship was to where the array's reference point is,
 /// found at nodes about half a second apart. Between nodes delay, amplitude and slowness of each
 /// path are straight lines in time, so the signal q(t − τ(t)) is shifted and stretched
-/// continuously; a path that is not there at one of them fades. A plane wave crosses the array.
-/// Nodes lie on the grid of absolute time in a stream: its parts join without a seam, and do not
-/// depend on where they begin.
+/// continuously; a path that is not there at one of them fades. A plane wave crosses the array;
+/// where that is not what it hears (sonar/plane_wave.h), every phone has paths of its own. Nodes
+/// lie on the grid of absolute time in a stream: its parts join without a seam, and do not depend
+/// on where they begin.
 ///
 /// Losses are those at the first pulse's centre; with `wide_band` they are found at frequencies f_k
 /// of the recorded band, and a path's amplitude is straight between them: the signal is a sum of
@@ -41,10 +43,16 @@ class Interference {
     HeardPath path;
     std::vector<std::complex<double>> band;  // [frequencies]
   };
-  [[nodiscard]] std::vector<Heard> heard_at(const Interferer& ship, int array, double time,
+  /// \param hearer  reference point or phone of the array
+  [[nodiscard]] std::vector<Heard> heard_at(const Interferer& ship, int array,
+                                            const Carried& hearer, double time,
                                             bool across_the_band) const;
   [[nodiscard]] std::vector<Stretch> stretches(const Interferer& ship, int array,
-                                               const Clock& clock) const;
+                                               const Carried& hearer, const Clock& clock) const;
+  /// Whether the phones hear a ship by plane waves about their reference point all through a
+  /// record.
+  [[nodiscard]] bool plane_waves(const Interferer& ship, int array, const PingRecord& record,
+                                 const Clock& clock) const;
 
   static void add_band(const Stretch& path, std::span<const float> source, std::size_t length,
                        std::array<double, 2> u, double at, double step, std::complex<double> z,

@@ -12,6 +12,7 @@
 #include "sonar/moving_paths.h"
 #include "sonar/noise_spectrum.h"
 #include "sonar/ping_bounds.h"
+#include "sonar/plane_wave.h"
 #include "sonar/sampling.h"
 
 namespace asdic {
@@ -91,8 +92,9 @@ Interference::Interference(const Scenario& scenario, const PropagationPaths& pat
 
 /// Paths that arrive at a time, delays those from where the ship was when each left it.
 std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, int array,
-                                                        double time, bool across_the_band) const {
-  const Kinematics receiver = array_at(scenario_, array, time);
+                                                        const Carried& hearer, double time,
+                                                        bool across_the_band) const {
+  const Kinematics receiver = hearer.at(time);
   const PathLimits limits = limits_of(scenario_.propagation);
   double left = time;
   Arrivals found;
@@ -136,7 +138,25 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
   return heard;
 }
 
+bool Interference::plane_waves(const Interferer& ship, int array, const PingRecord& record,
+                               const Clock& clock) const {
+  const Listening here{
+      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = record.start_time};
+  const double begin = clock.time(clock.first), end = clock.time(clock.first + clock.samples);
+  const Carried reference = reference_of(scenario_, array);
+  for (const double time : {begin, end})
+    for (const Heard& one : heard_at(ship, array, reference, time, false))
+      if (!is_plane_wave(here, {.slowness = one.path.slowness,
+                                .length = one.path.path.path_length,
+                                .delay = begin - record.start_time,
+                                .duration = end - begin,
+                                .highest_frequency = source_carrier_ + 0.25 * source_rate_}))
+        return false;
+  return true;
+}
+
 std::vector<Interference::Stretch> Interference::stretches(const Interferer& ship, int array,
+                                                           const Carried& hearer,
                                                            const Clock& clock) const {
   const std::int64_t from = floor_div(clock.first, clock.node),
                      to = floor_div(clock.first + clock.samples - 1, clock.node);
@@ -144,8 +164,9 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
   const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
   std::vector<std::vector<Heard>> nodes(count);
   in_parallel(count, [&](std::size_t i) {
-    nodes[i] = heard_at(ship, array, clock.time((from + static_cast<std::int64_t>(i)) * clock.node),
-                        across_the_band);
+    nodes[i] =
+        heard_at(ship, array, hearer,
+                 clock.time((from + static_cast<std::int64_t>(i)) * clock.node), across_the_band);
   });
   std::vector<Stretch> all;
   for (std::size_t i = 0; i + 1 < count; ++i) {

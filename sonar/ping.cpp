@@ -98,9 +98,10 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
-      heard.push_back(echo);
+      if (found.at_phones.empty()) heard.push_back(echo);
       record.echoes.push_back(echo);
     }
+    heard.insert(heard.end(), found.at_phones.begin(), found.at_phones.end());
   }
   const auto platform_of = [](const auto& list, int i) {
     return list[static_cast<std::size_t>(i)].platform;
@@ -168,13 +169,58 @@ PingReverberation PingSimulator::reverberation(const Emission& emission, int arr
       reverberation_context(emission, array, record, phones, band, &budget));
 }
 
+/// The parts of an array that hear reverberation by themselves: every phone where that is asked
+/// for, else those that plane waves fit. Where its covariance or sectors are drawn, all hear it
+/// together; and groups lay down no more returns than are allowed one by one.
+PhoneGroups PingSimulator::reverberation_groups(const Emission& emission, int array,
+                                                const PingRecord& record,
+                                                const PingReverberation& heard) const {
+  if (heard.fields().empty()) return {};
+  const Listening here{
+      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
+  const Front front = nearest_reverberation(
+      here, emission.sent.transmitter, emission.pulse.duration(),
+      emission.pulse.centre_frequency() + 0.5 * emission.pulse.bandwidth_40db());
+  if (scenario_.propagation.exact_per_phone) return phone_groups(here, front, infinity, 0.0);
+  const bool one_by_one = heard.covariance() == nullptr && heard.one_by_one() > 0.0;
+  PhoneGroups all = one_group(here, front,
+                              reverberation_point(scenario_, emission.sent.transmitter, array,
+                                                  record.ping, here.ping_time));
+  if (!one_by_one || all.error <= reverberation_periods) return all;
+  const auto most = static_cast<double>(scenario_.reverberation.most_returns);
+  return phone_groups(here, front, most / heard.one_by_one());
+}
+
+/// Reverberation as groups of phones hear it where they are, from the same scatterers.
+Baseband PingSimulator::sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
+                                      int array, PingRecord& record, const PhoneGroups& groups,
+                                      std::span<const BandPoint> band,
+                                      const MemoryBudget& budget) const {
+  Baseband all;
+  for (const PhoneRange& part : groups.parts) {
+    MemoryBudget own = budget;
+    ReverberationContext context = reverberation_context(emission, array, record, {}, band, &own);
+    context.point = middle_of(scenario_, array, record.ping, part);
+    const std::vector<Vec3> phones =
+        phones_from(*context.point, scenario_, array, record.ping, emission.sent.time);
+    const PingReverberation sea = reverberation_->ping(context);
+    append_channels(all, sea.blocks() > 0 ? synthesizer.baseband(sea, std::span(phones).subspan(
+                                                                          part.first, part.count))
+                                          : synthesizer.silence(part.count));
+  }
+  return all;
+}
+
 PingRecord PingSimulator::levels(int ping) const {
   Stopwatch watch;
   paths_->memory().next_ping();
   const Emission emission = emit(transmission(ping));
   PingRecord record = blank_record(ping, emission.sent);
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
-    sparse_returns(echo_context(emission, static_cast<int>(a), record), record);
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
+    EchoContext context = echo_context(emission, static_cast<int>(a), record);
+    context.listens = false;
+    sparse_returns(context, record);
+  }
   record.timings.eigenrays = watch.lap();
   std::map<int, PingReverberation> heard;  // by array, where an echo is strongest
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
@@ -221,8 +267,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
   Baseband heard, reverberated;              // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-    const std::vector<Vec3> phones = phones_at(scenario_, static_cast<int>(a), ping, sent.time);
-    const EchoContext context = echo_context(emission, static_cast<int>(a), record);
+    const int array = static_cast<int>(a);
+    const std::vector<Vec3> phones = phones_at(scenario_, array, ping, sent.time);
+    const EchoContext context = echo_context(emission, array, record);
     const std::vector<EchoPath> sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
     Baseband of_array = scenario_.propagation.wide_band
@@ -231,16 +278,28 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                             : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();
-    scattered.push_back(reverberation(emission, static_cast<int>(a), record, phones,
-                                      band ? band->points() : std::span<const BandPoint>(),
-                                      budget));
+    const auto points = band ? band->points() : std::span<const BandPoint>();
+    const std::vector<Vec3> around =
+        phones_from(reverberation_point(scenario_, sent.transmitter, array, ping, sent.time),
+                    scenario_, array, ping, sent.time);
+    scattered.push_back(reverberation(emission, array, record, around, points, budget));
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled) {
+      const Synthesizer& voice = coloured ? *coloured : synthesizer;
+      const PhoneGroups groups = reverberation_groups(emission, array, record, scattered.back());
+      record.plane_waves.groups =
+          std::max(record.plane_waves.groups, static_cast<int>(groups.parts.size()));
+      record.plane_waves.error = std::max(record.plane_waves.error, groups.error);
+      if (groups.parts.size() > 1) {
+        append_channels(reverberated,
+                        sea_of_groups(voice, emission, array, record, groups, points, budget));
+        record.timings.synthesis += watch.lap();
+        continue;
+      }
       const ReverberationCovariance* dense = scattered.back().covariance();
-      Baseband sea = scattered.back().blocks() > 0
-                         ? (coloured ? *coloured : synthesizer).baseband(scattered.back(), phones)
+      Baseband sea = scattered.back().blocks() > 0 ? voice.baseband(scattered.back(), around)
                      : dense != nullptr
                          ? synthesizer.silence(*dense, std::move(used_before))
                          : synthesizer.silence(phones.size(), std::move(used_before));

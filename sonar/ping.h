@@ -8,6 +8,7 @@
 #include "sonar/ambient_noise.h"
 #include "sonar/echo.h"
 #include "sonar/interference.h"
+#include "sonar/phone_groups.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/pulse.h"
@@ -95,6 +96,13 @@ class PingSimulator {
                                                 PingRecord& record, std::span<const Vec3> phones,
                                                 std::span<const BandPoint> band,
                                                 MemoryBudget budget) const;
+  [[nodiscard]] PhoneGroups reverberation_groups(const Emission& emission, int array,
+                                                 const PingRecord& record,
+                                                 const PingReverberation& heard) const;
+  [[nodiscard]] Baseband sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
+                                       int array, PingRecord& record, const PhoneGroups& groups,
+                                       std::span<const BandPoint> band,
+                                       const MemoryBudget& budget) const;
   [[nodiscard]] double most_samples() const;
   [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,

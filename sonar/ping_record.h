@@ -104,6 +104,12 @@ struct BandFit {
   double error = 0.0;  ///< of absorption times √σ between them, over its largest value
 };
 
+/// By what plane waves reverberation is heard (sonar/phone_groups.h).
+struct PlaneWaveFit {
+  int groups = 1;      ///< of phones, each about a point of its own, in the array that has most
+  double error = 0.0;  ///< of the nearest scatterers' fronts at the worst phone [periods]
+};
+
 /// Everything about one ping: what the phones heard, and the truth behind it.
 struct PingRecord {
   int ping = 1;             ///< counted from 1
@@ -124,6 +130,7 @@ struct PingRecord {
   Timings timings;
   Reuse reuse;
   BandFit band;
+  PlaneWaveFit plane_waves;
 };
 
 }  // namespace asdic

@@ -32,10 +32,11 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
       covariance_(std::move(covariance)) {
   context_.phones = {};  // of the caller's, who needs not keep them
   context_.budget = nullptr;
-  double one_by_one = 0.0;
   for (std::size_t i = 0; i < fields_.size(); ++i)
-    if (!fields_[i].by_covariance) one_by_one += expected_->returns_of(i);
-  by_sectors_ = one_by_one > static_cast<double>(scenario_.reverberation.most_returns);
+    if (!fields_[i].by_covariance) one_by_one_ += expected_->returns_of(i);
+  // A part of the array hears the scatterers that its neighbours hear, one by one.
+  by_sectors_ =
+      !context_.point && one_by_one_ > static_cast<double>(scenario_.reverberation.most_returns);
   blocks_ = by_sectors_ ? sector_blocks() : expected_->blocks;
   std::erase_if(blocks_, [&](const Block& b) { return fields_[b.field].by_covariance; });
 }

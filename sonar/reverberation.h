@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/memory_budget.h"
 #include "sonar/boundary_fans.h"
+#include "sonar/carried.h"
 #include "sonar/expected_reverberation.h"
 #include "sonar/ping_record.h"
 #include "sonar/pulse.h"
@@ -22,11 +24,13 @@ struct ReverberationContext {
   const TransmitPattern& pattern;
   const Pulse& pulse;
   int transmitter = 0, array = 0;  ///< indices in the scenario
-  double time = 0.0;               ///< of the ping, since the start of the scenario [s]
-  std::uint32_t ping = 1;          ///< counted from 1: the key of weights that last one ping
-  double latest = 0.0;             ///< end of the record, since the ping [s]
-  Reuse* reuse = nullptr;          ///< is told what had to be traced or worked out
-  /// Of the array [m]; none: nothing is heard by its covariance, all of it one by one.
+  /// Of a part of the array that hears it by itself; none: all about reverberation_point().
+  std::optional<Carried> point = {};
+  double time = 0.0;       ///< of the ping, since the start of the scenario [s]
+  std::uint32_t ping = 1;  ///< counted from 1: the key of weights that last one ping
+  double latest = 0.0;     ///< end of the record, since the ping [s]
+  Reuse* reuse = nullptr;  ///< is told what had to be traced or worked out
+  /// From where it is heard [m]; none: nothing is heard by its covariance, all of it one by one.
   std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
   MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
@@ -73,6 +77,8 @@ class PingReverberation final : public ReturnSource {
   }
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
+  /// How many of them are laid down one by one; none where sectors or a covariance stand for them.
+  [[nodiscard]] double one_by_one() const noexcept { return by_sectors_ ? 0.0 : one_by_one_; }
 
   /// Expected level at time t since the ping [dB re 1 µPa, peak envelope/√2]: SL + 10·log₁₀ Σ_cells
   /// |Σ_pairs A·D·s(t − τ)|², the mean over weights. −∞ where there is none.
@@ -126,6 +132,7 @@ class PingReverberation final : public ReturnSource {
   std::vector<ScatteringField> fields_;
   std::shared_ptr<const ExpectedReverberation> expected_;
   std::shared_ptr<const ReverberationCovariance> covariance_;
+  double one_by_one_ = 0.0;
   bool by_sectors_;
   std::vector<Block> blocks_;  // those of returns()
 };

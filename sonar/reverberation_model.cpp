@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/carried.h"
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_covariance.h"
@@ -18,20 +19,21 @@ ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
 SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context) {
   const Transmitter& transmitter =
       scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
-  const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
-  const auto track = [&](int platform) -> const Track& {
-    return scenario.platforms[static_cast<std::size_t>(platform)].track;
-  };
+  const Carried hearer = context.point
+                             ? *context.point
+                             : reverberation_point(scenario, context.transmitter, context.array,
+                                                   static_cast<int>(context.ping), context.time);
   const double duration = context.pulse.duration();
   SheetEnds ends = {
-      .source = sent_from(track(transmitter.platform), context.time, duration),
-      .receiver = array_at(scenario, context.array, context.time),
-      .legs = receiver_legs(track(array.platform), context.time, context.latest, duration),
+      .source = sent_from(scenario.platforms[static_cast<std::size_t>(transmitter.platform)].track,
+                          context.time, duration),
+      .receiver = hearer.at(context.time),
+      .legs = receiver_legs(hearer.track, context.time, context.latest, duration),
       .frequency = context.pulse.centre_frequency(),
       .latest = context.latest,
       .band = context.band};
   ends.source.position += transmitter.offset;
-  for (ReceiverLeg& leg : ends.legs) leg.line.position += array.offset;
+  for (ReceiverLeg& leg : ends.legs) leg.line.position += hearer.offset;
   return ends;
 }
 
@@ -176,6 +178,16 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
     return paths_to_level;
   };
   const auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
+  // For parts of an array that of all its phones: they are to hear the same scatterers.
+  const auto farthest_phone = [&](const Vec2& place) {
+    if (!context.point) return (receiver - place).norm();
+    const Vec2 reference = array_at(scenario_, context.array, context.time).position.head<2>();
+    double farthest = 0.0;
+    for (const Vec3& x :
+         phones_at(scenario_, context.array, static_cast<int>(context.ping), context.time))
+      farthest = std::max(farthest, (reference + x.head<2>() - place).norm());
+    return farthest;
+  };
   for (const Anchor& anchor : anchors) {
     const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
     fields.push_back(
@@ -195,7 +207,7 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
          .bearings = settings.azimuths,
          // Who lies this far off an end is nearer to it than half its range only within:
          .divided_below =
-             2.0 * std::max((source - anchor.place).norm(), (receiver - anchor.place).norm()),
+             2.0 * std::max((source - anchor.place).norm(), farthest_phone(anchor.place)),
          .share = anchor.share});
   }
 }

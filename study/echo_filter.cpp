@@ -63,7 +63,8 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
     double delay = all.delay + slowness.dot(record.phones[first + n] - reference);
     if (loudest != nullptr && loudest->heard.channel != Return::all_channels)
       if (const EchoPath* own = strongest(record, array, target, static_cast<int>(n)))
-        delay = own->heard.delay;  // a path of each phone's own
+        delay = own->heard.delay +  // a path of each phone's own, told at the reference point
+                own->heard.slowness.dot(record.phones[first + n] - reference);
     all.phones.push_back({first + n, delay});
   }
   return all;

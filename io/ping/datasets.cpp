@@ -27,6 +27,11 @@ void PingFileWriter::Impl::create_ping_datasets() {
                        "1 if all paths to scattering boundaries were known", "");
   growing<std::int32_t>("run/band_points", "frequencies at which reverberation is known", "");
   growing<double>("run/band_error", "largest error of its amplitudes between them", "");
+  if (long_arrays) {
+    growing<std::int32_t>("run/phone_groups", "groups of phones that hear reverberation", "");
+    growing<double>("run/plane_wave_error",
+                    "periods by which its nearest fronts are off at the worst phone", "");
+  }
   growing<std::int8_t>("run/reuse_expected_level",
                        "1 if the reverberation's expected level was known", "");
   if (targets == 0) return;

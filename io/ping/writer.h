@@ -7,6 +7,7 @@
 #include "io/ping/sections.h"
 #include "io/ping/tables.h"
 #include "io/ping_file.h"
+#include "sonar/phone_groups.h"
 
 // Inside of PingFileWriter, for its own .cpp files.
 namespace asdic {
@@ -15,7 +16,7 @@ struct PingFileWriter::Impl {
   OutputFile output;
   Hdf5File file;
   Scenario scenario;
-  bool times_written_out = false;
+  bool times_written_out = false, long_arrays = false;
   std::size_t pings = 0;
   bool finished = false;
   ArrivalTable arrivals;
@@ -29,6 +30,7 @@ struct PingFileWriter::Impl {
         file(Hdf5File::create(output.part())),
         scenario(s),
         times_written_out(times == SampleTimes::written_out),
+        long_arrays(has_long_arrays(s)),
         arrivals(file),
         echoes(file, "echoes", "echo", ping_file::echo_columns()),
         patches(file, "patches", "patch", ping_file::patch_columns()) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
+#include "sonar/carried.h"
 #include "sonar/geometry.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/transmission.h"
@@ -112,9 +113,8 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
 
   ProcessedArray done{.ping = recording.ping, .array = recording.array};
   done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
-  const ReceiverArray& array = scenario_.arrays[static_cast<std::size_t>(recording.array)];
-  done.places.array = scenario_.platforms[static_cast<std::size_t>(array.platform)].track.since(
-      recording.ping_time, array.offset);
+  const Carried reference = reference_of(scenario_, recording.array);
+  done.places.array = reference.track.since(recording.ping_time, reference.offset);
   const Vec3 at_ping = done.places.array.at(0.0).position;
   done.sound_speed = paths_.speed_at(at_ping);
   std::vector<Vec3> phones;

@@ -1,11 +1,17 @@
 #include "sonar/processing/truth.h"
 
+#include <algorithm>
+
 namespace asdic {
 
 std::vector<TrueEcho> true_echoes(const PingRecord& record, int array) {
   std::vector<TrueEcho> echoes;
+  int phones = 0;
   for (const EchoPath& echo : record.echoes)
-    if (echo.array == array)
+    if (echo.array == array) phones = std::max(phones, echo.heard.channel + 1);
+  // Where every phone has its own paths, the middle one's stand for all.
+  for (const EchoPath& echo : record.echoes)
+    if (echo.array == array && (echo.heard.channel < 0 || echo.heard.channel == phones / 2))
       echoes.push_back({.target = echo.target,
                         .time = echo.heard.delay,
                         .struck = echo.struck,

@@ -335,7 +335,7 @@ TEST(SharedReverberation, EverythingThatEntersTheExpectedLevelIsPartOfItsKey) {
       {"nothing", [](Scenario&) {}},
       {"seed", [](Scenario& s) { s.seed = 77; }},
       {"noise", [](Scenario& s) { s.noise.spectral_level_db = 55.0; }},
-      {"phones", [](Scenario& s) { s.arrays[0].phones.pop_back(); }},
+      {"phones", [](Scenario& s) { s.arrays[0].phones = line_array(2, 0.1, 0.0, 0.0).phones; }},
       {"statistics", [](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 0.7; }},
       {"motion", [](Scenario& s) { s.reverberation.bottom_field.motion.speed_rms = 0.5; }}};
   for (const Change& change : others) {

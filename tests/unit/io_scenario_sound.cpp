@@ -56,7 +56,11 @@ TEST(SoundScenario, ReadsTransmittersAndReceivers) {
       "s.toml");
   EXPECT_DOUBLE_EQ(s.transmitters[0].projectors[0].phase, radians(90.0));
   EXPECT_EQ(s.transmitters[0].frame, BearingFrame::heading);
-  EXPECT_LT((s.arrays[0].phones[1] - Vec3(-20, 0, 0)).norm(), 1e-12);
+  // From their middle, 20 m behind the tow point.
+  EXPECT_LT((array_at(s, 0, 0.0).position - s.platforms[0].track.at(0.0).position - Vec3(-20, 0, 0))
+                .norm(),
+            1e-12);
+  EXPECT_LT((s.arrays[0].phones[2] - Vec3(-10, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(s.arrays[0].electronics.converter->bits, 12);
   EXPECT_EQ(s.arrays[0].electronics.band_pass->order, 2);
   EXPECT_EQ(s.arrays[0].electronics.dead, std::vector{2});
@@ -68,7 +72,8 @@ TEST(SoundScenario, ReadsTransmittersAndReceivers) {
                plain_target),
       "s.toml");
   EXPECT_EQ(table.transmitters[0].table->level_db.size(), 6U);
-  EXPECT_EQ(phones_at(table, 0, 2, 0.0)[0], Vec3(1, 0, 0));
+  const Vec3 in_ping_two = array_at(table, 0, 0.0).position + phones_at(table, 0, 2, 0.0)[0];
+  EXPECT_EQ(in_ping_two, Vec3(table.platforms[0].track.at(0.0).position + Vec3(1, 0, 0)));
 }
 
 struct Fault {
