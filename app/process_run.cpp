@@ -32,7 +32,8 @@ int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>&
 }
 
 /// What a user should know of a towed line that bends while it listens: beams are formed for the
-/// shape at the ping. Empty if no phone moves by an eighth of a wavelength. \param end  [s]
+/// shape in the middle of the record. Empty if no phone moves by an eighth of a wavelength from
+/// there. \param end  of the record, since the ping [s]
 std::string bending(const PingProcessor& processor, const ProcessedArray& made,
                     const ArrayRecording& heard, double end) {
   const Scenario& scenario = processor.scenario();
@@ -40,19 +41,21 @@ std::string bending(const PingProcessor& processor, const ProcessedArray& made,
   const auto phones = [&](double time) {
     return phones_at(scenario, heard.array, heard.ping, time);
   };
-  const std::vector<Vec3> at_ping = phones(heard.ping_time), later = phones(heard.ping_time + end);
+  const std::vector<Vec3> middle = phones(heard.ping_time + 0.5 * (heard.start + end)),
+                          later = phones(heard.ping_time + end);
   double moved = 0.0, turned = 0.0;
-  for (std::size_t n = 0; n < at_ping.size(); ++n) {
-    const double off = (later[n] - at_ping[n]).norm();
+  for (std::size_t n = 0; n < middle.size(); ++n) {
+    const double off = (later[n] - middle[n]).norm();
     moved = std::max(moved, off);
-    turned = std::max(turned, off / std::max(at_ping[n].norm(), 0.25 * made.shape.length));
+    turned = std::max(turned, off / std::max(middle[n].norm(), 0.25 * made.shape.length));
   }
   const double wavelength =
       made.sound_speed / processor.replica(heard.transmitter).centre_frequency();
   if (moved < 0.125 * wavelength) return "";
   return fmt::format(
       "array {}, ping {}: the line turns and bends by up to {:.1f} m while it listens; beams are "
-      "those of its shape at the ping, and bearings may be up to {:.1f} degrees off",
+      "those of its shape in the middle of the record, and bearings may be up to {:.1f} degrees "
+      "off",
       heard.array, heard.ping, moved, degrees(std::min(turned, pi)));
 }
 

@@ -119,6 +119,12 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   done.sound_speed = paths_.speed_at(at_ping);
   std::vector<Vec3> phones;
   for (const Vec3& x : recording.phones) phones.push_back(x - at_ping);
+  if (deforms(scenario_, recording.array)) {  // its shape in the middle of the record
+    const auto values = recording.carrier ? recording.envelope.size() : recording.pressure.size();
+    const double samples = static_cast<double>(values / std::max<std::size_t>(channels, 1));
+    const double middle = recording.start + 0.5 * samples / recording.sample_rate;
+    phones = phones_at(scenario_, recording.array, recording.ping, recording.ping_time + middle);
+  }
   const double wavelength = done.sound_speed / pulse.centre_frequency();
   done.shape = shape_of(phones, wavelength);
   done.places.shape = done.shape;
