@@ -41,6 +41,25 @@ std::span<const double> heard_factors(const Replica& replica, std::span<const do
   return {first, last};
 }
 
+/// Of the way from the first phone to the last [rad].
+double chord_bearing(std::span<const Vec3> phones) {
+  const Vec3 chord = phones.back() - phones.front();
+  return std::atan2(chord.x(), chord.y());
+}
+
+/// Turns what was heard, and the array that heard it, clockwise by an angle [rad].
+void turn(Detection& d, ArrayShape& shape, double angle) {
+  const auto turned = [&](const Vec3& v) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return Vec3(c * v.x() + s * v.y(), c * v.y() - s * v.x(), v.z());
+  };
+  d.look = turned(d.look);
+  d.bearing = std::remainder(d.bearing + angle, 2.0 * pi);
+  shape.axis = turned(shape.axis);
+  shape.across = turned(shape.across);
+  shape.normal = turned(shape.normal);
+}
+
 }  // namespace
 
 PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
@@ -125,6 +144,14 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     const double middle = recording.start + 0.5 * samples / recording.sample_rate;
     phones = phones_at(scenario_, recording.array, recording.ping, recording.ping_time + middle);
   }
+  const double heading = chord_bearing(phones);
+  // How far the line has turned from the shape that its beams are formed for [rad].
+  const auto turned_by = [&](double time) {
+    if (!deforms(scenario_, recording.array)) return 0.0;
+    return chord_bearing(phones_at(scenario_, recording.array, recording.ping,
+                                   recording.ping_time + time + 0.5 * pulse.duration())) -
+           heading;
+  };
   const double wavelength = done.sound_speed / pulse.centre_frequency();
   done.shape = shape_of(phones, wavelength);
   done.places.shape = done.shape;
@@ -157,7 +184,9 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     Detection& d = done.result.detections[i];
     d.ping = recording.ping;
     d.array = recording.array;
-    d.locations = localiser.locate(d, places, done.elevation_sigma);
+    SonarPlaces then = places;
+    if (const double angle = turned_by(d.time); angle != 0.0) turn(d, then.shape, angle);
+    d.locations = localiser.locate(d, then, done.elevation_sigma);
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
   return done;
