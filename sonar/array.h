@@ -34,17 +34,17 @@ struct Electronics {
   }
 };
 
-/// A towed line: its phones lie on the path of the tow point, the array's reference point.
+/// A towed line: its phones lie on the path of the tow point.
 struct TowedLine {
   std::vector<double> behind;  ///< [n] along the path [m]
   double heading = 0.0;        ///< of a tow point that never moves [rad]
 };
 
-/// A hydrophone array: phones relative to the array's reference point, in the frame x east, y
-/// north, z down.
+/// A hydrophone array: phones relative to where it is fixed to its platform, in the frame x east, y
+/// north, z down. Its reference point is their middle (sonar/carried.h).
 struct ReceiverArray {
-  std::vector<Vec3> phones;    ///< [n] offsets from the reference point [m]
-  Vec3 offset = Vec3::Zero();  ///< of the reference point from the platform [m]
+  std::vector<Vec3> phones;    ///< [n] offsets from where it is fixed [m]
+  Vec3 offset = Vec3::Zero();  ///< of that (towed: of the tow point) from the platform [m]
   std::string name = "array";
   int platform = 0;                       ///< that carries it, an index
   std::vector<std::vector<Vec3>> shapes;  ///< of each ping in turn, repeated as needed, in place of

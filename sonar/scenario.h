@@ -25,7 +25,7 @@ struct PropagationSettings {
   bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
   bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries
   bool wide_band = false;   ///< echoes' losses and patterns at every frequency of the pulse
-  bool exact_per_phone = false;  ///< eigenrays to every phone instead of one plane wave per path
+  bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
 };
 
 /// All that a simulation needs, as plain data. Times in s, lengths in m, angles in rad.
@@ -55,11 +55,11 @@ struct Scenario {
 /// Where a transmitter is and how it moves. \param transmitter  index   \param time  since the
 /// start of the scenario [s]
 [[nodiscard]] Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time);
-/// The same of an array's reference point.
+/// The same of an array's reference point, the middle of its phones (sonar/carried.h).
 [[nodiscard]] Kinematics array_at(const Scenario& scenario, int array, double time);
-/// Its phones as they lie in a ping, from its reference point: frozen for that ping, and carried
-/// along by the platform. \param ping  of the run, counted from 1   \param time  when it is sent
-/// [s]
+/// Its phones as they lie then, from its reference point at that time.
+/// \param ping  of the run, counted from 1: its shape   \param time  since the start of the
+/// scenario [s]
 [[nodiscard]] std::vector<Vec3> phones_at(const Scenario& scenario, int array, int ping,
                                           double time);
 /// The course of a platform, north if it never moves [rad].
