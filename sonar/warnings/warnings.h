@@ -29,6 +29,11 @@ struct PulseFrequencies {
 [[nodiscard]] std::string noise_table_band(const Scenario& scenario);
 /// Scattering at the sea surface by a law that was not measured for this frequency or wind.
 [[nodiscard]] std::string surface_scattering_range(const Scenario& scenario);
+/// Reverberation that may be drawn from its covariance, by plane waves, for an array that is too
+/// long for them (sonar/phone_groups.h).
+[[nodiscard]] std::string reverberation_plane_waves(const Scenario& scenario);
+/// Coherent noise of a towed line that turns while it listens: it keeps the shape at the ping.
+[[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);
 
 }  // namespace checks
 }  // namespace asdic

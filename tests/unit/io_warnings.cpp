@@ -135,6 +135,43 @@ TEST(Warnings, ANoiseTableUsedOutsideOfItsBand) {
   EXPECT_THAT(with(levels("[10.0, 2000.0]")), IsEmpty());
 }
 
+// A ship at rest, 100 m of water below her, and a line of 40 m about her: 20²/(2·100·1.5) periods.
+TEST(Warnings, PlaneWavesOfReverberationOnALongLine) {
+  const std::string where = "platform.position=[0.0, 0.0, 900.0]";
+  const auto line = [](double spacing) {
+    return "array={kind=\"horizontal\", phones=41, spacing=" + std::to_string(spacing) + "}";
+  };
+  const auto sea = [](const std::string& synthesis) {
+    return "reverberation={enabled=true, synthesis=\"" + synthesis +
+           "\", surface={enabled=false}, bottom={kind=\"lambert\", frozen=false}}";
+  };
+  EXPECT_THAT(of({where, line(1.0), sea("automatic"), "pulse.duration=0.05"}),
+              ElementsAre(AllOf(HasSubstr("reverberation.synthesis: where it is drawn from its "
+                                          "covariance"),
+                                HasSubstr("up to 1.3 periods off"))));
+  EXPECT_THAT(of({where, line(0.1), sea("automatic"), "pulse.duration=0.05"}), IsEmpty());
+  EXPECT_THAT(of({where, line(1.0), sea("scatterers"), "pulse.duration=0.05"}), IsEmpty());
+  EXPECT_THAT(of({where, line(1.0), sea("automatic"), "pulse.duration=0.05",
+                  "propagation.exact_per_phone=true"}),
+              IsEmpty());
+}
+
+// The line turns by a right angle 50 s after the ping: heard for 10 s it is what it was.
+TEST(Warnings, CoherentNoiseOfALineThatTurns) {
+  const std::string track =
+      "platform={waypoints=[{time=0.0, position=[0.0, 0.0, 100.0]}, {time=50.0, position=[250.0, "
+      "0.0, 100.0]}, {time=100.0, position=[250.0, 250.0, 100.0]}]}";
+  const std::string array = "array={kind=\"towed\", behind=[10.0, 20.0, 30.0]}";
+  const auto noise = [](const std::string& more) {
+    return "noise={spectral_level_db=50.0" + more + "}";
+  };
+  const std::string coherent = noise(", coherence=\"isotropic\"");
+  EXPECT_THAT(of({track, array, coherent, "pings.recording_duration=60.0"}),
+              ElementsAre(HasSubstr("noise.coherence: array array turns and bends by up to")));
+  EXPECT_THAT(of({track, array, coherent, "pings.recording_duration=10.0"}), IsEmpty());
+  EXPECT_THAT(of({track, array, noise(""), "pings.recording_duration=60.0"}), IsEmpty());
+}
+
 TEST(Warnings, ScatteringOutsideOfItsLaw) {
   const auto sea = [](const std::string& law, double frequency, double wind) {
     return of(tone(frequency, {"reverberation={enabled=true, surface={kind=\"" + law + "\"}}",
