@@ -60,7 +60,8 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .beam_kind = std::string(name(run_case.beams.kind)),
           .beams = result.beams,
           .beam_error_db = result.beam_error_db,
-          .beam_error_bounded = result.beam_error_bounded};
+          .beam_error_bounded = result.beam_error_bounded,
+          .solver = std::string(name(result.waves ? FieldSolver::waves : FieldSolver::beams))};
 }
 
 void write_field_file(OutputFile&& to, const FieldResult& result) {
@@ -85,6 +86,8 @@ std::string field_text(const FieldResult& result, double wall) {
   if (data.beams > 0)
     text += fmt::format("beams      {} of kind {}; {}\n", data.beams, data.beam_kind,
                         beam_error_text(data.beam_error_db, data.beam_error_bounded));
+  else if (data.solver == name(FieldSolver::waves))
+    text += "waves      no beams: the wave equation is solved\n";
   else
     text += "beams      none: the note tells why\n";
   text += loss_text(data.pressure);
@@ -111,6 +114,7 @@ std::string field_json(const FieldResult& result) {
                             {"source_depths", data.source_depths.size()},
                             {"receivers", data.receivers.size()},
                             {"beam_kind", data.beam_kind},
+                            {"solver", data.solver},
                             {"beams", data.beams},
                             {"beam_error_db", data.beam_error_db},
                             {"beam_error_bounded", data.beam_error_bounded},

@@ -40,6 +40,7 @@ void write_field(Hdf5File& file, const FieldData& field) {
   file.set_attribute("", "field", field_kinds[static_cast<int>(field.kind)]);
   file.set_attribute("", "source", field.source == SourceKind::line ? "line" : "point");
   if (!field.beam_kind.empty()) file.set_attribute("", "beam_kind", field.beam_kind);
+  if (!field.solver.empty()) file.set_attribute("", "solver", field.solver);
   if (field.beams > 0) {
     file.set_attribute("", "beams", static_cast<std::int64_t>(field.beams));
     file.set_attribute("", "beam_error_db", field.beam_error_db);
@@ -94,6 +95,7 @@ FieldData read_field(const Hdf5File& file) {
     throw wrong(file, "field", '"' + kind + '"', "coherent, incoherent or semi-coherent");
   field.kind = static_cast<FieldKind>(known - std::begin(field_kinds));
   if (file.attribute_or("", "source", "point") == "line") field.source = SourceKind::line;
+  field.solver = file.attribute_or("", "solver", "");
   if (file.has_attribute("", "beams"))
     field.beams = static_cast<std::size_t>(file.attribute_number("", "beams"));
   if (file.has_attribute("", "beam_error_db"))

@@ -22,6 +22,7 @@ struct PropagationResult {
   std::vector<Arrivals> arrivals;          ///< [sources × rows × ranges], range fastest
   std::vector<std::vector<RayPath>> rays;  ///< [sources] rays, or eigenrays to all receivers
   std::size_t beams = 0;                   ///< rays traced per source
+  bool waves = false;                      ///< the field is that of the wave equation, without rays
   double beam_error_db = 0.0;       ///< field: what more beams would change at 95 % of receivers
   bool beam_error_bounded = false;  ///< that is a bound (hat and Gaussian beams on a grid), else an
                                     ///< estimate

@@ -19,6 +19,13 @@ enum class FieldKind {
                   ///< 0
 };
 
+/// What a coherent field is made of. docs/theory/waves.md
+enum class FieldSolver {
+  automatic,  ///< waves where the water is stratified and they are affordable, else beams
+  beams,      ///< rays: nothing where rays do not go
+  waves,      ///< the wave equation, whatever it costs
+};
+
 /// Shape of a beam across its ray. docs/theory/beams.md
 enum class BeamKind {
   hat,              ///< geometric, triangular, in Cartesian coordinates
@@ -95,6 +102,7 @@ struct PropagationCase {
   ReceiverGrid receivers;
   Task task = Task::field;
   FieldKind field = FieldKind::coherent;
+  FieldSolver solver = FieldSolver::beams;
   BeamSettings beams;
   double box_range = 0.0;  ///< rays end at this distance from the source [m]
   double box_depth = 0.0;  ///< rays end this far below and above depth 0 [m]

@@ -105,6 +105,7 @@ InputError told_of_scenario(const InputError& error, const std::filesystem::path
       {"beams.highest", "run.fan.highest"},
       {"beams.elevations", "run.fan.elevations"},
       {"beams.count", "run.fan.count"},
+      {"solver", "run.solver"},
       {"source_depths", "run.source.depth"},
       {"source depths", "run.source.depth"},
       {"receivers.depths", "run.receivers.depth"},

@@ -52,6 +52,7 @@ namespace asdic {
 /// How a task, a kind of field, beam or source is called in a file and in messages.
 [[nodiscard]] std::string_view name(Task task) noexcept;
 [[nodiscard]] std::string_view name(FieldKind kind) noexcept;
+[[nodiscard]] std::string_view name(FieldSolver solver) noexcept;
 [[nodiscard]] std::string_view name(BeamKind kind) noexcept;
 [[nodiscard]] std::string_view name(SourceKind kind) noexcept;
 [[nodiscard]] std::string_view name(CervenyBeams::Width width) noexcept;

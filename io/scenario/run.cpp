@@ -20,6 +20,11 @@ std::string_view name(FieldKind kind) noexcept {
   return names[static_cast<int>(kind)];
 }
 
+std::string_view name(FieldSolver solver) noexcept {
+  constexpr std::string_view names[] = {"auto", "beams", "waves"};
+  return names[static_cast<int>(solver)];
+}
+
 std::string_view name(BeamKind kind) noexcept {
   constexpr std::string_view names[] = {"hat",
                                         "gaussian",
@@ -234,6 +239,7 @@ void read_run(TomlTable table, PropagationCase& run) {
   static_cast<void>(read_memory(table));  // of the process, not of the run: budget_of()
   run.task = one_of(table, "task", 5, run.task);
   run.field = one_of(table, "field", 3, run.field);
+  run.solver = one_of(table, "solver", 3, FieldSolver::automatic);
   constexpr Quantity frequency{
       .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true};
   run.frequency = table.number("frequency", frequency, run.frequency);

@@ -192,6 +192,7 @@ std::string to_toml(const PropagationCase& run) {
   out.table("run");
   out.text("task", name(run.task));
   out.text("field", name(run.field));
+  out.text("solver", name(run.solver));
   out.number("frequency", run.frequency);
   out.number("box_range", run.box_range);
   out.number("box_depth", run.box_depth);

@@ -14,6 +14,7 @@ namespace asdic {
 struct ConvergedField {
   std::vector<std::complex<double>> field;  ///< [rows × ranges]
   std::size_t beams = 0;
+  bool waves = false;     ///< it is that of the wave equation (waves/wave_field.h)
   double error_db = 0.0;  ///< |ΔTL| to infinitely many beams, at 95 % of the cells; no more than
   bool bounded = false;   ///< this is sure (TubeError), else an estimate
   std::string note;       ///< what the user should know

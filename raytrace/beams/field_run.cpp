@@ -15,6 +15,7 @@
 #include "raytrace/runs/image_field.h"
 #include "raytrace/runs/rays_run.h"
 #include "raytrace/runs/single_beam.h"
+#include "raytrace/waves/wave_field.h"
 
 namespace asdic {
 
@@ -212,6 +213,17 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
   return result;
 }
 
+namespace {
+
+/// Images where they are wanted: they are rays.
+std::optional<ConvergedField> summed_images(const PropagationCase& run_case, double source_depth,
+                                            const Progress& progress) {
+  if (run_case.solver == FieldSolver::waves) return std::nullopt;
+  return image_field(run_case, source_depth, progress);
+}
+
+}  // namespace
+
 PropagationResult run_field(const PropagationCase& run_case, const Progress& progress) {
   check(run_case);
   const RayTracer tracer = tracer_of(run_case);
@@ -221,6 +233,7 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
   for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
     const double depth = run_case.source_depths[i];
     ConvergedField answer;
+    std::string rays_alone;
     if (on_vacuum(run_case.environment, depth)) {
       answer = {.field = std::vector<std::complex<double>>(run_case.receivers.size()),
                 .bounded = has_error_bound(run_case),
@@ -234,8 +247,10 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
                 .note =
                     "one beam is wanted: the field is that beam's alone, as wide as its fan "
                     "makes it"};
-    } else if (auto images = image_field(run_case, depth, progress)) {
+    } else if (auto images = summed_images(run_case, depth, progress)) {
       answer = std::move(*images);
+    } else if (auto waves = wave_field(run_case, depth, progress, rays_alone)) {
+      answer = std::move(*waves);
     } else if (run_case.beams.elevations.empty()) {
       answer = converged_field(
           run_case,
@@ -252,7 +267,9 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
     result.beams = std::max(result.beams, answer.beams);
     result.beam_error_db = std::max(result.beam_error_db, answer.error_db);
     result.beam_error_bounded = answer.bounded;
-    if (!answer.note.empty()) result.notes.push_back(answer.note);
+    result.waves = result.waves || answer.waves;
+    for (const std::string& note : {answer.note, rays_alone})
+      if (!note.empty()) result.notes.push_back(note);
   }
   return result;
 }

@@ -1,0 +1,146 @@
+#include "raytrace/waves/depth_wave.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace asdic {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double least_eta = 10.0;  // |⅔q^{3/2}/q′| from which the series for large arguments serve
+constexpr int airy_terms = 9;
+constexpr int power_terms = 26;
+constexpr double power_phase = 3.0;  // |√q|·step of a power series
+
+/// The coefficients of Airy's functions and of their derivatives for large arguments, DLMF 9.7.2.
+struct AirySeries {
+  std::array<double, airy_terms> c{}, d{};
+  constexpr AirySeries() {
+    c[0] = d[0] = 1.0;
+    for (int k = 1; k < airy_terms; ++k) {
+      const double n = k;
+      c[std::size_t(k)] =
+          c[std::size_t(k - 1)] * (6 * n - 5) * (6 * n - 3) * (6 * n - 1) / (216 * n * (2 * n - 1));
+      d[std::size_t(k)] = -c[std::size_t(k)] * (6 * n + 1) / (6 * n - 1);
+    }
+  }
+};
+constexpr AirySeries airy;
+
+/// Of the two waves q^{−1/4}·e^{∓iη}, what their amplitudes and those of their derivatives are
+/// multiplied with at one place.
+struct Corrections {
+  Complex down, up, down_slope, up_slope;
+};
+
+/// \param inverse_eta  1/η, η = ⅔w³/q′
+Corrections corrections(Complex inverse_eta) {
+  const double size = std::abs(inverse_eta.real()) + std::abs(inverse_eta.imag());
+  const int terms = size < 1e-5 ? 2 : size < 1e-3 ? 4 : size < 0.02 ? 6 : airy_terms;
+  const Complex x(-inverse_eta.imag(), inverse_eta.real());  // i/η
+  Complex power = 1.0, c[2] = {0.0, 0.0}, d[2] = {0.0, 0.0};
+  for (int k = 0; k < terms; ++k) {
+    c[k % 2] += airy.c[std::size_t(k)] * power;
+    d[k % 2] += airy.d[std::size_t(k)] * power;
+    power *= x;
+  }
+  return {c[0] + c[1], c[0] - c[1], d[0] + d[1], d[0] - d[1]};
+}
+
+/// The square root with Re ≥ 0.
+Complex root(Complex q) {
+  const double size = std::sqrt(std::norm(q));
+  if (!(size > 0.0)) return 0.0;
+  // the greater part first: a sum, no difference
+  const double greater = std::sqrt(0.5 * (size + std::abs(q.real())));
+  const double lesser = 0.5 * q.imag() / greater;
+  if (q.real() > 0.0) return {greater, lesser};
+  return {std::abs(lesser), std::copysign(greater, q.imag())};
+}
+
+/// Where q is far from zero all the way.
+void follow_far(DepthWave& wave, Complex q_from, Complex q_to, double thickness) {
+  const Complex i(0.0, 1.0), slope = (q_to - q_from) / thickness;
+  const Complex a = vertical_wavenumber(q_from), b = vertical_wavenumber(q_to);
+  const Corrections from = corrections(1.5 * slope / (q_from * a));
+  const Complex tilt = i * wave.du / a;
+  const Complex down = 0.5 * (from.up_slope * wave.u + from.up * tilt);
+  const Complex up = 0.5 * (from.down_slope * wave.u - from.down * tilt);
+  // ∫w = ⅔(b³ − a³)/slope, without the difference
+  const Complex phase = thickness * (2.0 / 3.0) * (q_from + a * b + q_to) / (a + b);
+  const double shrink = std::exp(std::max(2.0 * phase.imag(), -700.0));
+  const Complex turn(std::cos(phase.real()), -std::sin(phase.real()));
+  const Complex scale = root(a / b);
+  const Complex down_there = scale * down * turn * shrink;
+  const Complex up_there = scale * up * std::conj(turn);
+  const Corrections to = corrections(1.5 * slope / (q_to * b));
+  wave.u = to.down * down_there + to.up * up_there;
+  wave.du = i * b * (to.up_slope * up_there - to.down_slope * down_there);
+  wave.growth -= phase.imag();
+}
+
+/// One step of the power series about the place where the wave is.
+void follow_near(DepthWave& wave, Complex q, Complex slope, double step) {
+  Complex before = 0.0, last = wave.u, now = wave.du * step;  // of u, times step^n
+  Complex sum = last + now, slope_sum = now;
+  const Complex a = -q * (step * step), b = -slope * (step * step * step);
+  for (int n = 2; n < power_terms; ++n) {
+    const Complex next = (a * last + b * before) / double(n * (n - 1));
+    sum += next;
+    slope_sum += double(n) * next;
+    before = last;
+    last = now;
+    now = next;
+  }
+  wave.u = sum;
+  wave.du = slope_sum / step;
+}
+
+/// Keeps the numbers of a size that can be calculated with.
+void normalise(DepthWave& wave, Complex q) {
+  const double size = std::abs(wave.u) + std::abs(wave.du) / std::sqrt(std::abs(q) + 1e-300);
+  if (size > 1e-30 && size < 1e30) return;
+  if (!(size > 0.0)) return;
+  wave.u /= size;
+  wave.du /= size;
+  wave.growth += std::log(size);
+}
+
+}  // namespace
+
+Complex vertical_wavenumber(Complex q) noexcept {
+  const Complex w = root(q);
+  return w.imag() > 0.0 ? -w : w;
+}
+
+void follow(DepthWave& wave, Complex q_from, Complex q_to, double thickness) noexcept {
+  const Complex slope = (q_to - q_from) / thickness;
+  const double steep = std::abs(slope);
+  const double far = std::cbrt(std::pow(1.5 * least_eta * steep, 2));
+  // |q_from + slope·t|² = |slope|²·(t − middle)² + nearest²
+  const double middle = steep > 0.0 ? -(std::conj(slope) * q_from).real() / (steep * steep) : 0.0;
+  const double nearest = std::abs(q_from + slope * middle);
+  const double reach =
+      steep > 0.0 && nearest < far ? std::sqrt(far * far - nearest * nearest) / steep : -1.0;
+  const double begin = std::clamp(middle - reach, 0.0, thickness);
+  const double end = std::clamp(middle + reach, 0.0, thickness);
+  const auto at = [&](double t) { return q_from + slope * t; };
+  if (reach < 0.0 || end <= begin) {
+    follow_far(wave, q_from, q_to, thickness);
+  } else {
+    if (begin > 0.0) follow_far(wave, q_from, at(begin), begin);
+    const double widest = std::sqrt(std::max(std::abs(at(begin)), std::abs(at(end))));
+    const int steps = std::max(1, int(std::ceil((end - begin) * widest / power_phase)));
+    const double step = (end - begin) / steps;
+    for (int k = 0; k < steps; ++k) {
+      follow_near(wave, at(begin + k * step), slope, step);
+      normalise(wave, slope * step);
+    }
+    if (end < thickness) follow_far(wave, at(end), q_to, thickness - end);
+  }
+  normalise(wave, q_to);
+}
+
+}  // namespace asdic

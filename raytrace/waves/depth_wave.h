@@ -1,0 +1,31 @@
+#pragma once
+#include <complex>
+
+namespace asdic {
+
+/// A stretch of depth in which the square of the vertical wavenumber is a line: 1/c² linear.
+struct WaveLayer {
+  double thickness = 0.0;      ///< [m]
+  std::complex<double> k2[2];  ///< (ω/c − iα)² at its upper and its lower edge [1/m²]
+};
+
+/// A solution of u″ + q(z)·u = 0 at one depth, q = (ω/c − iα)² − ξ², with its derivative in the
+/// direction in which it is followed. Both are to be multiplied by e^growth: behind a turning point
+/// it grows without end.
+struct DepthWave {
+  std::complex<double> u = 0.0, du = 1.0;  ///< du [1/m]
+  double growth = 0.0;
+};
+
+/// What the wave becomes behind a stretch in which q goes from `q_from` to `q_to` in a line. Exact
+/// but for rounding and 1e-8: Airy's functions by their series for large arguments, about a turning
+/// point by the power series of the equation itself. Stable in the direction in which the wave
+/// grows, which is that away from the boundary that it starts from. docs/theory/waves.md
+/// \param q_from, q_to  Im ≤ 0 [1/m²]   \param thickness  > 0 [m]
+void follow(DepthWave& wave, std::complex<double> q_from, std::complex<double> q_to,
+            double thickness) noexcept;
+
+/// √q with Im ≤ 0: e^{−iwz} goes down, or dies out downwards.
+[[nodiscard]] std::complex<double> vertical_wavenumber(std::complex<double> q) noexcept;
+
+}  // namespace asdic

@@ -1,0 +1,182 @@
+#include "raytrace/waves/wave_column.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/units.h"
+#include "raytrace/ocean/reflection_formulas.h"
+
+namespace asdic {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double turn_phase = 0.002;  // that a layer may be off by where a wave turns in it [rad]
+constexpr double thinnest = 0.01;     // layer of our own making [m]
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// (ω/c)² with its derivatives.
+struct Squared {
+  double first, second;
+};
+Squared derivatives(const SoundSpeed& at, double omega) {
+  const double k2 = omega * omega / (at.c * at.c), g = at.dc_dz / at.c;
+  return {-2.0 * k2 * g, k2 * (6.0 * g * g - 2.0 * at.d2c_dz2 / at.c)};
+}
+
+/// How thick a layer may be in which (ω/c)² bends as it does here: what the line leaves out,
+/// k2″h²/12·P₂, turns the phase by it times h/(2w), w² = k2′h or, at an extremum, k2″h²/8.
+double thickness_at(const SoundSpeed& at, double omega) {
+  const Squared k2 = derivatives(at, omega);
+  const double bend = std::abs(k2.second);
+  if (!(bend > 0.0)) return std::numeric_limits<double>::infinity();
+  const double sloping = std::pow(24.0 * turn_phase * std::sqrt(std::abs(k2.first)) / bend, 0.4);
+  const double level = std::sqrt(8.5 * turn_phase / std::sqrt(bend));
+  return std::max({sloping, level, thinnest});
+}
+
+struct ReflectionAt {
+  const Boundary& boundary;
+  const WaterAtBoundary& water;
+  reflection::Grazing<Complex> grazing;
+
+  Complex operator()(const Vacuum& /*vacuum*/) const { return -1.0; }
+  Complex operator()(const Rigid& /*rigid*/) const { return 1.0; }
+  Complex operator()(const FluidHalfSpace& fluid) const {
+    return reflection::coefficient(fluid, grazing, water);
+  }
+  Complex operator()(const ElasticHalfSpace& solid) const {
+    return reflection::coefficient(solid, grazing, water);
+  }
+  Complex operator()(const ReflectionTable& /*table*/) const {
+    const double angle = std::acos(std::clamp(grazing.cosine.real(), 0.0, 1.0));
+    return reflection_coefficient(boundary.material, angle, water);
+  }
+};
+
+/// The wave beside a boundary, its derivative away from it: one wave comes in and R goes back.
+DepthWave wave_at(const Boundary& boundary, const WaterAtBoundary& water, double omega, Complex xi,
+                  Complex q) {
+  const Complex w = vertical_wavenumber(q);
+  const Complex r = reflection_at(boundary, water, omega, xi, w);
+  return {.u = 1.0 + r, .du = Complex(0.0, 1.0) * w * (1.0 - r)};
+}
+
+}  // namespace
+
+Complex reflection_at(const Boundary& boundary, const WaterAtBoundary& water, double omega,
+                      Complex xi, Complex w) noexcept {
+  const double k = omega / water.speed;
+  const ReflectionAt behind{boundary, water, {w / k, xi / k}};
+  const Complex r = std::visit(behind, boundary.material);
+  if (boundary.roughness.smooth()) return r;
+  return r * coherent_reflection(boundary.roughness, std::abs((w / k).real()), k);
+}
+
+WaveColumn::WaveColumn(const Environment& environment, double frequency, double source_depth,
+                       std::span<const double> receivers)
+    : environment_(environment),
+      frequency_(frequency),
+      omega_(2.0 * pi * frequency),
+      loss_(attenuation_np_per_m(environment, frequency)) {
+  const double top = environment.surface.depth, bottom = environment.bottom.depth;
+  std::vector<double> cuts = {top, bottom, source_depth};
+  const auto inside = [&](double z) { return z >= top && z <= bottom; };
+  for (const double z : environment.water.depths())
+    if (inside(z)) cuts.push_back(z);
+  for (const double z : receivers)
+    if (inside(z)) cuts.push_back(z);
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  edges_.push_back(top);
+  for (std::size_t i = 1; i < cuts.size(); ++i) cut(cuts[i - 1], cuts[i]);
+  const auto edge = [&](double z) {
+    return std::size_t(std::lower_bound(edges_.begin(), edges_.end(), z) - edges_.begin());
+  };
+  source_edge_ = edge(source_depth);
+  for (const double z : receivers) edge_of_.push_back(inside(z) ? edge(z) : none);
+  order_.resize(receivers.size());
+  std::iota(order_.begin(), order_.end(), std::size_t(0));
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::size_t a, std::size_t b) { return edge_of_[a] < edge_of_[b]; });
+  while (!order_.empty() && edge_of_[order_.back()] == none) order_.pop_back();
+  largest_ = 0.0;
+  smallest_ = std::numeric_limits<double>::infinity();
+  for (const double z : edges_) {
+    const double k = omega_ / environment.water.at(z).c;
+    largest_ = std::max(largest_, k);
+    smallest_ = std::min(smallest_, k);
+  }
+}
+
+void WaveColumn::cut(double from, double to) {
+  double z = from;
+  while (z < to) {
+    // Just inside, where the law of this stretch holds.
+    const auto at = [&](double depth) {
+      const double margin = 1e-9 * (to - from);
+      return environment_.water.at(std::clamp(depth, from + margin, to - margin));
+    };
+    double h = thickness_at(at(z), omega_);
+    h = std::min({h, to - z, thickness_at(at(z + std::min(h, to - z)), omega_)});
+    const double next = z + 1.01 * h >= to ? to : z + h;
+    layers_.push_back(layer(z, next));
+    edges_.push_back(next);
+    z = next;
+  }
+}
+
+WaveLayer WaveColumn::layer(double from, double to) const noexcept {
+  // The line that has the mean and the first moment, by Gauss and Legendre's three points.
+  constexpr double node = 0.7745966692414834, weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  Complex mean = 0.0, slope = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double x = node * (i - 1), z = middle + half * x;
+    const Complex k(omega_ / environment_.water.at(z).c, -loss_.at(z));
+    mean += weight[i] * k * k;
+    slope += 3.0 * weight[i] * x * k * k;
+  }
+  return {.thickness = to - from, .k2 = {mean - slope, mean + slope}};
+}
+
+void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g) const noexcept {
+  const Complex xi2 = xi * xi;
+  const auto beside = [&](const Boundary& boundary, Complex k2) {
+    const WaterAtBoundary water{environment_.water.at(boundary.depth).c,
+                                environment_.water_density.at(boundary.depth)};
+    return wave_at(boundary, water, omega_, xi, k2 - xi2);
+  };
+  for (Complex& value : g) value = 0.0;
+  DepthWave above = beside(environment_.surface, layers_.front().k2[0]);
+  auto next = order_.begin();
+  for (std::size_t edge = 0;; ++edge) {
+    for (; next != order_.end() && edge_of_[*next] == edge && edge < source_edge_; ++next)
+      g[*next] = above.u, growth[*next] = above.growth;
+    if (edge == source_edge_) break;
+    const WaveLayer& layer = layers_[edge];
+    follow(above, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
+  }
+  const auto first_below = next;
+  DepthWave below = beside(environment_.bottom, layers_.back().k2[1]);
+  auto last = order_.end();
+  for (std::size_t edge = layers_.size();; --edge) {
+    for (; last != first_below && edge_of_[*(last - 1)] == edge; --last)
+      g[*(last - 1)] = below.u, growth[*(last - 1)] = below.growth;
+    if (edge == source_edge_) break;
+    const WaveLayer& layer = layers_[edge - 1];
+    follow(below, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
+  }
+  // `below` was followed upwards: its derivative downwards has the other sign.
+  const Complex source = -2.0 / (-above.u * below.du - above.du * below.u);
+  for (auto it = order_.begin(); it != order_.end(); ++it) {
+    const bool over = it < first_below;
+    const Complex other = over ? below.u : above.u;
+    const double grown = growth[*it] - (over ? above.growth : below.growth);
+    g[*it] *= source * other * std::exp(std::min(grown, 100.0));
+  }
+}
+
+}  // namespace asdic

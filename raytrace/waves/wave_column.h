@@ -1,0 +1,60 @@
+#pragma once
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "raytrace/environment.h"
+#include "raytrace/waves/depth_wave.h"
+
+namespace asdic {
+
+/// A layered ocean as its depth-separated wave equation sees it, cut for one source and a number of
+/// receivers:
+///
+///   g″ + ((ω/c − iα)² − ξ²)·g = −2·δ(z − z_s),   p(r) = ∫ ξ·g(ξ)·J₀(ξr) dξ
+///
+/// p relative to 1 m, e^{+iωt}. Boundaries reflect by the coefficients that rays have
+/// (reflection_at()). Layers are of 1/c² linear in depth, with the mean and the slope that the
+/// profile has there, and so thin that a wave's phase is off by 0.002 rad at a turn.
+/// docs/theory/waves.md
+class WaveColumn {
+ public:
+  /// \param environment  is_layered(), kept by reference   \param receivers  [n] depths, any order;
+  /// outside of the water there is no sound [m]
+  WaveColumn(const Environment& environment, double frequency, double source_depth,
+             std::span<const double> receivers);
+
+  /// g(ξ) at every receiver [m]. Im ξ > 0, or some loss somewhere: else modes are poles.
+  /// \param growth  [n] memory for it   \param g  [n]
+  void kernel(std::complex<double> xi, std::span<double> growth,
+              std::span<std::complex<double>> g) const noexcept;
+
+  [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }
+  /// ω over the lowest and the highest speed [1/m].
+  [[nodiscard]] double largest_wavenumber() const noexcept { return largest_; }
+  [[nodiscard]] double smallest_wavenumber() const noexcept { return smallest_; }
+
+ private:
+  void cut(double from, double to);
+  [[nodiscard]] WaveLayer layer(double from, double to) const noexcept;
+
+  const Environment& environment_;
+  double frequency_, omega_;
+  DepthFunction loss_;                // [Np/m]
+  std::vector<WaveLayer> layers_;     // downwards
+  std::vector<double> edges_;         // [layers + 1] their depths [m]
+  std::vector<std::size_t> edge_of_;  // [n] of each receiver; none: none_
+  std::vector<std::size_t> order_;    // [n] receivers from the top downwards
+  std::size_t source_edge_ = 0;
+  double largest_ = 0.0, smallest_ = 0.0;
+};
+
+/// The plane-wave reflection coefficient of a boundary at horizontal wavenumber ξ: that of rays,
+/// reflection_coefficient(), continued to complex angles where it is a formula. A measured table
+/// has real angles only. \param w  vertical wavenumber beside the boundary [1/m]
+[[nodiscard]] std::complex<double> reflection_at(const Boundary& boundary,
+                                                 const WaterAtBoundary& water, double omega,
+                                                 std::complex<double> xi,
+                                                 std::complex<double> w) noexcept;
+
+}  // namespace asdic
