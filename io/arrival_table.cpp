@@ -32,6 +32,7 @@ std::vector<GrowingTable::Column> arrival_columns() {
           {"upper_turns", "turning points below the surface", "", Type::int32},
           {"lower_turns", "turning points above the bottom", "", Type::int32},
           {"caustics", "caustics passed", "", Type::int32},
+          {"kind", "0 a ray, 1 diffracted: where no ray comes", "", Type::int8},
           {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
           {"bounce_count", "rows of /bounces", "", Type::int32}};
 }
@@ -76,6 +77,7 @@ void ArrivalTable::add(int ping, const Leg& leg) {
                    double(a.upper_turns),
                    double(a.lower_turns),
                    double(a.caustics),
+                   double(static_cast<int>(a.kind)),
                    first,
                    static_cast<double>(a.bounces.size())});
   }

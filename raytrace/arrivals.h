@@ -14,6 +14,12 @@ struct Bounce {
   double range = 0.0;    ///< horizontal distance from the source [m]
 };
 
+/// What an arrival is.
+enum class ArrivalKind : std::uint8_t {
+  ray,
+  diffracted,  ///< where no ray comes: waves/diffraction.h. No bounces, turns or q
+};
+
 /// One eigenray: a path that sound takes from a source to a receiver. Unit source at 1 m; neither
 /// source level nor directivity.
 ///
@@ -22,6 +28,7 @@ struct Bounce {
 /// pressure-release surface by −1. The stored pressure of the path is Re{amplitude · s₊(t −
 /// delay)}, s₊ the analytic pulse.
 struct Arrival {
+  ArrivalKind kind = ArrivalKind::ray;
   double launch_elevation = 0.0;   ///< [rad]
   double arrival_elevation = 0.0;  ///< [rad]
   double delay = 0.0;              ///< τ [s]

@@ -95,7 +95,8 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
                                                         const Carried& hearer, double time,
                                                         bool across_the_band) const {
   const Kinematics receiver = hearer.at(time);
-  const PathLimits limits = limits_of(scenario_.propagation);
+  PathLimits limits = limits_of(scenario_.propagation);
+  limits.diffraction = false;  // at every frequency of a ship's band: too dear
   double left = time;
   Arrivals found;
   Kinematics source;

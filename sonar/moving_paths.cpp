@@ -28,8 +28,9 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
   const Arrival* nearest = nullptr;
   double least = infinity;
   for (const Arrival& a : arrivals) {
-    if (a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
-        a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
+    if (a.kind != path.kind || a.surface_bounces != path.surface_bounces ||
+        a.bottom_bounces != path.bottom_bounces || a.upper_turns != path.upper_turns ||
+        a.lower_turns != path.lower_turns)
       continue;
     const double turned = std::abs(a.launch_elevation - path.launch_elevation);
     const double changed =  // of ξ, over ξ; straight up and down there is none

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/ocean/slice.h"
+#include "raytrace/waves/diffraction.h"
 #include "sonar/followed_path.h"
 #include "sonar/geometry.h"
 
@@ -39,6 +40,11 @@ std::size_t bytes_of(const Environment& slice) {
   return samples * doubles_a_sample * sizeof(double);
 }
 
+void sort_by_delay(Arrivals& arrivals) {
+  std::stable_sort(arrivals.begin(), arrivals.end(),
+                   [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
+}
+
 /// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
 /// to a degree beyond, five at least: those that leave almost level turn most (same_path in
 /// moving_paths.h).
@@ -59,6 +65,7 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
 }  // namespace
 
 void add_path(ExactKey& key, const Arrival& path) {
+  key.add(int(path.kind));
   key.add_all(path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
               path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
 }
@@ -66,7 +73,8 @@ void add_path(ExactKey& key, const Arrival& path) {
 PathLimits limits_of(const PropagationSettings& settings) noexcept {
   return {.max_surface_bounces = settings.max_surface_bounces,
           .max_bottom_bounces = settings.max_bottom_bounces,
-          .max_launch_angle = settings.max_launch_angle};
+          .max_launch_angle = settings.max_launch_angle,
+          .diffraction = settings.diffraction};
 }
 
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
@@ -116,7 +124,7 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
   ExactKey leg = key(kind);
   leg.add(from.z()).add(to.z()).add(separation(from, to).range).add(frequency);
   leg.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
-  leg.add(limits.max_vertices).add(limits.faintest);
+  leg.add(limits.max_vertices).add(limits.faintest).add(limits.diffraction);
   if (layered_) return leg;
   const Plane line = plane(from, to);
   return leg.add(line.origin).add(line.cos_beta);
@@ -135,7 +143,17 @@ Arrivals PropagationPaths::recall_or(const ExactKey& key, Reuse* reuse, Find&& f
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
                                   const PathLimits& limits) const {
   const double range = separation(from, to).range;
-  if (layered_) return along_.find(from.z(), to.z(), range, frequency, limits);
+  if (layered_) {
+    Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
+    if (limits.diffraction) {
+      auto more =
+          diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
+      if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
+        found.push_back(std::move(*more));
+    }
+    sort_by_delay(found);
+    return found;
+  }
   return solver(plane(from, to))->find(from.z(), to.z(), range, frequency, limits);
 }
 
@@ -158,13 +176,17 @@ Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& fr
     }
     Arrivals followed;
     for (const Arrival& path : known) {
-      auto same = layered_ ? along_.follow(path, from.z(), to.z(), range, frequency, limits)
-                           : followed_path(*tracer, path, from.z(), to.z(), range);
+      std::optional<Arrival> same;
+      if (path.kind == ArrivalKind::diffracted)
+        same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
+      else if (layered_)
+        same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
+      else
+        same = followed_path(*tracer, path, from.z(), to.z(), range);
       if (!same) return search(from, to, frequency, limits_around(known, limits));
       followed.push_back(std::move(*same));
     }
-    std::stable_sort(followed.begin(), followed.end(),
-                     [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
+    sort_by_delay(followed);
     return followed;
   });
 }

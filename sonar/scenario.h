@@ -25,6 +25,7 @@ struct PropagationSettings {
   bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
   bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries
   bool wide_band = false;   ///< echoes' losses and patterns at every frequency of the pulse
+  bool diffraction = true;  ///< echoes and direct sound where no ray goes, in stratified water
   bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
 };
 

@@ -17,6 +17,7 @@ void read_propagation(TomlTable table, Scenario& scenario) {
   settings.fathometer = table.flag("fathometer", settings.fathometer);
   settings.wide_band = table.choice("band", {"narrow", "wide"}, "narrow") == "wide";
   settings.exact_per_phone = table.flag("exact_per_phone", false);
+  settings.diffraction = table.flag("diffraction", settings.diffraction);
   table.finish();
 }
 

@@ -142,7 +142,8 @@ WaveLayer WaveColumn::layer(double from, double to) const noexcept {
   return {.thickness = to - from, .k2 = {mean - slope, mean + slope}};
 }
 
-void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g) const noexcept {
+void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g,
+                        std::span<Complex> by_source) const noexcept {
   const Complex xi2 = xi * xi;
   const auto beside = [&](const Boundary& boundary, Complex k2) {
     const WaterAtBoundary water{environment_.water.at(boundary.depth).c,
@@ -150,6 +151,7 @@ void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex>
     return wave_at(boundary, water, omega_, xi, k2 - xi2);
   };
   for (Complex& value : g) value = 0.0;
+  for (Complex& value : by_source) value = 0.0;
   DepthWave above = beside(environment_.surface, layers_.front().k2[0]);
   auto next = order_.begin();
   for (std::size_t edge = 0;; ++edge) {
@@ -173,9 +175,11 @@ void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex>
   const Complex source = -2.0 / (-above.u * below.du - above.du * below.u);
   for (auto it = order_.begin(); it != order_.end(); ++it) {
     const bool over = it < first_below;
-    const Complex other = over ? below.u : above.u;
+    const Complex other = over ? below.u : above.u, slope = over ? -below.du : above.du;
     const double grown = growth[*it] - (over ? above.growth : below.growth);
-    g[*it] *= source * other * std::exp(std::min(grown, 100.0));
+    const Complex here = g[*it] * source * std::exp(std::min(grown, 100.0));
+    g[*it] = here * other;
+    if (!by_source.empty()) by_source[*it] = here * slope;
   }
 }
 

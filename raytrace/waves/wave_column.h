@@ -25,9 +25,9 @@ class WaveColumn {
              std::span<const double> receivers);
 
   /// g(ξ) at every receiver [m]. Im ξ > 0, or some loss somewhere: else modes are poles.
-  /// \param growth  [n] memory for it   \param g  [n]
-  void kernel(std::complex<double> xi, std::span<double> growth,
-              std::span<std::complex<double>> g) const noexcept;
+  /// \param growth  [n] memory for it   \param g  [n]   \param by_source  [n] ∂g/∂z_s, or empty
+  void kernel(std::complex<double> xi, std::span<double> growth, std::span<std::complex<double>> g,
+              std::span<std::complex<double>> by_source = {}) const noexcept;
 
   [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }
   /// ω over the lowest and the highest speed [1/m].

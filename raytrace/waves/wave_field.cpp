@@ -5,12 +5,14 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/units.h"
 #include "raytrace/waves/wave_integral.h"
 
 namespace asdic {
 namespace {
 
+constexpr double most_wave_bytes = 1e9;
 constexpr double edge_of_fan = 1e-12;  // elevations there belong to it [rad]
 constexpr double nearest_range = 0.1;  // receivers nearer than this in range are there [m]
 
@@ -84,12 +86,18 @@ std::optional<ConvergedField> wave_field(const PropagationCase& run_case, double
   const Environment& ocean = run_case.environment;
   const WaveColumn column(ocean, run_case.frequency, source_depth, depths);
   const WaveIntegral waves(column, depths.size(), ocean.bottom.depth - ocean.surface.depth, ranges);
-  if (!asked && waves.steps() > most_wave_steps) {
+  if (waves.bytes() > most_wave_bytes && asked)
+    throw InputError({"receivers",
+                      std::to_string(depths.size()) + " depths by " +
+                          std::to_string(ranges.size()) + " ranges, " + bytes_text(waves.bytes()),
+                      "at most " + bytes_text(most_wave_bytes) + " with solver = \"waves\""});
+  if (!asked && (waves.steps() > most_wave_steps || waves.bytes() > most_wave_bytes)) {
     char why[160];
     std::snprintf(why, sizeof why,
-                  "since the wave equation would take %.2g steps, above %.2g (solver = \"waves\" "
-                  "takes them)",
-                  waves.steps(), most_wave_steps);
+                  "since the wave equation would take %.2g steps and %s, above %.2g or %s "
+                  "(solver = \"waves\" takes them)",
+                  waves.steps(), bytes_text(waves.bytes()).c_str(), most_wave_steps,
+                  bytes_text(most_wave_bytes).c_str());
     note = note_of_rays(why);
     return std::nullopt;
   }

@@ -37,11 +37,11 @@ PulseFrequencies pulse_frequencies(const Scenario& scenario) {
 std::vector<std::string> warnings(const Scenario& scenario) {
   const checks::PulseFrequencies pulse = checks::pulse_frequencies(scenario);
   std::vector<std::string> all = warnings(scenario.environment, pulse.lowest, pulse.highest);
-  add_warnings(
-      {checks::pulse_band(scenario), checks::noise_law_range(scenario),
-       checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
-       checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario)},
-      all);
+  add_warnings({checks::pulse_band(scenario), checks::noise_law_range(scenario),
+                checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
+                checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
+                checks::left_out_diffraction(scenario)},
+               all);
   return all;
 }
 

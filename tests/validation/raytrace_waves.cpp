@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -298,12 +300,32 @@ TEST(Waves, RaysSayWhatTheyLeaveOut) {
   EXPECT_FALSE(dear.waves);
   EXPECT_THAT(dear.notes, testing::Contains(testing::HasSubstr("solver = \"waves\" takes them")));
   c.frequency = 50.0;
+  PropagationCase many = c;  // each of them a depth and a range of its own
+  many.receivers.irregular = true;
+  many.receivers.depths.clear();
+  many.receivers.ranges.clear();
+  for (int i = 0; i < 12'000; ++i) {
+    many.receivers.depths.push_back(100.0 + 0.1 * i);
+    many.receivers.ranges.push_back(500.0 + i);
+  }
+  many.solver = FieldSolver::waves;
+  EXPECT_THROW(run(many), InputError);
   c.beams.highest = 0.3;
   EXPECT_THAT(run(c).notes, testing::Contains(testing::HasSubstr("since the fan is limited")));
   c.solver = FieldSolver::waves;
   EXPECT_THROW(run(c), InputError);
   c.solver = FieldSolver::beams;
   for (const std::string& note : run(c).notes) EXPECT_EQ(note.find("left out"), note.npos) << note;
+}
+
+TEST(Waves, AreTheSameBitsForAnyNumberOfThreads) {
+  PropagationCase c = waves_of({.water = SoundSpeedProfile::munk()}, 100.0, 700.0);
+  c.receivers = {.depths = {50.0, 800.0}, .ranges = {300.0, 20000.0, 50000.0}};
+  const auto on = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return run(c).field;
+  };
+  EXPECT_EQ(on(1), on(5));
 }
 
 TEST(Waves, StopWhenTold) {

@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+
+#include "raytrace/arrivals.h"
+#include "raytrace/environment.h"
+
+namespace asdic {
+
+/// What the water carries to a receiver that no ray reaches without the bottom: below a duct,
+/// beyond a limiting ray, on the dark side of a caustic. One arrival of kind `diffracted`, the wave
+/// equation's field at `frequency` with a bottom that returns nothing. Its delay is the
+/// group delay there, its elevations follow from the mean horizontal slowness
+/// and from which way the energy goes. docs/theory/waves.md, "Arrivals"
+///
+/// Nothing where a ray gets there, where the sound is 40 dB under the rays that touch the bottom or
+/// 60 dB under spherical spreading, and where it would take more than `most_diffraction_steps`.
+/// \param ocean  is_layered()   \param rays  that were found
+[[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
+                                                        double source_depth, double receiver_depth,
+                                                        double range, double frequency,
+                                                        const Arrivals& rays);
+
+/// The same whatever rays there are, for a path that is followed.
+[[nodiscard]] std::optional<Arrival> diffracted_arrival(const Environment& ocean,
+                                                        double source_depth, double receiver_depth,
+                                                        double range, double frequency);
+
+/// Whether it is computed at all, or too dear. \param range  [m]
+[[nodiscard]] bool diffraction_is_affordable(const Environment& ocean, double source_depth,
+                                             double receiver_depth, double range, double frequency);
+
+/// Layers times wavenumbers of one arrival: a second of one core.
+inline constexpr double most_diffraction_steps = 3e6;
+
+}  // namespace asdic
