@@ -58,8 +58,10 @@ std::string depth_of_water(const Environment& ocean) {
 
 std::string boundary_text(const Boundary& boundary) {
   std::string text = material_text(boundary.material);
-  if (!boundary.roughness.smooth())
-    text += fmt::format(", rms height {:.3g} m", boundary.roughness.rms_height);
+  const Roughness& rough = boundary.roughness;
+  if (rough.rms_height > 0.0) text += fmt::format(", rms height {:.3g} m", rough.rms_height);
+  if (rough.sea_wind > 0.0) text += fmt::format(" (sea of {:g} m/s)", rough.sea_wind);
+  if (rough.bubble_wind > 0.0) text += fmt::format(", bubbles of {:g} m/s", rough.bubble_wind);
   if (!boundary.shape) return text;
   const auto ranges = boundary.shape->ranges();
   text += fmt::format(", {}, {} from {:g} to {:g} km, {:g} to {:g} m deep",

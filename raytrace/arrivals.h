@@ -37,7 +37,10 @@ struct Arrival {
   double spreading =
       0.0;  ///< |amplitude| of the ray tube alone, √(c cos θ₀ /(c₀ r |q|)) [1/m × 1 m]
   std::complex<double> reflection = 1.0;  ///< product of the boundaries' coefficients
-  double absorption_db = 0.0;             ///< along the path [dB]
+  /// What rough boundaries scatter about the path: |amplitude|² + scattered is the mean intensity
+  /// that arrives along it, |amplitude|² that of the mean field [1/m² × 1 m²]
+  double scattered = 0.0;
+  double absorption_db = 0.0;  ///< along the path [dB]
   double q = 0.0;            ///< ∂n/∂(launch elevation), signed by the caustics passed [m/rad]
   double path_length = 0.0;  ///< [m]
   double horizontal_slowness = 0.0;  ///< Snell's invariant cos θ/c [s/m]

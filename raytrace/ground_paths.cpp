@@ -193,7 +193,7 @@ class BranchFollower {
                         amplitude_from_db(-builder_.absorption_db_per_metre() * length);
     return {
         .delay = delay,
-        .amplitude = size * caustic_phase(caustics) * builder_.reflections(r, tops, bottoms),
+        .amplitude = size * caustic_phase(caustics) * builder_.all_reflected(r, tops, bottoms),
         .launch_elevation =
             (branch.starts_up ? 1.0 : -1.0) *
             std::atan2(builder_.sine_at_source(r), r.slowness * column.source_speed()),

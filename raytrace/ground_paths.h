@@ -22,8 +22,9 @@ struct GroundLevel {
 /// One path from a source to one cell of a level: the incident field, before the boundary answers.
 struct GroundPath {
   double delay = 0.0;  ///< [s]
-  std::complex<double> amplitude =
-      0.0;  ///< as Arrival::amplitude, up to the boundary but without its own reflection
+  /// As Arrival::amplitude, up to the boundary but without its own reflection; its square is the
+  /// mean intensity, with all that rough boundaries scattered about the path.
+  std::complex<double> amplitude = 0.0;
   double launch_elevation = 0.0;     ///< [rad], positive up
   double grazing = 0.0;              ///< at the cell [rad]
   double horizontal_slowness = 0.0;  ///< dτ/dr along the boundary; over flat ground ξ [s/m]

@@ -59,7 +59,7 @@ std::string half_space_text(CaseWriting& writing, const BoundaryMaterial& materi
   const std::string name = std::visit([](const auto& m) { return std::string(m.name); }, material);
   throw InputError({.where = where,
                     .got = name,
-                    .expected = "fluid or elastic: a .bty or .ati file knows no other material"});
+                    .expected = "fluid or elastic: BELLHOP's files know no other half space"});
 }
 
 void write_section(CaseWriting& writing) {

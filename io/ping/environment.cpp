@@ -13,9 +13,12 @@ namespace {
 
 std::string text_of(const Absorption& absorption) {
   std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
-  if (const auto* law = std::get_if<FrancoisGarrison>(&absorption))
-    text += ", " + to_text(law->temperature) + " degC, " + to_text(law->salinity) + " psu, pH " +
-            to_text(law->ph) + ", " + to_text(law->depth) + " m";
+  for_each_water_property(absorption, [&](std::string_view name, double value) {
+    if (name == "pH") text += ", pH " + to_text(value);
+    if (name == "temperature") text += ", " + to_text(value) + " degC";
+    if (name == "salinity") text += ", " + to_text(value) + " psu";
+    if (name == "depth") text += ", " + to_text(value) + " m";
+  });
   return text;
 }
 

@@ -43,21 +43,26 @@ void check_water(TomlTable& bottom, const Environment& ocean) {
                        "none");
 }
 
-/// `roughness` [m], or "wind": that of the wind's sea.
-void read_roughness(TomlTable& surface, TomlTable& environment, Boundary& boundary) {
-  if (!surface.has("roughness")) return;
-  if (surface.is_text("roughness")) {
-    surface.choice("roughness", {"wind"});
-    constexpr Quantity wind{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
-    boundary.roughness.rms_height =
-        pierson_moskowitz_height(environment.number("wind_speed", wind, default_wind_speed));
+constexpr Quantity wind_quantity{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
+
+/// `roughness` [m], or "wind": the wind's sea; its spectrum is known. `bubbles`: under it.
+void read_roughness(TomlTable& table, double wind_speed, bool surface, Boundary& boundary) {
+  Roughness& rough = boundary.roughness;
+  if (surface && table.is_text("roughness")) {
+    table.choice("roughness", {"wind"});
+    rough.rms_height = pierson_moskowitz_height(wind_speed);
+    rough.sea_wind = wind_speed;
   } else {
-    boundary.roughness.rms_height =
-        surface.number("roughness", {.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0});
+    rough.rms_height = table.number(
+        "roughness", {.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0}, 0.0);
+    if (table.has("roughness"))
+      rough.sea_wind = table.number("roughness_wind", wind_quantity, rough.sea_wind);
   }
-  boundary.roughness.floor_db = surface.number(
-      "roughness_floor_db", {.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0},
-      boundary.roughness.floor_db);
+  constexpr Quantity floor{.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0};
+  if (table.has("roughness"))  // what leaves the mean field is not lost: no floor is wanted
+    rough.floor_db = table.number("roughness_floor_db", floor, floor.low);
+  if (surface && table.choice("bubbles", {"none", "apl-uw"}, "none") == "apl-uw")
+    rough.bubble_wind = table.number("bubbles_wind", wind_quantity, wind_speed);
 }
 
 Transect read_transect(TomlTable table) {
@@ -85,18 +90,18 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   read_water_losses(table, reading, ocean);
   read_sound_speed(table.table("sound_speed"), reading, ocean);
   read_boundary_materials(bottom, reading, ocean, std::nullopt, ocean.bottom);
+  const double wind = table.number("wind_speed", wind_quantity, default_wind_speed);
+  read_roughness(bottom, wind, false, ocean.bottom);
   bottom.finish();
   read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
-  read_roughness(surface, table, ocean.surface);
+  read_roughness(surface, wind, true, ocean.surface);
   surface.finish();
   return ocean;
 }
 
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario) {
-  scenario.wind_speed =
-      table.number("wind_speed", {.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0},
-                   scenario.wind_speed);
+  scenario.wind_speed = table.number("wind_speed", wind_quantity, scenario.wind_speed);
   scenario.transect = read_transect(table.table("transect"));
   scenario.environment =
       read_ocean(table, {.folder = folder, .frequency = frequency, .notes = scenario.notes});

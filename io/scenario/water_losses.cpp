@@ -5,21 +5,27 @@
 namespace asdic::scenario {
 namespace {
 
+/// Of a law that knows the water.
+template <class Law>
+Law read_law_of_water(TomlTable& table) {
+  Law law;
+  law.temperature = table.number("temperature",
+                                 {.noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0},
+                                 law.temperature);
+  law.salinity = table.number(
+      "salinity", {.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0}, law.salinity);
+  law.ph = table.number("ph", {.noun = "pH", .low = 6.0, .high = 9.0}, law.ph);
+  law.depth = table.number("depth", depth_quantity, law.depth);
+  return law;
+}
+
 Absorption read_absorption(TomlTable table) {
-  const std::string kind = table.choice("kind", {"none", "thorp", "francois-garrison"}, "thorp");
+  const std::string kind =
+      table.choice("kind", {"none", "thorp", "francois-garrison", "ainslie-mccolm"}, "thorp");
   Absorption absorption = NoAbsorption{};
   if (kind == Thorp::name) absorption = Thorp{};
-  if (kind == FrancoisGarrison::name) {
-    FrancoisGarrison law;
-    law.temperature = table.number(
-        "temperature", {.noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0},
-        law.temperature);
-    law.salinity = table.number(
-        "salinity", {.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0}, law.salinity);
-    law.ph = table.number("ph", {.noun = "pH", .low = 6.0, .high = 9.0}, law.ph);
-    law.depth = table.number("depth", depth_quantity, law.depth);
-    absorption = law;
-  }
+  if (kind == FrancoisGarrison::name) absorption = read_law_of_water<FrancoisGarrison>(table);
+  if (kind == AinslieMcColm::name) absorption = read_law_of_water<AinslieMcColm>(table);
   table.finish();
   return absorption;
 }

@@ -27,11 +27,48 @@ void write_figures(TomlWriter& out, const ElasticHalfSpace& solid) {
   out.number("shear_attenuation_db_per_wavelength", solid.shear_attenuation_db_per_wavelength);
 }
 
-void write_figures(TomlWriter& out, const ReflectionTable& table) {
-  out.text("kind", ReflectionTable::name);
+void write_rows(TomlWriter& out, const ReflectionTable& table) {
   out.angles("grazing", table.grazing);
   out.numbers("magnitude", table.magnitude);
   out.angles("phase", table.phase);
+}
+
+void write_figures(TomlWriter& out, const ReflectionTable& table) {
+  out.text("kind", ReflectionTable::name);
+  write_rows(out, table);
+}
+
+void write_figures(TomlWriter& out, const ReflectionCurves& /*curves*/) {
+  out.text("kind", ReflectionTable::name);
+}
+
+void write_layer(TomlWriter& out, const FloorLayer& layer) {
+  out.number("speed", layer.speed);
+  out.number("density", layer.density);
+  out.number("attenuation_db_per_wavelength", layer.attenuation_db_per_wavelength);
+  out.number("shear_speed", layer.shear_speed);
+  out.number("shear_attenuation_db_per_wavelength", layer.shear_attenuation_db_per_wavelength);
+}
+
+void write_figures(TomlWriter& out, const LayeredFloor& floor) {
+  out.text("kind", LayeredFloor::name);
+  write_layer(out, floor.below);
+}
+
+/// What stands in tables of its own, below the keys of the boundary itself.
+void write_parts(TomlWriter& out, const std::string& path, const BoundaryMaterial& material) {
+  if (const auto* curves = std::get_if<ReflectionCurves>(&material))
+    for (std::size_t i = 0; i < curves->curve.size(); ++i) {
+      out.array_table(path + ".curve");
+      out.number("frequency", curves->frequency[i]);
+      write_rows(out, curves->curve[i]);
+    }
+  if (const auto* floor = std::get_if<LayeredFloor>(&material))
+    for (const FloorLayer& layer : floor->layers) {
+      out.array_table(path + ".layer");
+      out.number("thickness", layer.thickness);
+      write_layer(out, layer);
+    }
 }
 
 void write_material(TomlWriter& out, const BoundaryMaterial& material) {
@@ -42,10 +79,17 @@ void write_boundary(TomlWriter& out, const std::string& path, const Boundary& bo
   out.table(path);
   if (!boundary.shape) out.number("depth", boundary.depth);
   write_material(out, boundary.material);
-  if (!boundary.roughness.smooth()) {
-    out.number("roughness", boundary.roughness.rms_height);
-    out.number("roughness_floor_db", boundary.roughness.floor_db);
+  const Roughness& rough = boundary.roughness;
+  if (rough.rms_height > 0.0) {
+    out.number("roughness", rough.rms_height);
+    if (rough.sea_wind > 0.0) out.number("roughness_wind", rough.sea_wind);
+    out.number("roughness_floor_db", rough.floor_db);
   }
+  if (rough.bubble_wind > 0.0) {
+    out.text("bubbles", "apl-uw");
+    out.number("bubbles_wind", rough.bubble_wind);
+  }
+  write_parts(out, path, boundary.material);
   if (!boundary.shape) return;
   out.table(path + ".shape");
   out.text("interpolation", name(boundary.shape->interpolation()));
@@ -54,6 +98,7 @@ void write_boundary(TomlWriter& out, const std::string& path, const Boundary& bo
   for (const BoundaryMaterial& material : boundary.shape->materials()) {
     out.array_table(path + ".shape.material");
     write_material(out, material);
+    write_parts(out, path + ".shape.material", material);
   }
 }
 
@@ -91,12 +136,9 @@ void write_depth_function(TomlWriter& out, const std::string& path, const std::s
 void write_absorption(TomlWriter& out, const Absorption& absorption) {
   out.table("environment.absorption");
   out.text("kind", std::visit([](const auto& law) { return law.name; }, absorption));
-  if (const auto* law = std::get_if<FrancoisGarrison>(&absorption)) {
-    out.number("temperature", law->temperature);
-    out.number("salinity", law->salinity);
-    out.number("ph", law->ph);
-    out.number("depth", law->depth);
-  }
+  for_each_water_property(absorption, [&](std::string_view name, double value) {
+    out.number(name == "pH" ? "ph" : std::string(name), value);
+  });
 }
 
 void write_environment(TomlWriter& out, const Environment& ocean) {

@@ -27,6 +27,27 @@ std::string figures(const ReflectionTable& table) {
          " degrees";
 }
 
+std::string figures(const ReflectionCurves& curves) {
+  return ", " + std::to_string(curves.frequency.size()) + " frequencies from " +
+         to_text(curves.frequency.front()) + " to " + to_text(curves.frequency.back()) + " Hz";
+}
+
+std::string layer_text(const FloorLayer& layer) {
+  std::string text = to_text(layer.speed) + " m/s, " + to_text(layer.density) + " kg/m3, " +
+                     to_text(layer.attenuation_db_per_wavelength) + " dB per wavelength";
+  if (layer.shear_speed > 0.0)
+    text += ", shear " + to_text(layer.shear_speed) + " m/s, " +
+            to_text(layer.shear_attenuation_db_per_wavelength) + " dB per wavelength";
+  return text;
+}
+
+std::string figures(const LayeredFloor& floor) {
+  std::string text;
+  for (const FloorLayer& layer : floor.layers)
+    text += ", " + to_text(layer.thickness) + " m of " + layer_text(layer);
+  return text + ", over " + layer_text(floor.below);
+}
+
 }  // namespace
 
 std::string material_text(const BoundaryMaterial& material) {

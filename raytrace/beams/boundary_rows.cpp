@@ -66,9 +66,9 @@ WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double 
   const double sense = kind == BoundaryKind::surface ? 1.0 : -1.0;  // n into the water
   const double into_water = sense * (sine - slope * cosine) / std::sqrt(1.0 + slope * slope);
   const double grazing = std::asin(std::min(std::abs(into_water), 1.0));
-  std::complex<double> reflection =
-      reflection_coefficient(boundary.material_at(range), grazing,
-                             {.speed = c, .density = environment_.water_density.at(depth)});
+  std::complex<double> reflection = reflection_coefficient(
+      boundary.material_at(range), grazing,
+      {.speed = c, .density = environment_.water_density.at(depth), .frequency = frequency_});
   if (!boundary.roughness.smooth())
     reflection *=
         coherent_reflection(boundary.roughness, std::sin(grazing), 2.0 * pi * frequency_ / c);

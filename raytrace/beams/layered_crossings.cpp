@@ -53,6 +53,7 @@ std::optional<LayeredCrossings> LayeredCrossings::make(const Environment& enviro
   std::iota(result.columns_.begin(), result.columns_.end(), 0U);
   result.alpha_ = alpha.at(0.0);
   result.faintest_ = limits.faintest;
+  result.frequency_ = frequency;
   result.depth_.push_back(top);
   for (const double z : water.depths())
     if (z > top + same_line && z < bottom - same_line) result.depth_.push_back(z);

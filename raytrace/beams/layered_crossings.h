@@ -77,6 +77,7 @@ class LayeredCrossings {
   std::size_t source_layer_ = 0;
   bool source_on_node_ = false;  // the node above source_layer_
   double alpha_ = 0.0;           // [Np/m]
+  double frequency_ = 0.0;       // [Hz]
   double faintest_ = 0.0;
 };
 

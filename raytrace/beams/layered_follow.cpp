@@ -111,9 +111,11 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
       const int which = at_surface ? 0 : 1;
       if (loss[which] < 0.0) {
         const Boundary& wall = at_surface ? environment_->surface : environment_->bottom;
-        coefficient[which] = reflection_coefficient(
-            wall.material, std::asin(std::abs(s_end)),
-            {.speed = speed[node], .density = environment_->water_density.at(at.z)});
+        coefficient[which] =
+            reflection_coefficient(wall.material, std::asin(std::abs(s_end)),
+                                   {.speed = speed[node],
+                                    .density = environment_->water_density.at(at.z),
+                                    .frequency = frequency_});
         loss[which] = std::abs(coefficient[which]);
         turn[which] = std::arg(coefficient[which]);
       }

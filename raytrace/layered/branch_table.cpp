@@ -146,8 +146,9 @@ void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& f
 void BranchTable::limit_by_loss(FanInterval& interval) const {
   const std::size_t n = interval.sigma.size();
   if (!(limits_.faintest > 0.0) || boundaries_ == nullptr) return;
-  const auto lossless = [](const BoundaryMaterial& material) {
-    return std::holds_alternative<Vacuum>(material) || std::holds_alternative<Rigid>(material);
+  const auto not_counted = [](const BoundaryMaterial& material) {
+    return std::holds_alternative<Vacuum>(material) || std::holds_alternative<Rigid>(material) ||
+           depends_on_frequency(material);  // a fan serves all frequencies
   };
   struct Met {
     const Boundary* boundary;
@@ -156,7 +157,7 @@ void BranchTable::limit_by_loss(FanInterval& interval) const {
   std::vector<Met> met;
   for (const Boundary* b : {&boundaries_->surface, &boundaries_->bottom}) {
     const bool top = b == &boundaries_->surface;
-    if ((top ? interval.turns_above : interval.turns_below) || lossless(b->material)) continue;
+    if ((top ? interval.turns_above : interval.turns_below) || not_counted(b->material)) continue;
     met.push_back({b,
                    {.speed = top ? column_.surface_speed() : column_.bottom_speed(),
                     .density = boundaries_->water_density.at(b->depth)}});

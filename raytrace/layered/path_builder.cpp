@@ -23,11 +23,14 @@ double grazing_at(const RayParameter& ray, double speed) {
   return std::atan2(std::sqrt(std::max(0.0, ray.sine2(speed))), ray.slowness * speed);
 }
 
-/// Of the coherent wave, by so many bounces. Exactly 1 where the boundary is smooth.
-double left_by_roughness(const Roughness& rough, double sine, double sound_speed, double frequency,
-                         int bounces) noexcept {
-  if (rough.smooth() || bounces == 0) return 1.0;
-  return std::pow(coherent_reflection(rough, sine, 2.0 * pi * frequency / sound_speed), bounces);
+/// Multiplies what so many bounces leave. Nothing where the boundary is smooth.
+void reflect_roughly(const Roughness& rough, double sine, const WaterAtBoundary& water, int bounces,
+                     RoughReflection& left) noexcept {
+  if (rough.smooth() || bounces == 0) return;
+  const RoughReflection one =
+      rough_reflection(rough, sine, 2.0 * pi * water.frequency / water.speed);
+  left.coherent *= std::pow(one.coherent, bounces);
+  left.energy *= std::pow(one.energy, bounces);
 }
 
 }  // namespace
@@ -38,10 +41,13 @@ PathBuilder::PathBuilder(const Environment& environment, const Column& column, d
       absorption_db_per_metre_(1e-3 * (absorption_db_per_km(environment.absorption, frequency) +
                                        environment.attenuation_db_per_km.at(0.0))),
       frequency_(frequency),
+      any_rough_(!environment.surface.roughness.smooth() || !environment.bottom.roughness.smooth()),
       water_at_surface_{.speed = column.surface_speed(),
-                        .density = environment.water_density.at(environment.surface.depth)},
+                        .density = environment.water_density.at(environment.surface.depth),
+                        .frequency = frequency},
       water_at_bottom_{.speed = column.bottom_speed(),
-                       .density = environment.water_density.at(environment.bottom.depth)} {}
+                       .density = environment.water_density.at(environment.bottom.depth),
+                       .frequency = frequency} {}
 
 double PathBuilder::sine_at_source(const RayParameter& ray) const noexcept {
   return std::sqrt(std::max(ray.sine2(column_.source_speed()), 1e-300));
@@ -105,17 +111,19 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
       reflections_of(environment_.bottom.material, water_at_bottom_, rays.sine(c_bottom),
                      rays.slowness * c_bottom, p.bottom_grazing, bottoms);
 
-  for (const bool top : {true, false}) {
-    const Roughness& rough = (top ? environment_.surface : environment_.bottom).roughness;
-    if (rough.smooth()) continue;
-    const Rays& grazing = top ? p.surface_grazing : p.bottom_grazing;
+  if (any_rough_)
     for (std::size_t i = 0; i < rays_at_once; ++i) {
-      const double left = left_by_roughness(rough, std::sin(grazing[i]), top ? c_surface : c_bottom,
-                                            frequency_, top ? tops[i] : bottoms[i]);
-      p.reflection.real[i] *= left;
-      p.reflection.imag[i] *= left;
+      RoughReflection left;
+      reflect_roughly(environment_.surface.roughness, std::sin(p.surface_grazing[i]),
+                      water_at_surface_, tops[i], left);
+      reflect_roughly(environment_.bottom.roughness, std::sin(p.bottom_grazing[i]),
+                      water_at_bottom_, bottoms[i], left);
+      const double mirror =
+          p.reflection.real[i] * p.reflection.real[i] + p.reflection.imag[i] * p.reflection.imag[i];
+      p.scattered[i] = mirror * std::max(0.0, left.energy - left.coherent * left.coherent);
+      p.reflection.real[i] *= left.coherent;
+      p.reflection.imag[i] *= left.coherent;
     }
-  }
 
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   p.q = abs(p.range_per_slowness) * rays.sine(column_.source_speed()) / column_.source_speed() *
@@ -155,7 +163,7 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
     if (!(std::abs(lanes.miss[i]) < furthest_miss)) continue;
     const std::complex<double> reflection(lanes.reflection.real[i], lanes.reflection.imag[i]);
-    if (std::norm(reflection) < faintest * faintest) continue;
+    if (std::norm(reflection) + lanes.scattered[i] < faintest * faintest) continue;
 
     Arrival& path = found[tasks.task[i]->receiver].emplace_back();
     const int tops = branch.top_vertices(), bottoms = branch.bottom_vertices();
@@ -173,6 +181,8 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     path.path_length = lanes.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
     path.amplitude = static_cast<double>(gain[i]) * reflection * caustic_phase(path.caustics);
+    path.scattered =
+        static_cast<double>(gain[i]) * static_cast<double>(gain[i]) * lanes.scattered[i];
 
     // Vertices that are bounces are recorded.
     const double first = branch.starts_up ? lanes.first_up[i] : lanes.first_down[i];
@@ -187,20 +197,43 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
   }
 }
 
-std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surface_bounces,
-                                              int bottom_bounces) const noexcept {
+std::complex<double> PathBuilder::mirrors(const RayParameter& ray, int surface_bounces,
+                                          int bottom_bounces) const noexcept {
   std::complex<double> product = 1.0;
-  const auto reflect = [&](const auto& boundary, const WaterAtBoundary& water, int bounces) {
+  const auto reflect = [&](const Boundary& boundary, const WaterAtBoundary& water, int bounces) {
     if (bounces == 0) return;
     const double grazing = grazing_at(ray, water.speed);
-    if (!boundary.roughness.smooth())
-      product *= left_by_roughness(boundary.roughness, std::sin(grazing), water.speed, frequency_,
-                                   bounces);
     product *= integer_power(reflection_coefficient(boundary.material, grazing, water), bounces);
   };
   reflect(environment_.surface, water_at_surface_, surface_bounces);
   reflect(environment_.bottom, water_at_bottom_, bottom_bounces);
   return product;
+}
+
+RoughReflection PathBuilder::rough(const RayParameter& ray, int surface_bounces,
+                                   int bottom_bounces) const noexcept {
+  RoughReflection left;
+  if (!any_rough_) return left;
+  const auto reflect = [&](const Boundary& boundary, const WaterAtBoundary& water, int bounces) {
+    reflect_roughly(boundary.roughness, std::sin(grazing_at(ray, water.speed)), water, bounces,
+                    left);
+  };
+  reflect(environment_.surface, water_at_surface_, surface_bounces);
+  reflect(environment_.bottom, water_at_bottom_, bottom_bounces);
+  return left;
+}
+
+std::complex<double> PathBuilder::reflections(const RayParameter& ray, int surface_bounces,
+                                              int bottom_bounces) const noexcept {
+  const std::complex<double> product = mirrors(ray, surface_bounces, bottom_bounces);
+  return any_rough_ ? product * rough(ray, surface_bounces, bottom_bounces).coherent : product;
+}
+
+std::complex<double> PathBuilder::all_reflected(const RayParameter& ray, int surface_bounces,
+                                                int bottom_bounces) const noexcept {
+  const std::complex<double> product = mirrors(ray, surface_bounces, bottom_bounces);
+  return any_rough_ ? product * std::sqrt(rough(ray, surface_bounces, bottom_bounces).energy)
+                    : product;
 }
 
 }  // namespace asdic

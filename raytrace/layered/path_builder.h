@@ -28,6 +28,17 @@ class PathBuilder {
   [[nodiscard]] std::complex<double> reflections(const RayParameter& ray, int surface_bounces,
                                                  int bottom_bounces) const noexcept;
 
+  /// What rough boundaries leave along a branch, beside `reflections`: pressure of the mean field,
+  /// which those contain, and energy in all. Exactly 1 where they are smooth.
+  [[nodiscard]] RoughReflection rough(const RayParameter& ray, int surface_bounces,
+                                      int bottom_bounces) const noexcept;
+  /// Whether any boundary is rough.
+  [[nodiscard]] bool any_rough() const noexcept { return any_rough_; }
+  /// As `reflections`, of boundaries that are smooth, times the root of `rough`'s energy: what the
+  /// mean intensity along a branch is the square of.
+  [[nodiscard]] std::complex<double> all_reflected(const RayParameter& ray, int surface_bounces,
+                                                   int bottom_bounces) const noexcept;
+
   [[nodiscard]] double absorption_db_per_metre() const noexcept { return absorption_db_per_metre_; }
   [[nodiscard]] double sine_at_source(const RayParameter& ray) const noexcept;
   [[nodiscard]] double sine_at_receiver(const RayParameter& ray) const noexcept;
@@ -39,6 +50,8 @@ class PathBuilder {
     Rays slowness, range_per_slowness, q, spreading, delay, length;
     Rays launch, arrival, surface_grazing, bottom_grazing;  // angles from the horizontal
     ComplexLanes reflection;
+    std::array<double, rays_at_once>
+        scattered{};                        // of reflection's square, beside the mean field's
     Rays first_up, first_down, half_cycle;  // ranges of vertices
   };
   [[nodiscard]] PathLanes path_lanes(const FanInterval& interval, const TaskLanes& tasks,
@@ -47,6 +60,9 @@ class PathBuilder {
   const Column& column_;
   double absorption_db_per_metre_;
   double frequency_;
+  bool any_rough_;
+  [[nodiscard]] std::complex<double> mirrors(const RayParameter& ray, int surface_bounces,
+                                             int bottom_bounces) const noexcept;
   WaterAtBoundary water_at_surface_, water_at_bottom_;
 };
 

@@ -87,8 +87,19 @@ struct ApplyMaterial {
     if (grazing > 0.5 * pi) grazing = pi - grazing;
     from_table(table, grazing, y);
   }
-  void operator()(const auto& solid) const noexcept {
-    const Complex r = half_space(solid, k);
+  void operator()(const ReflectionCurves& curves) const noexcept { as_ours(curves); }
+  void operator()(const LayeredFloor& floor) const noexcept { as_ours(floor); }
+  void operator()(const auto& solid) const noexcept { apply(half_space(solid, k)); }
+
+ private:
+  /// BELLHOP knows no such material: the coefficient is asdic's.
+  void as_ours(const BoundaryMaterial& material) const noexcept {
+    const double steep = std::abs(k.kz), level = std::abs(k.kx);
+    apply(reflection_coefficient(
+        material, std::atan2(steep, level),
+        {.speed = k.omega / std::hypot(steep, level), .density = k.rho, .frequency = k.frequency}));
+  }
+  void apply(const Complex& r) const noexcept {
     if (std::abs(r) < least_magnitude) {
       y.amplitude = 0.0;
       return;
@@ -107,9 +118,10 @@ void displace(const LiteralOcean& ocean, const LiteralPoint& in, const WaterPoin
   const double cosine = tangent.dot(t_in);
   const double sine = tangent.y() * t_in.x() - tangent.x() * t_in.y();
   if (sine == 0.0) return;
-  const BeamDisplacement moved =
-      beam_displacement(material, std::abs(std::atan2(sine, std::abs(cosine))),
-                        {.speed = w.c, .density = ocean.water.density(in.x.y())}, ocean.frequency);
+  const BeamDisplacement moved = beam_displacement(
+      material, std::abs(std::atan2(sine, std::abs(cosine))),
+      {.speed = w.c, .density = ocean.water.density(in.x.y()), .frequency = ocean.frequency},
+      ocean.frequency);
   const auto bend = [&](const Vec2& t) { return -w.gradient().dot(Vec2(-t.y(), t.x())) / w.c; };
   const auto carry = [&](double q_in, double p_in, double& q, double& p) {
     const double turn = -(w.c * p_in + bend(t_in) * q_in / sine * cosine);

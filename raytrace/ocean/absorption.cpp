@@ -62,6 +62,26 @@ constexpr ValidRange francois_garrison_above_500_khz[] = {{"frequency", "Hz", 20
 constexpr std::string_view francois_garrison_name = "Francois and Garrison's formula";
 constexpr std::string_view francois_garrison_source = "JASA 72, 896 and 1879, 1982";
 
+/// JASA 103, 1671 (1998), eqs 4–6; f in kHz, z in km, dB/km.
+double law(const AinslieMcColm& water, double frequency) noexcept {
+  const double t = water.temperature, s = water.salinity / 35.0, z = 1e-3 * water.depth;
+  const double khz = 1e-3 * frequency;
+  const double boron = 0.78 * std::sqrt(s) * std::exp(t / 26.0);
+  const double magnesium = 42.0 * std::exp(t / 17.0);
+  return relaxation(0.106 * std::exp((water.ph - 8.0) / 0.56), boron, khz) +
+         relaxation(0.52 * (1.0 + t / 43.0) * s * std::exp(-z / 6.0), magnesium, khz) +
+         0.00049 * khz * khz * std::exp(-(t / 27.0 + z / 17.0));
+}
+
+// Each varied alone, about 10 degC, 35 psu, pH 8 at the surface; p. 1672.
+constexpr ValidRange ainslie_mccolm_ranges[] = {{"frequency", "Hz", 100.0, 1e6},
+                                                {"temperature", "degC", -6.0, 35.0},
+                                                {"salinity", "psu", 5.0, 50.0},
+                                                {"pH", "", 7.7, 8.3},
+                                                {"depth", "m", 0.0, 7000.0}};
+constexpr Validity ainslie_mccolm_validity{"Ainslie and McColm's formula", "JASA 103, 1671, 1998",
+                                           ainslie_mccolm_ranges};
+
 std::optional<Validity> law_validity(const NoAbsorption& /*none*/, double /*frequency*/) {
   return std::nullopt;
 }
@@ -73,6 +93,9 @@ std::optional<Validity> law_validity(const FrancoisGarrison& /*water*/, double f
   return Validity{francois_garrison_name, francois_garrison_source,
                   of_water_itself ? std::span<const ValidRange>(francois_garrison_above_500_khz)
                                   : std::span<const ValidRange>(francois_garrison_ranges)};
+}
+std::optional<Validity> law_validity(const AinslieMcColm& /*water*/, double /*frequency*/) {
+  return ainslie_mccolm_validity;
 }
 
 }  // namespace

@@ -30,6 +30,18 @@ struct FrancoisGarrison {
   [[nodiscard]] bool operator==(const FrancoisGarrison&) const = default;
 };
 
+/// Ainslie & McColm, JASA 103, 1671 (1998): Francois & Garrison's three parts, simplified to within
+/// 10 % of them.
+struct AinslieMcColm {
+  static constexpr std::string_view name = "ainslie-mccolm";
+  double temperature = 10.0;  ///< [°C]
+  double salinity = 35.0;     ///< [psu]
+  double ph = 8.0;
+  double depth = 0.0;  ///< the one depth at which the law is evaluated [m]
+
+  [[nodiscard]] bool operator==(const AinslieMcColm&) const = default;
+};
+
 /// Fish with swim bladders: between two depths they take a₀ / ((1 − f₀²/f²)² + 1/Q²) dB/km out of
 /// the wave. Weston, in Proc. Acoustic Interactions with the Underwater Environment (1967);
 /// Diachok, JASA 105, 2107 (1999).
@@ -42,7 +54,23 @@ struct BiologicalLayer {
   [[nodiscard]] bool operator==(const BiologicalLayer&) const = default;
 };
 
-using Absorption = std::variant<NoAbsorption, Thorp, FrancoisGarrison>;
+using Absorption = std::variant<NoAbsorption, Thorp, FrancoisGarrison, AinslieMcColm>;
+
+/// Calls f(std::string_view name, double value) for what a law knows of the water: temperature
+/// [°C], salinity [psu], pH, depth [m]; for none where it knows nothing.
+template <class F>
+void for_each_water_property(const Absorption& absorption, F&& f) {
+  std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.salinity; }) {
+          f("temperature", law.temperature);
+          f("salinity", law.salinity);
+          f("pH", law.ph);
+          f("depth", law.depth);
+        }
+      },
+      absorption);
+}
 
 /// Absorption at one frequency [dB/km]. \param frequency [Hz]
 [[nodiscard]] double absorption_db_per_km(const Absorption& absorption, double frequency) noexcept;

@@ -37,7 +37,22 @@ struct SlopeOf {
     const auto i = static_cast<std::size_t>(next - a.begin());
     return {(table.phase[i] - table.phase[i - 1]) / (a[i] - a[i - 1]), 0.0};
   }
+  PhaseSlope operator()(const ReflectionCurves& curves) const noexcept {
+    return by_differences(curves);
+  }
+  PhaseSlope operator()(const LayeredFloor& floor) const noexcept { return by_differences(floor); }
   PhaseSlope operator()(const auto& m) const noexcept { return half_space(m, grazing, water); }
+
+  /// Of materials without derivatives.
+  [[nodiscard]] PhaseSlope by_differences(const BoundaryMaterial& material) const noexcept {
+    constexpr double h = 1e-5;
+    const auto r = [&](double angle) {
+      return reflection_coefficient(material, std::clamp(angle, 0.0, 0.5 * pi), water);
+    };
+    const auto here = r(grazing);
+    const double after = std::arg(r(grazing + h) / here), before = std::arg(here / r(grazing - h));
+    return {(after + before) / (2.0 * h), (after - before) / (h * h)};
+  }
 };
 
 }  // namespace
@@ -55,7 +70,8 @@ BeamDisplacement beam_displacement(const BoundaryMaterial& material, double graz
   // a critical angle.
   constexpr double h = 1e-6;
   const auto length = [&](double factor) {
-    const WaterAtBoundary there{.speed = factor * water.speed, .density = water.density};
+    const WaterAtBoundary there{
+        .speed = factor * water.speed, .density = water.density, .frequency = water.frequency};
     return -factor * wave * std::visit(SlopeOf{grazing, there}, material).first / sine;
   };
   if (phi.first != 0.0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/ocean/layered_floor.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
 namespace asdic {
@@ -35,6 +36,25 @@ Complex reflect(const ReflectionTable& table, double grazing, const WaterAtBound
   const double share = (grazing - angle[i - 1]) / (angle[i] - angle[i - 1]);
   return std::polar(std::lerp(table.magnitude[i - 1], table.magnitude[i], share),
                     std::lerp(table.phase[i - 1], table.phase[i], share));
+}
+
+Complex reflect(const ReflectionCurves& curves, double grazing, const WaterAtBoundary& water) {
+  const auto& f = curves.frequency;
+  if (f.empty()) return 0.0;
+  const auto next =
+      static_cast<std::size_t>(std::upper_bound(f.begin(), f.end(), water.frequency) - f.begin());
+  if (next == 0) return reflect(curves.curve.front(), grazing, water);
+  if (next == f.size()) return reflect(curves.curve.back(), grazing, water);
+  const double share = std::log(water.frequency / f[next - 1]) / std::log(f[next] / f[next - 1]);
+  const Complex a = reflect(curves.curve[next - 1], grazing, water);
+  const Complex b = reflect(curves.curve[next], grazing, water);
+  if (a == 0.0 || b == 0.0) return std::lerp(std::abs(a), std::abs(b), share);
+  return std::polar(std::lerp(std::abs(a), std::abs(b), share),
+                    std::arg(a) + share * std::arg(b / a));
+}
+
+Complex reflect(const LayeredFloor& floor, double grazing, const WaterAtBoundary& water) {
+  return layered_reflection(floor, grazing, water);
 }
 
 }  // namespace

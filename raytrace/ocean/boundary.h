@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <limits>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -53,8 +54,46 @@ struct ReflectionTable {
   [[nodiscard]] bool operator==(const ReflectionTable&) const = default;
 };
 
-using BoundaryMaterial =
-    std::variant<Vacuum, Rigid, FluidHalfSpace, ElasticHalfSpace, ReflectionTable>;
+/// Reflection coefficients over grazing angle, measured at several frequencies: magnitude and phase
+/// linear between rows and over the logarithm of frequency, those of the first and the last
+/// frequency beyond them.
+struct ReflectionCurves {
+  static constexpr std::string_view name = "curves";
+  std::vector<double> frequency;       ///< [n] increasing [Hz]
+  std::vector<ReflectionTable> curve;  ///< [n]
+
+  [[nodiscard]] bool operator==(const ReflectionCurves&) const = default;
+};
+
+/// One layer of a sea floor: a fluid, or with shear waves a solid.
+struct FloorLayer {
+  double thickness = 1.0;                            ///< [m]
+  double speed = 1650.0;                             ///< compressional [m/s]
+  double shear_speed = 0.0;                          ///< [m/s]; 0: a fluid
+  double density = 1900.0;                           ///< [kg/m³]
+  double attenuation_db_per_wavelength = 0.8;        ///< compressional [dB/λ]
+  double shear_attenuation_db_per_wavelength = 0.0;  ///< [dB/λ]
+
+  [[nodiscard]] bool operator==(const FloorLayer&) const = default;
+};
+
+/// Layers from the water down, and the half space below them, whose thickness means nothing.
+struct LayeredFloor {
+  static constexpr std::string_view name = "layered";
+  std::vector<FloorLayer> layers;
+  FloorLayer below = {};
+
+  [[nodiscard]] bool operator==(const LayeredFloor&) const = default;
+};
+
+using BoundaryMaterial = std::variant<Vacuum, Rigid, FluidHalfSpace, ElasticHalfSpace,
+                                      ReflectionTable, ReflectionCurves, LayeredFloor>;
+
+/// Whether its reflection does: half spaces know the angle alone.
+[[nodiscard]] inline bool depends_on_frequency(const BoundaryMaterial& material) noexcept {
+  return std::holds_alternative<ReflectionCurves>(material) ||
+         std::holds_alternative<LayeredFloor>(material);
+}
 
 /// The fluid that a sediment of mean grain size Mz (φ units, −1 coarse sand … 9 clay) is, by the
 /// regressions of the APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook, APL-UW TR
@@ -64,10 +103,12 @@ using BoundaryMaterial =
                                                     double water_speed = 1500.0,
                                                     double water_density = 1000.0);
 
-/// The water beside a boundary.
+/// The water beside a boundary, and the wave in it.
 struct WaterAtBoundary {
   double speed = 1500.0;    ///< [m/s]
   double density = 1000.0;  ///< [kg/m³]
+  /// Of the wave [Hz]: layers and curves ask for it, half spaces do not.
+  double frequency = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Plane-wave pressure reflection coefficient, time dependence e^{+iωt}.
@@ -79,10 +120,10 @@ struct WaterAtBoundary {
 ///
 ///   G = (1 − 2cos²θ/n_s²)² + 4cos²θ·s·s_s/n_s⁴,
 ///
-/// n_s and s_s those of its shear wave. Never above 1 in magnitude, provided that the solid itself
-/// gives no energy: α_p·c_p² ≥ (4/3)·α_s·c_s². Jensen et al., Computational Ocean Acoustics (2011),
-/// §1.6; docs/theory/boundaries.md. \param grazing  angle
-/// between ray and boundary [rad], 0..π/2
+/// n_s and s_s those of its shear wave; over layers see raytrace/ocean/layered_floor.h. Never above
+/// 1 in magnitude, provided that the solid itself gives no energy: α_p·c_p² ≥ (4/3)·α_s·c_s².
+/// Jensen et al., Computational Ocean Acoustics (2011), §1.6; docs/theory/boundaries.md. \param
+/// grazing  angle between ray and boundary [rad], 0..π/2
 [[nodiscard]] std::complex<double> reflection_coefficient(const BoundaryMaterial& material,
                                                           double grazing,
                                                           const WaterAtBoundary& water) noexcept;

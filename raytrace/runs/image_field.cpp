@@ -181,7 +181,11 @@ class ImageGuide {
   }
 
   [[nodiscard]] Wall wall(const Boundary& boundary) const noexcept {
-    return {boundary, {c_, case_.environment.water_density.at(boundary.depth)}, wavenumber_};
+    return {boundary,
+            {.speed = c_,
+             .density = case_.environment.water_density.at(boundary.depth),
+             .frequency = case_.frequency},
+            wavenumber_};
   }
   [[nodiscard]] double launch(double elevation) const noexcept {
     return launch_amplitude(case_, source_depth_, c_, elevation);

@@ -6,6 +6,13 @@
 namespace asdic {
 namespace {
 
+/// As the history's reflection, its square the energy in all.
+std::complex<double> all_reflected(const RayHistory& history) {
+  if (!(history.scattered > 0.0)) return history.reflection;
+  return std::polar(std::sqrt(std::norm(history.reflection) + history.scattered),
+                    history.reflection_phase);
+}
+
 /// A ray's state where it meets a line of slope tan(angle).
 BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angle) {
   const double tr = c * y.xi, tz = c * y.zeta;
@@ -24,7 +31,7 @@ BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angl
   hit.nepers = y.nepers;
   hit.length = y.length;
   hit.down = tz > 0.0 ? 1.0 : -1.0;
-  hit.reflection = s.history.reflection;
+  hit.reflection = all_reflected(s.history);
   const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;
   hit.caustics = s.history.caustics + (sense * y.q < 0.0 ? 1 : 0);
   return hit;

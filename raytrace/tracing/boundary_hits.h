@@ -22,7 +22,8 @@ struct BoundaryHit {
   double nepers = 0.0;                    ///< absorption so far
   double length = 0.0;                    ///< of the path so far [m]
   double down = 0.0;                      ///< +1 where it goes down, −1 up
-  std::complex<double> reflection = 1.0;  ///< of the bounces before
+  std::complex<double> reflection = 1.0;  ///< of the bounces before, with all that rough ones
+                                          ///< scattered about the ray
   int caustics = 0;
 };
 

@@ -167,6 +167,8 @@ void digest(const RayTrajectory& ray, const Environment& environment,
     RayLeg leg{.history = history, .begin = begin_of(head), .end = end_of(tail)};
     leg.sign = -mirror_sign(head.history);
     leg.strength = std::abs(head.history.reflection);
+    if (head.history.scattered > 0.0)
+      leg.strength = std::sqrt(leg.strength * leg.strength + head.history.scattered);
     leg.from_boundary =
         bounces(head) > 0 && (first == 0 || bounces(segments[first - 1]) < bounces(head));
     leg.to_boundary =

@@ -55,17 +55,27 @@ bool March::reflect_at(BoundaryKind kind) {
     material = &wall.shape->materials()[facet == 0 ? 0 : facet - 1];
   }
   const WaterAtBoundary beside{.speed = water.c,
-                               .density = ocean_.environment.water_density.at(y_.depth)};
+                               .density = ocean_.environment.water_density.at(y_.depth),
+                               .frequency = ocean_.frequency};
   std::complex<double> coefficient = reflection_coefficient(*material, grazing, beside);
   const Roughness& rough =
       (surface ? ocean_.environment.surface : ocean_.environment.bottom).roughness;
-  if (!rough.smooth())
-    coefficient *=
-        coherent_reflection(rough, std::sin(grazing), 2.0 * pi * ocean_.frequency / water.c);
+  const double phase = phase_of(coefficient);
+  double scattered = 0.0;
+  if (!rough.smooth() || history_.scattered > 0.0) {
+    const RoughReflection left =
+        rough_reflection(rough, std::sin(grazing), 2.0 * pi * ocean_.frequency / water.c);
+    const double mean = left.coherent * left.coherent;
+    scattered = std::norm(coefficient) *
+                (history_.scattered * left.energy +
+                 std::norm(history_.reflection) * std::max(0.0, left.energy - mean));
+    coefficient *= left.coherent;
+  }
   out_.bounces.push_back({.boundary = kind, .grazing = grazing, .range = y_.range - source_range_});
   history_.reflection *= coefficient;
-  history_.reflection_phase += phase_of(coefficient);
-  const double left = std::sqrt(std::norm(history_.reflection));
+  history_.reflection_phase += phase;
+  history_.scattered = scattered;
+  const double left = std::sqrt(std::norm(history_.reflection) + scattered);
   if (left == 0.0) return end(RayEnd::absorbed);
   if (left < limits_.faintest) return end(RayEnd::faint);
   if (ocean_.reflection == Reflection::on_the_spot) return true;

@@ -140,6 +140,8 @@ bool RayFamily::tells_the_rest() const noexcept {
          (by_slopes_ || good([&](std::size_t i) { return k[i].state.q; }, widest)) &&
          good([&](std::size_t i) { return k[i].history.reflection.real(); }, strength) &&
          good([&](std::size_t i) { return k[i].history.reflection.imag(); }, strength) &&
+         (k[2].history.scattered == 0.0 ||
+          good([&](std::size_t i) { return k[i].history.scattered; }, k[2].history.scattered)) &&
          good([&](std::size_t i) { return k[i].state.length; }, k[2].c * time) &&
          good([&](std::size_t i) { return k[i].state.nepers; }, 1.0);
 }
@@ -204,6 +206,9 @@ void RayFamily::complete(double angle, ExactCrossing& there) const noexcept {
   there.history.reflection = {
       sum(w, [&](std::size_t i) { return k[i].history.reflection.real(); }),
       sum(w, [&](std::size_t i) { return k[i].history.reflection.imag(); })};
+  if (k[2].history.scattered > 0.0)
+    there.history.scattered =
+        std::max(0.0, sum(w, [&](std::size_t i) { return k[i].history.scattered; }));
 }
 
 void RayFamily::bounces(double angle, const FamilyRays& rays, std::vector<Bounce>& out) const {

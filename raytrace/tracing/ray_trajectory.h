@@ -28,6 +28,8 @@ struct RayState {
 struct RayHistory {
   std::complex<double> reflection = 1.0;  ///< product of the boundaries' coefficients
   double reflection_phase = 0.0;          ///< its phase, not wrapped [rad]
+  double scattered =
+      0.0;  ///< energy that rough boundaries scattered about the ray, beside |reflection|²
   int surface_bounces = 0, bottom_bounces = 0;
   int upper_turns = 0, lower_turns = 0;  ///< turning points in the water
   int caustics = 0;  ///< zeros of q passed, less those a displaced reflection takes back

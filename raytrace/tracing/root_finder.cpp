@@ -259,6 +259,7 @@ Arrival RootFinder::arrival(const ExactCrossing& there, double depth) const {
   path.absorption_db = y.nepers * db_from_amplitude(std::exp(1.0));
   path.amplitude =
       path.spreading * std::exp(-y.nepers) * path.reflection * caustic_phase(path.caustics);
+  path.scattered = path.spreading * path.spreading * std::exp(-2.0 * y.nepers) * h.scattered;
   path.path_length = y.length;
   path.horizontal_slowness = std::abs(y.xi);
   path.surface_bounces = h.surface_bounces;

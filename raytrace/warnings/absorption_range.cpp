@@ -4,16 +4,29 @@
 #include "raytrace/warnings/warnings.h"
 
 namespace asdic::checks {
+namespace {
+
+constexpr ValidRange bubble_ranges[] = {{"frequency", "Hz", 1e4, 1e5}};
+constexpr Validity bubble_validity{"the surface bubble loss", "APL-UW TR 9407, 1994",
+                                   bubble_ranges};
+
+}  // namespace
+
+std::string bubble_range(const Environment& ocean, double lowest, double highest) {
+  if (!(ocean.surface.roughness.bubble_wind > 0.0)) return "";
+  const std::array<Asked, 1> asked{{{"frequency", lowest, highest}}};
+  const std::string text = asdic::outside(bubble_validity, asked);
+  return text.empty() ? "" : "environment.surface.bubbles: " + text;
+}
 
 std::string absorption_range(const Environment& ocean, double lowest, double highest) {
   const std::optional<Validity> law = validity(ocean.absorption, highest);
   if (!law) return "";
   std::vector<Asked> asked{{"frequency", lowest, highest}};
-  if (const auto* water = std::get_if<FrancoisGarrison>(&ocean.absorption))
-    asked.insert(asked.end(), {{"temperature", water->temperature, water->temperature},
-                               {"salinity", water->salinity, water->salinity},
-                               {"depth", water->depth, water->depth}});
-  const std::string text = outside(*law, asked);
+  for_each_water_property(ocean.absorption, [&](std::string_view quantity, double value) {
+    asked.push_back({quantity, value, value});
+  });
+  const std::string text = asdic::outside(*law, asked);
   return text.empty() ? "" : "environment.absorption: " + text;
 }
 

@@ -12,7 +12,7 @@ void add_warnings(const std::vector<std::string>& more, std::vector<std::string>
 std::vector<std::string> warnings(const Environment& ocean, double lowest, double highest) {
   std::vector<std::string> all;
   add_warnings({checks::profile_reach(ocean), checks::absorption_range(ocean, lowest, highest),
-                checks::gaining_boundary(ocean)},
+                checks::bubble_range(ocean, lowest, highest), checks::gaining_boundary(ocean)},
                all);
   return all;
 }

@@ -28,6 +28,8 @@ namespace checks {
 [[nodiscard]] std::string profile_reach(const Environment& ocean);
 /// Absorption asked about frequencies or water that its law was not measured in.
 [[nodiscard]] std::string absorption_range(const Environment& ocean, double lowest, double highest);
+/// The loss in bubbles asked about frequencies that it was not measured at.
+[[nodiscard]] std::string bubble_range(const Environment& ocean, double lowest, double highest);
 /// A solid behind the surface or the bottom that reflects more than comes in. Scenarios refuse it;
 /// BELLHOP's files, and materials node by node, run as they stand.
 [[nodiscard]] std::string gaining_boundary(const Environment& ocean);

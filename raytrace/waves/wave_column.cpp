@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/units.h"
+#include "raytrace/ocean/layered_floor.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
 namespace asdic {
@@ -50,7 +51,15 @@ struct ReflectionAt {
   Complex operator()(const ElasticHalfSpace& solid) const {
     return reflection::coefficient(solid, grazing, water);
   }
-  Complex operator()(const ReflectionTable& /*table*/) const {
+  Complex operator()(const LayeredFloor& floor) const {
+    return layered_reflection(floor, grazing.cosine, water);
+  }
+  Complex operator()(const ReflectionTable& /*table*/) const { return at_real_angle(); }
+  Complex operator()(const ReflectionCurves& /*curves*/) const { return at_real_angle(); }
+
+ private:
+  /// Tables know real angles only.
+  Complex at_real_angle() const {
     const double angle = std::acos(std::clamp(grazing.cosine.real(), 0.0, 1.0));
     return reflection_coefficient(boundary.material, angle, water);
   }
@@ -146,8 +155,9 @@ void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex>
                         std::span<Complex> by_source) const noexcept {
   const Complex xi2 = xi * xi;
   const auto beside = [&](const Boundary& boundary, Complex k2) {
-    const WaterAtBoundary water{environment_.water.at(boundary.depth).c,
-                                environment_.water_density.at(boundary.depth)};
+    const WaterAtBoundary water{.speed = environment_.water.at(boundary.depth).c,
+                                .density = environment_.water_density.at(boundary.depth),
+                                .frequency = frequency_};
     return wave_at(boundary, water, omega_, xi, k2 - xi2);
   };
   for (Complex& value : g) value = 0.0;

@@ -35,8 +35,30 @@ std::vector<double> axis(int least, int most, double low, double high) {
   return values;
 }
 
+ReflectionTable any_curve() {
+  ReflectionTable table{.grazing = axis(1, 5, 0.0, 0.5 * pi - 1e-9), .magnitude = {}, .phase = {}};
+  for (std::size_t i = 0; i < table.grazing.size(); ++i) {
+    table.magnitude.push_back(between(0.0, 1.0));
+    table.phase.push_back(between(-pi, pi));
+  }
+  return table;
+}
+
+/// A layer that gives no energy.
+FloorLayer any_layer() {
+  FloorLayer layer{.thickness = between(0.0, 100.0),
+                   .speed = between(1500.0, 7000.0),
+                   .density = between(100.0, 9000.0),
+                   .attenuation_db_per_wavelength = between(0.1, 5.0)};
+  if (perhaps()) {
+    layer.shear_speed = between(100.0, 700.0);
+    layer.shear_attenuation_db_per_wavelength = between(0.0, 0.3);
+  }
+  return layer;
+}
+
 BoundaryMaterial any_material() {
-  switch (*rc::gen::inRange(0, 5)) {
+  switch (*rc::gen::inRange(0, 7)) {
     case 0:
       return Vacuum{};
     case 1:
@@ -46,15 +68,19 @@ BoundaryMaterial any_material() {
     case 3:
       return ElasticHalfSpace{between(1500.0, 7000.0), between(0.0, 1500.0), between(100.0, 9000.0),
                               between(0.0, 5.0), between(0.0, 5.0)};
-    default: {
-      ReflectionTable table{
-          .grazing = axis(1, 5, 0.0, 0.5 * pi - 1e-9), .magnitude = {}, .phase = {}};
-      for (std::size_t i = 0; i < table.grazing.size(); ++i) {
-        table.magnitude.push_back(between(0.0, 1.0));
-        table.phase.push_back(between(-pi, pi));
-      }
-      return table;
+    case 4: {
+      ReflectionCurves curves{.frequency = axis(1, 4, 10.0, 1e5), .curve = {}};
+      for (std::size_t i = 0; i < curves.frequency.size(); ++i) curves.curve.push_back(any_curve());
+      return curves;
     }
+    case 5: {
+      LayeredFloor floor{.layers = {}, .below = any_layer()};
+      for (int i = *rc::gen::inRange(0, 4); i > 0; --i) floor.layers.push_back(any_layer());
+      floor.below.thickness = FloorLayer{}.thickness;
+      return floor;
+    }
+    default:
+      return any_curve();
   }
 }
 
@@ -129,8 +155,8 @@ Environment any_ocean() {
   ocean.attenuation_db_per_km = any_depth_function(0.0, 10.0);
   any_water(ocean);
   ocean.absorption = *rc::gen::element<Absorption>(
-      NoAbsorption{}, Thorp{},
-      FrancoisGarrison{between(0.0, 30.0), between(30.0, 40.0), 8.1, 50.0});
+      NoAbsorption{}, Thorp{}, FrancoisGarrison{between(0.0, 30.0), between(30.0, 40.0), 8.1, 50.0},
+      AinslieMcColm{between(0.0, 30.0), between(30.0, 40.0), 7.9, 500.0});
   for (int i = *rc::gen::inRange(0, 3); i > 0; --i)
     ocean.biology.push_back({between(0.0, 100.0), between(101.0, 500.0), between(100.0, 5000.0),
                              between(1.0, 10.0), between(0.0, 2.0)});

@@ -58,6 +58,38 @@ TEST(Roughness, EveryPathOfBothSolversLosesItsBounces) {
   }
 }
 
+// What is not in the mean field any more goes on along the path: of heights without a law that
+// scatters elsewhere |amplitude|² + scattered is the smooth sea's |amplitude|², however rough, of
+// both solvers; bubbles take their share of both. A path is heard though its mean field is gone.
+TEST(Roughness, WhatIsScatteredGoesOnAlongThePath) {
+  const double f = 3500.0;
+  const PathLimits limits{.max_surface_bounces = 3, .max_bottom_bounces = 3};
+  for (const double height : {0.02, 0.5})
+    for (const double wind : {0.0, 10.0})
+      for (const bool march : {false, true}) {
+        Environment smooth = rough_sea(0.0), rough = rough_sea(height);
+        rough.surface.roughness.sea_wind = wind;
+        rough.surface.roughness.bubble_wind = wind;
+        rough.bottom.roughness.rms_height = 0.5 * height;
+        if (march)
+          for (Environment* ocean : {&smooth, &rough}) {
+            const double range[] = {0.0, 1e5}, depth[] = {200.0, 200.0};
+            ocean->bottom.shape = BoundaryShape(range, depth, ShapeInterpolation::piecewise_linear);
+          }
+        const Arrivals before = EigenraySolver(smooth).find(50.0, 100.0, 2000.0, f, limits);
+        const Arrivals after = EigenraySolver(rough).find(50.0, 100.0, 2000.0, f, limits);
+        ASSERT_EQ(before.size(), after.size());
+        for (std::size_t i = 0; i < after.size(); ++i) {
+          double left = std::norm(before[i].amplitude);
+          for (const Bounce& bounce : before[i].bounces)
+            if (bounce.boundary == BoundaryKind::surface && wind > 0.0)
+              left *= power_from_db(-bubble_loss_db(wind, std::sin(bounce.grazing), f));
+          EXPECT_NEAR(std::norm(after[i].amplitude) + after[i].scattered, left, 1e-9 * left);
+          EXPECT_LE(std::norm(after[i].amplitude), left * (1.0 + 1e-9));
+        }
+      }
+}
+
 TEST(Roughness, ABounceLeavesAtLeastTheFloor) {
   const Arrivals paths = EigenraySolver(rough_sea(5.0, -20.0)).find(50.0, 100.0, 500.0, 4000.0, {});
   for (const Arrival& path : paths)

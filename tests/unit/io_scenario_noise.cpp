@@ -149,9 +149,13 @@ TEST(ScenarioRoughness, OfASurfaceByHeightOrByWind) {
   EXPECT_EQ(read("roughness = 0.3").rms_height, 0.3);
   EXPECT_EQ(read("roughness = 0.3\nroughness_floor_db = -10").floor_db, -10.0);
   EXPECT_EQ(read("roughness = \"wind\"").rms_height, pierson_moskowitz_height(5.0));
+  EXPECT_EQ(read("roughness = \"wind\"").sea_wind, 5.0);
+  EXPECT_EQ(read("roughness = 0.3").sea_wind, 0.0);
+  EXPECT_EQ(read("bubbles = \"apl-uw\"").bubble_wind, 5.0);
+  EXPECT_EQ(read("roughness = 0.3\nroughness_wind = 7").sea_wind, 7.0);
   for (const std::string wrong :
-       {"roughness = -1", "roughness = \"rain\"", "roughness = 1\nroughness_floor_db = 3",
-        "roughness_floor_db = -3"}) {
+       {"bubbles = \"foam\"", "roughness_wind = 3", "roughness = -1", "roughness = \"rain\"",
+        "roughness = 1\nroughness_floor_db = 3", "roughness_floor_db = -3"}) {
     EXPECT_THROW(static_cast<void>(read(wrong)), InputError) << wrong;
   }
 }

@@ -259,6 +259,38 @@ TEST(Waves, ConvergenceZones) {
             1.0);
 }
 
+// Water that is called a layer of the floor is water: deep water over a fluid, and shallow water
+// over a layer of the same water over that fluid.
+TEST(Waves, ALayerOfTheFloorMayBeWater) {
+  const FluidHalfSpace sand{
+      .speed = 1700.0, .density = 1900.0, .attenuation_db_per_wavelength = 0.7};
+  const auto field = [&](double depth, const BoundaryMaterial& floor) {
+    PropagationCase c = waves_of({.water = SoundSpeedProfile::isovelocity(1500.0),
+                                  .surface = {.depth = 0.0, .material = Vacuum{}},
+                                  .bottom = {.depth = depth, .material = floor}},
+                                 120.0, 20.0);
+    c.environment.water_density = DepthFunction(1000.0);
+    c.receivers = {.depths = {10.0, 55.0}, .ranges = {30.0, 200.0, 1000.0, 3000.0, 8000.0}};
+    return run(c).field;
+  };
+  const FloorLayer below{.speed = sand.speed,
+                         .density = sand.density,
+                         .attenuation_db_per_wavelength = sand.attenuation_db_per_wavelength};
+  const auto layer_of = [](double thickness) {
+    return FloorLayer{.thickness = thickness,
+                      .speed = 1500.0,
+                      .density = 1000.0,
+                      .attenuation_db_per_wavelength = 0.0};
+  };
+  const auto same = [](const auto& a, const auto& b, double within) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_LT(std::abs(Complex(a[i]) - Complex(b[i])), within * std::abs(Complex(b[i]))) << i;
+  };
+  same(field(60.0, LayeredFloor{{layer_of(40.0)}, below}), field(100.0, sand), 2e-3);
+  same(field(60.0, LayeredFloor{{layer_of(0.0)}, below}), field(60.0, sand), 1e-6);
+}
+
 // A spline is no line of 1/c² anywhere: reciprocity, and layers half as thick (that is 2.8 times
 // the frequency's worth) change nothing, in a sea over silt with shear and a rough surface.
 TEST(Waves, AreReciprocal) {
