@@ -16,6 +16,7 @@ enum class Draw : std::uint32_t {
   scatterer_texture = 12,
   sector_weight = 13,
   covariance_weight = 14,
+  forward_scatter = 15,
   target_fluctuation = 20,
   element_gain = 21,
   element_phase = 22,

@@ -9,6 +9,7 @@
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
+#include "reverb/scattering/energy.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic {
@@ -25,6 +26,22 @@ void read_run_of_sonar(TomlTable table, const TomlValue& value, double frequency
   run.frequency = frequency;
   run.source_depths = {scenario.platforms[0].track.at(0.0).position.z()};
   scenario::read_run(std::move(table), run);
+}
+
+/// What the laws of rough boundaries scatter elsewhere, at the frequencies of the pulses.
+void set_scattered_elsewhere(Scenario& scenario) {
+  const ReverberationSettings& reverberation = scenario.reverberation;
+  if (!reverberation.enabled) return;
+  const auto [lowest, highest] = checks::pulse_frequencies(scenario);
+  Environment& ocean = scenario.environment;
+  const auto set = [&](Boundary& boundary, const auto& law) {
+    if (!(boundary.roughness.rms_height > 0.0)) return;
+    const double c = sound_speed(ocean, 0.0, boundary.depth_at(0.0)).c;
+    boundary.roughness.elsewhere =
+        scattered_elsewhere(law, std::max(lowest, 1.0), std::max(highest, 1.0), c);
+  };
+  if (reverberation.surface_scatters) set(ocean.surface, reverberation.surface);
+  if (reverberation.bottom) set(ocean.bottom, *reverberation.bottom);
 }
 
 }  // namespace
@@ -99,6 +116,7 @@ Scenario scenario_of(const TomlValue& document, const std::filesystem::path& pat
   scenario::read_interferers(root.tables("interferer"), folder, scenario);
   scenario::read_noise(root.table("noise"), folder, scenario);
   scenario::read_reverberation(root.table("reverberation"), scenario);
+  set_scattered_elsewhere(scenario);
   scenario::read_propagation(root.table("propagation"), scenario);
   scenario::read_pings(root.table("pings"), has_elevation, scenario);
   if (const TomlValue* run = document.find("run"); root.has("run"))

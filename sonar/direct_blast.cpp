@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "reverb/scatterer_field.h"
 #include "sonar/carried.h"
 #include "sonar/doppler.h"
+#include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
 #include "sonar/plane_wave.h"
 
@@ -63,6 +65,33 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
   return delay_curve(pulse_moments(path), heard, Vec3::Zero(), highest, aperture);
 }
 
+/// What rough boundaries scatter about a path. \param heard  of the path's own
+void scatter(const EchoContext& context, const Kinematics& source, const MetPath& met,
+             const EchoPath& heard, std::vector<EchoPath>& found) {
+  constexpr int parts = 16;
+  const Arrival& path = met.path;
+  if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) return;
+  const double c = context.paths.speed_at(met.way.end.position);
+  const ScatteredLeg leg{&path, source.position.head<2>(), met.way.leg.bearing, context.ping_time};
+  const std::uint64_t entity =
+      mixed(mixed(static_cast<std::uint64_t>(context.transmitter), ~0ULL), scatter_history(path));
+  for (const ScatteredPart& part :
+       forward_scatter(context.scenario.environment, std::span(&leg, 1), context.frequency, parts,
+                       context.scenario.seed, entity)) {
+    EchoPath one = heard;
+    one.curve.reset();
+    one.heard.delay += part.delay;
+    one.heard.doppler *= 1.0 + part.shift / context.frequency;
+    one.heard.slowness =
+        met_by(met.way.end.velocity, slowness_vector(met.way.leg.bearing + part.bearing,
+                                                     path.arrival_elevation + part.elevation, c));
+    one.colour.without_pattern = std::sqrt(path.scattered) * part.amplitude;
+    one.heard.amplitude = one.colour.without_pattern *
+                          context.pattern.towards(one.colour.bearing, one.colour.elevation);
+    found.push_back(std::move(one));
+  }
+}
+
 /// The blast at one phone, or at the reference point for all of them.
 void hear(const EchoContext& context, int channel, DirectBlast& blast) {
   const Scenario& scenario = context.scenario;
@@ -107,7 +136,8 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
                          .elevation = met.path.launch_elevation,
                          .without_pattern = met.path.amplitude};
     path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard);
-    blast.heard.push_back(std::move(path_heard));
+    blast.heard.push_back(path_heard);
+    scatter(context, source, met, path_heard, blast.heard);
   }
   blast.legs.push_back(std::move(way.leg));
 }

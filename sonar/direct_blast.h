@@ -8,7 +8,8 @@ namespace asdic {
 /// scatterer.
 struct DirectBlast {
   std::vector<Leg> legs;        ///< transmitter → array (or one to every phone)
-  std::vector<EchoPath> heard;  ///< one per path; target −1
+  std::vector<EchoPath> heard;  ///< one per path, and what rough boundaries scatter about it;
+                                ///< target −1
 };
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact

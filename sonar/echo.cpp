@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reverb/scatterer_field.h"
 #include "sonar/carried.h"
 #include "sonar/doppler.h"
+#include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
 #include "sonar/plane_wave.h"
 #include "sonar/target_response.h"
@@ -59,6 +61,7 @@ class EchoFinder {
       for (std::size_t n = 0; n < phones_.size(); ++n)
         pair_up(source, out, static_cast<int>(n), at_phones);
       result.at_phones = std::move(at_phones.echoes);
+      result.scattered = std::move(at_phones.scattered);
     }
     return result;
   }
@@ -99,14 +102,79 @@ class EchoFinder {
                                .there = there,
                                .home = moving_.meet(struck.position, there.time, hearer.track,
                                                     hearer.offset, home, *path)};
-        for (EchoPath& echo : answer(pair, hearer, channel)) {
+        const std::size_t first = result.scattered.size();
+        std::vector<EchoPath> echoes = answer(pair, hearer, channel);
+        scatter(pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
+                result.scattered);
+        for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
+        const auto name = [&](EchoPath& echo) {
           echo.outgoing = static_cast<int>(i);
           echo.returning = static_cast<int>(j);
-          result.echoes.push_back(std::move(echo));
-        }
+        };
+        std::for_each(result.scattered.begin() + std::ptrdiff_t(first), result.scattered.end(),
+                      name);
+        std::for_each(result.echoes.end() - std::ptrdiff_t(echoes.size()), result.echoes.end(),
+                      name);
       }
     }
     result.legs.push_back(std::move(back.leg));
+  }
+
+  /// Into how many parts what is scattered about a pair of paths is drawn, of so many pairs.
+  static int parts_of(std::size_t pairs) {
+    constexpr std::size_t most = 4096;  // of a target
+    return static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+  }
+
+  /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own
+  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes, int parts,
+               std::vector<EchoPath>& found) const {
+    const Arrival &there = pair.there.path, &home = pair.home.path;
+    const double mean = std::norm(there.amplitude * home.amplitude);
+    const double scattered = intensity(pair) - mean;
+    if (!(scattered > 1e-9 * mean)) return;
+    const auto place = [](const Kinematics& end) { return Vec2(end.position.head<2>()); };
+    const ScatteredLeg legs[] = {
+        {&there, place(pair.source), pair.there.way.leg.bearing, context_.ping_time},
+        {&home, place(pair.target), pair.home.way.leg.bearing,
+         context_.ping_time + pair.there.time}};
+    const double c = context_.paths.speed_at(pair.home.way.end.position);
+    const double pressure = std::sqrt(scattered);
+    for (const EchoPath& echo : echoes) {
+      std::uint64_t entity = mixed(static_cast<std::uint64_t>(context_.transmitter),
+                                   static_cast<std::uint64_t>(index_));
+      for (const std::uint64_t more : {scatter_history(there), scatter_history(home)})
+        entity = mixed(entity, more);
+      // what the glint itself sends back, and the transmitter to there
+      const std::complex<double> of_glint = echo.glint,
+                                 pattern = context_.pattern.towards(echo.colour.bearing,
+                                                                    echo.colour.elevation);
+      for (const ScatteredPart& part : forward_scatter(
+               scenario_.environment, legs, context_.frequency, parts, scenario_.seed, entity)) {
+        EchoPath one = echo;
+        one.curve.reset();
+        one.heard.delay += part.delay;
+        one.heard.doppler *= 1.0 + part.shift / context_.frequency;
+        one.heard.slowness = met_by(pair.home.way.end.velocity,
+                                    slowness_vector(pair.home.way.leg.bearing + part.bearing,
+                                                    home.arrival_elevation + part.elevation, c));
+        one.colour.without_pattern = pressure * part.amplitude * of_glint;
+        one.heard.amplitude = one.colour.without_pattern * pattern;
+        one.level_db = source_level_db() + db_from_amplitude(std::abs(one.heard.amplitude));
+        found.push_back(std::move(one));
+      }
+    }
+  }
+
+  /// Of a pair of paths in the mean: the mean fields' and what is scattered about them.
+  static double intensity(const TwoWayPaths& pair) {
+    const Arrival &there = pair.there.path, &home = pair.home.path;
+    return (std::norm(there.amplitude) + there.scattered) *
+           (std::norm(home.amplitude) + home.scattered);
+  }
+
+  [[nodiscard]] double source_level_db() const {
+    return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
   }
 
   /// Slownesses at the four ends of a pair.
@@ -150,7 +218,8 @@ class EchoFinder {
     echo.heard.slowness = met_by(phone.velocity, at_phone);
     const double bearing = pair.there.way.leg.bearing, elevation = pair.there.path.launch_elevation;
     const std::complex<double> crossed = pair.there.path.amplitude * pair.home.path.amplitude;
-    const std::complex<double> carried = crossed * context_.pattern.towards(bearing, elevation);
+    const std::complex<double> towards = context_.pattern.towards(bearing, elevation);
+    const std::complex<double> carried = crossed * towards;
     echo.colour = {.path_length = pair.there.path.path_length + pair.home.path.path_length,
                    .bearing = bearing,
                    .elevation = elevation};
@@ -168,9 +237,11 @@ class EchoFinder {
       echo.heard.delay = pair.home.time + lag.dot(glint.offset) - echo.heard.slowness.dot(x);
       echo.heard.amplitude = carried * glint.amplitude;
       echo.colour.without_pattern = crossed * glint.amplitude;
-      echo.level_db =
-          scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
-          db_from_amplitude(std::abs(echo.heard.amplitude));
+      echo.glint = glint.amplitude;
+      echo.level_db = source_level_db() + db_from_amplitude(std::abs(echo.heard.amplitude));
+      if (const double all = intensity(pair); all > std::norm(crossed))
+        echo.level_db = source_level_db() +
+                        db_from_amplitude(std::sqrt(all) * std::abs(glint.amplitude * towards));
       echoes.push_back(echo);
     }
     bend(pair, hearer, channel, seen, echoes);

@@ -32,6 +32,7 @@ struct TargetEchoes {
   /// What each phone hears by paths of its own, where a plane wave about the reference point is not
   /// what they hear (sonar/plane_wave.h), nor exact_per_phone has been asked for; else empty.
   std::vector<EchoPath> at_phones;
+  std::vector<EchoPath> scattered;  ///< by rough boundaries, about the paths of the echoes
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is

@@ -29,6 +29,8 @@ Arrival described(const RayTrajectory& ray, const Arrival& before) {
                              (ray.source_speed * end.range * std::abs(end.q)));
   path.amplitude = path.spreading * std::exp(-end.nepers) * path.reflection *
                    std::polar(1.0, 0.5 * pi * path.caustics);
+  path.scattered =
+      path.spreading * path.spreading * std::exp(-2.0 * end.nepers) * last.history.scattered;
   path.bounces = ray.bounces;
   return path;
 }

@@ -120,6 +120,10 @@ std::vector<TargetSummary> summarise(
         if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
           heard.push_back(&echo);
       }
+      for (const EchoPath& part : record.scattered)
+        if (part.target == static_cast<int>(i) && part.array == row.array &&
+            (part.heard.channel == Return::all_channels || part.heard.channel == 0))
+          heard.push_back(&part);
       row.echo_time = strongest->heard.delay;
       row.echo_level_db = strongest->level_db;
       row.reverberation_db = reverberation_db(

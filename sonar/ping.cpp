@@ -102,6 +102,8 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
       record.echoes.push_back(echo);
     }
     heard.insert(heard.end(), found.at_phones.begin(), found.at_phones.end());
+    heard.insert(heard.end(), found.scattered.begin(), found.scattered.end());
+    record.scattered.insert(record.scattered.end(), found.scattered.begin(), found.scattered.end());
   }
   const auto platform_of = [](const auto& list, int i) {
     return list[static_cast<std::size_t>(i)].platform;

@@ -5,6 +5,7 @@
 
 #include "reverb/ground_spacing.h"
 #include "reverb/scattering/motion.h"
+#include "sonar/forward_scatter.h"
 
 namespace asdic {
 namespace {
@@ -70,6 +71,17 @@ double sea_doppler(const Scenario& scenario) {
   return largest;
 }
 
+/// Of what a rough sea scatters about the paths of echoes.
+double rough_sea_doppler(const Scenario& scenario) {
+  double largest = 0.0;
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t)
+    largest = std::max(
+        largest,
+        scatter_doppler(scenario.environment,
+                        Pulse(pulse_of(scenario, static_cast<int>(t))).centre_frequency()));
+  return largest;
+}
+
 }  // namespace
 
 double doppler_bound(const Scenario& scenario) {
@@ -78,7 +90,8 @@ double doppler_bound(const Scenario& scenario) {
   double platform = 0.0;
   for (const Platform& p : scenario.platforms) platform = std::max(platform, fastest(p.track));
   constexpr double slowest_sea = 1300.0;
-  return 2.2 * (platform + target) / slowest_sea + sea_doppler(scenario);
+  return 2.2 * (platform + target) / slowest_sea + sea_doppler(scenario) +
+         rough_sea_doppler(scenario);
 }
 
 double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {

@@ -32,10 +32,12 @@ struct EchoPath {
   int highlight = -1;     ///< of the target, an index; −1: it is a point
   int outgoing = 0;       ///< index in the arrivals of the source_to_target leg
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
-  double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse [dB re 1 µPa]
-  double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
-  Return heard;           ///< at the array's reference point (or the phone)
-  PathColour colour;      ///< for other frequencies than the pulse's centre
+  double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse, what rough boundaries
+                          ///< scatter about its paths included, in the mean [dB re 1 µPa]
+  double struck = 0.0;  ///< when the leading edge meets the target, since the ping's start [s]
+  Return heard;         ///< at the array's reference point (or the phone)
+  PathColour colour;    ///< for other frequencies than the pulse's centre
+  std::complex<double> glint = 1.0;      ///< what the target's place makes of the pressure
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };
 
@@ -123,6 +125,7 @@ struct PingRecord {
   std::vector<float> pressure;  ///< [channels × samples × components of the recording] [Pa]
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
+  std::vector<EchoPath> scattered;  ///< what rough boundaries scatter about the echoes' paths
   std::vector<PatchRow> patches;
   std::vector<HeardPath> interference;
   LevelSeries levels;

@@ -36,6 +36,8 @@ struct PulseFrequencies {
 [[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);
 /// Targets, and an ocean or a range for which sound where no ray goes is not computed.
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
+/// A scattering law of a rough boundary that hands out more energy than comes in.
+[[nodiscard]] std::string scattering_energy(const Scenario& scenario);
 
 }  // namespace checks
 }  // namespace asdic

@@ -1,0 +1,65 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/ocean/roughness.h"
+#include "reverb/scattering/geometry.h"
+
+namespace asdic {
+
+/// The share of the incident energy that a law scatters in all directions of the water,
+/// (1/sin θᵢ)·∫σ dΩ over the upper hemisphere: of unit intensity sin θᵢ falls on a unit of area,
+/// and σ is what leaves it per steradian. \param grazing  θᵢ [rad]   \param frequency [Hz]
+template <class Law>
+[[nodiscard]] double scattered_share(const Law& law, double grazing, double frequency) {
+  const double sine = std::sin(grazing);
+  if (!(sine > 0.0)) return 0.0;
+  // Laws peak about the mirrored direction: pieces that halve towards it, in elevation and bearing.
+  double share = 0.0;
+  const auto pieces = [](double from, double to, auto&& f) {
+    constexpr int halvings = 8;
+    double end = to;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = i + 1 < halvings ? 0.5 * (from + end) : from;
+      gauss_legendre<6>(std::min(middle, end), std::max(middle, end), f);
+      end = middle;
+    }
+  };
+  const auto over_bearings = [&](double out, double weight) {
+    pieces(0.0, pi, [&](double turn, double part) {
+      share += 2.0 * part * weight * std::cos(out) *
+               law.cross_section({.grazing_in = grazing, .grazing_out = out, .azimuth = turn},
+                                 frequency);
+    });
+  };
+  pieces(grazing, 0.5 * pi, over_bearings);
+  pieces(grazing, 0.0, over_bearings);
+  return share / sine;
+}
+
+/// The same of any law of a list, at grazing angles from 0 to π/2 and at wavenumbers between those
+/// of two frequencies [Hz]. \param sound_speed  of the water at the boundary [m/s]
+template <class... Law>
+[[nodiscard]] ScatteredElsewhere scattered_elsewhere(const std::variant<Law...>& law, double lowest,
+                                                     double highest, double sound_speed) {
+  constexpr std::size_t angles = 91;
+  const int steps =
+      highest > lowest ? 1 + static_cast<int>(std::ceil(std::log2(highest / lowest))) : 0;
+  ScatteredElsewhere table{.wavenumbers = {}, .share = {}, .angles = angles};
+  for (int i = 0; i <= steps; ++i) {
+    const double frequency =
+        steps == 0 ? lowest : lowest * std::pow(highest / lowest, double(i) / steps);
+    table.wavenumbers.push_back(2.0 * pi * frequency / sound_speed);
+    for (std::size_t a = 0; a < angles; ++a) {
+      // Below half a step the share of what hardly falls on the boundary: that of the first angle.
+      const double grazing = 0.5 * pi * std::max(double(a), 0.5) / double(angles - 1);
+      table.share.push_back(std::visit(
+          [&](const auto& model) { return scattered_share(model, grazing, frequency); }, law));
+    }
+  }
+  return table;
+}
+
+}  // namespace asdic
