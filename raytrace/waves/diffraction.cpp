@@ -134,21 +134,16 @@ double wavenumber(Complex p, Complex slope) {
   return -(std::conj(p) * slope).imag() / std::norm(p);
 }
 
-}  // namespace
-
-bool diffraction_is_affordable(const Environment& ocean, double source_depth, double receiver_depth,
-                               double range, double frequency) {
-  return WaterborneField(ocean, source_depth, receiver_depth, range).affordable(frequency);
-}
-
-std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
-                                          double receiver_depth, double range, double frequency) {
+/// \param least  amplitude below which there is nothing
+std::optional<Arrival> louder_arrival(const Environment& ocean, double source_depth,
+                                      double receiver_depth, double range, double frequency,
+                                      double least) {
   const double c = ocean.water.at(receiver_depth).c;
   if (range * frequency < nearest_shadow * c) return std::nullopt;
   const WaterborneField there(ocean, source_depth, receiver_depth, range);
   if (!there.affordable(frequency)) return std::nullopt;
   const WaveAt wave = there.field(frequency);
-  if (!(std::abs(wave.p) * range > faintest)) return std::nullopt;
+  if (!(std::abs(wave.p) > std::max(least, faintest / range))) return std::nullopt;
 
   // A second frequency, so near that delays which differ are told apart.
   const double about = range / c, step = std::min(1.0, 0.25 / (slowness_share * about));
@@ -173,6 +168,18 @@ std::optional<Arrival> diffracted_arrival(const Environment& ocean, double sourc
   return path;
 }
 
+}  // namespace
+
+bool diffraction_is_affordable(const Environment& ocean, double source_depth, double receiver_depth,
+                               double range, double frequency) {
+  return WaterborneField(ocean, source_depth, receiver_depth, range).affordable(frequency);
+}
+
+std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
+                                          double receiver_depth, double range, double frequency) {
+  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency, 0.0);
+}
+
 std::optional<Arrival> diffracted_arrival(const Environment& ocean, double source_depth,
                                           double receiver_depth, double range, double frequency,
                                           const Arrivals& rays) {
@@ -181,10 +188,8 @@ std::optional<Arrival> diffracted_arrival(const Environment& ocean, double sourc
     if (ray.bottom_bounces == 0) return std::nullopt;
     power += std::norm(ray.amplitude);
   }
-  std::optional<Arrival> path =
-      diffracted_arrival(ocean, source_depth, receiver_depth, range, frequency);
-  if (path && std::abs(path->amplitude) < faintest_beside * std::sqrt(power)) return std::nullopt;
-  return path;
+  return louder_arrival(ocean, source_depth, receiver_depth, range, frequency,
+                        faintest_beside * std::sqrt(power));
 }
 
 }  // namespace asdic
