@@ -34,9 +34,9 @@ struct EchoPath {
   int returning = 0;      ///< index in the arrivals of the target_to_array leg
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse, what rough boundaries
                           ///< scatter about its paths included, in the mean [dB re 1 µPa]
-  double struck = 0.0;  ///< when the leading edge meets the target, since the ping's start [s]
-  Return heard;         ///< at the array's reference point (or the phone)
-  PathColour colour;    ///< for other frequencies than the pulse's centre
+  double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
+  Return heard;           ///< at the array's reference point (or the phone)
+  PathColour colour;      ///< for other frequencies than the pulse's centre
   std::complex<double> glint = 1.0;      ///< what the target's place makes of the pressure
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };

@@ -1,17 +1,23 @@
 #include <cstdio>
 
-#include "raytrace/ocean/roughness.h"
+#include "reverb/scattering/energy.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {
 namespace {
 
-/// The greatest share of a law between grazing angles of 1 and 60°, and where.
-std::string of_law(const char* where, const ScatteredElsewhere& law) {
+/// The greatest share of a law, in all directions, at some grazing angles and where.
+template <class... Law>
+std::string of_law(const char* where, const std::variant<Law...>& law, double lowest,
+                   double highest) {
   double most = 1.0, at = 0.0;
-  for (int angle = 1; angle <= 60; ++angle)
-    for (const double k : law.wavenumbers)
-      if (const double share = law.at(radians(angle), k); share > most) most = share, at = angle;
+  for (const double angle : {2.0, 5.0, 10.0, 20.0, 40.0, 60.0})
+    for (const double frequency : {lowest, highest}) {
+      const double share = std::visit(
+          [&](const auto& model) { return scattered_share(model, radians(angle), frequency); },
+          law);
+      if (share > most) most = share, at = angle;
+    }
   if (most <= 1.0) return "";
   char text[200];
   std::snprintf(text, sizeof text,
@@ -24,9 +30,16 @@ std::string of_law(const char* where, const ScatteredElsewhere& law) {
 }  // namespace
 
 std::string scattering_energy(const Scenario& scenario) {
+  const ReverberationSettings& reverberation = scenario.reverberation;
   const Environment& ocean = scenario.environment;
-  std::string text = of_law("reverberation.surface", ocean.surface.roughness.elsewhere);
-  return text.empty() ? of_law("reverberation.bottom", ocean.bottom.roughness.elsewhere) : text;
+  if (!reverberation.enabled) return "";
+  const auto [lowest, highest] = pulse_frequencies(scenario);
+  std::string text;
+  if (reverberation.surface_scatters && ocean.surface.roughness.rms_height > 0.0)
+    text = of_law("reverberation.surface", reverberation.surface, lowest, highest);
+  if (text.empty() && reverberation.bottom && ocean.bottom.roughness.rms_height > 0.0)
+    text = of_law("reverberation.bottom", *reverberation.bottom, lowest, highest);
+  return text;
 }
 
 }  // namespace asdic::checks
