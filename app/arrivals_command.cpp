@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -14,6 +15,7 @@
 #include "io/scenario_reader.h"
 #include "sonar/echo.h"
 #include "sonar/ping.h"
+#include "sonar/sampling.h"
 
 namespace asdic::app {
 namespace {
@@ -61,11 +63,16 @@ Leg to_receiver(const PingSimulator& simulator, const ArrivalsOptions& options) 
                       .expected = fmt::format("a depth between {} and {} m", top, bottom)});
   };
   Leg leg{.bearing = bearing, .range = *options.range};
+  const double from = in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0);
+  const double to = in_water("--receiver-depth", *options.receiver_depth, *options.range);
+  const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
+  const Bounces followed =
+      enough_bounces(simulator.paths(), scenario.propagation, {platform.x(), platform.y(), from},
+                     {platform.x() + *options.range * std::sin(bearing),
+                      platform.y() + *options.range * std::cos(bearing), to},
+                     frequency, end_of_record(scenario));
   leg.arrivals =
-      plane->find(in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0),
-                  in_water("--receiver-depth", *options.receiver_depth, *options.range),
-                  *options.range, options.frequency.value_or(simulator.pulse().centre_frequency()),
-                  limits_of(scenario.propagation));
+      plane->find(from, to, *options.range, frequency, limits_of(scenario.propagation, followed));
   return leg;
 }
 

@@ -69,7 +69,8 @@ RayPaths drawn_rays(const PingSimulator& simulator) {
   const Transmission& sent = simulator.transmission(1);  // whose fan is drawn
   const Vec3 source = transmitter_at(scenario, sent.transmitter, sent.time).position;
   const PropagationSettings& limits = scenario.propagation;
-  const int bounces = limits.max_surface_bounces + limits.max_bottom_bounces;
+  const int bounces = limits.max_surface_bounces.value_or(fewest_bounces) +
+                      limits.max_bottom_bounces.value_or(fewest_bounces);
   const double one_way = 0.5 * (scenario.pings.recording_start + scenario.pings.recording_duration);
   const double c = paths.speed_at(source);
   const std::vector<double> elevations = fan(simulator.transmitter(1));

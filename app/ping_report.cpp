@@ -53,6 +53,7 @@ void PingReport::add(const PingRecord& record) {
   }
   band_error_ = std::max(band_error_, record.band.error);
   plane_wave_error_ = std::max(plane_wave_error_, record.plane_waves.error);
+  bounces_.include(record.bounces);
   const Timings& t = record.timings;
   total_.rays += t.rays;
   total_.eigenrays += t.eigenrays;
@@ -76,6 +77,10 @@ std::string PingReport::text(double wall) const {
         "the nearest scatterers or a turn of the line are heard: sectors or a covariance stand for "
         "too many returns; propagation.exact_per_phone = true hears every phone by itself\n",
         plane_wave_error_);
+  if (bounces_.left_out_db > tolerable_db)
+    result += fmt::format(
+        "note: paths of more than {} bounces are left out, up to {:.2g} dB of the level\n",
+        std::max(bounces_.surface, bounces_.bottom), bounces_.left_out_db);
   const PingSchedule& p = scenario_.pings;
   result += fmt::format("{}, {}, {} s at {} Hz\n", count_of(std::size_t(pings_), "ping"),
                         count_of(channels_of(scenario_), "phone"), p.recording_duration,

@@ -26,6 +26,7 @@ class PingReport {
  private:
   const Scenario& scenario_;
   Table table_{summary_columns()};
+  Bounces bounces_;                // that were followed
   double band_error_ = 0.0;        // of reverberation, where it is more than asked for
   double plane_wave_error_ = 0.0;  // of reverberation [periods]
   int pings_ = 0, lines_ = 0, left_out_ = 0;

@@ -153,8 +153,9 @@ int validate_run(const ScenarioChoice& choice) {
 }
 
 int validate_sonar(const ScenarioChoice& choice) {
-  const PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
-                                read_budget(choice.path, choice.overrides));
+  PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
+                          read_budget(choice.path, choice.overrides));
+  simulator.judge_paths();
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),

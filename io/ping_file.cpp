@@ -61,6 +61,9 @@ void PingFileWriter::append(const PingRecord& record) {
                                  std::array{std::int32_t{record.plane_waves.groups}});
     to.file.append<double>("run/plane_wave_error", std::array{record.plane_waves.error});
   }
+  to.file.append<std::int32_t>("run/surface_bounces", std::array{record.bounces.surface});
+  to.file.append<std::int32_t>("run/bottom_bounces", std::array{record.bounces.bottom});
+  to.file.append<double>("run/left_out_db", std::array{record.bounces.left_out_db});
   to.file.append<std::int64_t>("valid_samples",
                                std::array{static_cast<std::int64_t>(record.recording.samples)});
   const Timings& t = record.timings;

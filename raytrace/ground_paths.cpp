@@ -10,6 +10,7 @@
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
+#include "raytrace/stop.h"
 #include "raytrace/tracing/cell_hits.h"
 
 namespace asdic {
@@ -59,9 +60,12 @@ class BranchFollower {
         spacing_(spacing),
         max_range_(max_range),
         frequency_(frequency),
+        max_delay_(fan.limits().max_delay),
+        home_slowness_(fan.limits().home_slowness),
         out_(out) {}
 
   void follow(const MonotoneStretch& s) {
+    stop_point();
     if (level_.boundary && s.branch.arrives_upward() != (level_.boundary == BoundaryKind::surface))
       return;  // the field that falls on the boundary
     if (s.interval != reached_of_) reached_.clear();
@@ -174,6 +178,7 @@ class BranchFollower {
       const double share = (r - near.range.value) / (far.range.value - near.range.value);
       // by the mean speed: L/τ is linear where L is not
       const double tau = delay.value(theta);
+      if (tau + home_slowness_ * r > max_delay_) continue;
       const double mean_speed =
           std::lerp(near.length / near.delay.value, far.length / far.delay.value, share);
       out_.push_back({cell, path(theta, r, tau, range.slope(theta), tau * mean_speed)});
@@ -201,13 +206,15 @@ class BranchFollower {
         .horizontal_slowness = r.slowness,
         .slowness_slope = std::copysign(1.0 / per_slowness, slope / slowness_per_angle(r)),
         .downward = branch.arrives_upward() ? -1.0 : 1.0,
-        .length = length};
+        .length = length,
+        .surface_bounces = static_cast<std::uint16_t>(tops),
+        .bottom_bounces = static_cast<std::uint16_t>(bottoms)};
   }
 
   const BranchTable& fan_;
   PathBuilder builder_;
   GroundLevel level_;
-  double spacing_, max_range_, frequency_;
+  double spacing_, max_range_, frequency_, max_delay_, home_slowness_;
   std::vector<CellPath>& out_;
   struct Reached {
     double theta;
@@ -248,7 +255,9 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                       .faintest = limits.faintest};
   std::vector<CellPath> found;
   for (const CellHit& hit : hits_on_cells(*solver.tracer(frequency), source_depth, level, spacing,
-                                          max_range, frequency, fan))
+                                          max_range, frequency, fan)) {
+    const double range = (hit.cell + 0.5) * spacing;
+    if (hit.delay + limits.home_slowness * range > limits.max_delay) continue;
     found.push_back({hit.cell,
                      {.delay = hit.delay,
                       .amplitude = hit.amplitude,
@@ -258,6 +267,7 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                       .slowness_slope = 0.0,
                       .downward = hit.down,
                       .length = hit.length}});
+  }
   return found;
 }
 
@@ -280,7 +290,80 @@ void check_finite(std::span<const CellPath> found, double source_depth) {
         "report it with the scenario");
 }
 
+/// Whether two paths interfere in the same way wherever a scatterer lies: one sent up and one down,
+/// they come within a period of each other, as from a source close to the surface and its image.
+bool are_twins(const GroundPath& a, const GroundPath& b, double frequency) {
+  return (a.launch_elevation > 0.0) != (b.launch_elevation > 0.0) && a.downward == b.downward &&
+         std::abs(a.delay - b.delay) * frequency < 1.0;
+}
+
+/// The power of twins over the sum of their powers.
+double together(const GroundPath& a, const GroundPath& b, double frequency) {
+  const double apart = std::norm(a.amplitude) + std::norm(b.amplitude);
+  const std::complex<double> turned =
+      b.amplitude * std::polar(1.0, -2.0 * pi * frequency * (b.delay - a.delay));
+  return apart > 0.0 ? std::norm(a.amplitude + turned) / apart : 1.0;
+}
+
+/// What bundling takes for a path's power: each of twins has its share of what both are together.
+std::vector<double> powers(std::span<const GroundPath> paths, double frequency) {
+  std::vector<double> power;
+  power.reserve(paths.size());
+  for (const GroundPath& p : paths) power.push_back(std::norm(p.amplitude));
+  for (std::size_t i = 0; i + 1 < paths.size(); ++i)
+    if (are_twins(paths[i], paths[i + 1], frequency)) {
+      const double share = together(paths[i], paths[i + 1], frequency);
+      power[i] *= share;
+      power[++i] *= share;
+    }
+  return power;
+}
+
+/// A bundle of some paths, which are told their chances.
+PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
+                     std::uint32_t first) {
+  PathBundle bundle{.first = first, .count = static_cast<std::uint32_t>(paths.size())};
+  double squares = 0.0;
+  for (const double p : power) {
+    bundle.power += p;
+    squares += p * p;
+  }
+  if (bundle.power <= 0.0) return bundle;
+  bundle.alone = squares / (bundle.power * bundle.power);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    sum += power[i];
+    paths[i].chance = static_cast<float>(sum / bundle.power);
+  }
+  return bundle;
+}
+
 }  // namespace
+
+/// Cells of very many paths get bundles of equal numbers of paths that follow each other in delay.
+void GroundPaths::bundle(double frequency) {
+  std::size_t fullest = 0;
+  for (std::size_t cell = 0; cell < cells(); ++cell)
+    fullest = std::max(fullest, paths(cell).size());
+  if (fullest <= bundled_above) return;
+  first_bundle_.assign(cells() + 1, 0);
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    const std::span<GroundPath> here(paths_.data() + first_[cell], first_[cell + 1] - first_[cell]);
+    if (here.size() > bundled_above) {
+      std::stable_sort(here.begin(), here.end(),
+                       [](const GroundPath& a, const GroundPath& b) { return a.delay < b.delay; });
+      const std::vector<double> power = powers(here, frequency);
+      for (std::size_t i = 0; i < most_bundles; ++i) {
+        const std::size_t begin = i * here.size() / most_bundles,
+                          count = (i + 1) * here.size() / most_bundles - begin;
+        bundles_.push_back(bundle_of(here.subspan(begin, count),
+                                     std::span(power).subspan(begin, count),
+                                     static_cast<std::uint32_t>(begin)));
+      }
+    }
+    first_bundle_[cell + 1] = static_cast<std::uint32_t>(bundles_.size());
+  }
+}
 
 GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                          const GroundLevel& level, double spacing, double max_range,
@@ -299,6 +382,7 @@ GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
   ground.paths_.resize(found.size());
   std::vector<std::uint32_t> next(ground.first_.begin(), ground.first_.end());
   for (const CellPath& p : found) ground.paths_[next[p.cell]++] = p.path;
+  ground.bundle(frequency);
   return ground;
 }
 

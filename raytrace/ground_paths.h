@@ -31,6 +31,19 @@ struct GroundPath {
   double slowness_slope = 0.0;  ///< d²τ/dr² [s/m²], held near caustics; 0 where it is not known
   double downward = 0.0;        ///< +1 where the path goes down at its end, −1 up
   double length = 0.0;          ///< of the path [m]
+  /// Reflections before the end; 0 where the fan was marched.
+  std::uint16_t surface_bounces = 0, bottom_bounces = 0;
+  float chance = 1.0F;  ///< of this path and those before it, out of its PathBundle
+};
+
+/// Paths of a cell that follow each other in delay, of which one stands for all: chosen with the
+/// chance of its power and as strong as all of them, it has the mean of whatever the paths do, by
+/// any law. docs/theory/reverberation.md, "Many paths"
+struct PathBundle {
+  std::uint32_t first = 0, count = 0;  ///< among the paths of the cell
+  double power = 0.0;                  ///< of all: Σ|A|², twins coherent
+  double alone = 1.0;  ///< Σ|A|⁴/(Σ|A|²)²: of the pairs within the bundle, those of a path with
+                       ///< itself
 };
 
 /// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
@@ -49,14 +62,31 @@ class GroundPaths {
     return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
   [[nodiscard]] std::span<const GroundPath> all() const noexcept { return paths_; }
+  /// Of a cell of very many paths; empty where each is followed by itself.
+  [[nodiscard]] std::span<const PathBundle> bundles(std::size_t cell) const noexcept {
+    if (first_bundle_.empty()) return {};
+    return {bundles_.data() + first_bundle_[cell], first_bundle_[cell + 1] - first_bundle_[cell]};
+  }
+  [[nodiscard]] bool bundled() const noexcept { return !bundles_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return paths_.size() * sizeof(GroundPath) + bundles_.size() * sizeof(PathBundle) +
+           (first_.size() + first_bundle_.size()) * sizeof(std::uint32_t);
+  }
+
+  static constexpr std::size_t bundled_above = 24;  ///< paths of a cell
+  static constexpr std::size_t most_bundles = 8;    ///< of a cell
 
  private:
   friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&, double, double,
                                   double, const PathLimits&);
+  void bundle(double frequency);
+
   double spacing_ = 0.0;
   std::vector<std::uint32_t> first_;  // [cells + 1]
   std::vector<GroundPath> paths_;
+  std::vector<std::uint32_t> first_bundle_;  // [cells + 1], or none
+  std::vector<PathBundle> bundles_;
 };
 
 /// Where the fan of a source meets a boundary, interpolated along each branch of the fan onto one

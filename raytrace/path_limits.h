@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 
 namespace asdic {
 
@@ -12,6 +13,11 @@ struct PathLimits {
                              ///< smaller cycles have no end
   bool diffraction = false;  ///< and the sound that gets where no ray does (sonar's paths only)
   double faintest = 0.0;     ///< product of reflection magnitudes below which a path is dropped
+  /// Of a path to the ground: delay + home_slowness·range above which it is dropped, for with the
+  /// quickest way home it comes too late [s]. A search for receivers uses it to stop, and may keep
+  /// some later ones.
+  double max_delay = std::numeric_limits<double>::infinity();
+  double home_slowness = 0.0;  ///< [s/m]
 };
 
 }  // namespace asdic

@@ -43,8 +43,8 @@ std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
 std::size_t bytes_of(const BoundaryFan& fan) {
   std::size_t bytes = sizeof(BoundaryFan);
   for (const FanPlane& plane : fan.planes)
-    bytes += sizeof(FanPlane) + plane.paths->size() * (sizeof(GroundPath) + sizeof(PathEnds)) +
-             plane.paths->cells() * sizeof(std::uint32_t) + plane.tilt.size() * sizeof(CellTilt);
+    bytes += sizeof(FanPlane) + plane.paths->bytes() + plane.paths->size() * sizeof(PathEnds) +
+             plane.tilt.size() * sizeof(CellTilt);
   return bytes;
 }
 
@@ -78,6 +78,7 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   key.add(settings.spacing).add(settings.max_range).add(layered ? 0 : settings.sectors);
   key.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
   key.add(limits.max_vertices).add(limits.faintest);
+  key.add(limits.max_delay).add(limits.home_slowness);
   PropagationMemory& memory = paths_.memory();
   auto entry = memory.find<Entry>(key);
   if (known != nullptr) *known = entry != nullptr;

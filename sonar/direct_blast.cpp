@@ -8,6 +8,7 @@
 #include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
 #include "sonar/plane_wave.h"
+#include "sonar/sampling.h"
 
 namespace asdic {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 /// The curve of a path's delay, where its Doppler factor changes during the pulse.
 std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics& source,
                                    const Carried& hearer, int channel, const MetPath& met,
-                                   const Return& heard) {
+                                   const Return& heard, const PathLimits& limits) {
   if (context.pulse == nullptr) return std::nullopt;
   const Scenario& scenario = context.scenario;
   const Pulse& pulse = *context.pulse;
@@ -26,8 +27,8 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
   if (channel < 0)
     for (const Vec3& phone : phones_at(scenario, context.array, context.ping, context.ping_time))
       aperture = std::max(aperture, phone.norm());
-  const MovingPaths closely(context.paths, limits_of(scenario.propagation), context.frequency,
-                            context.ping_time, 1e-9, context.reuse);
+  const MovingPaths closely(context.paths, limits, context.frequency, context.ping_time, 1e-9,
+                            context.reuse);
   const auto moment = [&](double sent) -> std::optional<PulseMoment> {
     const Vec3 from =
         transmitter_at(scenario, context.transmitter, context.ping_time + sent).position;
@@ -103,8 +104,13 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
                              : phones_at(scenario, context.array, context.ping,
                                          context.ping_time)[static_cast<std::size_t>(channel)];
   const Kinematics source = transmitter_at(scenario, context.transmitter, context.ping_time);
-  const MovingPaths moving(context.paths, limits_of(scenario.propagation), context.frequency,
-                           context.ping_time, 1e-7, context.reuse);
+  const Bounces followed = enough_bounces(context.paths, scenario.propagation, source.position,
+                                          hearer.at(context.ping_time).position, context.frequency,
+                                          end_of_record(scenario));
+  blast.bounces.include(followed);
+  const PathLimits limits = limits_of(scenario.propagation, followed);
+  const MovingPaths moving(context.paths, limits, context.frequency, context.ping_time, 1e-7,
+                           context.reuse);
   Way way = moving.way(source.position, 0.0, hearer.track, hearer.offset);
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;
@@ -135,7 +141,7 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
                          .bearing = met.way.leg.bearing,
                          .elevation = met.path.launch_elevation,
                          .without_pattern = met.path.amplitude};
-    path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard);
+    path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard, limits);
     blast.heard.push_back(path_heard);
     scatter(context, source, met, path_heard, blast.heard);
   }

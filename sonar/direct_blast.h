@@ -10,6 +10,7 @@ struct DirectBlast {
   std::vector<Leg> legs;        ///< transmitter → array (or one to every phone)
   std::vector<EchoPath> heard;  ///< one per path, and what rough boundaries scatter about it;
                                 ///< target −1
+  Bounces bounces;              ///< that were followed
 };
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact

@@ -9,6 +9,7 @@
 #include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
 #include "sonar/plane_wave.h"
+#include "sonar/sampling.h"
 #include "sonar/target_response.h"
 
 namespace asdic {
@@ -37,10 +38,12 @@ class EchoFinder {
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
         layered_(context.paths.layered()),
-        moving_(context.paths, limits_of(scenario_.propagation), context.frequency,
-                context.ping_time, 1e-7, context.reuse),
-        closely_(context.paths, limits_of(scenario_.propagation), context.frequency,
-                 context.ping_time, 1e-9, context.reuse) {}
+        latest_(end_of_record(scenario_)),
+        bounces_(enough()),
+        limits_(limits_of(scenario_.propagation, bounces_)),
+        moving_(context.paths, limits_, context.frequency, context.ping_time, 1e-7, context.reuse),
+        closely_(context.paths, limits_, context.frequency, context.ping_time, 1e-9,
+                 context.reuse) {}
 
   TargetEchoes find() {
     const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);
@@ -48,6 +51,7 @@ class EchoFinder {
     out.leg.kind = Leg::Kind::source_to_target;
     out.leg.target = index_;
     TargetEchoes result;
+    result.bounces = bounces_;
     result.legs.push_back(out.leg);
     if (out.leg.arrivals.empty()) return result;
     if (scenario_.propagation.exact_per_phone) {
@@ -67,6 +71,23 @@ class EchoFinder {
   }
 
  private:
+  /// Bounces for both legs, found for where everything is when the ping starts.
+  Bounces enough() const {
+    const Vec3 source =
+        transmitter_at(scenario_, context_.transmitter, context_.ping_time).position;
+    const Vec3 target = target_.track.at(context_.ping_time).position;
+    const Vec3 array = array_at(scenario_, context_.array, context_.ping_time).position;
+    const auto leg = [&](const Vec3& from, const Vec3& to) {
+      return enough_bounces(context_.paths, scenario_.propagation, from, to, context_.frequency,
+                            latest_);
+    };
+    const Bounces out = leg(source, target), back = leg(target, array);
+    Bounces both = out;
+    both.include(back);
+    both.left_out_db = out.left_out_db + back.left_out_db;
+    return both;
+  }
+
   /// Whether all echoes are plane waves to the phones. \param found  at the reference point
   bool plane_waves(const TargetEchoes& found) const {
     const Arrivals& home = found.legs.back().arrivals;
@@ -102,6 +123,7 @@ class EchoFinder {
                                .there = there,
                                .home = moving_.meet(struck.position, there.time, hearer.track,
                                                     hearer.offset, home, *path)};
+        if (bounces_.surface > fewest_bounces && pair.home.time > latest_) continue;
         const std::size_t first = result.scattered.size();
         std::vector<EchoPath> echoes = answer(pair, hearer, channel);
         scatter(pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
@@ -283,7 +305,7 @@ class EchoFinder {
                                       const Carried& hearer) const {
     const auto& transmitter =
         scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
-    const PathLimits limits = limits_of(scenario_.propagation);
+    const PathLimits& limits = limits_;
     ExactKey key = context_.paths.key(Kept::pulse_moments);
     key.add_all(context_.ping_time, context_.frequency, path.pulse_duration, transmitter.offset,
                 hearer.offset, limits.max_surface_bounces, limits.max_bottom_bounces,
@@ -363,6 +385,9 @@ class EchoFinder {
   const Target& target_;
   int index_;
   bool layered_;
+  double latest_;    // end of the record [s]
+  Bounces bounces_;  // that are followed
+  PathLimits limits_;
   MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "sonar/enough_bounces.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/scenario.h"
@@ -33,6 +34,7 @@ struct TargetEchoes {
   /// what they hear (sonar/plane_wave.h), nor exact_per_phone has been asked for; else empty.
   std::vector<EchoPath> at_phones;
   std::vector<EchoPath> scattered;  ///< by rough boundaries, about the paths of the echoes
+  Bounces bounces;                  ///< that were followed on either leg
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is

@@ -65,18 +65,21 @@ struct Middles {
     constexpr double faintest = 1e-8;  // of the loudest pair of a place
     const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
     for (std::uint32_t i = 0; i < count(); ++i) {
-      field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs);
+      field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs, nullptr, 0.0, 0.0,
+                           mixed(ring, i));
       const double share = double(stands_for) / count(), area = field.heard_area(ring);
       double loudest = 0.0;
       for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
       for (const PathPair& pair : pairs.found) {
         if (pair.power < faintest * loudest) continue;
-        out.push_back({{.place = first_place + ring * count() + i,
-                        .delay = pair.delay,
-                        .amplitude = pair.amplitude * std::sqrt(pair.area * area * share)},
-                       pair.power * area,
-                       share,
-                       double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
+        out.push_back(
+            {{.place = first_place + ring * count() + i,
+              .delay = pair.delay,
+              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share * pair.reciprocal),
+              .by_itself = pair.of_many},
+             pair.power * area,
+             share,
+             double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
       }
     }
   }
@@ -219,7 +222,7 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   for (const ScatteringField& f : fields) {
     // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
     const auto& [sheet, grid, field, weights, boundary, depth, thickness, by_covariance, bearings,
-                 divided_below, share] = f;
+                 divided_below, bounces, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
     key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, bearings,
@@ -247,7 +250,8 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
     const double since = t - samples[i].delay;
     if (since >= 0.0 && since <= pulse.duration())
       sum += samples[i].amplitude * pulse.analytic(since);
-    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
+    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place ||
+        samples[i].by_itself) {
       power += std::norm(sum);
       sum = 0.0;
     }

@@ -21,6 +21,7 @@ struct ExpectedReverberation {
     std::uint32_t place = 0;  // pairs of one place add coherently
     double delay = 0.0;
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
+    bool by_itself = false;  // it adds by energy: one of so many that their phases say nothing
   };
   /// Rings or sectors begin…end of a field.
   struct Block {

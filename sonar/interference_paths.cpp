@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/parallel.h"
+#include "sonar/enough_bounces.h"
 #include "sonar/geometry.h"
 #include "sonar/interference_stretch.h"
 #include "sonar/moving_paths.h"
@@ -95,7 +96,10 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
                                                         const Carried& hearer, double time,
                                                         bool across_the_band) const {
   const Kinematics receiver = hearer.at(time);
-  PathLimits limits = limits_of(scenario_.propagation);
+  const Bounces followed =
+      enough_bounces(paths_, scenario_.propagation, ship.track.at(time).position, receiver.position,
+                     frequency_, infinity);
+  PathLimits limits = limits_of(scenario_.propagation, followed);
   limits.diffraction = false;  // at every frequency of a ship's band: too dear
   double left = time;
   Arrivals found;

@@ -96,6 +96,7 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     const Target& target = scenario_.targets[i];
     if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
+    record.bounces.include(found.bounces);
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
       if (found.at_phones.empty()) heard.push_back(echo);
@@ -112,6 +113,7 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
                    platform_of(scenario_.arrays, context.array);
   if (own ? scenario_.propagation.fathometer : scenario_.propagation.direct_blast) {
     DirectBlast blast = direct_blast(context);
+    record.bounces.include(blast.bounces);
     for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
     heard.insert(heard.end(), blast.heard.begin(), blast.heard.end());
   }
@@ -229,6 +231,7 @@ PingRecord PingSimulator::levels(int ping) const {
     auto at = heard.find(array);
     if (at == heard.end())
       at = heard.emplace(array, reverberation(emission, array, record, {}, {}, budget_)).first;
+    record.bounces.include(at->second.bounces());
     return at->second.expected_db(time);
   });
   record.timings.rays = watch.lap();
@@ -285,6 +288,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
         phones_from(reverberation_point(scenario_, sent.transmitter, array, ping, sent.time),
                     scenario_, array, ping, sent.time);
     scattered.push_back(reverberation(emission, array, record, around, points, budget));
+    record.bounces.include(scattered.back().bounces());
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();

@@ -56,6 +56,10 @@ class PingSimulator {
   /// too much, as simulate() does
   [[nodiscard]] MemoryBudget memory(int ping = 1) const;
 
+  /// Estimates what the bounces that are followed leave out of each transmitter's first ping, and
+  /// adds to the scenario's notes where that is more than a little. \return what it added
+  std::vector<std::string> judge_paths();
+
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.
   [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_->along_transect(); }
@@ -103,6 +107,8 @@ class PingSimulator {
                                        int array, PingRecord& record, const PhoneGroups& groups,
                                        std::span<const BandPoint> band,
                                        const MemoryBudget& budget) const;
+  [[nodiscard]] Bounces judged_echoes(const Transmission& sent, int array) const;
+  [[nodiscard]] Bounces judged_reverberation(const Transmission& sent, int array) const;
   [[nodiscard]] double most_samples() const;
   [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,

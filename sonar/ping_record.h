@@ -6,6 +6,7 @@
 #include "raytrace/arrivals.h"
 #include "sonar/band_response.h"
 #include "sonar/delay_curve.h"
+#include "sonar/enough_bounces.h"
 #include "sonar/returns.h"
 #include "sonar/reuse.h"
 #include "sonar/synthesis.h"
@@ -134,6 +135,7 @@ struct PingRecord {
   Reuse reuse;
   BandFit band;
   PlaneWaveFit plane_waves;
+  Bounces bounces;  ///< that were followed, the most of echoes, blast and reverberation
 };
 
 }  // namespace asdic

@@ -70,11 +70,14 @@ void add_path(ExactKey& key, const Arrival& path) {
               path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
 }
 
-PathLimits limits_of(const PropagationSettings& settings) noexcept {
-  return {.max_surface_bounces = settings.max_surface_bounces,
-          .max_bottom_bounces = settings.max_bottom_bounces,
-          .max_launch_angle = settings.max_launch_angle,
-          .diffraction = settings.diffraction};
+PathLimits limits_of(const PropagationSettings& settings, int enough) noexcept {
+  PathLimits limits{.max_surface_bounces = settings.max_surface_bounces.value_or(enough),
+                    .max_bottom_bounces = settings.max_bottom_bounces.value_or(enough),
+                    .max_launch_angle = settings.max_launch_angle,
+                    .diffraction = settings.diffraction};
+  const int vertices = 2 * (std::max(limits.max_surface_bounces, limits.max_bottom_bounces) + 1);
+  limits.max_vertices = std::max(limits.max_vertices, vertices);
+  return limits;
 }
 
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
@@ -124,7 +127,7 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
   ExactKey leg = key(kind);
   leg.add(from.z()).add(to.z()).add(separation(from, to).range).add(frequency);
   leg.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
-  leg.add(limits.max_vertices).add(limits.faintest).add(limits.diffraction);
+  leg.add(limits.max_vertices).add(limits.faintest).add(limits.max_delay).add(limits.diffraction);
   if (layered_) return leg;
   const Plane line = plane(from, to);
   return leg.add(line.origin).add(line.cos_beta);

@@ -86,7 +86,12 @@ class PropagationPaths {
 /// Adds all that a path is followed by to a key: its angle and history.
 void add_path(ExactKey& key, const Arrival& path);
 
-/// What a scenario searches for.
-[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings) noexcept;
+/// Bounces off either boundary that "auto" follows at least.
+inline constexpr int fewest_bounces = 3;
+
+/// What a scenario searches for. \param enough  bounces where the settings leave that open: those
+/// that hold all but a little of the sound are told by sonar/enough_bounces.h
+[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
+                                   int enough = fewest_bounces) noexcept;
 
 }  // namespace asdic

@@ -46,8 +46,10 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
                                                PathPairs& pairs) const {
   const ScattererMotion& motion = field.field.motion;
   const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
-  field.sheet.pairs_at(scatterer.place, pairs, &expected_->limits, field.heard_area(key.ring),
-                       (scatterer.depth_share - 0.5) * field.thickness);
+  field.sheet.pairs_at(
+      scatterer.place, pairs, &expected_->limits, field.heard_area(key.ring),
+      (scatterer.depth_share - 0.5) * field.thickness,
+      mixed(entity, field.field.statistics.coherence_time > 0.0 ? 0 : context_.ping));
   Met met;
   if (pairs.found.empty()) return met;
   const Vec2 in_water = scatterer.place - motion.current * context_.time;
@@ -97,6 +99,12 @@ void PingReverberation::make(std::size_t block, ReturnBlock& into) const {
   if (!by_sectors_) return add_rings(field, b.begin, b.end, into);
   for (std::uint32_t sector = b.begin; sector < b.end; ++sector)
     add_sector(field, static_cast<int>(sector), into);
+}
+
+Bounces PingReverberation::bounces() const {
+  Bounces all;
+  for (const ScatteringField& field : fields_) all.include(field.bounces);
+  return all;
 }
 
 std::vector<DopplerSpan> PingReverberation::dopplers() const {

@@ -34,6 +34,7 @@ struct ReverberationContext {
   std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
   MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
+  bool judged = false;                   ///< what numbers of bounces leave out is estimated
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -75,6 +76,8 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] const ReverberationCovariance* covariance() const noexcept {
     return covariance_.get();
   }
+  /// That were followed, the most of all fields.
+  [[nodiscard]] Bounces bounces() const;
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
   /// How many of them are laid down one by one; none where sectors or a covariance stand for them.
@@ -149,6 +152,8 @@ class ReverberationModel {
   [[nodiscard]] double ground_spacing() const noexcept { return spacing_; }  ///< [m]
   /// Of everything that scatters.
   [[nodiscard]] std::vector<ScatteringSheet::Law> laws() const;
+  /// That a ping's paths follow, the most of all boundaries and layers.
+  [[nodiscard]] Bounces bounces(const ReverberationContext& context) const;
 
  private:
   /// Of a boundary or a layer: what scatters, and where.
@@ -162,6 +167,10 @@ class ReverberationModel {
   };
   /// All that a ping hears.
   [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context) const;
+  /// Bounces after which a stretch of the record lacks next to nothing, found on a coarse grid.
+  [[nodiscard]] Bounces enough(const Part& part, const SheetEnds& ends, BoundaryFans::Settings fan,
+                               const ReverberationContext& context) const;
+  [[nodiscard]] double inaudible(const ReverberationContext& context) const;
   /// Adds the fields of a part that a ping hears, one for every anchor.
   void meet(Part part, const ReverberationContext& context,
             std::vector<ScatteringField>& fields) const;

@@ -28,7 +28,10 @@ struct Circles {
     while (edges.back() < reach)
       edges.push_back(std::min(reach, edges.back() + std::max(least, edges.back() / 256.0)));
     const auto n = static_cast<std::size_t>(field.bearings);
-    sectors = all_round() ? 1 : n * ((bearings + 4 * n - 1) / (4 * n));
+    // All round one bearing is enough, unless each tells of one choice out of many paths.
+    constexpr std::size_t choices = 8;
+    sectors = all_round() ? (field.sheet.bundled() ? choices : 1)
+                          : n * ((bearings + 4 * n - 1) / (4 * n));
   }
   [[nodiscard]] std::size_t count() const noexcept { return edges.size() - 1; }
   [[nodiscard]] bool all_round() const noexcept { return field.sheet.all_round(); }
@@ -52,7 +55,7 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
                                                           (static_cast<double>(sector) + offset) /
                                                           static_cast<double>(circles.sectors);
     const Vec2 outward(std::sin(bearing), std::cos(bearing));
-    sheet.pairs_at(middle + range * outward, pairs, &limits, ring);
+    sheet.pairs_at(middle + range * outward, pairs, &limits, ring, 0.0, mixed(circle, sector));
     for (const PathPair& pair : pairs.found) {
       const PathPair* other = nullptr;
       if (sheet.one_fan()) {

@@ -161,7 +161,7 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
                                 // in steps, so that a slow drift finds what is kept
                                 .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
                                 .frequency = ends.frequency,
-                                .limits = limits_of(scenario_.propagation)};
+                                .limits = {}};
   ends.source_speed = paths_.speed_at(ends.source.position);
   ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
@@ -171,6 +171,20 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
     return *part.level.boundary == BoundaryKind::surface ? paths_.surface_depth(place)
                                                          : paths_.bottom_depth(place);
   };
+  // What comes home too late is not followed: from r away it takes (r − apart)/c at least.
+  const double home_slowness = 0.999 / fastest_water_;
+  const double max_delay = context.latest + home_slowness * 1000.0 * std::ceil(apart / 1000.0);
+  fan.limits.max_delay = max_delay;
+  fan.limits.home_slowness = home_slowness;
+  const Bounces followed = enough(part, ends, fan, context);
+  fan.limits = limits_of(scenario_.propagation, followed);
+  // A few bounces that were asked for by number are followed to whatever time: what comes too late
+  // is not heard, but moves the nodes of the synthesis by its Doppler.
+  constexpr int a_few = 12;
+  if (!in_numbers(scenario_.propagation) || std::max(followed.surface, followed.bottom) > a_few) {
+    fan.limits.max_delay = max_delay;
+    fan.limits.home_slowness = home_slowness;
+  }
   const auto fan_around = [&](const Vec3& place) {
     bool known = false;
     auto paths_to_level = fans_.around(place, part.level, fan, &known);
@@ -208,6 +222,7 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
          // Who lies this far off an end is nearer to it than half its range only within:
          .divided_below =
              2.0 * std::max((source - anchor.place).norm(), farthest_phone(anchor.place)),
+         .bounces = followed,
          .share = anchor.share});
   }
 }
@@ -282,6 +297,12 @@ std::vector<ScatteringField> ReverberationModel::fields(const ReverberationConte
   std::vector<ScatteringField> found;
   for (Part& part : parts()) meet(std::move(part), context, found);
   return found;
+}
+
+Bounces ReverberationModel::bounces(const ReverberationContext& context) const {
+  Bounces all;
+  for (const ScatteringField& field : fields(context)) all.include(field.bounces);
+  return all;
 }
 
 void ReverberationModel::take_memory(const ReverberationContext& context) const {

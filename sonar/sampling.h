@@ -18,6 +18,11 @@ struct Band {
 };
 [[nodiscard]] Band heard_band(const Scenario& scenario, const Pulse& pulse);
 
+/// Until when a ping is heard in its own record, since it is sent [s].
+[[nodiscard]] inline double end_of_record(const Scenario& scenario) noexcept {
+  return scenario.pings.recording_start + scenario.pings.recording_duration;
+}
+
 /// A ping's own record: as long as it is heard.
 [[nodiscard]] Recording recording_of(const Scenario& scenario);
 

@@ -33,6 +33,9 @@ std::uint32_t ScatteringField::copies_of(std::uint32_t ring, int sector) const {
 }
 
 std::vector<int> ScatteringField::sample_sectors() const {
+  // All round one sector is enough, unless each tells of one choice out of many paths.
+  if (all_round() && sheet.bundled())
+    return {0, grid.azimuths / 4, grid.azimuths / 2, 3 * grid.azimuths / 4};
   if (all_round()) return {0};
   const auto rings = static_cast<int>(std::max(1U, grid.rings));
   const int n = std::min(std::clamp(400'000 / rings, 12, 36), grid.azimuths);

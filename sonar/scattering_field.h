@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "reverb/scatterer_field.h"
+#include "sonar/enough_bounces.h"
 #include "sonar/reverberation_settings.h"
 #include "sonar/scattering_sheet.h"
 
@@ -20,6 +21,7 @@ struct ScatteringField {
   bool by_covariance = false;       ///< heard by it, not one scatterer after the other
   int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
+  Bounces bounces = {};             ///< that were followed
   double share = 1.0;  ///< of its pressure that is heard; the rest is of other anchors' fields
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]

@@ -26,7 +26,41 @@ Grazing grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt*
   return {std::asin(sine), sine, std::sqrt((1.0 - sine) * (1.0 + sine))};
 }
 
+/// Uniform in (0, 1).
+double bundle_draw(std::uint64_t chance, std::size_t bundle) noexcept {
+  return (static_cast<double>(mixed(chance, bundle) >> 11) + 0.5) * 0x1p-53;
+}
+
+/// The paths of a cell that are followed: all, or one of each bundle, drawn by its power.
+void take(std::span<const GroundPath> paths, std::span<const PathBundle> bundles,
+          std::uint64_t chance, std::vector<TakenPath>& taken) {
+  taken.clear();
+  if (bundles.empty()) {
+    for (std::uint32_t i = 0; i < paths.size(); ++i) taken.push_back({.path = i});
+    return;
+  }
+  for (std::uint32_t b = 0; b < bundles.size(); ++b) {
+    const PathBundle& bundle = bundles[b];
+    if (bundle.power <= 0.0) continue;
+    const auto drawn = static_cast<float>(bundle_draw(chance, b));
+    std::uint32_t i = bundle.first;
+    while (i + 1 < bundle.first + bundle.count && paths[i].chance < drawn) ++i;
+    taken.push_back({.path = i,
+                     .bundle = b,
+                     .gain = std::sqrt(bundle.power / std::norm(paths[i].amplitude)),
+                     .alone = bundle.alone});
+  }
+}
+
 }  // namespace
+
+bool ScatteringSheet::bundled() const noexcept {
+  const auto has = [](const BoundaryFan& fan) {
+    return std::any_of(fan.planes.begin(), fan.planes.end(),
+                       [](const FanPlane& plane) { return plane.paths->bundled(); });
+  };
+  return has(*out_) || has(*back_);
+}
 
 ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
                                  std::shared_ptr<const BoundaryFan> back, Law law,
@@ -40,7 +74,10 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
       receiver_moves_(ends.receiver_moves()),
       moving_(receiver_moves_ || !ends.source.velocity.isZero()),
       one_place_(out_ == back_ && !receiver_moves_ &&
-                 ends.source.position == ends.receiver.position) {
+                 ends.source.position == ends.receiver.position),
+      in_phase_(out_ == back_ && !receiver_moves_ &&
+                (ends.source.position - ends.receiver.position).norm() * ends.frequency <
+                    0.25 * ends.source_speed) {
   if (const auto* const nrl = std::get_if<NrlSurface>(&law_)) {
     nrl_.push_back(nrl->at(ends_.frequency));
     for (const BandPoint& point : ends_.band) nrl_.push_back(nrl->at(point.frequency));
@@ -90,6 +127,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
   if (!(cells < static_cast<double>(paths.cells()))) return found;
   const auto cell = static_cast<std::size_t>(cells);
   found.paths = paths.paths(cell);
+  found.bundles = paths.bundles(cell);
   found.beyond = range - paths.range(cell);
   if (!plane.tilt.empty()) found.tilt = &plane.tilt[cell];
   found.first = static_cast<std::size_t>(found.paths.data() - paths.all().data());
@@ -98,7 +136,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
 }
 
 void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits,
-                               double ring, double below) const {
+                               double ring, double below, std::uint64_t chance) const {
   stop_point();                      // who asks at a place asks at thousands
   constexpr double strongest = 2.0;  // [1/sr] no law says more
   pairs.found.clear();
@@ -126,23 +164,33 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   const double turn = one_place_ ? pi : std::acos(std::clamp(out.direction.dot(coming), -1.0, 1.0));
   const double half_turn = one_place_ ? 1.0 : std::sin(0.5 * turn);
   constexpr double same_turn = 1e-6;  // [rad]
-  if (out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
+  const bool one_cell = one_fan() && out.first == back.first;
+  const bool of_many = !out.bundles.empty() || !back.bundles.empty();
+  take(out.paths, out.bundles, chance, pairs.out_taken_);
+  // In one cell the same paths stand for the bundles of both ways: reciprocal pairs meet.
+  take(back.paths, back.bundles, one_cell ? chance : ~chance, pairs.back_taken_);
+  const std::size_t outs = pairs.out_taken_.size(), backs = pairs.back_taken_.size();
+  if (of_many || out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
-      pairs.sigma_.size() != out.paths.size() * back.paths.size() * (1 + points)) {
+      pairs.sigma_.size() != outs * backs * (1 + points)) {
     pairs.sheet_ = this;
     pairs.out_ = out.first;
     pairs.back_ = back.first;
     pairs.turn_ = turn;
-    pairs.sigma_.assign(out.paths.size() * back.paths.size() * (1 + points), -1.0);
+    pairs.sigma_.assign(outs * backs * (1 + points), -1.0);
   }
-  for (std::size_t i = 0; i < out.paths.size(); ++i) {
+  for (std::size_t m = 0; m < outs; ++m) {
+    const TakenPath& first = pairs.out_taken_[m];
+    const std::size_t i = first.path;
     const GroundPath& a = out.paths[i];
     const PathEnds& a_ends = out.ends[i];
-    const std::complex<double> sent = a.amplitude * beam(out, i, 0);
+    const std::complex<double> sent = a.amplitude * beam(out, i, 0) * first.gain;
     if (sent == 0.0 && points == 0) continue;
     const Grazing grazing_in = grazing_of(a, a_ends, out.tilt);
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
-    for (std::size_t j = 0; j < back.paths.size(); ++j) {
+    for (std::size_t n = 0; n < backs; ++n) {
+      const TakenPath& second = pairs.back_taken_[n];
+      const std::size_t j = second.path;
       const GroundPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
       double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
@@ -164,10 +212,13 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       }
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
-      const double before = std::norm(sent) * std::norm(b.amplitude);
+      // A path of a bundle with another of it is heard twice where its reciprocal is in phase.
+      const bool one_bundle = of_many && in_phase_ && one_cell && first.bundle == second.bundle;
+      const double gain = one_bundle ? second.gain * std::sqrt(2.0 - second.alone) : second.gain;
+      const double before = std::norm(sent) * std::norm(b.amplitude) * gain * gain;
       if (limits && points == 0 && before * ring * strongest <= least) continue;
       const Grazing grazing_out = grazing_of(b, b_ends, back.tilt);
-      double* const sigma = &pairs.sigma_[(i * back.paths.size() + j) * (1 + points)];
+      double* const sigma = &pairs.sigma_[(m * backs + n) * (1 + points)];
       if (sigma[0] < 0.0) {
         const ScatterGeometry geometry{
             .grazing_in = grazing_in.angle, .grazing_out = grazing_out.angle, .azimuth = turn};
@@ -178,7 +229,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                                  .half_turn = half_turn};
         // Every law is reciprocal: at one place the same the other way round.
         double* const reciprocal =
-            one_place_ ? &pairs.sigma_[(j * back.paths.size() + i) * (1 + points)] : sigma;
+            one_place_ ? &pairs.sigma_[(n * backs + m) * (1 + points)] : sigma;
         for (std::size_t k = 0; k <= points; ++k)
           reciprocal[k] = sigma[k] = cross_section(geometry, sines, k);
       }
@@ -187,7 +238,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
         const BandPoint& point = ends_.band[k];
         const std::complex<double> there_and_back =
             a.amplitude * beam(out, i, k + 1) * b.amplitude *
-            (std::sqrt(sigma[k + 1]) * std::exp(-point.more_nepers * (a.length + b.length)));
+            (first.gain * gain * std::sqrt(sigma[k + 1]) *
+             std::exp(-point.more_nepers * (a.length + b.length)));
         pairs.colours.push_back(there_and_back);
         power = std::max(power, std::norm(there_and_back));
       }
@@ -202,7 +254,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .out_ends = &a_ends,
                              .back_ends = &b_ends,
                              .delay = delay,
-                             .amplitude = sent * b.amplitude * std::sqrt(sigma[0]),
+                             .amplitude = sent * b.amplitude * (std::sqrt(sigma[0]) * gain),
                              .power = power,
                              .cross_section = sigma[0],
                              .grazing_in = grazing_in.angle,
@@ -210,7 +262,9 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .area = out.tilt ? out.tilt->area : 1.0,
                              .leaving = out.direction,
                              .coming = coming,
-                             .receiver = on});
+                             .receiver = on,
+                             .of_many = of_many,
+                             .reciprocal = of_many && in_phase_ && one_cell && m != n ? 2.0 : 1.0});
     }
   }
 }

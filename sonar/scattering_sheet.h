@@ -42,6 +42,19 @@ struct PathPair {
   Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
   Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
   const Kinematics* receiver = nullptr;  ///< the straight way on which it hears: of the sheet
+  bool of_many = false;  ///< it stands for the pairs of two bundles, whose sounds add by energy
+  /// Of such a pair: power of what is heard over its own, 2 where the same way back is taken in the
+  /// opposite direction with the same phase.
+  double reciprocal = 1.0;
+};
+
+/// A path that is followed from an end to a place: itself, or one out of a bundle.
+struct TakenPath {
+  static constexpr std::uint32_t no_bundle = 0xffffffff;
+  std::uint32_t path = 0;            ///< among the paths of the cell
+  std::uint32_t bundle = no_bundle;  ///< that it stands for
+  double gain = 1.0;                 ///< of its amplitude, to stand for all
+  double alone = 0.0;                ///< PathBundle::alone
 };
 
 class ScatteringSheet;
@@ -59,6 +72,7 @@ struct PathPairs {
   const ScatteringSheet* sheet_ = nullptr;
   std::size_t out_ = 0, back_ = 0;  // first paths of the cells whose cross-sections these are
   double turn_ = 0.0;
+  std::vector<TakenPath> out_taken_, back_taken_;
   std::vector<double>
       sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
 };
@@ -108,8 +122,9 @@ class ScatteringSheet {
   /// \param limits  pairs that are fainter are
   /// left out; null: none   \param ring  area of the whole ring around [m²]
   /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
+  /// \param chance  of this place: which path stands for each bundle where there are very many
   void pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits = nullptr,
-                double ring = 0.0, double below = 0.0) const;
+                double ring = 0.0, double below = 0.0, std::uint64_t chance = 0) const;
 
   /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
   /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
@@ -127,6 +142,8 @@ class ScatteringSheet {
   [[nodiscard]] const SheetEnds& ends() const noexcept { return ends_; }
   /// Source and receiver share a fan: the paths of a cell are the same out and back.
   [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }
+  /// Somewhere there are very many paths.
+  [[nodiscard]] bool bundled() const noexcept;
   /// The same at every bearing around the grid's middle.
   [[nodiscard]] bool all_round() const noexcept;
 
@@ -134,6 +151,7 @@ class ScatteringSheet {
   /// One leg at one place.
   struct Leg {
     std::span<const GroundPath> paths;
+    std::span<const PathBundle> bundles;
     const PathEnds* ends = nullptr;  // [paths]
     const CellTilt* tilt = nullptr;
     Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
@@ -164,6 +182,7 @@ class ScatteringSheet {
   std::vector<NrlSurface::At> nrl_;  // at the centre and each point of the band; of that law alone
   const TransmitPattern& pattern_;
   bool all_round_pattern_, receiver_moves_, moving_, one_place_;
+  bool in_phase_;  // so close together and at rest that a pair and its reciprocal are heard as one
   // Of every outgoing path, if the same all round: at the centre, then at each point of the band.
   std::vector<std::complex<double>> beam_;
 };

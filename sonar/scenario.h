@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ namespace asdic {
 
 /// What is searched for. A path is kept when it is within all the limits.
 struct PropagationSettings {
-  int max_surface_bounces = 3;
-  int max_bottom_bounces = 3;
+  /// None ("auto"): as many as there is sound in, sonar/enough_bounces.h.
+  std::optional<int> max_surface_bounces = {};
+  std::optional<int> max_bottom_bounces = {};
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
   bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
   bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries

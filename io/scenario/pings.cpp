@@ -4,12 +4,24 @@
 
 namespace asdic::scenario {
 
+namespace {
+
+/// A number of bounces, or "auto": none.
+std::optional<int> read_bounces(TomlTable& table, const std::string& key) {
+  if (!table.has(key)) return std::nullopt;
+  if (table.is_text(key)) {
+    static_cast<void>(table.choice(key, {"auto"}, "auto"));
+    return std::nullopt;
+  }
+  return static_cast<int>(table.integer(key, 0, 1000));
+}
+
+}  // namespace
+
 void read_propagation(TomlTable table, Scenario& scenario) {
   PropagationSettings& settings = scenario.propagation;
-  settings.max_surface_bounces =
-      static_cast<int>(table.integer("max_surface_bounces", 0, 100, settings.max_surface_bounces));
-  settings.max_bottom_bounces =
-      static_cast<int>(table.integer("max_bottom_bounces", 0, 100, settings.max_bottom_bounces));
+  settings.max_surface_bounces = read_bounces(table, "max_surface_bounces");
+  settings.max_bottom_bounces = read_bounces(table, "max_bottom_bounces");
   settings.max_launch_angle = radians(table.number(
       "max_launch_angle_deg",
       {.noun = "angle", .unit = "degrees", .low = 0.0, .high = 90.0, .above = true}, 90.0));

@@ -227,11 +227,15 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
       return interval.up[i] + interval.middle[i] + interval.down[i];
     };
     int last = 0;
+    // A ray that meets both boundaries crosses all of the water from vertex to vertex.
+    const double in_time = interval.turns_above || interval.turns_below
+                               ? infinity
+                               : limits_.max_delay / column_.least_crossing_time() + 2.0;
     for (std::size_t i = 0; i + 1 < n; ++i) {
       const double cycles = high / std::max(std::min(cycle(i), cycle(i + 1)), 1e-9);
       const int loudest =
           interval.loudest_vertices.empty() ? limits_.max_vertices : interval.loudest_vertices[i];
-      most[i] = static_cast<int>(std::min<double>(loudest, cycles + 2.0));
+      most[i] = static_cast<int>(std::min({double(loudest), cycles + 2.0, in_time}));
       last = std::max(last, most[i]);
     }
     for (const bool starts_up : {true, false}) {

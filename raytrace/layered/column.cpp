@@ -66,6 +66,12 @@ double Column::barrier_speed() const noexcept {
   return fastest;
 }
 
+double Column::least_crossing_time() const noexcept {
+  double fastest = 0.0;
+  for (const Layer& layer : layers_) fastest = std::max({fastest, layer.c_top, layer.c_bottom});
+  return (layers_.back().bottom - layers_.front().top) / fastest;
+}
+
 ColumnSums Column::sums(const RayParameter& ray) const noexcept {
   ColumnSums sums;
   const auto into = [&ray](Pass& total) {

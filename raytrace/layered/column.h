@@ -54,6 +54,8 @@ class Column {
   /// The fastest speed between source and receiver: only rays that turn at faster water join them
   /// [m/s].
   [[nodiscard]] double barrier_speed() const noexcept;
+  /// The depth of the water over the fastest speed at the layers' ends [s].
+  [[nodiscard]] double least_crossing_time() const noexcept;
 
  private:
   std::vector<Layer> layers_;

@@ -217,7 +217,8 @@ def write_levels_and_rays(f, s, result):
     for name in ("rays", "eigenrays", "patches", "synthesis", "noise", "write"):
         put(run, f"time_{name}", np.zeros(s.pings), f"wall time of {name}", "s", (f["ping"],))
     for name in ("reuse_ocean", "legs_searched", "legs_reused", "reuse_reverberation",
-                 "reuse_expected_level", "band_points", "band_error"):
+                 "reuse_expected_level", "band_points", "band_error",
+                 "surface_bounces", "bottom_bounces", "left_out_db"):
         put(run, name, np.zeros(s.pings), "what was known", None, (f["ping"],), np.int32)
 
 

@@ -25,7 +25,11 @@ constexpr const char* told = "environment.sound_speed: levels from 300 to 400 m"
 class Honest : public testing::Test {
  protected:
   Honest() {
-    static_cast<void>(folder.write("small.toml", support::small_scenario));
+    // Without numbers of bounces, which would be warned of.
+    std::string small = support::small_scenario;
+    for (const std::string key : {"max_surface_bounces = 1\n", "max_bottom_bounces = 1\n"})
+      small.erase(small.find(key), key.size());
+    static_cast<void>(folder.write("small.toml", small));
     std::string run = support::small_scenario;
     run = run.substr(0, run.find("[platform]")) +
           "[run]\nfrequency = 1000.0\n[run.source]\ndepth = 100.0\n"
@@ -65,6 +69,18 @@ TEST_F(Honest, AWarningIsToldByEveryCommandAndStandsInItsFile) {
                 asdic(folder, "field run.toml --json -q -o out.h5" + with).out)["warnings"]
                 .size(),
             1U);
+}
+
+// Numbers of bounces are obeyed; what they leave out of shallow water stands beside the sound.
+TEST_F(Honest, BouncesThatAreTooFewAreWarnedOf) {
+  const std::string few =
+      " --set propagation.max_surface_bounces=1 --set propagation.max_bottom_bounces=1";
+  constexpr const char* lacks = "propagation.max_bottom_bounces: reverberation lacks the paths";
+  EXPECT_THAT(asdic(folder, "validate small.toml" + few).out, HasSubstr(lacks));
+  const auto run = asdic(folder, "ping small.toml --pings 1 -o out.h5" + few);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(std::string("asdic: warning: ") + lacks));
+  EXPECT_THAT(warnings_of("out.h5"), testing::Contains(HasSubstr(lacks)));
 }
 
 TEST_F(Honest, AStudyTellsOfItsRealisations) {

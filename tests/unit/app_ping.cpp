@@ -21,7 +21,10 @@ class PingCommand : public ::testing::Test {
 };
 
 TEST_F(PingCommand, WritesACompleteFileUnderTheScenariosName) {
-  const auto run = asdic(folder, "ping small.toml");
+  // Its numbers of bounces are too few for its water, which is warned of.
+  const auto run = asdic(folder,
+                         "ping small.toml --set propagation.max_surface_bounces=auto "
+                         "--set propagation.max_bottom_bounces=auto");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");                              // no progress on a pipe
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos);  // no colours either
@@ -103,7 +106,7 @@ TEST_F(PingCommand, AFileThatIsThereIsReplacedOnlyByAWholeOne) {
 
 // A limit on the size of files stands for a full disk: the same failed write.
 TEST_F(PingCommand, AFullDiskIsOneMessageAndNoFile) {
-  const auto run = asdic(folder, "ping small.toml --pings 50", "ulimit -f 1000;");
+  const auto run = asdic(folder, "ping small.toml --pings 50 -q", "ulimit -f 1000;");
   EXPECT_EQ(run.status, 1);
   EXPECT_TRUE(run.err.starts_with("asdic: ")) << run.err;
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
@@ -112,7 +115,7 @@ TEST_F(PingCommand, AFullDiskIsOneMessageAndNoFile) {
 }
 
 TEST_F(PingCommand, AFullDiskOnTheVeryFirstWriteLeavesNothing) {
-  const auto run = asdic(folder, "ping small.toml", "ulimit -f 1;");
+  const auto run = asdic(folder, "ping small.toml -q", "ulimit -f 1;");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   EXPECT_FALSE(exists("small.h5"));

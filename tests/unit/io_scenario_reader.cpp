@@ -68,6 +68,20 @@ TEST(ScenarioReader, ReadsWhatStandsThere) {
   EXPECT_EQ(surface.sound_speed, 1510.0);
 }
 
+TEST(ScenarioReader, BouncesAreANumberOrAuto) {
+  const auto read = [](const std::string& value) {
+    return parse_scenario(
+               std::string(small_scenario) + "[propagation]\nmax_bottom_bounces = " + value + "\n",
+               "small.toml")
+        .propagation;
+  };
+  EXPECT_EQ(read("7").max_bottom_bounces, 7);
+  EXPECT_EQ(read("\"auto\"").max_bottom_bounces, std::nullopt);
+  EXPECT_EQ(read("7").max_surface_bounces, std::nullopt);
+  EXPECT_THROW(static_cast<void>(read("\"many\"")), InputError);
+  EXPECT_THROW(static_cast<void>(read("-1")), InputError);
+}
+
 TEST(ScenarioReader, OverridesReplaceAddAndIndex) {
   const std::vector<std::string> overrides{"transmitter.elevation_deg=12",
                                            "target.0.strength_db=20.5",

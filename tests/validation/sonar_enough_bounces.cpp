@@ -1,0 +1,253 @@
+// Shallow water with the bounces that "auto" finds: reverberation and echoes of guides 100 m deep
+// against energy counts, images and modes (tests/data/physics-reference/reverb_guide_*.csv,
+// echo_guide.csv).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "sonar/echo.h"
+#include "sonar/enough_bounces.h"
+#include "support/csv.h"
+#include "support/reverberant_sea.h"
+
+namespace asdic {
+namespace {
+
+using support::Csv;
+using Sea = support::ReverberantSea;
+
+constexpr double sampled_to = 21.0;  // end of the record [s]
+
+/// 100 m of water, source at 30 m and one phone at 50 m, `away` to the east of it; Lambert, −27 dB.
+Scenario guide(double away = 0.0) {
+  Scenario s = support::even_sea();
+  s.environment.water_density = 1000.0;
+  s.environment.bottom = {
+      .depth = 100.0,
+      .material =
+          FluidHalfSpace{.speed = 1700.0, .density = 2000.0, .attenuation_db_per_wavelength = 0.5}};
+  s.platforms[0].track.start.position = {0.0, 0.0, 30.0};
+  s.platforms.push_back({});
+  s.platforms[1].track.start.position = {away, 0.0, 50.0};
+  s.arrays[0].platform = 1;
+  s.reverberation.surface_scatters = false;
+  s.reverberation.bottom = Lambert{.mu_db = -27.0};
+  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+  s.reverberation.azimuths = 36;
+  s.pulse = {.frequency = 1000.0, .duration = 0.2, .window = PulseWindow::hann};
+  s.noise.spectral_level_db = -100.0;
+  s.propagation = {};
+  s.pings.recording_duration = sampled_to;
+  s.pings.sample_rate = 4000.0;
+  return s;
+}
+
+/// 1530 m/s down to 20 m, 1490 m/s from 40 m on.
+Scenario summer(double away = 0.0) {
+  Scenario s = guide(away);
+  const std::vector<double> depth = {0.0, 20.0, 40.0, 100.0},
+                            speed = {1530.0, 1530.0, 1490.0, 1490.0};
+  s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  return s;
+}
+
+/// Mean of the expected level over a second [dB re 1 µPa].
+double level_about(const PingReverberation& ping, double t) {
+  constexpr int samples = 20;
+  double power = 0.0;
+  for (int i = 0; i < samples; ++i)
+    power += power_from_db(ping.expected_db(t - 0.5 + (i + 0.5) / samples)) / samples;
+  return db_from_power(power);
+}
+
+/// Against a column of a table from 3 s on. 0.5 dB: the tables are good to 0.05 to 0.2 dB, places
+/// at the middles of cells and one choice of paths for each stand for the mean.
+void expect_levels(const Scenario& s, const Csv& table, const std::string& column,
+                   const std::string& of_guide = "") {
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  EXPECT_LE(ping.bounces().left_out_db, negligible_db);
+  EXPECT_GT(ping.bounces().bottom, 10);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double t = table["t_s"][row];
+    if (t < 3.0 || (!of_guide.empty() && table.text("guide")[row] != of_guide)) continue;
+    EXPECT_NEAR(level_about(ping, t), table[column][row], 0.5) << of_guide << " at " << t << " s";
+  }
+}
+
+// One path of each bundle stands for all: their powers and chances are those of the paths.
+TEST(EnoughBounces, BundlesHoldThePowerOfTheirPaths) {
+  const EigenraySolver solver(guide().environment);
+  const GroundPaths ground =
+      ground_paths(solver, 30.0, BoundaryKind::bottom, 40.0, 10e3, 1000.0, limits_of({}, 40));
+  ASSERT_TRUE(ground.bundled());
+  int bundled = 0;
+  for (std::size_t cell = 0; cell < ground.cells(); ++cell) {
+    const std::span<const PathBundle> bundles = ground.bundles(cell);
+    EXPECT_EQ(bundles.empty(), ground.paths(cell).size() <= GroundPaths::bundled_above);
+    if (bundles.empty()) continue;
+    ++bundled;
+    double all = 0.0, held = 0.0;
+    for (const GroundPath& path : ground.paths(cell)) all += std::norm(path.amplitude);
+    std::size_t next = 0;
+    for (const PathBundle& bundle : bundles) {
+      EXPECT_EQ(bundle.first, next);
+      next += bundle.count;
+      held += bundle.power;
+      EXPECT_FLOAT_EQ(ground.paths(cell)[next - 1].chance, 1.0F);
+      EXPECT_LE(bundle.alone, 1.0 + 1e-12);
+      EXPECT_GE(bundle.alone, 1.0 / bundle.count - 1e-12);
+    }
+    EXPECT_EQ(next, ground.paths(cell).size());
+    // Twins, whose power is that of their sum, are few here: 20 wavelengths of depth.
+    EXPECT_NEAR(held / all, 1.0, 0.5) << cell;
+  }
+  EXPECT_GT(bundled, 200);
+}
+
+TEST(EnoughBounces, PekerisReverberationIsTheSumOfImages) {
+  expect_levels(guide(), Csv("physics-reference/reverb_guide_pekeris.csv"), "RL_truth_images_dB");
+}
+
+TEST(EnoughBounces, SummerReverberationIsTheFlux) {
+  expect_levels(summer(), Csv("physics-reference/reverb_guide_summer.csv"), "RL_truth_flux_dB");
+}
+
+TEST(EnoughBounces, LosslessGuidesFollowTheirLaw) {
+  Scenario s = guide();
+  s.environment.bottom.material = Rigid{};
+  s.pings.recording_duration = 9.0;
+  expect_levels(s, Csv("physics-reference/reverb_guide_rigid.csv"), "RL_analytic_dB");
+}
+
+TEST(EnoughBounces, ReverberationHeardThreeKilometresAwayIsTheFlux) {
+  const Csv table("physics-reference/reverb_guide_bistatic.csv");
+  expect_levels(guide(3000.0), table, "RL_truth_flux_dB", "pekeris");
+  expect_levels(summer(3000.0), table, "RL_truth_flux_dB", "summer");
+}
+
+// What is drawn has the mean that is expected: three pings, one sample a pulse from 4 to 20 s, 4.9
+// sigma of an exponential's mean and, twice as much, of the places that stand still from ping to
+// ping.
+TEST(EnoughBounces, DrawnPowerIsTheExpectedOne) {
+  Scenario s = guide();
+  s.reverberation.azimuths = 18;
+  const Sea sea(s);
+  double sum = 0.0, count = 0.0;
+  for (std::uint32_t number = 1; number <= 3; ++number) {
+    const PingReverberation ping = sea.ping(number);
+    const Baseband heard = sea.hear(number);
+    for (double t = 4.0; t < 20.0; t += 0.2, count += 1.0)
+      sum += std::norm(support::at(heard, 0, t)) /
+             power_from_db(level_about(ping, t) - s.transmitters[0].source_level_db);
+  }
+  EXPECT_NEAR(sum / count, 1.0, 3.0 * 4.9 / std::sqrt(count));
+}
+
+// A source and a receiver in one place hear every pair of paths twice, with one phase: 3 dB more
+// than by energy. The receiver a metre deeper hears it by energy alone.
+TEST(EnoughBounces, OnePlaceHearsReciprocalPairsTwice) {
+  Scenario together = guide(), apart = guide();
+  together.platforms[1].track.start.position.z() = 30.0;
+  apart.platforms[1].track.start.position.z() = 31.0;
+  const Sea one(together), other(apart);
+  const PingReverberation a = one.ping(1), b = other.ping(1);
+  for (const double t : {6.0, 10.0, 14.0})
+    EXPECT_NEAR(level_about(a, t) - level_about(b, t), 3.0, 0.5) << t;
+}
+
+// Numbers are obeyed, and what they leave out is told: 3 + 3 bounces lack 7 dB at 4 s and 37 at 18.
+TEST(EnoughBounces, NumbersAreObeyedAndJudged) {
+  Scenario s = guide();
+  s.propagation.max_surface_bounces = 3;
+  s.propagation.max_bottom_bounces = 3;
+  PingSimulator simulator(s);
+  const std::vector<std::string> told = simulator.judge_paths();
+  ASSERT_EQ(told.size(), 1);
+  EXPECT_NE(told[0].find("propagation.max_bottom_bounces: reverberation lacks"), std::string::npos)
+      << told[0];
+  s.propagation = {};
+  EXPECT_TRUE(PingSimulator(s).judge_paths().empty());
+}
+
+// Deep water: as many as were always followed.
+TEST(EnoughBounces, DeepWaterNeedsFew) {
+  Scenario s = support::even_sea();
+  s.environment.bottom.material =
+      FluidHalfSpace{.speed = 1520.0, .density = 1400.0, .attenuation_db_per_wavelength = 0.2};
+  s.propagation = {};
+  s.pings.recording_duration = 30.0;
+  const Sea sea(s);
+  EXPECT_EQ(sea.ping(1).bounces().bottom, fewest_bounces);
+  EXPECT_LE(sea.ping(1).bounces().left_out_db, tolerable_db);
+}
+
+/// Level of an echo by pairs of paths in phase over the pulse's band: mean energy over ±50 m [dB].
+double echo_level(Scenario s, double frequency, double range, double depth, double strength) {
+  s.pulse.frequency = frequency;
+  s.reverberation.enabled = false;
+  const PropagationPaths paths(s.environment, s.transect);
+  const Pulse pulse(s.pulse);
+  const Vec3 source = s.platforms[0].track.at(0.0).position,
+             receiver = s.platforms[1].track.at(0.0).position;
+  const Vec3 middle(0.0, range, depth);
+  const PathLimits out = limits_of(s.propagation, enough_bounces(paths, s.propagation, source,
+                                                                 middle, frequency, 40.0)),
+                   back = limits_of(s.propagation, enough_bounces(paths, s.propagation, middle,
+                                                                  receiver, frequency, 40.0));
+  double energy = 0.0, sent = 0.0;
+  constexpr int places = 101, lines = 41;  // over range; over the band
+  for (int place = 0; place < places; ++place) {
+    const Vec3 target(0.0, range - 50.0 + 100.0 * place / (places - 1), depth);
+    const Arrivals there = paths.find(source, target, frequency, out),
+                   home = paths.find(target, receiver, frequency, back);
+    for (int line = 0; line < lines; ++line) {
+      const double df = (line - lines / 2) * 0.5;  // the Hann pulse's spectrum within ±10 Hz
+      const double x = pi * df * s.pulse.duration;
+      const double line_shape = df == 0.0 ? 1.0 : std::sin(x) / x;
+      const double u = df * s.pulse.duration;
+      const double weight =
+          std::abs(std::abs(u) - 1.0) < 1e-9 ? 0.25 : std::pow(line_shape / (1.0 - u * u), 2);
+      const auto field = [&](const Arrivals& paths_there) {
+        std::complex<double> sum = 0.0;
+        for (const Arrival& a : paths_there)
+          sum += a.amplitude * std::polar(1.0, -2.0 * pi * (frequency + df) * a.delay);
+        return sum;
+      };
+      energy += weight * std::norm(field(there)) * std::norm(field(home));
+      sent += weight;
+    }
+  }
+  return s.transmitters[0].source_level_db + strength + db_from_power(energy / sent);
+}
+
+// Paths in phase against waves: 1 dB. Of the summer profile the leg from the target home alone, by
+// energy: the other has a caustic within the ±50 m, where rays have no bound.
+TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
+  const Csv table("physics-reference/echo_guide.csv");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double frequency = table["f_Hz"][row], range = table["range_m"][row],
+                 depth = table["zt_m"][row];
+    if (table.text("guide")[row] == "summer") {
+      const Scenario s = summer();
+      const PropagationPaths paths(s.environment, s.transect);
+      const Vec3 from(0.0, 0.0, depth), to(0.0, range, 50.0);
+      double energy = 0.0;
+      for (const Arrival& a :
+           paths.find(from, to, frequency,
+                      limits_of(s.propagation,
+                                enough_bounces(paths, s.propagation, from, to, frequency, 40.0))))
+        energy += std::norm(a.amplitude);
+      EXPECT_NEAR(-db_from_power(energy), table["TL_receiver_incoherent_modes_dB"][row], 0.5)
+          << frequency << " Hz";
+    } else {
+      EXPECT_NEAR(echo_level(guide(), frequency, range, depth, table["TS_dB"][row]),
+                  table["EL_wave_dB"][row], 1.0)
+          << frequency << " Hz";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace asdic
