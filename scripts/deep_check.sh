@@ -103,6 +103,14 @@ else
   verdict soak FAILED "at most $few kB over 400 pings, $many kB over 1600"
 fi
 
+# The physics suite, whole: asdic against wave theory, images and closed forms.
+cd "$root"
+if said=$(/usr/bin/python3 scripts/validate_physics.py --asdic "$ASDIC" 2>&1); then
+  verdict physics good "$(tail -n 1 <<<"$said")"
+else
+  verdict physics FAILED "$(tail -n 1 <<<"$said")"
+fi
+
 # Studies: the same bits by threads, parts and ranks, with 20 kills; memory flat over 10⁵ realisations.
 cd "$root"
 if said=$(/usr/bin/python3 tests/validation/study_runs.py 20 2>&1); then
