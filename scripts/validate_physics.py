@@ -161,7 +161,8 @@ def main():
         print("the index is rewritten when all problems ran", flush=True)
     checks = [c for _, result in results.values() for c in result.checks]
     count = {v: sum(c.verdict == v for c in checks) for v in ("pass", "gap", "HOLDS NOW", "FAIL")}
-    print(f"{len(results)} problems: {count['pass']} numbers hold, {count['gap']} are known not to hold yet, {count['FAIL']} FAIL"
+    print(f"{len(results)} problems: {count['pass']} numbers hold, {count['gap']} are known not to "
+          f"hold yet, {count['FAIL']} FAIL"
           + (f"; {count['HOLDS NOW']} hold now: take their gap out of problem.py"
              if count["HOLDS NOW"] else "")
           + (f"; broken: {' '.join(broken)}" if broken else ""))

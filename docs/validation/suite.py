@@ -174,8 +174,9 @@ def compare_reverberation(asdic, scenario, exact, runs, pulse, width=1.0, bound=
         checks.append(Check(f"{run.label}, worst of {len(off)} times", float(max(off, key=abs)),
                             round(bound + 3 * sigma, 2), gap=run.gap))
         columns[run.label] = dict(zip(run.times, levels))
-        notes.append(f"{run.label[0].upper()}{run.label[1:]}: means over {width:g} s and {run.pings} pings, one standard error {sigma:.2f} dB; the bound is {bound:g} dB "
-                     "and three of them.")
+        notes.append(f"{run.label[0].upper()}{run.label[1:]}: means over {width:g} s and {run.pings} "
+                     f"pings, one standard error {sigma:.2f} dB; the bound is {bound:g} dB and three "
+                     "of them.")
     rows = [[f"{t:g}", f"{truth[t]:.2f}",
              *(text for found in columns.values() for text in ((f"{found[t]:.2f}",
                  f"{found[t] - truth[t]:+.2f}") if t in found else ("", "")))] for t in every]

@@ -126,7 +126,7 @@ def linear_n2_green(k, omega, c0, slope, source, receivers):
         b_low, eb_low = ai(-zeta(low) * turn)
         b_0, eb_0 = ai(-zeta(0.0) * turn)
         b_high, eb_high = ai(-zeta(high) * turn)
-        # W{Ai(x), Ai(x e^{+2πi/3})} = e^{−iπ/6}/(2π) (A&S 10.4.13 with the sign of the exponent),
+        # W{Ai(x), Ai(x e^{+2πi/3})} = e^{−iπ/6}/(2π) (A&S 10.4.12),
         # chain rule dx/dz = −scale
         wronskian = -scale * np.exp(-1j * np.pi / 6.0) / (2.0 * np.pi)
         first = a_low * b_high * np.exp(-ea_low - eb_high)

@@ -39,4 +39,5 @@ def compare(asdic, truth):
             found in columns for t, e, f in zip(TIMES, exact, found)]
     return suite.Result(checks, ["law", "t / s", "truth / dB", "asdic / dB", "difference / dB"],
                         rows, draw,
-                        [f"Means over {WIDTH:g} s and {PINGS} pings: one standard error of a time is {sigma:.2f} dB; three of them are in the bounds, beside 0.5 and 0.2 dB."])
+                        [f"Means over {WIDTH:g} s and {PINGS} pings: one standard error of a time is "
+                         f"{sigma:.2f} dB; three of them are in the bounds, beside 0.5 and 0.2 dB."])

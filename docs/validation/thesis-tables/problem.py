@@ -39,7 +39,8 @@ def compare(asdic, truth):
             level = float(f["echoes"]["level_db"][0])
         exact = truth.echo_level(source, strength, distance)
         off.append(level - exact)
-        notes.append(f"Table 5.1, SL {source:g}, TS {strength:g}: printed {printed:g}, exact {exact:.3f}, asdic {level:.3f} dB.\n")
+        notes.append(f"Table 5.1, SL {source:g}, TS {strength:g}: printed {printed:g}, "
+                     f"exact {exact:.3f}, asdic {level:.3f} dB.")
 
     def draw(axes, style):
         r = np.linspace(4500.0, 23000.0, 60)
