@@ -218,8 +218,9 @@ def write_levels_and_rays(f, s, result):
         put(run, f"time_{name}", np.zeros(s.pings), f"wall time of {name}", "s", (f["ping"],))
     for name in ("reuse_ocean", "legs_searched", "legs_reused", "reuse_reverberation",
                  "reuse_expected_level", "band_points", "band_error",
-                 "surface_bounces", "bottom_bounces", "left_out_db"):
+                 "surface_bounces", "bottom_bounces"):
         put(run, name, np.zeros(s.pings), "what was known", None, (f["ping"],), np.int32)
+    put(run, "left_out_db", np.zeros(s.pings), "of the level", "dB", (f["ping"],))
 
 
 def main():
