@@ -155,7 +155,9 @@ def read_field(reader: Reader) -> Field:
         raise InputError(reader.path, f"pressure of shape {parts.shape}",
                          "(source_depth, depth, range, re_im)")
     how = [text(reader.file.attrs, "field") or "coherent"]
-    if beams := text(reader.file.attrs, "beam_kind"):
+    if text(reader.file.attrs, "solver") == "waves":
+        how.append("wave equation")
+    elif beams := text(reader.file.attrs, "beam_kind"):
         how.append(f"{beams} beams")
     return Field(reader.title(), reader.number("frequency_hz"), reader.array("source_depth"),
                  reader.array(prefix + "depth"), reader.array(prefix + "range"), irregular,
