@@ -311,7 +311,7 @@ const OceanFault ocean_faults[] = {
     {"MaterialOfNoKind",
      water + "[environment.bottom.shape]\nrange=[0]\ndepth=[90]\nmaterial = [{kind=\"sand\"}]\n",
      "o.toml:7: environment.bottom.shape.material[0].kind: found \"sand\", expected \"vacuum\", "
-     "\"rigid\", \"fluid\", \"elastic\", \"grain-size\" or \"table\""},
+     "\"rigid\", \"fluid\", \"elastic\", \"grain-size\", \"table\" or \"layered\""},
     {"BottomAboveTheSurface",
      water + "[environment.bottom]\nkind = \"rigid\"\nshape = {range=[0, 5], depth=[90, -1]}\n",
      "o.toml:6: environment.bottom.shape: found a depth of -1 m at range 5 m, expected a bottom "

@@ -296,7 +296,7 @@ const Fault faults[] = {
      "s.toml:1: platform.position: found nothing, expected [east, north, depth] in m"},
     {"MissingKind", "kind = \"rigid\"\n", "",
      "s.toml:7: environment.bottom.kind: found nothing, expected \"vacuum\", \"rigid\", \"fluid\", "
-     "\"elastic\", \"grain-size\" or \"table\""},
+     "\"elastic\", \"grain-size\", \"table\" or \"layered\""},
     {"UnknownKind", "\"cw\"", "\"cv\"",
      "s.toml:17: pulse.kind: found \"cv\", expected \"cw\", \"lfm\", \"hfm\" or \"file\" (did you "
      "mean \"cw\"?)"},
