@@ -155,13 +155,14 @@ int validate_run(const ScenarioChoice& choice) {
 int validate_sonar(const ScenarioChoice& choice) {
   PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
                           read_budget(choice.path, choice.overrides));
+  const MemoryBudget memory = simulator.memory();  // before anything takes it
   simulator.judge_paths();
   const Scenario& scenario = simulator.scenario();
   print(emphasised(scenario.title.empty() ? scenario.path : scenario.title) + '\n');
   print(environment_text(scenario.environment, simulator.pulse().centre_frequency(),
                          scenario.wind_speed) +
         transect_text(simulator) + sonar_text(simulator) + size_text(simulator) +
-        memory_text(simulator.memory(), "a ping"));
+        memory_text(memory, "a ping"));
   for (const std::string& note : scenario.notes) print("warning: " + note + '\n');
   print(choice.path + ": good\n");
   return 0;

@@ -10,7 +10,6 @@
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
-#include "raytrace/stop.h"
 #include "raytrace/tracing/cell_hits.h"
 
 namespace asdic {
@@ -231,7 +230,8 @@ class BranchFollower {
 /// Of a layered ocean: along the branches of its fan.
 std::vector<CellPath> follow_branches(const EigenraySolver& solver, double source_depth,
                                       const GroundLevel& level, double spacing, double max_range,
-                                      double frequency, const PathLimits& limits) {
+                                      double frequency, const PathLimits& limits,
+                                      const StopPoint& stop) {
   const Environment& ocean = solver.environment();
   const double depth = !level.boundary                            ? level.depth
                        : *level.boundary == BoundaryKind::surface ? ocean.surface.depth
@@ -239,15 +239,18 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
   const BranchTable fan = solver.table(source_depth, depth, limits);
   std::vector<CellPath> found;
   BranchFollower follower(ocean, fan, level, spacing, max_range, frequency, found);
-  fan.for_each_stretch(0.0, max_range,
-                       [&](const MonotoneStretch& stretch) { follower.follow(stretch); });
+  fan.for_each_stretch(0.0, max_range, [&](const MonotoneStretch& stretch) {
+    stop();
+    follower.follow(stretch);
+  });
   return found;
 }
 
 /// Of any other: between neighbours of a fan of marched rays.
 std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
                                 const GroundLevel& level, double spacing, double max_range,
-                                double frequency, const PathLimits& limits) {
+                                double frequency, const PathLimits& limits, const StopPoint& stop) {
+  stop();
   const FanLimits fan{.lowest = -limits.max_launch_angle,
                       .highest = limits.max_launch_angle,
                       .max_surface_bounces = limits.max_surface_bounces,
@@ -341,7 +344,7 @@ PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
 }  // namespace
 
 /// Cells of very many paths get bundles of equal numbers of paths that follow each other in delay.
-void GroundPaths::bundle(double frequency) {
+void GroundPaths::bundle(double frequency, const StopPoint& stop) {
   std::size_t fullest = 0;
   for (std::size_t cell = 0; cell < cells(); ++cell)
     fullest = std::max(fullest, paths(cell).size());
@@ -350,6 +353,7 @@ void GroundPaths::bundle(double frequency) {
   for (std::size_t cell = 0; cell < cells(); ++cell) {
     const std::span<GroundPath> here(paths_.data() + first_[cell], first_[cell + 1] - first_[cell]);
     if (here.size() > bundled_above) {
+      stop();
       std::stable_sort(here.begin(), here.end(),
                        [](const GroundPath& a, const GroundPath& b) { return a.delay < b.delay; });
       const std::vector<double> power = powers(here, frequency);
@@ -367,9 +371,9 @@ void GroundPaths::bundle(double frequency) {
 
 GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                          const GroundLevel& level, double spacing, double max_range,
-                         double frequency, const PathLimits& limits) {
+                         double frequency, const PathLimits& limits, const StopPoint& stop) {
   const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
-      solver, source_depth, level, spacing, max_range, frequency, limits);
+      solver, source_depth, level, spacing, max_range, frequency, limits, stop);
   check_finite(found, source_depth);
   GroundPaths ground;
   ground.spacing_ = spacing;
@@ -382,7 +386,7 @@ GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
   ground.paths_.resize(found.size());
   std::vector<std::uint32_t> next(ground.first_.begin(), ground.first_.end());
   for (const CellPath& p : found) ground.paths_[next[p.cell]++] = p.path;
-  ground.bundle(frequency);
+  ground.bundle(frequency, stop);
   return ground;
 }
 

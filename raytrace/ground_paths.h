@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "raytrace/eigenrays.h"
+#include "raytrace/stop.h"
 
 namespace asdic {
 
@@ -79,8 +80,8 @@ class GroundPaths {
 
  private:
   friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&, double, double,
-                                  double, const PathLimits&);
-  void bundle(double frequency);
+                                  double, const PathLimits&, const StopPoint&);
+  void bundle(double frequency, const StopPoint& stop);
 
   double spacing_ = 0.0;
   std::vector<std::uint32_t> first_;  // [cells + 1]
@@ -99,6 +100,7 @@ class GroundPaths {
 /// max_range [m]   \param frequency  [Hz]
 [[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
                                        const GroundLevel& level, double spacing, double max_range,
-                                       double frequency, const PathLimits& limits);
+                                       double frequency, const PathLimits& limits,
+                                       const StopPoint& stop = {});
 
 }  // namespace asdic

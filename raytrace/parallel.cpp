@@ -1,6 +1,7 @@
 #include "raytrace/parallel.h"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task.h>
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
@@ -34,6 +35,13 @@ void in_parallel_by_worker(std::size_t count,
 
 void stop_point() {
   if (tbb::is_current_task_group_canceling()) throw Interrupted();
+}
+
+StopPoint::StopPoint() noexcept : group_(tbb::task::current_context()) {}
+
+void StopPoint::operator()() const {
+  auto* const group = static_cast<tbb::task_group_context*>(group_);
+  if (group != nullptr && group->is_group_execution_cancelled()) throw Interrupted();
 }
 
 void until_stopped(const std::stop_token& stop, const std::function<void()>& work) {

@@ -13,4 +13,15 @@ void until_stopped(const std::stop_token& stop, const std::function<void()>& wor
 /// off; else costs some nanoseconds. \throws Interrupted
 void stop_point();
 
+/// stop_point() of the place where it was made, for work that does not belong to it any more: TBB
+/// begins that of a collaborative_call_once() afresh, and nobody's calling off gets there.
+class StopPoint {
+ public:
+  StopPoint() noexcept;
+  void operator()() const;  ///< \throws Interrupted
+
+ private:
+  void* group_;  // tbb::task_group_context of the place; null: of none
+};
+
 }  // namespace asdic

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <string>
 
 #include "raytrace/parallel.h"
 
@@ -83,20 +84,38 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   auto entry = memory.find<Entry>(key);
   if (known != nullptr) *known = entry != nullptr;
   if (!entry) entry = memory.keep(key, std::make_shared<Entry>(), sizeof(Entry));
+  const StopPoint stop;
   tbb::collaborative_call_once(entry->traced, [&] {
-    entry->fan = trace(place, level, settings);
+    entry->fan = trace(place, level, settings, stop);
     entry->fan.identity = next_identity();
     memory.charge(key, bytes_of(entry->fan));
   });
   return {entry, &entry->fan};
 }
 
+MemoryNeed BoundaryFans::need(const Settings& settings) const {
+  // As they are found and as they are kept; then their ends.
+  constexpr double a_path = 2.0 * sizeof(GroundPath) + sizeof(PathEnds);
+  const PathLimits& limits = settings.limits;
+  const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
+  const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
+               cells = planes * std::ceil(settings.max_range / settings.spacing),
+               paths = 2.0 * (bounces + 1.0) * cells;
+  return {.where = "reverberation.ground_spacing",
+          .what = "paths of up to " + std::to_string(bounces) + " bounces to " +
+                  std::to_string(std::llround(cells)) + " cells of the ground",
+          .bytes = paths * a_path,
+          .remedy =
+              "a larger spacing, fewer bounces (propagation.max_surface_bounces, "
+              "max_bottom_bounces) or a shorter record"};
+}
+
 BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
-                                const Settings& settings) const {
+                                const Settings& settings, const StopPoint& stop) const {
   const auto ground = [&](const EigenraySolver& solver) {
-    return std::make_shared<const GroundPaths>(ground_paths(solver, place.z(), level,
-                                                            settings.spacing, settings.max_range,
-                                                            settings.frequency, settings.limits));
+    return std::make_shared<const GroundPaths>(
+        ground_paths(solver, place.z(), level, settings.spacing, settings.max_range,
+                     settings.frequency, settings.limits, stop));
   };
   const double speed = paths_.speed_at(place);
   if (paths_.layered()) {

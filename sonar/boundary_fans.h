@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "raytrace/ground_paths.h"
 #include "sonar/propagation_paths.h"
 
@@ -58,6 +59,10 @@ class BoundaryFans {
     double frequency = 1000.0;  ///< [Hz]
     PathLimits limits;
   };
+
+  /// What around() takes of memory for a place whose paths are not known yet: two of each bounce in
+  /// every cell, at most.
+  [[nodiscard]] MemoryNeed need(const Settings& settings) const;
   /// \param paths  must outlive this
   explicit BoundaryFans(const PropagationPaths& paths) : paths_(paths) {}
 
@@ -70,7 +75,7 @@ class BoundaryFans {
  private:
   struct Entry;
   [[nodiscard]] BoundaryFan trace(const Vec3& place, const GroundLevel& level,
-                                  const Settings& settings) const;
+                                  const Settings& settings, const StopPoint& stop) const;
 
   const PropagationPaths& paths_;
 };

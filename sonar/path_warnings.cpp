@@ -100,7 +100,8 @@ Bounces PingSimulator::judged_echoes(const Transmission& sent, int array) const 
 Bounces PingSimulator::judged_reverberation(const Transmission& sent, int array) const {
   const Emission emission = emit(sent);
   PingRecord record = blank_record(1, sent);
-  ReverberationContext context = reverberation_context(emission, array, record, {}, {}, nullptr);
+  MemoryBudget budget = budget_;
+  ReverberationContext context = reverberation_context(emission, array, record, {}, {}, &budget);
   context.judged = true;
   if (paths_->layered()) return reverberation_->bounces(context);
   // Over slopes: what the same bounces would leave out of the flat ocean of the transmitter's

@@ -185,6 +185,10 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
     fan.limits.max_delay = max_delay;
     fan.limits.home_slowness = home_slowness;
   }
+  constexpr double little = 1e6;  // [bytes] not worth a question
+  const bool one_place = paths_.layered() && ends.source.position.z() == ends.receiver.position.z();
+  if (const MemoryNeed a_fan = fans_.need(fan); context.budget != nullptr && a_fan.bytes > little)
+    for (int fans = one_place ? 1 : 2; fans > 0; --fans) context.budget->take(a_fan);
   const auto fan_around = [&](const Vec3& place) {
     bool known = false;
     auto paths_to_level = fans_.around(place, part.level, fan, &known);

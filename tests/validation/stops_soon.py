@@ -41,6 +41,8 @@ spacing = 0.2
 offset = [0.0, 0.0, -0.8]
 [noise]
 spectral_level_db = 50.0
+[reverberation]
+ground_spacing = 0.1
 [reverberation.bottom]
 kind = "lambert"
 mu_db = -27.0
