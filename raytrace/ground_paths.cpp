@@ -293,14 +293,21 @@ void check_finite(std::span<const CellPath> found, double source_depth) {
         "report it with the scenario");
 }
 
-/// Whether two paths interfere in the same way wherever a scatterer lies: one sent up and one down,
-/// they come within a period of each other, as from a source close to the surface and its image.
-bool are_twins(const GroundPath& a, const GroundPath& b, double frequency) {
-  return (a.launch_elevation > 0.0) != (b.launch_elevation > 0.0) && a.downward == b.downward &&
-         std::abs(a.delay - b.delay) * frequency < 1.0;
+/// Whether two paths come within a period of each other, the same way: their waves add up at once.
+bool come_together(const GroundPath& a, const GroundPath& b, double frequency) {
+  return a.downward == b.downward && std::abs(a.delay - b.delay) * frequency < 1.0;
 }
 
-/// The power of twins over the sum of their powers.
+/// Of paths that come together: one went up first and was reflected, as from a source close to the
+/// surface and its image. They interfere in the same way wherever a scatterer lies. The pair of a
+/// caustic, a quarter of a turn apart, does not: over its range it has the energy of both.
+bool are_images(const GroundPath& a, const GroundPath& b) {
+  const std::complex<double> against = a.amplitude * std::conj(b.amplitude);
+  return (a.launch_elevation > 0.0) != (b.launch_elevation > 0.0) &&
+         against.real() < -std::abs(against.imag());
+}
+
+/// The power of two paths together over the sum of their powers.
 double together(const GroundPath& a, const GroundPath& b, double frequency) {
   const double apart = std::norm(a.amplitude) + std::norm(b.amplitude);
   const std::complex<double> turned =
@@ -308,16 +315,26 @@ double together(const GroundPath& a, const GroundPath& b, double frequency) {
   return apart > 0.0 ? std::norm(a.amplitude + turned) / apart : 1.0;
 }
 
-/// What bundling takes for a path's power: each of twins has its share of what both are together.
-std::vector<double> powers(std::span<const GroundPath> paths, double frequency) {
+/// Of paths in the order of their delays: whether each comes together with the one before it.
+std::vector<bool> second_of_two(std::span<const GroundPath> paths, double frequency) {
+  std::vector<bool> second(paths.size(), false);
+  for (std::size_t i = 1; i < paths.size(); ++i)
+    second[i] = !second[i - 1] && come_together(paths[i - 1], paths[i], frequency);
+  return second;
+}
+
+/// What bundling takes for a path's power: each of two images has its share of what both are
+/// together.
+std::vector<double> powers(std::span<const GroundPath> paths, const std::vector<bool>& second,
+                           double frequency) {
   std::vector<double> power;
   power.reserve(paths.size());
   for (const GroundPath& p : paths) power.push_back(std::norm(p.amplitude));
-  for (std::size_t i = 0; i + 1 < paths.size(); ++i)
-    if (are_twins(paths[i], paths[i + 1], frequency)) {
-      const double share = together(paths[i], paths[i + 1], frequency);
+  for (std::size_t i = 1; i < paths.size(); ++i)
+    if (second[i] && are_images(paths[i - 1], paths[i])) {
+      const double share = together(paths[i - 1], paths[i], frequency);
+      power[i - 1] *= share;
       power[i] *= share;
-      power[++i] *= share;
     }
   return power;
 }
@@ -356,10 +373,15 @@ void GroundPaths::bundle(double frequency, const StopPoint& stop) {
       stop();
       std::stable_sort(here.begin(), here.end(),
                        [](const GroundPath& a, const GroundPath& b) { return a.delay < b.delay; });
-      const std::vector<double> power = powers(here, frequency);
+      const std::vector<bool> second = second_of_two(here, frequency);
+      const std::vector<double> power = powers(here, second, frequency);
+      // One of two that come together stands for both: out of two bundles, both would be heard.
+      const auto border = [&](std::size_t i) {
+        const std::size_t even = i * here.size() / most_bundles;
+        return even < here.size() && second[even] ? even + 1 : even;
+      };
       for (std::size_t i = 0; i < most_bundles; ++i) {
-        const std::size_t begin = i * here.size() / most_bundles,
-                          count = (i + 1) * here.size() / most_bundles - begin;
+        const std::size_t begin = border(i), count = border(i + 1) - begin;
         bundles_.push_back(bundle_of(here.subspan(begin, count),
                                      std::span(power).subspan(begin, count),
                                      static_cast<std::uint32_t>(begin)));

@@ -42,7 +42,7 @@ struct GroundPath {
 /// any law. docs/theory/reverberation.md, "Many paths"
 struct PathBundle {
   std::uint32_t first = 0, count = 0;  ///< among the paths of the cell
-  double power = 0.0;                  ///< of all: Σ|A|², twins coherent
+  double power = 0.0;                  ///< of all: Σ|A|², a path and its image coherent
   double alone = 1.0;  ///< Σ|A|⁴/(Σ|A|²)²: of the pairs within the bundle, those of a path with
                        ///< itself
 };
