@@ -158,6 +158,14 @@ class Reverberation:
     gap: str = ""
 
 
+DEFAULT_BOUNCES = Reverberation("default bounces", {},
+                                np.array([3.0, 4.0, 6.0, 8.0, 10.0, 14.0, 18.0]), 24)
+TWENTY_BOUNCES = Reverberation("20 bounces", {"propagation__max_bottom_bounces": 20,
+                                              "propagation__max_surface_bounces": 20,
+                                              "pings__recording_duration": 6.6},
+                               np.array([3.0, 4.0, 5.0, 6.0]), 16)
+
+
 def compare_reverberation(asdic, scenario, exact, runs, pulse, width=1.0, bound=0.5,
                           truth_name="truth"):
     """Window means of simulated reverberation against `exact(times)` [dB re 1 µPa²], worst time of

@@ -180,3 +180,9 @@ def numerov_green(k, omega, speed, step, depth, source, receivers, absorb):
         i = int(round(x / step))
         out.append(-2.0 * top[min(i, s)][0] * low[max(i, s)][0] / wronskian)
     return np.array(out)
+
+
+def windows(p, ranges, centres, half):
+    """TL of the mean intensity within half of each centre [dB]: p [..., ranges] → [..., centres]"""
+    return np.stack([-10 * np.log10((np.abs(p[..., np.abs(ranges - c) <= half]) ** 2).mean(axis=-1))
+                     for c in centres], axis=-1)

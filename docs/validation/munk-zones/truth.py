@@ -10,6 +10,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[1])]
 import truth_waves as waves  # noqa: E402
 
 SOURCE, DEEP, ABSORB = 1000.0, 5000.0, 3000.0
+HALF = 500.0    # of a window of ranges [m]
 
 
 def munk(z):
@@ -29,15 +30,8 @@ def pressure(frequency, ranges, receivers, step=1.0):
     return waves.integrate(green, k, dk, ranges)
 
 
-def windows(p, ranges, centres, half=500.0):
-    """TL of the mean intensity within half of each centre [dB]: p [receivers, ranges] → [receivers,
-    centres]"""
-    return np.array([[-10 * np.log10((np.abs(row[np.abs(ranges - c) <= half]) ** 2).mean())
-                      for c in centres] for row in p])
-
-
 if __name__ == "__main__":
     at = np.arange(34e3, 70.1e3, 2e3)
     r = np.concatenate([np.arange(c - 500.0, c + 501.0, 50.0) for c in at])
-    for row, z in zip(windows(pressure(50.0, r, [200.0, 800.0]), r, at), (200, 800)):
+    for row, z in zip(waves.windows(pressure(50.0, r, [200.0, 800.0]), r, at, HALF), (200, 800)):
         print(z, [f"{c / 1e3:.0f} km {t:.2f}" for c, t in zip(at, row)])

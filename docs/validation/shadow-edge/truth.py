@@ -11,6 +11,7 @@ import truth_waves as waves  # noqa: E402
 
 # dc/dz = −0.05 /s at the surface
 SPEED, SLOPE, SOURCE, RECEIVER = 1500.0, 0.1 / 1500.0, 25.0, 50.0
+HALF = 100.0    # of a window of ranges [m]
 
 
 def edge():
@@ -31,15 +32,9 @@ def pressure(frequency, ranges):
     return waves.integrate(green, k, dk, ranges)[0]
 
 
-def windows(p, ranges, centres, half=100.0):
-    """TL of the mean intensity within half of each centre [dB]"""
-    return np.array([-10 * np.log10((np.abs(p[np.abs(ranges - c) <= half]) ** 2).mean())
-                     for c in centres])
-
-
 if __name__ == "__main__":
     print(f"edge at {edge():.3f} m")
     for f in (500.0, 1000.0, 3500.0):
         r = np.arange(2050.0, 5651.0, 10.0)
         at = np.arange(2150.0, 5551.0, 300.0)
-        print(f, [f"{c:.0f} m {t:.2f}" for c, t in zip(at, windows(pressure(f, r), r, at))])
+        print(f, [f"{c:.0f} m {t:.2f}" for c, t in zip(at, waves.windows(pressure(f, r), r, at, HALF))])

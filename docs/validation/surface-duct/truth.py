@@ -12,6 +12,7 @@ import truth_waves as waves  # noqa: E402
 DEPTHS = np.array([0.0, 60.0, 160.0, 360.0, 1000.0, 5000.0])
 SPEEDS = np.array([1510.0, 1510.96, 1500.96, 1490.96, 1487.76, 1551.76])
 SOURCE, DEEP, ABSORB = 10.0, 500.0, 500.0
+HALF = 500.0    # of a window of ranges [m]
 # Below 360 m everything refracts down and comes back beyond 25 km: 500 m of it and a layer that
 # absorbs stand for the rest.
 
@@ -31,15 +32,8 @@ def pressure(frequency, ranges, receivers, steps=20):
     return waves.integrate(green, k, dk, ranges)
 
 
-def windows(p, ranges, centres, half=500.0):
-    """TL of the mean intensity within half of each centre [dB]: p [receivers, ranges] → [receivers,
-    centres]"""
-    return np.array([[-10 * np.log10((np.abs(row[np.abs(ranges - c) <= half]) ** 2).mean())
-                      for c in centres] for row in p])
-
-
 if __name__ == "__main__":
     at = np.array([5000.0, 10000.0, 20000.0])
     r = np.concatenate([np.arange(c - 500.0, c + 501.0, 20.0) for c in at])
     for f in (500.0, 1000.0):
-        print(f, np.round(windows(pressure(f, r, [40.0, 100.0, 150.0]), r, at), 2).tolist())
+        print(f, np.round(waves.windows(pressure(f, r, [40.0, 100.0, 150.0]), r, at, HALF), 2).tolist())
