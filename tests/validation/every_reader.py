@@ -417,9 +417,10 @@ def check_xarray(path, f, fault):
 
 
 def check_h5netcdf(path, f, fault):
+    """Names, types and dimensions; xarray's engine h5netcdf reads the numbers."""
     def walk(group):
         for variable in group.variables.values():
-            variable[...]
+            variable.dtype
             variable.dimensions
         for inner in group.groups.values():
             walk(inner)
@@ -431,7 +432,10 @@ def check_h5netcdf(path, f, fault):
 
 
 def check_ncdump(path, f, fault):
-    done = subprocess.run(["ncdump", path], capture_output=True, text=True, errors="replace")
+    """Large files as headers: xarray's engine netcdf4 reads the numbers by the same library."""
+    large = Path(path).stat().st_size > 500_000
+    done = subprocess.run(["ncdump", *(["-h"] if large else []), path], capture_output=True,
+                          text=True, errors="replace")
     if done.returncode != 0:
         fault(f"ncdump: exit {done.returncode}: {done.stderr.strip()[:200]}")
     if "phony_dim" in done.stdout:
