@@ -28,9 +28,10 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
   const Arrival* nearest = nullptr;
   double least = infinity;
   for (const Arrival& a : arrivals) {
-    if (a.kind != path.kind || a.surface_bounces != path.surface_bounces ||
-        a.bottom_bounces != path.bottom_bounces || a.upper_turns != path.upper_turns ||
-        a.lower_turns != path.lower_turns)
+    // Beside a caustic a ray stays what it is.
+    if ((a.kind == ArrivalKind::diffracted) != (path.kind == ArrivalKind::diffracted) ||
+        a.surface_bounces != path.surface_bounces || a.bottom_bounces != path.bottom_bounces ||
+        a.upper_turns != path.upper_turns || a.lower_turns != path.lower_turns)
       continue;
     const double turned = std::abs(a.launch_elevation - path.launch_elevation);
     const double changed =  // of ξ, over ξ; straight up and down there is none
@@ -40,7 +41,10 @@ const Arrival* same_path(const Arrivals& arrivals, const Arrival& path, bool lay
     // Without a turn r(ξ) of a history grows with ξ: there is one such path only.
     const bool only_one = layered && one_way && path.upper_turns + path.lower_turns == 0;
     if (!(turned < near || only_one || (layered && one_way && changed < near_level))) continue;
-    const double difference = layered ? changed + (one_way ? 0.0 : 1.0) : turned;
+    const bool other_of_pair = a.kind == ArrivalKind::caustic &&
+                               path.kind == ArrivalKind::caustic && a.caustics != path.caustics;
+    const double difference =
+        (layered ? changed + (one_way ? 0.0 : 1.0) : turned) + (other_of_pair ? 1.0 : 0.0);
     if (difference < least) {
       least = difference;
       nearest = &a;

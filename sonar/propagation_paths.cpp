@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/ocean/slice.h"
+#include "raytrace/waves/caustics.h"
 #include "raytrace/waves/diffraction.h"
 #include "sonar/followed_path.h"
 #include "sonar/geometry.h"
@@ -149,6 +150,7 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
   if (layered_) {
     Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
+      put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
       auto more =
           diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
       if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
@@ -182,9 +184,9 @@ Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& fr
       std::optional<Arrival> same;
       if (path.kind == ArrivalKind::diffracted)
         same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
-      else if (layered_)
+      else if (layered_ && path.kind == ArrivalKind::ray)
         same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
-      else
+      else if (!layered_)
         same = followed_path(*tracer, path, from.z(), to.z(), range);
       if (!same) return search(from, to, frequency, limits_around(known, limits));
       followed.push_back(std::move(*same));

@@ -1,0 +1,244 @@
+#include "raytrace/waves/caustics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/units.h"
+#include "raytrace/layered/branch_table.h"
+#include "raytrace/waves/airy.h"
+
+namespace asdic {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double lit = 8.0, dark = -4.0;   // of Airy's argument ζ: where a caustic shows
+constexpr double surely_two = 1.0;         // from which on the pair itself tells all
+constexpr double faintest_caustic = 1e-3;  // of 1/r
+constexpr std::array sample_places = {0.35, 1.0, 2.0, 3.2};  // ζ, about
+
+/// A ray that touches a caustic at the receiver's depth: there its family's range has an extremum.
+struct Fold {
+  double range;   ///< of the extremum [m]
+  double side;    ///< +1 if the family goes on beyond it, −1 if short of it
+  double scale;   ///< range of one unit of Airy's argument [m]
+  double launch;  ///< elevation [rad]
+  int surface_bounces, bottom_bounces, vertices;
+};
+
+/// Two rays of one family, the second of which has touched the caustic. Indices of arrivals.
+struct RayPair {
+  std::size_t early, late;
+};
+
+/// The field about a caustic, p = √π·(direct·Ai(−ζ) + slope·Ai′(−ζ))·e^{−iωτ}: all smooth functions
+/// of the place.
+struct UniformPair {
+  double zeta, delay;
+  Complex direct, slope;
+  double launch, arrival, slowness;  ///< means of the two
+
+  /// Of the earlier ray (sign −1) or the later (+1): their sum is the field. \param at  delay that
+  /// the amplitude belongs to [s]
+  [[nodiscard]] Complex part(double sign, double omega, double at) const {
+    const Airy w = airy(-zeta);
+    const Complex turned(0.0, zeta > 0.0 ? sign : 0.0);
+    return 0.5 * std::sqrt(pi) *
+           (direct * (w.ai + turned * w.bi) + slope * (w.ai_slope + turned * w.bi_slope)) *
+           std::polar(1.0, -omega * (delay - at));
+  }
+};
+
+/// ζ of two delays: they differ by (4/3)ζ^{3/2}/ω.
+double argument_of(double omega, double apart) { return std::pow(0.75 * omega * apart, 2.0 / 3.0); }
+
+/// Where there are two rays.
+UniformPair uniform_of(const Arrival& early, const Arrival& late, double omega) {
+  const double zeta = argument_of(omega, late.delay - early.delay), root = std::pow(zeta, 0.25);
+  const double delay = 0.5 * (early.delay + late.delay);
+  const Complex a = early.amplitude * std::polar(1.0, -0.25 * pi),
+                b = late.amplitude * std::polar(1.0, 0.25 * pi);
+  return {.zeta = zeta,
+          .delay = delay,
+          .direct = Complex(0.0, 1.0) * root * (a - b),
+          .slope = -(a + b) / root,
+          .launch = 0.5 * (early.launch_elevation + late.launch_elevation),
+          .arrival = 0.5 * (early.arrival_elevation + late.arrival_elevation),
+          .slowness = 0.5 * (early.horizontal_slowness + late.horizontal_slowness)};
+}
+
+std::vector<Fold> folds_near(const BranchTable& table, double range, double reach, double omega) {
+  std::vector<Fold> folds;
+  table.for_each_stretch(
+      std::max(0.0, range - reach), range + reach, [&](const MonotoneStretch& stretch) {
+        if (!stretch.caustic_begin || std::abs(stretch.range_begin - range) > reach) return;
+        const FanInterval& interval = *stretch.interval;
+        const RayParameter ray(interval.reference_speed, stretch.sigma_begin);
+        const double step = 1e-3 * (stretch.sigma_end - stretch.sigma_begin);
+        const double bend =
+            table.evaluate(interval, stretch.branch, stretch.sigma_begin + step).slope / step;
+        // The phase ωτ is cubic about the fold: ω(ξ′x·δr − r″ξ′x³/6).
+        const double turn = std::abs(ray.slowness_per_sigma());
+        const double scale =
+            std::cbrt(0.5 * std::abs(bend) * turn) / (std::pow(omega, 2.0 / 3.0) * turn);
+        if (!std::isfinite(scale) || !(scale > 0.0)) return;
+        const double sine = std::sqrt(std::max(0.0, ray.sine2(table.column().source_speed())));
+        const double launch = std::asin(std::min(1.0, sine));
+        const Branch& branch = stretch.branch;
+        folds.push_back({.range = stretch.range_begin,
+                         .side = stretch.range_end > stretch.range_begin ? 1.0 : -1.0,
+                         .scale = scale,
+                         .launch = branch.starts_up ? launch : -launch,
+                         .surface_bounces = interval.turns_above ? 0 : branch.top_vertices(),
+                         .bottom_bounces = interval.turns_below ? 0 : branch.bottom_vertices(),
+                         .vertices = branch.vertices});
+      });
+  return folds;
+}
+
+int vertices_of(const Arrival& a) {
+  return a.surface_bounces + a.bottom_bounces + a.upper_turns + a.lower_turns;
+}
+
+/// The rays on either side of a fold's. Through the horizontal a family goes on with one turn more.
+std::optional<RayPair> pair_about(const Fold& fold, const Arrivals& rays) {
+  std::size_t above = rays.size(), below = rays.size();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Arrival& a = rays[i];
+    if (a.surface_bounces != fold.surface_bounces || a.bottom_bounces != fold.bottom_bounces ||
+        std::abs(vertices_of(a) - fold.vertices) > 1)
+      continue;
+    if (a.launch_elevation > fold.launch) {
+      if (above == rays.size() || a.launch_elevation < rays[above].launch_elevation) above = i;
+    } else if (below == rays.size() || a.launch_elevation > rays[below].launch_elevation) {
+      below = i;
+    }
+  }
+  if (above == rays.size() || below == rays.size()) return std::nullopt;
+  RayPair pair{above, below};
+  if (rays[pair.early].delay > rays[pair.late].delay) std::swap(pair.early, pair.late);
+  if (rays[pair.late].caustics != rays[pair.early].caustics + 1) return std::nullopt;
+  return pair;
+}
+
+/// Whether two rays are as far apart as the fold's shape has them.
+bool of_the_fold(double zeta, double expected) {
+  return zeta > 0.5 * expected && zeta < 2.0 * expected;
+}
+
+/// The field about a fold, out of pairs of rays on its lit side.
+class FoldField {
+ public:
+  FoldField(const EigenraySolver& solver, double source_depth, double receiver_depth,
+            const Fold& fold, double frequency, const PathLimits& limits)
+      : fold_(fold), omega_(2.0 * pi * frequency) {
+    for (double share = 1.0; share > 0.2 && !known_; share *= 0.5) {
+      std::array<double, sample_places.size()> ranges{};
+      for (std::size_t j = 0; j < ranges.size(); ++j) {
+        away_[j] = share * sample_places[j] * fold.scale;
+        ranges[j] = fold.range + fold.side * away_[j];
+      }
+      if (!(*std::min_element(ranges.begin(), ranges.end()) > 0.0)) continue;
+      const std::vector<Arrivals> rays =
+          solver.find(source_depth, receiver_depth, ranges, frequency, limits);
+      known_ = true;
+      for (std::size_t j = 0; j < ranges.size() && known_; ++j) {
+        const auto pair = pair_about(fold, rays[j]);
+        known_ = pair.has_value();
+        if (!known_) break;
+        const Arrival &early = rays[j][pair->early], &late = rays[j][pair->late];
+        if (j == 0) nearest_ = {early, late};
+        pairs_[j] = uniform_of(early, late, omega_);
+        known_ = of_the_fold(pairs_[j].zeta, away_[j] / fold.scale);
+      }
+    }
+  }
+
+  [[nodiscard]] bool known() const noexcept { return known_; }
+  [[nodiscard]] const std::array<Arrival, 2>& nearest() const noexcept { return nearest_; }
+
+  /// Cubics through the samples. \param away  into the lit side [m]
+  [[nodiscard]] UniformPair at(double away) const {
+    UniformPair sum{};
+    for (std::size_t j = 0; j < away_.size(); ++j) {
+      double weight = 1.0;
+      for (std::size_t k = 0; k < away_.size(); ++k)
+        if (k != j) weight *= (away - away_[k]) / (away_[j] - away_[k]);
+      const UniformPair& here = pairs_[j];
+      sum.zeta += weight * here.zeta / away_[j] * away;
+      sum.delay += weight * here.delay;
+      sum.direct += weight * here.direct;
+      sum.slope += weight * here.slope;
+      sum.launch += weight * here.launch;
+      sum.arrival += weight * here.arrival;
+      sum.slowness += weight * here.slowness;
+    }
+    return sum;
+  }
+
+ private:
+  Fold fold_;
+  double omega_;
+  bool known_ = false;
+  std::array<double, sample_places.size()> away_{};
+  std::array<UniformPair, sample_places.size()> pairs_{};
+  std::array<Arrival, 2> nearest_;
+};
+
+/// Gives a ray the amplitude of one of two at a caustic. \param times  the ray's own
+void make_wave(Arrival& ray, Complex times) {
+  ray.kind = ArrivalKind::caustic;
+  ray.amplitude *= times;
+  ray.spreading *= std::abs(times);
+  ray.scattered *= std::norm(times);
+}
+
+}  // namespace
+
+void put_caustics(const EigenraySolver& solver, double source_depth, double receiver_depth,
+                  double range, double frequency, const PathLimits& limits, Arrivals& found) {
+  const double omega = 2.0 * pi * frequency;
+  const double wavelength = solver.environment().water.at(receiver_depth).c / frequency;
+  const double reach = std::min(0.5 * range, 30.0 * std::cbrt(wavelength * wavelength * range));
+  if (!(reach > 0.0)) return;
+  const BranchTable table = solver.table(source_depth, receiver_depth, limits);
+  const Arrivals rays = found;
+  for (const Fold& fold : folds_near(table, range, reach, omega)) {
+    const double away = fold.side * (range - fold.range), about = away / fold.scale;
+    if (about > lit || about < dark) continue;
+    const auto pair = pair_about(fold, rays);
+    const auto replace = [&](const UniformPair& field) {
+      for (const auto& [index, sign] : {std::pair{pair->early, -1.0}, {pair->late, 1.0}})
+        make_wave(found[index], field.part(sign, omega, rays[index].delay) / rays[index].amplitude);
+    };
+    if (about > surely_two) {
+      if (!pair) continue;
+      const UniformPair field = uniform_of(rays[pair->early], rays[pair->late], omega);
+      if (of_the_fold(field.zeta, about)) replace(field);
+      continue;
+    }
+    const FoldField about_fold(solver, source_depth, receiver_depth, fold, frequency, limits);
+    if (!about_fold.known()) continue;
+    const UniformPair field = about_fold.at(away);
+    if (pair && away > 0.0) {
+      replace(field);
+      continue;
+    }
+    const double apart = field.zeta > 0.0 ? 2.0 / 3.0 * std::pow(field.zeta, 1.5) / omega : 0.0;
+    for (const auto& [index, sign] : {std::pair{0, -1.0}, {1, 1.0}}) {
+      Arrival path = about_fold.nearest()[std::size_t(index)];
+      path.delay = field.delay + sign * apart;
+      make_wave(path, field.part(sign, omega, path.delay) / path.amplitude);
+      path.launch_elevation = field.launch;
+      path.arrival_elevation = field.arrival;
+      path.horizontal_slowness = field.slowness;
+      if (std::abs(path.amplitude) > faintest_caustic / range) found.push_back(std::move(path));
+    }
+  }
+}
+
+}  // namespace asdic
