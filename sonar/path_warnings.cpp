@@ -1,4 +1,5 @@
-// What the numbers of bounces leave out of a scenario's sound (PingSimulator::judge_paths).
+// What bounds on paths and one amplitude for a band leave out of a scenario's sound
+// (PingSimulator::judge_paths).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include "raytrace/warnings/warnings.h"
 #include "sonar/ping.h"
 #include "sonar/sampling.h"
+#include "sonar/wave_warnings.h"
 
 namespace asdic {
 namespace {
@@ -114,16 +116,18 @@ Bounces PingSimulator::judged_reverberation(const Transmission& sent, int array)
 
 std::vector<std::string> PingSimulator::judge_paths() {
   Bounces echoes, reverberated;
+  std::vector<std::string> found;
   for (int t = 0; t < static_cast<int>(scenario_.transmitters.size()); ++t) {
     const auto first = std::find_if(transmissions_.begin(), transmissions_.end(),
                                     [&](const Transmission& s) { return s.transmitter == t; });
     if (first == transmissions_.end()) continue;
     for (int a = 0; a < static_cast<int>(scenario_.arrays.size()); ++a) {
       echoes.include(judged_echoes(*first, a));
+      for (std::string& text : wave_warnings(scenario_, *paths_, *first, pulse(t), a))
+        add_warnings({std::move(text)}, found);
       if (scenario_.reverberation.enabled) reverberated.include(judged_reverberation(*first, a));
     }
   }
-  std::vector<std::string> found;
   add_warnings({line_of(scenario_.propagation, echoes, "an echo"),
                 line_of(scenario_.propagation, reverberated, "reverberation")},
                found);

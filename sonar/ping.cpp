@@ -278,8 +278,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     const std::vector<EchoPath> sparse = sparse_returns(context, record);
     record.timings.eigenrays += watch.lap();
     Baseband of_array = scenario_.propagation.wide_band
-                            ? wide_band_sound(context, emission.projector, sparse, phones,
-                                              record.recording, max_doppler_)
+                            ? wide_band_sound(context, emission.projector, sparse, record.legs,
+                                              phones, record.recording, max_doppler_)
                             : narrow_band_sound(synthesizer, sparse, phones);
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();

@@ -3,12 +3,62 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "raytrace/ocean/absorption.h"
 #include "sonar/transmitter.h"
+#include "sonar/wave_response.h"
 
 namespace asdic {
+namespace {
+
+/// What an echo's legs that are no rays do across the band.
+struct PathWaves {
+  double ray_length = 0.0;  ///< of the legs that are rays [m]
+  std::vector<std::shared_ptr<const SampledResponse>> legs;
+
+  [[nodiscard]] std::complex<double> at(double frequency) const {
+    std::complex<double> product = 1.0;
+    for (const auto& leg : legs) product *= leg->at(frequency);
+    return product;
+  }
+  /// Of the polynomial that the product is.
+  [[nodiscard]] std::size_t degree() const {
+    std::size_t sum = 0;
+    for (const auto& leg : legs) sum += leg->values.size() - 1;
+    return sum;
+  }
+};
+
+/// Of every path; a leg that several share is computed once. \return [paths]
+std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const EchoPath> paths,
+                                std::span<const Leg> legs, double centre, double half_band) {
+  std::vector<std::pair<ExactKey, std::shared_ptr<const SampledResponse>>> known;
+  std::vector<PathWaves> all;
+  for (const EchoPath& path : paths) {
+    PathWaves& waves =
+        all.emplace_back(PathWaves{.ray_length = path.colour.path_length, .legs = {}});
+    for (const WaveLeg& leg : wave_legs(context, path, legs)) {
+      waves.ray_length -= leg.path.path_length;
+      ExactKey key = context.paths.key(Kept::legs);
+      key.add_all(leg.from, leg.to, leg.path.delay);
+      add_path(key, leg.path);
+      auto found = std::find_if(known.begin(), known.end(),
+                                [&](const auto& one) { return one.first == key; });
+      if (found == known.end())
+        found = known.insert(known.end(),
+                             {std::move(key), std::make_shared<SampledResponse>(wave_response(
+                                                  context.paths, leg, centre, half_band))});
+      waves.legs.push_back(found->second);
+    }
+  }
+  return all;
+}
+
+}  // namespace
 
 Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoPath> paths,
                            std::span<const Vec3> phones) {
@@ -25,8 +75,9 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
 }
 
 Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                         std::span<const EchoPath> paths, std::span<const Vec3> phones,
-                         const Recording& recording, double max_doppler) {
+                         std::span<const EchoPath> paths, std::span<const Leg> legs,
+                         std::span<const Vec3> phones, const Recording& recording,
+                         double max_doppler) {
   const Pulse& pulse = *context.pulse;
   const double centre = pulse.centre_frequency();
   const Absorption& water = context.paths.along_transect().environment().absorption;
@@ -48,7 +99,11 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   const double lowest = std::max(1.0, centre - half_band);
   const double nepers =
       0.5 * longest * std::abs(nepers_per_metre(centre + half_band) - nepers_per_metre(lowest));
-  const BandNodes band = band_nodes(centre, half_band, nepers, pattern_at(centre).longest_delay());
+  BandNodes band = band_nodes(centre, half_band, nepers, pattern_at(centre).longest_delay());
+  const std::vector<PathWaves> waves = waves_of(context, paths, legs, centre, half_band);
+  std::size_t of_waves = 0;
+  for (const PathWaves& path : waves) of_waves = std::max(of_waves, path.degree());
+  if (of_waves > 0) band = chebyshev_nodes(centre, half_band, band.frequencies.size() + of_waves);
 
   Baseband all;
   std::vector<EchoPath> coloured(paths.begin(), paths.end());
@@ -56,10 +111,12 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
     const double f = std::max(1.0, band.frequencies[k]);
     const BeamPattern pattern = pattern_at(f);
     const double more = nepers_per_metre(f) - nepers_per_metre(centre);
-    for (EchoPath& path : coloured)
-      path.heard.amplitude = path.colour.without_pattern *
-                             pattern.towards(path.colour.bearing, path.colour.elevation) *
-                             std::exp(-more * path.colour.path_length);
+    for (std::size_t i = 0; i < coloured.size(); ++i) {
+      const PathColour& colour = coloured[i].colour;
+      coloured[i].heard.amplitude = colour.without_pattern *
+                                    pattern.towards(colour.bearing, colour.elevation) *
+                                    std::exp(-more * waves[i].ray_length) * waves[i].at(f);
+    }
     const Synthesizer part(pulse, recording, max_doppler,
                            [&](double beside) { return band.basis(k, centre + beside); });
     Baseband sound = narrow_band_sound(part, coloured, phones);

@@ -15,9 +15,10 @@ namespace asdic {
 /// The same with the water's absorption and the transmitter's pattern at every frequency of the
 /// pulse: K pulses, each passed through one of Lagrange's polynomials over the band, each with the
 /// amplitudes of its own frequency. K times the cost. Source: docs/theory/synthesis.md, "Across the
-/// band". \param projector  as it pings
+/// band". Legs that are no rays have the amplitude of waves at up to `most_wave_frequencies`.
+/// \param projector  as it pings   \param legs  that the paths belong to
 [[nodiscard]] Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
-                                       std::span<const EchoPath> paths,
+                                       std::span<const EchoPath> paths, std::span<const Leg> legs,
                                        std::span<const Vec3> phones, const Recording& recording,
                                        double max_doppler);
 

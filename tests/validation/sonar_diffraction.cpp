@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "raytrace/propagation.h"
 #include "raytrace/waves/diffraction.h"
 #include "sonar/ping.h"
 #include "sonar/warnings/warnings.h"
+#include "sonar/wave_response.h"
 #include "support/csv.h"
 #include "support/two_platforms.h"
 
@@ -115,6 +117,143 @@ TEST(Diffraction, ATargetUnderWayIsFollowed) {
   const double mach = 5.0 / 1510.9;
   EXPECT_NEAR(echo.heard.doppler, (1.0 + mach) / (1.0 - mach), 2e-6);
   EXPECT_NEAR(echo.struck, (10000.0 - 5.0 * echo.struck) / 1510.9, 0.01);
+}
+
+/// ∫x·e^{−i2πft}dt of real samples.
+std::complex<double> spectrum_at(std::span<const float> x, double rate, double start, double f) {
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += double(x[i]) * std::polar(1.0, -2.0 * pi * f * (start + double(i) / rate)) / rate;
+  return sum;
+}
+
+/// The whole field of the wave equation at one place, by its own integral over wavenumbers.
+std::complex<double> whole_field(const Scenario& s, const Vec3& from, const Vec3& to, double f) {
+  PropagationCase c;
+  c.environment = s.environment;
+  c.frequency = f;
+  c.source_depths = {from.z()};
+  c.solver = FieldSolver::waves;
+  c.receivers = {.depths = {to.z()}, .ranges = {(to - from).head<2>().norm()}};
+  return std::complex<double>(run(c).field.front());
+}
+
+// 400 to 600 Hz: the way through the layer's bottom lets high notes through less. The echo's
+// spectrum over that of the pulse is the square of the field, frequency by frequency: 0.1 dB and
+// 0.02 rad from 430 to 570 Hz, where narrow is off by decibels and says so.
+TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
+  for (const bool wide : {true, false}) {
+    Scenario s = under_the_layer(500.0);
+    s.pulse.start_frequency = 400.0;
+    s.pulse.end_frequency = 600.0;
+    s.propagation.wide_band = wide;
+    s.noise.spectral_level_db = -200.0;
+    PingSimulator simulator(s);
+    const PingRecord record = simulator.sound(1);
+    const Pulse pulse(s.pulse);
+    std::vector<float> sent;
+    for (int i = 0; i < 3200; ++i)  // 0.4 s
+      sent.push_back(float(std::sqrt(2.0) * pulse.analytic(i / 8000.0).real()));
+    const std::span<const float> heard(record.pressure.data(), record.recording.samples);
+    const Vec3 place = s.targets[0].track.start.position,
+               ship = s.platforms[0].track.start.position;
+    double worst = 0.0, turned = 0.0;
+    for (double f = 430.0; f <= 571.0; f += 20.0) {
+      const std::complex<double> through = spectrum_at(heard, 8000.0, 13.0, f) /
+                                           spectrum_at(sent, 8000.0, 0.0, f) /
+                                           (amplitude_from_db(200.0 + 10.0) * 1e-6);
+      const std::complex<double> truth =
+          whole_field(s, ship, place, f) * whole_field(s, place, ship, f);
+      worst = std::max(worst, std::abs(db_from_amplitude(std::abs(through / truth))));
+      turned = std::max(turned, std::abs(std::arg(through / truth)));
+    }
+    std::vector<std::string> told = simulator.judge_paths();
+    if (wide) {
+      EXPECT_LT(worst, 0.1);
+      EXPECT_LT(turned, 0.02);
+      EXPECT_THAT(told, testing::Not(testing::Contains(testing::HasSubstr("propagation.band"))));
+    } else {
+      EXPECT_GT(worst, 1.0);
+      EXPECT_THAT(told, testing::Contains(testing::HasSubstr("propagation.band: what reaches "
+                                                             "target \"boat\" where no ray does")));
+    }
+  }
+}
+
+// Where it changes faster than frequencies are computed, the number says so.
+TEST(Diffraction, AResponseIsSampledAsOftenAsItTurns) {
+  const auto of_delay = [](double seconds) {
+    return sampled_response(500.0, 100.0, 1e-3, 33, [&](double f) {
+      return 1.0 + std::polar(0.5, 2.0 * pi * f * seconds);
+    });
+  };
+  const SampledResponse slow = of_delay(0.002), fast = of_delay(0.1);
+  EXPECT_LE(slow.values.size(), 9U);
+  EXPECT_LT(slow.error, 1e-3);
+  EXPECT_NEAR(std::abs(slow.at(437.0) - (1.0 + std::polar(0.5, 2.0 * pi * 0.874))), 0.0, 1e-3);
+  EXPECT_EQ(fast.values.size(), 33U);
+  EXPECT_GT(fast.error, 0.03);
+}
+
+// An echo off a target at a caustic: no jump as it moves through it by centimetres, and none is
+// lost beyond it.
+TEST(Diffraction, ATargetMovesThroughACaustic) {
+  Scenario s = under_the_layer(500.0);
+  s.environment = {.water = SoundSpeedProfile::munk(),
+                   .surface = {.depth = 0.0, .material = nothing_back},
+                   .bottom = {.depth = 5000.0, .material = nothing_back}};
+  s.propagation.max_surface_bounces = 0;
+  s.pings.recording_start = 50.0;
+  s.pings.recording_duration = 10.0;
+  for (Platform& p : s.platforms) p.track.start.position.z() = 1000.0;
+  const auto level = [&](double range) {
+    s.targets[0].track.start.position = {range, 0.0, 700.0};
+    const PingRecord record = PingSimulator(s).levels(1);
+    EXPECT_EQ(record.echoes.size(), 4U) << range;
+    return record.summary.at(0).echo_peak_db;
+  };
+  double edge = 41000.0, lit = 42000.0;
+  while (lit - edge > 0.01) {
+    const double middle = 0.5 * (edge + lit);
+    const bool none = EigenraySolver(s.environment)
+                          .find(1000.0, 700.0, middle, 500.0, limits_of(s.propagation))
+                          .empty();
+    (none ? edge : lit) = middle;
+  }
+  double before = level(edge - 1.0);
+  for (double r = edge - 0.75; r < edge + 1.1; r += 0.25) {
+    const double now = level(r);
+    EXPECT_NEAR(now, before, 0.05) << r - edge;
+    before = now;
+  }
+  EXPECT_NEAR(before,
+              200.0 + 10.0 +
+                  2.0 * db_from_amplitude(std::abs(
+                            whole_field(s, {0, 0, 1000.0}, {edge + 1.0, 0, 700.0}, 500.0))),
+              1.0);
+}
+
+// Water that bends sound down: from 3 km on the surface is reached off a poor bottom alone, and
+// around the shadow's edge as much comes by diffraction, which reverberation leaves out.
+TEST(Diffraction, ReverberationOfDarkGroundIsWarnedOf) {
+  Scenario s = under_the_layer(500.0);
+  const std::vector<double> depth = {0.0, 1500.0}, speed = {1500.0, 1430.0};
+  s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  s.environment.bottom = {.depth = 1500.0,
+                          .material = ReflectionTable{{0.0, 0.5 * pi}, {0.02, 0.02}, {0.0, 0.0}}};
+  s.platforms[0].track.start.position.z() = 50.0;
+  s.targets.clear();
+  s.reverberation.enabled = true;
+  s.pings.recording_start = 0.0;
+  s.pings.recording_duration = 8.0;
+  const auto told = [](const Scenario& of) { return PingSimulator(of).judge_paths(); };
+  const auto dark = testing::Contains(testing::HasSubstr("no ray reaches the surface without"));
+  EXPECT_THAT(told(s), dark);
+  s.propagation.diffraction = false;
+  EXPECT_THAT(told(s), testing::Not(dark));
+  s.propagation.diffraction = true;
+  s.environment.water = SoundSpeedProfile::isovelocity(1500.0);
+  EXPECT_THAT(told(s), testing::Not(dark));
 }
 
 // What is left out is told before anything runs.
