@@ -66,13 +66,14 @@ Leg to_receiver(const PingSimulator& simulator, const ArrivalsOptions& options) 
   const double from = in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0);
   const double to = in_water("--receiver-depth", *options.receiver_depth, *options.range);
   const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
-  const Bounces followed =
-      enough_bounces(simulator.paths(), scenario.propagation, {platform.x(), platform.y(), from},
-                     {platform.x() + *options.range * std::sin(bearing),
-                      platform.y() + *options.range * std::cos(bearing), to},
-                     frequency, end_of_record(scenario));
-  leg.arrivals =
-      plane->find(from, to, *options.range, frequency, limits_of(scenario.propagation, followed));
+  const Vec3 source(platform.x(), platform.y(), from),
+      receiver(platform.x() + *options.range * std::sin(bearing),
+               platform.y() + *options.range * std::cos(bearing), to);
+  const PathLimits limits =
+      limits_of(scenario.propagation, enough_bounces(paths, scenario.propagation, source, receiver,
+                                                     frequency, end_of_record(scenario)));
+  leg.arrivals = paths.layered() ? paths.find(source, receiver, frequency, limits)
+                                 : plane->find(from, to, *options.range, frequency, limits);
   return leg;
 }
 

@@ -50,6 +50,18 @@ std::string bounces_of(const Arrival& arrival) {
   return text;
 }
 
+const char* name_of(ArrivalKind kind) {
+  switch (kind) {
+    case ArrivalKind::ray:
+      return "ray";
+    case ArrivalKind::diffracted:
+      return "diffracted";
+    case ArrivalKind::caustic:
+      return "caustic";
+  }
+  return "";
+}
+
 ordered_json json_of(const Arrivals& arrivals) {
   ordered_json paths = ordered_json::array();
   for (const Arrival& a : arrivals) {
@@ -59,7 +71,8 @@ ordered_json json_of(const Arrivals& arrivals) {
           {{"boundary", bounce.boundary == BoundaryKind::surface ? "surface" : "bottom"},
            {"grazing_deg", degrees(bounce.grazing)},
            {"range", bounce.range}});
-    paths.push_back({{"launch_elevation_deg", degrees(a.launch_elevation)},
+    paths.push_back({{"kind", name_of(a.kind)},
+                     {"launch_elevation_deg", degrees(a.launch_elevation)},
                      {"arrival_elevation_deg", degrees(a.arrival_elevation)},
                      {"delay", a.delay},
                      {"level_db", db_from_amplitude(std::abs(a.amplitude))},
@@ -85,6 +98,7 @@ ordered_json json_of(const Arrivals& arrivals) {
 std::string paths_table(const Arrivals& arrivals) {
   if (arrivals.empty()) return {};
   Table table({{"path"},
+               {"kind"},
                {"launch", "deg"},
                {"arrival", "deg"},
                {"delay", "s"},
@@ -99,7 +113,7 @@ std::string paths_table(const Arrivals& arrivals) {
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     const Arrival& a = arrivals[i];
     table.row(
-        {std::to_string(i), number(degrees(a.launch_elevation), 3),
+        {std::to_string(i), name_of(a.kind), number(degrees(a.launch_elevation), 3),
          number(degrees(a.arrival_elevation), 3), number(a.delay, 5),
          number(db_from_amplitude(std::abs(a.amplitude)), 2),
          number(degrees(std::arg(a.amplitude)), 1), number(-db_from_amplitude(a.spreading), 2),

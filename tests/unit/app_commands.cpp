@@ -114,6 +114,34 @@ TEST_F(Commands, ArrivalsAtAnyDepthAndRange) {
   EXPECT_EQ(free, target["legs"][0]["arrivals"]);  // where the target is
 }
 
+// Below a surface duct: by waves, or off the bottom. Munk's first caustic: one of two.
+TEST_F(Commands, ArrivalsTellOfWhatKindTheyAre) {
+  const std::string duct =
+      "arrivals small.toml --source-depth 10m --receiver-depth 100m --range 10km --frequency 500 "
+      "--set 'environment.sound_speed={kind=\"table\", depth=[0, 60, 160, 1000], "
+      "speed=[1510, 1510.96, 1500.96, 1490], interpolation=\"c-linear\"}'";
+  const auto run = asdic(folder, duct + " --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  int diffracted = 0, rays = 0;
+  for (const json& path : json::parse(run.out)["legs"][0]["arrivals"]) {
+    (path["kind"] == "diffracted" ? diffracted : rays) += 1;
+    if (path["kind"] == "diffracted") {
+      EXPECT_NEAR(path["level_db"].get<double>(), -88.0, 1.0);
+    }
+  }
+  EXPECT_EQ(diffracted, 1);
+  EXPECT_GT(rays, 0);
+  EXPECT_THAT(asdic(folder, duct).out, testing::HasSubstr("diffracted"));
+
+  const auto caustic = asdic(folder,
+                             "arrivals small.toml --source-depth 1000m --receiver-depth 700m "
+                             "--range 41300m --frequency 100 --set "
+                             "'environment.sound_speed={kind=\"munk\"}' --set "
+                             "environment.bottom.depth=5000 --json");
+  ASSERT_EQ(caustic.status, 0) << caustic.err;
+  EXPECT_THAT(caustic.out, testing::HasSubstr("\"kind\": \"caustic\""));
+}
+
 // One truth: the tables of `asdic arrivals -o` are those that `asdic ping` writes.
 TEST_F(Commands, ArrivalsFileIsThePingFilesTable) {
   ASSERT_EQ(asdic(folder, "ping small.toml -q --pings 1").status, 0);
