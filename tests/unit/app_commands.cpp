@@ -123,7 +123,8 @@ TEST_F(Commands, ArrivalsTellOfWhatKindTheyAre) {
   const auto run = asdic(folder, duct + " --json");
   ASSERT_EQ(run.status, 0) << run.err;
   int diffracted = 0, rays = 0;
-  for (const json& path : json::parse(run.out)["legs"][0]["arrivals"]) {
+  const json all = json::parse(run.out);
+  for (const json& path : all["legs"][0]["arrivals"]) {
     (path["kind"] == "diffracted" ? diffracted : rays) += 1;
     if (path["kind"] == "diffracted") {
       EXPECT_NEAR(path["level_db"].get<double>(), -88.0, 1.0);

@@ -243,15 +243,17 @@ double echo_level(Scenario s, double frequency, double range, double depth, doub
   return s.transmitters[0].source_level_db + strength + db_from_power(energy / sent);
 }
 
-// Paths in phase against waves: 1 dB. Of the summer profile the leg from the target home alone, by
-// energy: the other has a caustic within the ±50 m, where rays have no bound.
+// Paths in phase against waves: 1 dB. With the summer profile a caustic lies within the ±50 m: at
+// 3.5 kHz its pair of paths has the waves' amplitude. Below that the sea floor's phase displaces
+// every bounce, which rays do not know: the leg from the target home alone, by energy.
 TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
   const Csv table("physics-reference/echo_guide.csv");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double frequency = table["f_Hz"][row], range = table["range_m"][row],
                  depth = table["zt_m"][row];
+    const Scenario of_guide = table.text("guide")[row] == "summer" ? summer() : guide();
     if (table.text("guide")[row] == "summer") {
-      const Scenario s = summer();
+      const Scenario& s = of_guide;
       const PropagationPaths paths(s.environment, s.transect);
       const Vec3 from(0.0, 0.0, depth), to(0.0, range, 50.0);
       double energy = 0.0;
@@ -262,8 +264,9 @@ TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
         energy += std::norm(a.amplitude);
       EXPECT_NEAR(-db_from_power(energy), table["TL_receiver_incoherent_modes_dB"][row], 0.5)
           << frequency << " Hz";
-    } else {
-      EXPECT_NEAR(echo_level(guide(), frequency, range, depth, table["TS_dB"][row]),
+    }
+    if (table.text("guide")[row] != "summer" || frequency > 3000.0) {
+      EXPECT_NEAR(echo_level(of_guide, frequency, range, depth, table["TS_dB"][row]),
                   table["EL_wave_dB"][row], 1.0)
           << frequency << " Hz";
     }
