@@ -18,6 +18,8 @@ namespace {
 struct AcrossThePulse {
   double change_db = 0.0;  ///< from the centre to either edge, the most
   double error = 0.0;      ///< of what is computed across it, over the greatest
+  double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
+  double caustics = 0.0;   ///< the same, of unmended_caustics()
 };
 
 AcrossThePulse across_the_pulse(const PropagationPaths& paths, const WaveLeg& leg,
@@ -34,15 +36,16 @@ AcrossThePulse across_the_pulse(const PropagationPaths& paths, const WaveLeg& le
 
 /// "" where the amplitudes of the centre will do, or those across the band are known.
 std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
-  char text[300] = "";
+  char text[300] = "", how_far[32] = "gone";
   constexpr double tolerable_change_db = 1.0, tolerable_error = 0.03;
+  if (std::isfinite(waves.change_db))
+    std::snprintf(how_far, sizeof how_far, "up to %.2g dB off", waves.change_db);
   if (waves.change_db > tolerable_change_db)
     std::snprintf(
         text, sizeof text,
         "propagation.band: what reaches %.60s where no ray does, or at a caustic, has the "
-        "amplitude of the pulse's centre; at the edges of its band it is up to %.2g dB "
-        "off; \"wide\" follows it",
-        whose.c_str(), waves.change_db);
+        "amplitude of the pulse's centre; at the edges of its band it is %s; \"wide\" follows it",
+        whose.c_str(), how_far);
   if (waves.error > tolerable_error)
     std::snprintf(text, sizeof text,
                   "propagation.band: the level of what reaches %.60s where no ray does changes "
@@ -50,6 +53,93 @@ std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
                   "greatest amplitude",
                   whose.c_str(), int(most_wave_frequencies), waves.error);
   return text;
+}
+
+/// \param share  of the energy, of turned_at_corners()
+std::string line_of_corners(double share, const std::string& whose) {
+  constexpr double tolerable_share = 0.25;
+  if (!(share > tolerable_share)) return "";
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "propagation: %.0f %% of the sound to or from %.60s turns so often beside corners "
+                "of the sound-speed profile that rays have its phase wrong by a radian; how paths "
+                "interfere is open",
+                100.0 * share, whose.c_str());
+  return text;
+}
+
+/// Share of the energy of pairs of rays that meet, ζ < 1, and have the amplitude of rays still:
+/// what is no simple fold (raytrace/waves/caustics.h).
+double unmended_caustics(const Arrivals& paths, double frequency) {
+  const double together = 4.0 / 3.0 / (2.0 * pi * frequency);  // of delays, at ζ = 1
+  double all = 0.0, meet = 0.0;
+  for (const Arrival& path : paths) {
+    const double energy = std::norm(path.amplitude);
+    all += energy;
+    const auto met = [&](const Arrival& other) {
+      return other.kind == ArrivalKind::ray && std::abs(other.caustics - path.caustics) == 1 &&
+             other.surface_bounces == path.surface_bounces &&
+             other.bottom_bounces == path.bottom_bounces &&
+             std::abs(other.delay - path.delay) < together &&
+             std::abs(other.launch_elevation - path.launch_elevation) < radians(3.0);
+    };
+    if (path.kind == ArrivalKind::ray && std::any_of(paths.begin(), paths.end(), met))
+      meet += energy;
+  }
+  return all > 0.0 ? meet / all : 0.0;
+}
+
+std::string line_of_caustics(double share, const std::string& whose) {
+  constexpr double tolerable_share = 0.25;
+  if (!(share > tolerable_share)) return "";
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "propagation: %.0f %% of the sound to or from %.60s comes by rays that meet at a "
+                "caustic which is no simple fold: they are too loud",
+                100.0 * share, whose.c_str());
+  return text;
+}
+
+/// A depth at which the gradient of the speed jumps.
+struct Corner {
+  double speed, steepest, jump;  // [m/s], gradients [1/s]
+};
+
+std::vector<Corner> corners_of(const SoundSpeedProfile& water) {
+  std::vector<Corner> corners;
+  for (std::size_t i = 1; i < water.intervals(); ++i) {
+    const double depth = water.law(i).z0;
+    const double above = water.at(depth, i - 1).dc_dz, below = water.at(depth, i).dc_dz;
+    corners.push_back({.speed = water.at(depth).c,
+                       .steepest = std::max(std::abs(above), std::abs(below)),
+                       .jump = std::abs(above - below)});
+  }
+  return corners;
+}
+
+/// Share of the energy that comes by rays which turn so often, so near a corner of the profile,
+/// that their phase is a radian off: a corner h from the turn sends back some ¼(h/L)^{−3/2} of it,
+/// L = (c/2k²|c′|)^{1/3} Airy's length, times its share of the gradient.
+double turned_at_corners(const Environment& ocean, const Arrivals& paths, double frequency) {
+  const std::vector<Corner> corners = corners_of(ocean.water);
+  double all = 0.0, off = 0.0;
+  for (const Arrival& path : paths) {
+    const double energy = std::norm(path.amplitude);
+    const int turns = path.upper_turns + path.lower_turns;
+    all += energy;
+    if (turns == 0) continue;
+    double phase = 0.0;
+    for (const Corner& corner : corners) {
+      if (!(corner.jump > 0.0)) continue;
+      const double k = 2.0 * pi * frequency / corner.speed;
+      const double length = std::cbrt(corner.speed / (2.0 * k * k * corner.steepest));
+      const double away =
+          std::abs(1.0 / path.horizontal_slowness - corner.speed) / corner.steepest / length;
+      phase = std::max(phase, corner.jump / corner.steepest * 0.25 * std::pow(away, -1.5));
+    }
+    if (turns * phase > 1.0) off += energy;
+  }
+  return all > 0.0 ? off / all : 0.0;
 }
 
 /// What reaches a place from a source.
@@ -136,9 +226,15 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
     const PathLimits limits = limits_of(
         scenario.propagation,
         enough_bounces(paths, scenario.propagation, from, to, centre, end_of_record(scenario)));
+    constexpr double matters = 0.01;  // of the leg's energy
+    const Arrivals arrivals = paths.find(from, to, centre, limits);
+    double energy = 0.0;
+    for (const Arrival& path : arrivals) energy += std::norm(path.amplitude);
     AcrossThePulse worst;
-    for (const Arrival& path : paths.find(from, to, centre, limits)) {
-      if (path.kind == ArrivalKind::ray) continue;
+    worst.caustics = unmended_caustics(arrivals, centre);
+    worst.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
+    for (const Arrival& path : arrivals) {
+      if (path.kind == ArrivalKind::ray || std::norm(path.amplitude) < matters * energy) continue;
       const AcrossThePulse one =
           across_the_pulse(paths, {.from = from, .to = to, .path = path, .limits = limits}, heard,
                            scenario.propagation.wide_band);
@@ -152,7 +248,10 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
   for (const Target& target : scenario.targets) {
     const Vec3 place = target.track.at(sent.time).position;
     const std::string name = "target \"" + target.name + "\"";
-    add_warnings({line_of(judged(source, place), name), line_of(judged(place, receiver), name)},
+    const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
+    add_warnings({line_of(there, name), line_of(home, name),
+                  line_of_corners(std::max(there.corners, home.corners), name),
+                  line_of_caustics(std::max(there.caustics, home.caustics), name)},
                  found);
   }
   const bool apart = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].platform !=

@@ -161,12 +161,29 @@ class FoldField {
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] const std::array<Arrival, 2>& nearest() const noexcept { return nearest_; }
 
-  /// Cubics through the samples. \param away  into the lit side [m]
-  [[nodiscard]] UniformPair at(double away) const {
+  /// Nothing where cubics do not tell it: a parabola without the furthest sample is further from
+  /// them than a share of the caustic's own field. \param away  into the lit side [m]
+  [[nodiscard]] std::optional<UniformPair> at(double away) const {
+    constexpr double tolerance = 0.05, greatest_airy = 0.5357;
+    const UniformPair cubic = through(away_.size(), away),
+                      parabola = through(away_.size() - 1, away);
+    const auto field = [&](const UniformPair& pair) {
+      return pair.part(-1.0, omega_, cubic.delay) + pair.part(1.0, omega_, cubic.delay);
+    };
+    const double peak = std::sqrt(pi) * greatest_airy * std::abs(cubic.direct);
+    const double about = away / fold_.scale;
+    if (!(std::abs(field(cubic) - field(parabola)) < tolerance * peak)) return std::nullopt;
+    if (about < -surely_two && !of_the_fold(-cubic.zeta, -about)) return std::nullopt;
+    return cubic;
+  }
+
+ private:
+  /// Polynomials through the nearest of the samples.
+  [[nodiscard]] UniformPair through(std::size_t count, double away) const {
     UniformPair sum{};
-    for (std::size_t j = 0; j < away_.size(); ++j) {
+    for (std::size_t j = 0; j < count; ++j) {
       double weight = 1.0;
-      for (std::size_t k = 0; k < away_.size(); ++k)
+      for (std::size_t k = 0; k < count; ++k)
         if (k != j) weight *= (away - away_[k]) / (away_[j] - away_[k]);
       const UniformPair& here = pairs_[j];
       sum.zeta += weight * here.zeta / away_[j] * away;
@@ -180,7 +197,6 @@ class FoldField {
     return sum;
   }
 
- private:
   Fold fold_;
   double omega_;
   bool known_ = false;
@@ -223,7 +239,9 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
     }
     const FoldField about_fold(solver, source_depth, receiver_depth, fold, frequency, limits);
     if (!about_fold.known()) continue;
-    const UniformPair field = about_fold.at(away);
+    const auto there = about_fold.at(away);
+    if (!there) continue;
+    const UniformPair& field = *there;
     if (pair && away > 0.0) {
       replace(field);
       continue;

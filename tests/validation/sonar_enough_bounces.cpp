@@ -244,8 +244,8 @@ double echo_level(Scenario s, double frequency, double range, double depth, doub
 }
 
 // Paths in phase against waves: 1 dB. With the summer profile a caustic lies within the ±50 m: at
-// 3.5 kHz its pair of paths has the waves' amplitude. Below that the sea floor's phase displaces
-// every bounce, which rays do not know: the leg from the target home alone, by energy.
+// 3.5 kHz its pair of paths has the waves' amplitude. Below that rays turn too close to a corner of
+// the profile for a ray's phase: the leg from the target home alone, by energy.
 TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
   const Csv table("physics-reference/echo_guide.csv");
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -271,6 +271,42 @@ TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
           << frequency << " Hz";
     }
   }
+}
+
+/// Whether the paths of an echo from 10 km are warned of in these words.
+bool warned(Scenario s, double frequency, const std::string& words) {
+  s.reverberation.enabled = false;
+  s.pulse.frequency = frequency;
+  s.pings.sample_rate = 40000.0;
+  s.targets = {{.name = "boat", .track = {.start = {.position = {10000.0, 0.0, 60.0}}}}};
+  bool found = false;
+  for (const std::string& line : PingSimulator(s).judge_paths())
+    found = found || line.find(words) != std::string::npos;
+  return found;
+}
+
+// Where rays turn too close to a corner of the profile the run says so: echoes of the summer guide
+// are 7 and 12 dB off at 250 Hz and 1 kHz. Far above that, and without corners, it does not.
+TEST(EnoughBounces, TurnsBesideCornersAreWarnedOf) {
+  const std::string words = "turns so often beside corners";
+  EXPECT_TRUE(warned(summer(), 250.0, words));
+  EXPECT_TRUE(warned(summer(), 1000.0, words));
+  EXPECT_FALSE(warned(summer(), 14000.0, words));
+  EXPECT_FALSE(warned(guide(), 1000.0, words));
+}
+
+// A smooth thermocline has two caustics in one place at 10 km, whose rays stay as loud as they are:
+// 60 m to 50 m is 2 dB loud over ±50 m at 3.5 kHz.
+TEST(EnoughBounces, CausticsThatAreNoFoldsAreWarnedOf) {
+  Scenario s = summer();
+  std::vector<double> depth, speed;
+  for (double z = 0.0; z <= 100.0; z += 2.0) {
+    depth.push_back(z);
+    speed.push_back(1510.0 - 20.0 * std::tanh((z - 30.0) / 25.0));
+  }
+  s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::spline);
+  EXPECT_TRUE(warned(s, 3500.0, "no simple fold"));
+  EXPECT_FALSE(warned(summer(), 3500.0, "no simple fold"));
 }
 
 }  // namespace
