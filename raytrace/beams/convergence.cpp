@@ -56,21 +56,41 @@ RowsLeftOut rows_without_limit(const ReceiverGrid& grid, const LevelRays& level,
   return rows;
 }
 
-/// |ΔTL| that a bound allows [dB], ∞ where it is as large as the field; of the cells where field or
-/// bound is above the floor.
-std::vector<double> unsure_db(const std::vector<std::complex<double>>& field,
-                              const std::vector<double>& bound, bool coherent,
-                              const RowsLeftOut& rows = {}) {
-  const double faintest = faintest_of(field), factor = coherent ? 20.0 : 10.0;
-  std::vector<double> unsure;
-  unsure.reserve(field.size());
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    const double p = std::abs(field[i]), x = coherent ? p : p * p;
-    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest || rows.hold(i))
+/// A bound over the pressure (intensity if not coherent) that it is of, ∞ where there is none; of
+/// the cells of `columns` looked at where field or bound is above the floor.
+std::vector<double> shares_of_bound(const std::vector<std::complex<double>>& field,
+                                    std::size_t columns, const std::vector<double>& bound,
+                                    const ColumnSample& looked_at, bool coherent,
+                                    const RowsLeftOut& rows = {}) {
+  const double faintest = faintest_of(field);
+  const std::size_t count = looked_at.count(columns);
+  std::vector<double> shares;
+  shares.reserve(bound.size());
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    const std::size_t receiver = i / count * columns + looked_at.column(i % count);
+    const double p = std::abs(field[receiver]), x = coherent ? p : p * p;
+    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest || rows.hold(receiver))
       continue;
-    unsure.push_back(bound[i] < x ? -factor * std::log10(1.0 - bound[i] / x) : infinity);
+    shares.push_back(x > 0.0 ? bound[i] / x : infinity);
   }
-  return unsure;
+  return shares;
+}
+
+/// |ΔTL| that a bound of this share of the field allows [dB], ∞ where it is as large.
+double db_of_share(double share, bool coherent) noexcept {
+  return share < 1.0 ? -(coherent ? 20.0 : 10.0) * std::log10(1.0 - share) : infinity;
+}
+
+/// The share that allows so much.
+double share_of_db(double db, bool coherent) noexcept {
+  return 1.0 - std::pow(10.0, -db / (coherent ? 20.0 : 10.0));
+}
+
+/// The bound is looked at in no fewer columns than these.
+constexpr std::size_t fewest_columns = 40;
+
+ColumnSample columns_looked_at(const ReceiverGrid& grid) noexcept {
+  return {.every = std::max<std::size_t>(1, grid.ranges.size() / fewest_columns)};
 }
 
 /// Root mean square over depth (mean intensity if not coherent) of each column.
@@ -107,6 +127,17 @@ std::string note_of(const LevelRays& level, double source_depth) {
 /// beams as narrow as that would no longer share a receiver among them, but all reach it or none.
 constexpr double finest_tube = 1e-5;
 
+/// How many times as many beams to take next where the bound is `excess` times what is wanted. It
+/// falls with the number or a little faster, in a fan divided where the error is (`graded`) faster
+/// the more often it is divided: 2 times at most. An even fan grows 4 times where it is far off,
+/// and where even so `most` beams will be too few, these are taken at once.
+double growth(double excess, bool graded, std::size_t count, std::size_t most) noexcept {
+  constexpr std::size_t enough_to_tell = 1000;
+  const double to_most = static_cast<double>(most) / static_cast<double>(count);
+  if (!graded && count >= enough_to_tell && excess > 4.0 * to_most) return to_most;
+  return std::clamp(1.05 * excess, 1.25, !graded && excess > 8.0 ? 4.0 : 2.0);
+}
+
 /// Until the bound is what is wanted.
 ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& field_of,
                              const LevelRays& level_rays, double source_depth, bool circle,
@@ -116,27 +147,32 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   BeamFan fan = even_fan(beams.lowest, beams.highest, static_cast<int>(first));
   const ReceiverGrid& grid = run_case.receivers;
   const RowsLeftOut left_out = rows_without_limit(grid, level_rays, source_depth);
+  const ColumnSample looked_at = columns_looked_at(grid);
+  const double wanted_share = share_of_db(wanted_bound_db, coherent);
   const double reach = std::max({std::abs(grid.ranges.front()), std::abs(grid.ranges.back()), 1.0});
   const FinestTubes finest{.width = finest_tube / reach, .level = level_rays.angle};
   std::vector<double> level;
   while (true) {
     const std::size_t count = fan.elevation.size();
     FanField pass = field_of(fan, {.bound = true,
+                                   .looked_at = looked_at,
                                    .level = level,
                                    .first_left_out = left_out.first,
                                    .last_left_out = left_out.last});
-    std::vector<double> unsure = unsure_db(pass.field, pass.bound, coherent, left_out);
+    std::vector<double> shares =
+        shares_of_bound(pass.field, grid.ranges.size(), pass.bound, looked_at, coherent, left_out);
+    const double share = quantile(shares, 0.95);
     ConvergedField answer{.field = std::move(pass.field),
                           .beams = count,
-                          .error_db = quantile(unsure, 0.95),
+                          .error_db = db_of_share(share, coherent),
                           .bounded = true};
     if (answer.error_db <= wanted_bound_db) return answer;
     if (count >= most) {
-      const auto sure = std::count_if(unsure.begin(), unsure.end(),
-                                      [](double db) { return db <= wanted_bound_db; });
+      const auto sure = std::count_if(shares.begin(), shares.end(),
+                                      [&](double of_cell) { return of_cell <= wanted_share; });
       answer.note = std::to_string(count) + " beams leave the field sure to " +
                     decimals(wanted_bound_db) + " dB at " +
-                    percent(static_cast<double>(sure) / static_cast<double>(unsure.size())) +
+                    percent(static_cast<double>(sure) / static_cast<double>(shares.size())) +
                     " of the receivers" +
                     (std::isfinite(answer.error_db)
                          ? ", to " + decimals(answer.error_db) + " dB at 95 %"
@@ -144,11 +180,11 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
       return answer;
     }
     level = column_levels(answer.field, run_case.receivers.ranges.size(), coherent);
-    // The bound falls with the number or a little faster.
-    const double factor = std::clamp(1.05 * answer.error_db / wanted_bound_db, 1.25, 2.0);
-    const auto next = std::min(static_cast<std::size_t>(factor * static_cast<double>(count)), most);
-    if (beams.kind == BeamKind::hat && !circle)
-      fan = graded_fan(fan, pass.tube_share, next, finest);
+    const bool graded = beams.kind == BeamKind::hat && !circle;
+    const double factor = growth(share / wanted_share, graded, count, most);
+    auto next = static_cast<std::size_t>(factor * static_cast<double>(count));
+    if (1.1 * static_cast<double>(next) > static_cast<double>(most)) next = most;
+    if (graded) fan = graded_fan(fan, pass.tube_share, next, finest);
     if (fan.elevation.size() <= count)  // Gaussians, or no tube that stands out
       fan = even_fan(beams.lowest, beams.highest, static_cast<int>(std::max(next, count + 1)));
   }
@@ -158,8 +194,8 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
 
 double bound_db(const std::vector<std::complex<double>>& field, const std::vector<double>& bound,
                 bool coherent, double share) {
-  std::vector<double> unsure = unsure_db(field, bound, coherent);
-  return quantile(unsure, share);
+  std::vector<double> shares = shares_of_bound(field, field.size(), bound, {}, coherent);
+  return db_of_share(quantile(shares, share), coherent);
 }
 
 double level_difference_db(const std::vector<std::complex<double>>& a,

@@ -13,6 +13,26 @@ void Crossings::resize(std::size_t n) {
     array->resize(n);
 }
 
+void pick_columns(const Crossings& from, std::size_t first, std::size_t every, Crossings& out) {
+  const std::size_t n = from.size();
+  out.source_speed = from.source_speed;
+  out.resize(n);
+  std::size_t picked = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t column = from.column[i];
+    if (column < first || (column - first) % every != 0) continue;
+    out.column[picked] = static_cast<std::uint32_t>((column - first) / every);
+    out.depth[picked] = from.depth[i];
+    out.cosine[picked] = from.cosine[i], out.sine[picked] = from.sine[i];
+    out.speed[picked] = from.speed[i], out.time[picked] = from.time[i];
+    out.q[picked] = from.q[i], out.dq_ds[picked] = from.dq_ds[i];
+    out.level[picked] = from.level[i], out.phase[picked] = from.phase[i];
+    out.mirror[picked] = from.mirror[i];
+    ++picked;
+  }
+  out.resize(picked);
+}
+
 void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out) {
   out.resize(0);
   out.source_speed = ray.source_speed;

@@ -25,6 +25,9 @@ struct Crossings {
   void resize(std::size_t n);
 };
 
+/// Those with every n-th column from `first` on, which are columns 0, 1, 2, … then.
+void pick_columns(const Crossings& from, std::size_t first, std::size_t every, Crossings& out);
+
 /// The crossings of a traced ray.
 void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out);
 

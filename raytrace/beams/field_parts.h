@@ -25,10 +25,11 @@ struct FieldWork {
   BeamSetting setting;
   TraceLimits limits;
   const FieldCheck& also;
-  std::vector<double> level;        // [ranges] of TubeError
+  std::vector<double> level;        // [columns looked at] of TubeError
   std::vector<double>& tube_share;  // [beams − 1]
   double* end_share;                // [2] of the first and the last ray
   const BoundaryRows& boundary_rows;
+  const BoundaryRows& boundary_rows_looked_at;  // of those columns alone
 
   [[nodiscard]] BeamLaunch launch(std::size_t i, double source_speed) const {
     const double elevation = fan.elevation[i];
@@ -117,8 +118,9 @@ class FastPart {
     setting.spacing *= 2.0;
     if (work.also.half) sum_.emplace_back(setting, grid.depths, memory.subspan(one));
     if (work.also.bound)
-      tubes_.emplace(work.setting, grid.depths, grid.ranges.size(), work.also.first_left_out,
-                     work.also.last_left_out, &work.boundary_rows);
+      tubes_.emplace(work.setting, grid.depths, work.also.looked_at.count(grid.ranges.size()),
+                     work.also.first_left_out, work.also.last_left_out,
+                     &work.boundary_rows_looked_at);
   }
   /// Numbers of memory for the sums.
   [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {
@@ -135,7 +137,7 @@ class FastPart {
     const BeamLaunch launch = cross(i, here_);
     for (std::size_t h = 0; h < sum_.size(); ++h) {
       if (h == 1 && i % 2 != 0) continue;
-      sum_[h].add(launch, here_.crossings, walls_);
+      sum_[h].add(launch, crossings_, walls_);
     }
     if (work_.also.bound && i > 0)
       work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
@@ -154,6 +156,7 @@ class FastPart {
   void absorb(const FastPart& other) {
     for (std::size_t h = 0; h < sum_.size(); ++h) sum_[h].absorb(other.sum_[h]);
   }
+  /// \param column  of those looked at
   [[nodiscard]] double bound_at(std::size_t column, std::size_t row) const {
     return tubes_->at(column, row);
   }
@@ -162,16 +165,21 @@ class FastPart {
   }
 
  private:
-  BeamLaunch cross(std::size_t i, RayAtColumns& out) {
+  /// Follows ray i to the columns, and to those looked at too if the bound is asked for.
+  BeamLaunch cross(std::size_t i, RayAtColumns& looked_at) {
     const double elevation = work_.fan.elevation[i];
-    if (layered_ == nullptr || !layered_->find(elevation, workspace_, out.crossings)) {
-      MarchedCrossings marched(out.crossings);
-      out.crossings.source_speed =
+    if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
+      MarchedCrossings marched(crossings_);
+      crossings_.source_speed =
           work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
                                   elevation, work_.limits, marched);
     }
-    const BeamLaunch launch = work_.launch(i, out.crossings.source_speed);
-    if (work_.also.bound) out.foretell(work_.setting, launch);
+    const BeamLaunch launch = work_.launch(i, crossings_.source_speed);
+    if (work_.also.bound) {
+      const ColumnSample& sample = work_.also.looked_at;
+      pick_columns(crossings_, sample.first(), sample.every, looked_at.crossings);
+      looked_at.foretell(work_.setting, launch);
+    }
     return launch;
   }
 
@@ -179,7 +187,8 @@ class FastPart {
   const LayeredCrossings* layered_;
   const BoundaryRows* walls_;
   LayeredCrossings::Workspace workspace_;
-  RayAtColumns here_, before_;
+  Crossings crossings_;                              // of the ray in hand
+  RayAtColumns here_, before_;                       // at the columns looked at
   std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_
   std::vector<ColumnSum> sum_;
   std::optional<TubeError> tubes_;

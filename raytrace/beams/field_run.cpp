@@ -136,14 +136,16 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   if constexpr (requires(Part part) { part.bound_at(0, 0); }) {
     if (work.also.bound) {
       for (auto& part : parts) part->finish();
-      result.bound.resize(grid.size());
-      for (std::size_t j = 0; j < columns; ++j) {
-        double scale = field_scale(work.setting, grid.ranges[j]);
+      const ColumnSample& sample = work.also.looked_at;
+      const std::size_t looked_at = sample.count(columns);
+      result.bound.resize(rows * looked_at);
+      for (std::size_t j = 0; j < looked_at; ++j) {
+        double scale = field_scale(work.setting, grid.ranges[sample.column(j)]);
         if (!work.setting.coherent) scale *= scale;
         for (std::size_t k = 0; k < rows; ++k) {
           double sum = 0.0;
           for (const auto& part : parts) sum += part->bound_at(j, k);
-          result.bound[k * columns + j] = scale * sum;
+          result.bound[k * looked_at + j] = scale * sum;
         }
       }
     }
@@ -156,18 +158,29 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
 std::vector<double> tube_level(const PropagationCase& run_case, const FieldCheck& also) {
   const ReceiverGrid& grid = run_case.receivers;
   const bool coherent = run_case.field == FieldKind::coherent;
-  std::vector<double> level(also.bound ? grid.ranges.size() : 0);
+  std::vector<double> level(also.bound ? also.looked_at.count(grid.ranges.size()) : 0);
   const double depth = std::max(1.0, grid.depths.back() - grid.depths.front());
   const double power = (run_case.beams.highest - run_case.beams.lowest) / depth;
   for (std::size_t j = 0; j < level.size(); ++j) {
     level[j] = coherent ? std::sqrt(power) : power;
     if (also.level.empty()) continue;
-    const double scale =
-        field_scale({.point_source = run_case.beams.source == SourceKind::point}, grid.ranges[j]);
-    if (scale > 0.0 && also.level[j] > 0.0)
-      level[j] = also.level[j] / (coherent ? scale : scale * scale);
+    const std::size_t column = also.looked_at.column(j);
+    const double scale = field_scale({.point_source = run_case.beams.source == SourceKind::point},
+                                     grid.ranges[column]);
+    if (scale > 0.0 && also.level[column] > 0.0)
+      level[j] = also.level[column] / (coherent ? scale : scale * scale);
   }
   return level;
+}
+
+/// The columns that the bound is of, if these are not all of the grid.
+std::optional<ReceiverGrid> grid_looked_at(const ReceiverGrid& grid, const FieldCheck& also) {
+  if (!also.bound || also.looked_at.every == 1) return std::nullopt;
+  ReceiverGrid fewer = grid;
+  fewer.ranges.resize(also.looked_at.count(grid.ranges.size()));
+  for (std::size_t j = 0; j < fewer.ranges.size(); ++j)
+    fewer.ranges[j] = grid.ranges[also.looked_at.column(j)];
+  return fewer;
 }
 
 }  // namespace
@@ -184,6 +197,11 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
   double end_share[2] = {0.0, 0.0};
   const BoundaryRows boundary_rows(run_case.environment, run_case.frequency, run_case.receivers,
                                    run_case.field == FieldKind::coherent);
+  const std::optional<ReceiverGrid> fewer = grid_looked_at(run_case.receivers, also);
+  const std::optional<BoundaryRows> fewer_rows =
+      fewer ? std::optional<BoundaryRows>(std::in_place, run_case.environment, run_case.frequency,
+                                          *fewer, run_case.field == FieldKind::coherent)
+            : std::nullopt;
   const FieldWork work{run_case,
                        tracer,
                        source_depth,
@@ -195,7 +213,8 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
                        tube_level(run_case, also),
                        tube_share,
                        end_share,
-                       boundary_rows};
+                       boundary_rows,
+                       fewer_rows ? *fewer_rows : boundary_rows};
   const std::size_t cells = run_case.receivers.size();
   const bool fast = method == FieldMethod::fast && has_error_bound(run_case);
   // A packet of beams costs as much as a share of the grid: fewer parts for fewer beams.

@@ -31,16 +31,29 @@ struct FanField {
   std::vector<std::complex<double>> field;  ///< [rows × ranges], range fastest; a root of intensity
                                             ///< if it is not coherent
   std::vector<std::complex<double>>
-      half;                        ///< the same of beams 0, 2, 4, …, twice as wide, if asked for
-  std::vector<double> bound;       ///< [rows × ranges] majorant of the error of `field`; of its
-                                   ///< square if it is not coherent
+      half;                   ///< the same of beams 0, 2, 4, …, twice as wide, if asked for
+  std::vector<double> bound;  ///< [rows × columns looked at] majorant of the error of `field`; of
+                              ///< its square if it is not coherent
   std::vector<double> tube_share;  ///< [beams − 1] of each ray tube in it (TubeError::add)
+};
+
+/// Columns of a grid that stand for all of them, evenly spread.
+struct ColumnSample {
+  std::size_t every = 1;
+
+  [[nodiscard]] std::size_t first() const noexcept { return every / 2; }
+  [[nodiscard]] std::size_t count(std::size_t columns) const noexcept {
+    return columns > first() ? (columns - first() - 1) / every + 1 : 0;
+  }
+  /// The i-th of them. \param i  below count()
+  [[nodiscard]] std::size_t column(std::size_t i) const noexcept { return first() + i * every; }
 };
 
 /// What is to be known of a field besides itself.
 struct FieldCheck {
-  bool half = false;   ///< every second beam of it (an odd number of beams)
-  bool bound = false;  ///< its error bound; hat and Gaussian beams, Cartesian, on a grid
+  bool half = false;            ///< every second beam of it (an odd number of beams)
+  bool bound = false;           ///< its error bound; hat and Gaussian beams, Cartesian, on a grid
+  ColumnSample looked_at = {};  ///< the bound's columns
   std::span<const double>
       level;  ///< [ranges] the pressure that an error is held against (intensity
               ///< if not coherent); empty: that of the fan spread over depth

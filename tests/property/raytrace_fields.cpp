@@ -181,6 +181,60 @@ Held held(const PropagationCase& run_case, const BeamFan& fan, const BeamFan& de
           beyond / double(truth.size())};
 }
 
+// Of some columns only, the bound is what it is there of all of them.
+TEST(ErrorBound, IsTheSameOfFewerColumns) {
+  for (unsigned seed = 1; seed <= 8; ++seed)
+    for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian}) {
+      PropagationCase run_case = random_channel(seed);
+      run_case.beams.kind = kind;
+      const RayTracer tracer(run_case.environment, run_case.frequency);
+      const BeamFan fan = even_fan(run_case.beams.lowest, run_case.beams.highest, 201);
+      const std::size_t columns = run_case.receivers.ranges.size();
+      const auto field = [&](std::size_t every) {
+        return field_of_fan(run_case, tracer, run_case.source_depths[0], fan, {}, FieldMethod::fast,
+                            {.bound = true, .looked_at = {.every = every}});
+      };
+      const FanField all = field(1);
+      for (const std::size_t every : {2, 3, 7, 60}) {
+        SCOPED_TRACE(testing::Message() << seed << ' ' << int(kind) << ' ' << every);
+        const ColumnSample sample{.every = every};
+        const FanField some = field(every);
+        EXPECT_EQ(some.field, all.field);
+        const std::size_t count = sample.count(columns);
+        ASSERT_EQ(some.bound.size(), count * run_case.receivers.depths.size());
+        for (std::size_t i = 0; i < some.bound.size(); ++i)
+          ASSERT_EQ(some.bound[i], all.bound[i / count * columns + sample.column(i % count)]) << i;
+      }
+    }
+}
+
+// Rays are not traced to be thrown away: where the bound will not be what is wanted with the most
+// beams there may be, these come next; where it will, all fans before the last are fewer than its
+// beams together.
+TEST(NumberOfBeams, IsFoundWithFewOthers) {
+  for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
+    for (unsigned seed = 1; seed <= 9; ++seed) {
+      PropagationCase run_case = random_channel(seed);
+      run_case.beams.kind = kind;
+      run_case.beams.count = 1001;
+      const RayTracer tracer(run_case.environment, run_case.frequency);
+      std::size_t beams = 0;
+      const ConvergedField answer =
+          converged_field(run_case, [&](const BeamFan& fan, const FieldCheck& also) {
+            beams += fan.elevation.size();
+            return field_of_fan(run_case, tracer, run_case.source_depths[0], fan, {},
+                                FieldMethod::fast, also);
+          });
+      SCOPED_TRACE(testing::Message() << seed << " kind " << int(kind) << ", " << answer.beams
+                                      << " beams, " << beams << " in all");
+      if (kind == BeamKind::gaussian && answer.beams == std::size_t{most_beams} &&
+          std::isinf(answer.error_db)) {
+        EXPECT_LE(double(beams), 1.3 * double(answer.beams));
+      }
+      EXPECT_LE(double(beams), 2.5 * double(answer.beams));
+    }
+}
+
 // The bound is one: at 95 % of the receivers for every ocean, kind of beam and of sum, and receiver
 // by receiver but for those beside a caustic or an edge inside a torn tube, where rays do not end
 // where their neighbours do: less than the 5 % that a figure at 95 % leaves out.
