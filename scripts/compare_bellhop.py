@@ -3,16 +3,20 @@
 
     ASDIC=path/to/asdic scripts/compare_bellhop.sh [--times] [CASE ...]
     ASDIC=path/to/asdic scripts/compare_bellhop.sh --emulation
+    ASDIC=path/to/asdic [BELLHOP=path/to/bellhop] scripts/compare_bellhop.sh --cost [CASE ...]
 
 For each case of tests/data/bellhop: BELLHOP's default run against its converged one; asdic's own run
 of case.env against the converged one; asdic's rays with exactly the fan of converged/case.env against
 the converged one; and --like-bellhop against the default run. Everything by `asdic compare`. Prints
 Markdown; --times adds asdic's wall times; --emulation prints how far --like-bellhop is from the forty
-small cases of tests/data/bellhop-emulation instead. Exit code: 0, 1 when a run failed, 2 when there is
+small cases of tests/data/bellhop-emulation instead; --cost the processor seconds that each case takes
+on one thread, whole processes, least of three, by asdic's own rule and with the beams as written, and
+BELLHOP's beside them if there is one. Exit code: 0, 1 when a run failed, 2 when there is
 nothing to run.
 """
 import json
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -213,9 +217,49 @@ def emulation():
     return 1 if faults else 0
 
 
+def processor_seconds(*command, folder):
+    """→ user and system time of the least of three runs [s]; NaN: it failed"""
+    least = float("nan")
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode != 0:
+            return float("nan")
+        seconds = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        least = min(seconds, least) if least == least else seconds
+    return least
+
+
+def cost(cases):
+    """Prints the table of the cases' cost. → exit code"""
+    bellhop, rows, failed = os.environ.get("BELLHOP"), [], False
+    for case in cases:
+        folder = case.work / case.name
+        folder.mkdir(parents=True)
+        for file in case.folder.iterdir():
+            if file.is_file() and file.suffix not in (".shd", ".arr", ".ray", ".json"):
+                shutil.copy(file, folder)
+        cells = [f"`{case.name}`"]
+        for options in ([], ["--beams-as-written"]):
+            seconds = processor_seconds(ASDIC, "bellhop", "case", "--threads", "1", *options,
+                                        folder=folder)
+            failed = failed or seconds != seconds
+            report = (folder / "case.prt").read_text() if seconds == seconds else ""
+            beams = [line.split()[1] for line in report.splitlines()
+                     if line.startswith("beams ") and line.endswith("a source")]
+            cells += [f"{seconds:.3f}", beams[0] if beams else "–"]
+        theirs = processor_seconds(bellhop, "case", folder=folder) if bellhop else float("nan")
+        rows.append(row(*cells, f"{theirs:.3f}" if theirs == theirs else "–"))
+    print(table(["case", "own rule, s", "beams", "as written, s", "beams", "BELLHOP, s"], rows))
+    return 1 if failed else 0
+
+
 def main(names):
     if names == ["--emulation"]:
         return emulation()
+    costs = "--cost" in names
+    names = [name for name in names if name != "--cost"]
     times = "--times" in names
     names = [name for name in names if name != "--times"]
     every = sorted(p.parent.name for p in DATA.glob("*/meta.json"))
@@ -225,6 +269,8 @@ def main(names):
         return 2
     with tempfile.TemporaryDirectory(prefix="asdic_bellhop_") as folder:
         cases = [Case(name, Path(folder)) for name in names]
+        if costs:
+            return cost(cases)
         of = {kind: [c for c in cases if c.output == kind] for kind in ("shd", "arr", "ray")}
         if of["shd"]:
             print("Fields: |ΔTL| median / 95 % of the cells below 120 dB [dB]\n")

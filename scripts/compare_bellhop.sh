@@ -2,6 +2,7 @@
 # The 16 reference cases of BELLHOP (tests/data/bellhop) run by asdic, and how far everything is from everything, as Markdown.
 #   ASDIC=path/to/asdic scripts/compare_bellhop.sh [CASE ...]
 #   ASDIC=path/to/asdic scripts/compare_bellhop.sh --emulation
+#   ASDIC=path/to/asdic [BELLHOP=path/to/bellhop] scripts/compare_bellhop.sh --cost [CASE ...]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 : "${ASDIC:=$root/build/release/bin/asdic}"

@@ -40,6 +40,58 @@ void add(const BeamSetting& setting, Complex contribution, Complex& sum) noexcep
     sum += std::norm(contribution);
 }
 
+/// a/b, of numbers far from the limits of their range.
+Complex ratio(const Complex& a, const Complex& b) noexcept {
+  return a * std::conj(b) / std::norm(b);
+}
+
+/// 1/√z on the branch of std::sqrt, of such a number.
+Complex inverse_root(const Complex& z) noexcept {
+  const double size = std::sqrt(std::norm(z));
+  const double larger = std::sqrt(0.5 * (size + std::abs(z.real()))),
+               other = 0.5 * std::abs(z.imag()) / larger;
+  const bool right = z.real() >= 0.0;
+  return Complex{right ? larger : other, -std::copysign(right ? other : larger, z.imag())} / size;
+}
+
+/// e^{−iωτ}.
+Complex wave(double omega, const Complex& time) noexcept {
+  return std::polar(std::exp(omega * time.imag()), -omega * time.real());
+}
+
+/// e^{−iω(τ + ζ·dz + γ·dz²/2)} at evenly spaced dz: its ratio from one to the next changes by a
+/// constant factor, so that two multiplications do.
+class EvenWave {
+ public:
+  EvenWave(double omega, double time, double zeta, const Complex& gamma, double dz, double step)
+      : now_(wave(omega, time + zeta * dz + 0.5 * gamma * dz * dz)),
+        ratio_(wave(omega, zeta * step + gamma * (dz * step + 0.5 * step * step))),
+        change_(wave(omega, gamma * step * step)) {}
+  [[nodiscard]] const Complex& now() const noexcept { return now_; }
+  void next() noexcept {
+    now_ *= ratio_;
+    ratio_ *= change_;
+  }
+
+ private:
+  Complex now_, ratio_, change_;
+};
+
+/// Rows that follow one another by multiplications before the next is worked out anew: rounding,
+/// and what is nothing at the beam's edge, do not go on for ever.
+constexpr std::size_t rows_at_once = 32;
+
+/// From depth to depth if all are as far apart to a millionth of a wavelength [m], else 0.
+double even_spacing(std::span<const double> depths, double frequency) noexcept {
+  if (depths.size() < 2) return 0.0;
+  const double step = (depths.back() - depths.front()) / static_cast<double>(depths.size() - 1);
+  for (std::size_t k = 0; k < depths.size(); ++k)
+    if (!(std::abs(depths[k] - depths.front() - static_cast<double>(k) * step) <
+          1e-6 * 1500.0 / frequency))
+      return 0.0;
+  return step;
+}
+
 /// Φ·√c/√ε·Δα of the sum of beams: e^{−iπ/4}·√(f·cos α)·Δα·√c/c₀, which makes their integral by
 /// stationary phase the ray's own pressure.
 Complex beam_constant(const BeamSetting& setting, const BeamLaunch& launch,
@@ -104,7 +156,7 @@ ComplexBeam::ComplexBeam(CervenyBeams::Curvature curvature, double source_speed,
 }
 
 Complex ComplexBeam::spread(const RayState& state) const noexcept {
-  return spread_ / std::sqrt(q(state) / last_);
+  return spread_ * inverse_root(ratio(q(state), last_));
 }
 
 void ComplexBeam::follow(const RayState& state) noexcept {
@@ -136,11 +188,14 @@ void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
   const Complex constant = beam_constant(setting, launch, ray);
   ComplexBeam beam(setting.cerveny.curvature, ray.source_speed,
                    initial_ratio(setting, ray, field.ranges.back()));
+  const double spacing = field.irregular ? 0.0 : even_spacing(field.depths, setting.frequency);
+  // Rows follow one another if at the beam's edge e^(−window²) is something to go on from.
+  const bool followed = spacing > 0.0 && window * window < 300.0;
   for (std::size_t i = 0; i < ray.segments.size(); ++i) {
     const RaySegment& segment = ray.segments[i];
     if (i > 0) beam.pass(ray.segments[i - 1], segment);
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
-      const double c = 1.0 / std::hypot(state.xi, state.zeta);
+      const double c = 1.0 / std::sqrt(state.xi * state.xi + state.zeta * state.zeta);
       const double cosine = c * state.xi, sine = c * state.zeta;
       const double share =
           std::clamp((state.length - segment.begin.length) /
@@ -150,10 +205,11 @@ void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
       const double c_z = segment.c_z_begin + share * (segment.c_z_end - segment.c_z_begin);
       const double c_s = c_r * cosine + c_z * sine, c_n = -c_r * sine + c_z * cosine;
       // ∂²τ/∂z² of the beam's front: (P/Q)cos² − 2(c_n/c²)sin·cos − (c_s/c²)sin²
-      const Complex gamma = beam.p(state) / beam.q(state) * (cosine * cosine) -
+      const Complex gamma = ratio(beam.p(state), beam.q(state)) * (cosine * cosine) -
                             (2.0 * c_n * sine * cosine + c_s * sine * sine) / (c * c);
+      const double wavelength = c / setting.frequency;
       const double decay = 0.5 * omega * std::abs(gamma.imag());
-      const double widest = std::min(window / std::sqrt(decay), 100.0 * c / setting.frequency);
+      const double widest = std::min(window / std::sqrt(decay), 100.0 * wavelength);
       const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
                                 segment.history.reflection * std::exp(-state.nepers);
       const std::span<const double> depths = field.column_depths(column);
@@ -163,12 +219,27 @@ void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
         const double a = mirror.of(state.depth - widest), b = mirror.of(state.depth + widest);
         auto k = static_cast<std::size_t>(
             std::upper_bound(depths.begin(), depths.end(), std::min(a, b)) - depths.begin());
-        for (; k < depths.size() && depths[k] < std::max(a, b); ++k) {
+        const Complex strength =
+            mirror.sign * component(setting.cerveny, cosine, mirror.mirrored ? -sine : sine) *
+            amplitude;
+        const auto end = static_cast<std::size_t>(
+            std::lower_bound(depths.begin(), depths.end(), std::max(a, b)) - depths.begin());
+        const double step = mirror.mirrored ? -spacing : spacing;
+        const auto add_row = [&](std::size_t row, const Complex& front) {
+          const double dz = mirror.of(depths[row]) - state.depth;
+          add(setting, taper(dz, wavelength) * strength * front, sum[row]);
+        };
+        while (followed && k < end) {
+          EvenWave front(omega, state.time, state.zeta, gamma, mirror.of(depths[k]) - state.depth,
+                         step);
+          for (const std::size_t next = std::min(k + rows_at_once, end); k < next; ++k) {
+            add_row(k, front.now());
+            front.next();
+          }
+        }
+        for (; k < end; ++k) {
           const double dz = mirror.of(depths[k]) - state.depth;
-          const double weight = mirror.sign * taper(dz, c / setting.frequency) *
-                                component(setting.cerveny, cosine, mirror.mirrored ? -sine : sine);
-          const Complex delay = state.time + state.zeta * dz + 0.5 * gamma * dz * dz;
-          add(setting, weight * amplitude * std::exp(Complex{0.0, -omega} * delay), sum[k]);
+          add_row(k, wave(omega, state.time + state.zeta * dz + 0.5 * gamma * dz * dz));
         }
       }
     });
@@ -193,15 +264,15 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
       for (const RayState& state : {segment.begin, segment.end})
         widest = std::max(
             widest,
-            std::sqrt(2.0 / (omega * std::abs(Complex(beam.p(state) / beam.q(state)).imag()))));
+            std::sqrt(2.0 / (omega * std::abs(ratio(beam.p(state), beam.q(state)).imag()))));
       return std::min(1.1 * window * widest, 100.0 * segment.c_begin / setting.frequency);
     };
     for_each_foot(
         ray, field, reach, [&](double z) { return mirror.of(z); },
         [&](const Foot& foot) {
           const RayState& state = foot.state;
-          const double c = 1.0 / std::hypot(state.xi, state.zeta);
-          const Complex gamma = beam.p(state) / beam.q(state);
+          const double c = 1.0 / std::sqrt(state.xi * state.xi + state.zeta * state.zeta);
+          const Complex gamma = ratio(beam.p(state), beam.q(state));
           const double n2 = foot.n * foot.n;
           if (0.5 * omega * std::abs(gamma.imag()) * n2 >= window * window) return;
           const double weight =
@@ -209,9 +280,7 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
               component(setting.cerveny, c * state.xi, (mirror.mirrored ? -c : c) * state.zeta);
           const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
                                     foot.segment->history.reflection * std::exp(-state.nepers);
-          add(setting,
-              weight * amplitude * std::exp(Complex{0.0, -omega} * (state.time + 0.5 * gamma * n2)),
-              *foot.sum);
+          add(setting, weight * amplitude * wave(omega, state.time + 0.5 * gamma * n2), *foot.sum);
         });
   }
 }

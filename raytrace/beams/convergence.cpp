@@ -190,6 +190,95 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   }
 }
 
+/// How far a field is from that of infinitely many beams, by its changes from fan to fan.
+class ChangeOfFans {
+ public:
+  /// Of two fields, one of twice as many beams as the other. They differ by count^−p; what is left
+  /// is the sum of all further halvings. p is 2 between smooth neighbours, 1 or less where edges of
+  /// ray families decide. \param count  beams of the denser fan
+  void add(const std::vector<std::complex<double>>& coarse,
+           const std::vector<std::complex<double>>& dense, std::size_t count) {
+    const double change = level_difference_db(coarse, dense, 0.95);
+    if (count_ > 0 && change > 0.0)
+      order_ = std::clamp(
+          std::log(change_ / change) / std::log(double(count) / static_cast<double>(count_)), 0.5,
+          2.0);
+    change_ = change;
+    count_ = count;
+  }
+  [[nodiscard]] double error_db() const noexcept { return change_ / (std::exp2(order_) - 1.0); }
+  [[nodiscard]] double order() const noexcept { return order_; }
+
+ private:
+  double change_ = 0.0, order_ = 1.0;
+  std::size_t count_ = 0;
+};
+
+std::string unsure_note(const ConvergedField& answer) {
+  return "the field is not sure of its number of beams: " + std::to_string(answer.beams) +
+         " leave an error of about " + decimals(answer.error_db) + " dB at 95 % of the receivers";
+}
+
+/// Until a fan is as good as every second beam of it.
+ConvergedField field_of_even_fans(const PropagationCase& run_case, const FieldOfFan& field_of,
+                                  bool circle, int count, int most) {
+  const BeamSettings& beams = run_case.beams;
+  ChangeOfFans change;
+  while (true) {
+    // Every second of an odd number of beams has both ends; around a circle it takes an even
+    // number.
+    FanField fan =
+        field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count), {.half = true});
+    change.add(fan.half, fan.field, static_cast<std::size_t>(count));
+    ConvergedField answer{.field = std::move(fan.field),
+                          .beams = static_cast<std::size_t>(count),
+                          .error_db = change.error_db()};
+    if (answer.error_db <= wanted_error_db) return answer;
+    if (count >= most) {
+      answer.note = unsure_note(answer);
+      return answer;
+    }
+    const double factor =
+        std::clamp(std::pow(answer.error_db / wanted_error_db, 1.0 / change.order()), 2.0, 4.0);
+    count = std::min(static_cast<int>(factor * count) | 1, most);
+  }
+}
+
+/// Whether a beam is what it is whatever the others' number, but for the angle that it stands for:
+/// the sum of a fan is then a part of the sum of one twice as dense.
+bool nested(const PropagationCase& run_case) noexcept {
+  const BeamSettings& beams = run_case.beams;
+  return run_case.field == FieldKind::coherent &&
+         (beams.kind == BeamKind::cerveny_cartesian ||
+          beams.kind == BeamKind::cerveny_ray_centred) &&
+         beams.cerveny.value_or(CervenyBeams{}).width != CervenyBeams::Width::space_filling;
+}
+
+/// The same of such beams: the angles between are added, and no ray is traced twice.
+ConvergedField field_of_nested_fans(const PropagationCase& run_case, const FieldOfFan& field_of,
+                                    int count, int most) {
+  const BeamSettings& beams = run_case.beams;
+  BeamFan fan = even_fan(beams.lowest, beams.highest, count);
+  ConvergedField answer{.field = field_of(fan, {}).field};
+  ChangeOfFans change;
+  while (true) {
+    const BeamFan between = fan_between(fan);
+    std::vector<std::complex<double>> denser = field_of(between, {}).field;
+    for (std::size_t i = 0; i < denser.size(); ++i) denser[i] += 0.5 * answer.field[i];
+    fan = even_fan(beams.lowest, beams.highest,
+                   static_cast<int>(fan.elevation.size() + between.elevation.size()));
+    answer.beams = fan.elevation.size();
+    change.add(answer.field, denser, answer.beams);
+    answer.field = std::move(denser);
+    answer.error_db = change.error_db();
+    if (answer.error_db <= wanted_error_db) return answer;
+    if (2 * answer.beams > static_cast<std::size_t>(most) + 1) {
+      answer.note = unsure_note(answer);
+      return answer;
+    }
+  }
+}
+
 }  // namespace
 
 double bound_db(const std::vector<std::complex<double>>& field, const std::vector<double>& bound,
@@ -226,36 +315,9 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
     if (!note.empty()) answer.note = answer.note.empty() ? note : note + "; " + answer.note;
     return answer;
   }
-  double last_change = 0.0;
-  int last_count = 0;
-  while (true) {
-    // Every second of an odd number of beams has both ends; around a circle it takes an even
-    // number.
-    FanField fan =
-        field_of(even_fan(beams.lowest, beams.highest, circle ? count + 1 : count), {.half = true});
-    const double change = level_difference_db(fan.half, fan.field, 0.95);
-    // change ~ count^−p; what is left is the sum of all further halvings. p is 2 between smooth
-    // neighbours, 1 or less where edges of ray families decide.
-    double p = 1.0;
-    if (last_count > 0 && change > 0.0)
-      p = std::clamp(std::log(last_change / change) / std::log(double(count) / last_count), 0.5,
-                     2.0);
-    ConvergedField answer{.field = std::move(fan.field),
-                          .beams = static_cast<std::size_t>(count),
-                          .error_db = change / (std::exp2(p) - 1.0)};
-    if (answer.error_db <= wanted_error_db) return answer;
-    if (count >= most) {
-      answer.note =
-          "the field is not sure of its number of beams: " + std::to_string(answer.beams) +
-          " leave an error of about " + decimals(answer.error_db) + " dB at 95 % of the receivers";
-      return answer;
-    }
-    last_change = change;
-    last_count = count;
-    const double factor =
-        std::clamp(std::pow(answer.error_db / wanted_error_db, 1.0 / p), 2.0, 4.0);
-    count = std::min(static_cast<int>(factor * count) | 1, most);
-  }
+  return nested(run_case)
+             ? field_of_nested_fans(run_case, field_of, circle ? count + 1 : count, most)
+             : field_of_even_fans(run_case, field_of, circle, count, most);
 }
 
 }  // namespace asdic

@@ -16,6 +16,15 @@ BeamFan even_fan(double lowest, double highest, int count) {
   return fan;
 }
 
+BeamFan fan_between(const BeamFan& even) {
+  const auto n = static_cast<double>(even.elevation.size());
+  const bool circle = std::abs(n * even.spacing - 2.0 * pi) < 1e-9;
+  BeamFan fan{.elevation = even.elevation, .spacing = 0.5 * even.spacing};
+  if (!circle) fan.elevation.pop_back();
+  for (double& elevation : fan.elevation) elevation += fan.spacing;
+  return fan;
+}
+
 BeamFan graded_fan(const BeamFan& fan, const std::vector<double>& share, std::size_t count,
                    const FinestTubes& finest) {
   constexpr double most_parts = 8.0;

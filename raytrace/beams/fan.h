@@ -22,6 +22,10 @@ struct BeamFan {
 /// which is the first, is left out. \param count  ≥ 2
 [[nodiscard]] BeamFan even_fan(double lowest, double highest, int count);
 
+/// The elevations half way between those of an even fan: the two together are one of half the
+/// spacing, which is theirs. Around a full circle also that between its last and its first.
+[[nodiscard]] BeamFan fan_between(const BeamFan& even);
+
 /// How narrow the tubes of a fan may get [rad].
 struct FinestTubes {
   double width = 0.0;  ///< any of them

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "raytrace/beams/beam.h"
+#include "raytrace/tracing/segment_states.h"
 
 namespace asdic {
 
@@ -28,18 +29,17 @@ inline RayCoordinates ray_coordinates(const RayState& state, double range, doubl
   return {c * (dr * state.xi + dz * state.zeta), c * (dz * state.xi - dr * state.zeta)};
 }
 
-/// The state of the segment whose normal passes through the receiver, which lies ahead of the
-/// segment's begin and behind its end. By secants within the bracket; the function is a straight
-/// line but for the ray's curvature, so two or three reach a micrometre.
-inline RayState foot_state(const RaySegment& segment, double range, double depth, double ahead,
-                           double behind) noexcept {
-  double low = 0.0, high = segment.end.length - segment.begin.length;
+/// The arc length from the segment's begin at which the ray's normal passes through the receiver,
+/// which lies `ahead` of the begin and `behind` the end. By secants within the bracket; the
+/// function is a straight line but for the ray's curvature, so two or three reach a micrometre.
+inline double foot_arc(const SegmentStates& states, double length, double range, double depth,
+                       double ahead, double behind) noexcept {
+  double low = 0.0, high = length;
   double slope = (behind - ahead) / high;
   double s = -ahead / slope, last_s = 0.0, last = ahead;
-  RayState state = segment.begin;
   for (int i = 0; i < 60; ++i) {
-    state = state_at(segment, s);
-    const double miss = ray_coordinates(state, range, depth).along;
+    const SegmentStates::Place at = states.place(s);
+    const double miss = (range - at.range) * at.range_slope + (depth - at.depth) * at.depth_slope;
     if (std::abs(miss) < 1e-6 || high - low < 1e-7) break;
     (miss >= 0.0 ? low : high) = s;
     if (s != last_s && (miss - last) / (s - last_s) < 0.0) slope = (miss - last) / (s - last_s);
@@ -48,7 +48,7 @@ inline RayState foot_state(const RaySegment& segment, double range, double depth
     s -= miss / slope;
     if (!(s > low && s < high)) s = 0.5 * (low + high);
   }
-  return state;
+  return s;
 }
 
 }  // namespace beams
@@ -65,6 +65,7 @@ void for_each_foot(const RayTrajectory& ray, FieldSum& field, Reach&& reach, Ima
   for (const RaySegment& segment : ray.segments) {
     const RayState &from = segment.begin, &to = segment.end;
     const double width = reach(segment);
+    const SegmentStates states(segment);
     const auto serve = [&](std::size_t column, double depth, std::complex<double>* sum) {
       const double range = ranges[column];
       depth = image(depth);
@@ -72,7 +73,8 @@ void for_each_foot(const RayTrajectory& ray, FieldSum& field, Reach&& reach, Ima
       const double behind = beams::ray_coordinates(to, range, depth).along;
       if (!(ahead >= 0.0 && behind < 0.0)) return;
       Foot foot{.segment = &segment,
-                .state = beams::foot_state(segment, range, depth, ahead, behind),
+                .state = states.at(
+                    beams::foot_arc(states, to.length - from.length, range, depth, ahead, behind)),
                 .sum = sum};
       foot.n = beams::ray_coordinates(foot.state, range, depth).across;
       if (std::abs(foot.n) <= width) visit(foot);

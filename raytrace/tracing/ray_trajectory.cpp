@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/tracing/segment_states.h"
+
 namespace asdic {
 namespace {
 
@@ -51,10 +53,10 @@ ValueSlope evaluate(const std::array<double, 6>& a, double u) noexcept {
   return {v, d};
 }
 
-double cubic(double f0, double d0, double f1, double d1, double h, double u) noexcept {
+std::array<double, 4> cubic_terms(double f0, double d0, double f1, double d1, double h) noexcept {
   const double rise = f1 - f0;
   const double a1 = d0 * h, b1 = d1 * h;
-  return f0 + u * (a1 + u * ((3.0 * rise - 2.0 * a1 - b1) + u * (a1 + b1 - 2.0 * rise)));
+  return {f0, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise};
 }
 
 /// One end of a segment with what the equations of motion say about slopes and bends there.
@@ -74,35 +76,26 @@ struct SegmentEnd {
 
 }  // namespace
 
-RayState state_at(const RaySegment& segment, double s) noexcept {
+SegmentStates::SegmentStates(const RaySegment& segment) noexcept : begin_(segment.begin) {
   const double h = segment.end.length - segment.begin.length;
-  if (h <= 0.0) return segment.begin;
-  const double u = s / h;
+  if (h <= 0.0) return;
+  per_h_ = 1.0 / h;
   const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
                      segment.c_nn_begin);
   const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
                      segment.c_nn_end);
-  RayState y;
-  const ValueSlope range = quintic(a.range, b.range, h, u);
-  const ValueSlope depth = quintic(a.depth, b.depth, h, u);
-  const ValueSlope time = quintic(a.time, b.time, h, u);
-  const ValueSlope q = quintic(a.q, b.q, h, u);
-  const ValueSlope q_plane = quintic(a.q_plane, b.q_plane, h, u);
-  const double c = cubic(segment.c_begin, a.c_s, segment.c_end, b.c_s, h, u);
-  y.range = range.value;
-  y.depth = depth.value;
-  const double unit = 1.0 / (c * std::sqrt(range.slope * range.slope + depth.slope * depth.slope));
-  y.xi = range.slope * unit;
-  y.zeta = depth.slope * unit;
-  y.time = time.value;
-  y.q = q.value;
-  y.p = q.slope / c;
-  y.q_plane = q_plane.value;
-  y.p_plane = q_plane.slope / c;
-  y.nepers =
-      cubic(segment.begin.nepers, segment.alpha_begin, segment.end.nepers, segment.alpha_end, h, u);
-  y.length = segment.begin.length + s;
-  return y;
+  range_ = quintic_terms(a.range, b.range, h);
+  depth_ = quintic_terms(a.depth, b.depth, h);
+  time_ = quintic_terms(a.time, b.time, h);
+  q_ = quintic_terms(a.q, b.q, h);
+  q_plane_ = quintic_terms(a.q_plane, b.q_plane, h);
+  c_ = cubic_terms(segment.c_begin, a.c_s, segment.c_end, b.c_s, h);
+  nepers_ = cubic_terms(segment.begin.nepers, segment.alpha_begin, segment.end.nepers,
+                        segment.alpha_end, h);
+}
+
+RayState state_at(const RaySegment& segment, double s) noexcept {
+  return SegmentStates(segment).at(s);
 }
 
 SegmentCurve::SegmentCurve(const RaySegment& segment) noexcept
@@ -115,8 +108,7 @@ SegmentCurve::SegmentCurve(const RaySegment& segment) noexcept
   range_ = quintic_terms(a.range, b.range, h_);
   depth_ = quintic_terms(a.depth, b.depth, h_);
   q_ = quintic_terms(a.q, b.q, h_);
-  const double rise = segment.c_end - segment.c_begin, a1 = a.c_s * h_, b1 = b.c_s * h_;
-  c_ = {segment.c_begin, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise};
+  c_ = cubic_terms(segment.c_begin, a.c_s, segment.c_end, b.c_s, h_);
 }
 
 SegmentCurve::Crossing SegmentCurve::at_range(double range) const noexcept {

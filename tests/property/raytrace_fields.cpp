@@ -299,6 +299,65 @@ TEST(Fields, DoNotDependOnTheNumberOfBeamsAskedFor) {
       }
 }
 
+// Beams that are what they are whatever their number are added up, none of them twice: the sum is
+// that of the last fan traced at once, and no more beams were traced than it has.
+TEST(NumberOfBeams, IsFoundWithNoOthersWhereBeamsAreNested) {
+  for (const BeamKind kind : {BeamKind::cerveny_cartesian, BeamKind::cerveny_ray_centred})
+    for (const bool circle : {false, true}) {
+      PropagationCase run_case = random_channel(6);
+      run_case.frequency = 60.0;
+      run_case.receivers.ranges.resize(12);
+      run_case.receivers.depths = {0.3 * run_case.environment.bottom.depth,
+                                   0.6 * run_case.environment.bottom.depth};
+      run_case.beams.kind = kind;
+      run_case.beams.cerveny = CervenyBeams{.width = CervenyBeams::Width::minimum,
+                                            .loop_range = run_case.receivers.ranges.back(),
+                                            .images = 2};
+      run_case.beams.lowest = circle ? -pi : radians(-30.0);
+      run_case.beams.highest = circle ? pi : radians(30.0);
+      const RayTracer tracer(run_case.environment, run_case.frequency);
+      const auto field = [&](const BeamFan& fan) {
+        return field_of_fan(run_case, tracer, run_case.source_depths[0], fan);
+      };
+      std::size_t beams = 0;
+      const ConvergedField answer =
+          converged_field(run_case, [&](const BeamFan& fan, const FieldCheck&) {
+            beams += fan.elevation.size();
+            return field(fan);
+          });
+      EXPECT_EQ(beams, answer.beams);
+      EXPECT_LE(answer.error_db, wanted_error_db);
+      const BeamFan all =
+          even_fan(run_case.beams.lowest, run_case.beams.highest, static_cast<int>(answer.beams));
+      EXPECT_LT(relative_difference(answer.field, field(all).field), 1e-9)
+          << int(kind) << ' ' << circle << ", " << beams << " beams";
+    }
+}
+
+// Cerveny beams follow from row to row where these are evenly spaced: so they do where one is not.
+TEST(CervenyBeams, AreTheSameOnEvenRowsAndOnOthers) {
+  for (const unsigned seed : {2U, 6U, 7U})
+    for (const FieldKind kind : {FieldKind::coherent, FieldKind::incoherent}) {
+      PropagationCase run_case = random_channel(seed);
+      run_case.field = kind;
+      run_case.beams.kind = BeamKind::cerveny_cartesian;
+      run_case.beams.cerveny = CervenyBeams{.images = 3};
+      const RayTracer tracer(run_case.environment, run_case.frequency);
+      const BeamFan fan = even_fan(radians(-20.0), radians(20.0), 101);
+      const auto field = [&] {
+        return field_of_fan(run_case, tracer, run_case.source_depths[0], fan).field;
+      };
+      const auto even = field();
+      auto& depths = run_case.receivers.depths;
+      const std::size_t columns = run_case.receivers.ranges.size(), apart = depths.size() / 2;
+      depths.insert(depths.begin() + std::ptrdiff_t(apart), depths[apart] - 0.01);
+      auto uneven = field();
+      uneven.erase(uneven.begin() + std::ptrdiff_t(apart * columns),
+                   uneven.begin() + std::ptrdiff_t((apart + 1) * columns));
+      EXPECT_LT(relative_difference(even, uneven), 1e-9) << seed << ' ' << int(kind);
+    }
+}
+
 TEST(Fields, StopWhenTold) {
   const PropagationCase run_case = random_channel(3);
   EXPECT_THROW((void)run_field(run_case, [](double) { return false; }), Interrupted);

@@ -10,6 +10,11 @@ for line in "| \`deep-source-arrivals\` | BELLHOP's default against its converge
   "|  | asdic against BELLHOP's converged | 21 of 21 |" "|  | like BELLHOP against its default | 21 of 21 |"; do
   grep -qF "$line" <<<"$table" || { echo "not in the table: $line"; echo "$table"; exit 1; }
 done
+cost=$("$root/scripts/compare_bellhop.sh" --cost munk-coherent-hat rays-upslope)
+for line in "| case | own rule, s | beams | as written, s | beams | BELLHOP, s |" "| \`munk-coherent-hat\` | 0." \
+  "| 1920 | – |" "| \`rays-upslope\` | 0."; do
+  grep -qF "$line" <<<"$cost" || { echo "not in the table of costs: $line"; echo "$cost"; exit 1; }
+done
 status=0
 "$root/scripts/compare_bellhop.sh" no-such-case 2>/dev/null || status=$?
 [ "$status" = 2 ] || { echo "an unknown case: exit status $status, expected 2"; exit 1; }
