@@ -29,9 +29,9 @@ import suite  # noqa: E402
 
 # as they stand in the index: fields, then echoes and noise, then reverberation
 ORDER = ["lloyd", "ideal-guide", "pekeris-field", "surface-duct", "shadow-edge", "munk-zones",
-         "ideal-wedge", "thesis-tables", "weston-echo", "noise-guide", "pekeris-reverberation",
-         "summer-reverberation", "rigid-reverberation", "harrison-decay", "ellipse-reverberation",
-         "shallow-3400"]
+         "ideal-wedge", "asa-wedge", "thesis-tables", "weston-echo", "noise-guide",
+         "pekeris-reverberation", "summer-reverberation", "rigid-reverberation", "harrison-decay",
+         "ellipse-reverberation", "shallow-3400"]
 BEGIN, END = "<!-- measured -->", "<!-- end of what was measured -->"
 MOST_BYTES = 25_000  # of a picture
 
