@@ -31,7 +31,7 @@ import suite  # noqa: E402
 ORDER = ["lloyd", "ideal-guide", "pekeris-field", "surface-duct", "shadow-edge", "munk-zones",
          "ideal-wedge", "asa-wedge", "thesis-tables", "weston-echo", "noise-guide",
          "pekeris-reverberation", "summer-reverberation", "rigid-reverberation", "harrison-decay",
-         "ellipse-reverberation", "shallow-3400"]
+         "ellipse-reverberation", "shallow-3400", "slope-reverberation"]
 BEGIN, END = "<!-- measured -->", "<!-- end of what was measured -->"
 MOST_BYTES = 25_000  # of a picture
 
