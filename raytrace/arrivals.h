@@ -34,9 +34,8 @@ struct Arrival {
   double arrival_elevation = 0.0;  ///< [rad]
   double delay = 0.0;              ///< τ [s]
   std::complex<double> amplitude =
-      0.0;  ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]
-  double spreading =
-      0.0;  ///< |amplitude| of the ray tube alone, √(c cos θ₀ /(c₀ r |q|)) [1/m × 1 m]
+      0.0;                 ///< spreading × reflections × absorption × caustic phase [1/m × 1 m]
+  double spreading = 0.0;  ///< |amplitude| of the ray tube alone, tube_amplitude() [1/m × 1 m]
   std::complex<double> reflection = 1.0;  ///< product of the boundaries' coefficients
   /// What rough boundaries scatter about the path: |amplitude|² + scattered is the mean intensity
   /// that arrives along it, |amplitude|² that of the mean field [1/m² × 1 m²]

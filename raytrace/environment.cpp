@@ -71,6 +71,10 @@ bool varies_with_range(const Environment& environment) noexcept {
   return environment.section || environment.surface.shape || environment.bottom.shape;
 }
 
+Spreading spreading_across(const Environment& environment) noexcept {
+  return varies_with_range(environment) ? environment.spreading : Spreading::cylindrical;
+}
+
 bool is_layered(const Environment& environment) noexcept {
   return !varies_with_range(environment) && environment.biology.empty() &&
          environment.attenuation_db_per_km.is_constant();

@@ -29,6 +29,14 @@ struct Boundary {
   [[nodiscard]] bool operator==(const Boundary&) const = default;
 };
 
+/// What the sea is beside the plane, which decides how far apart the rays of a point source are
+/// across it (raytrace/tracing/tube_amplitude.h). Where nothing varies with range both are the
+/// same.
+enum class Spreading {
+  plane,        ///< the same across the transect: contours of depth and speed are straight lines
+  cylindrical,  ///< the same all around the source, as BELLHOP has it
+};
+
 /// The vertical plane that sound crosses, as sound sees it: speed, boundaries and losses as
 /// functions of range and depth. Immutable while anything is traced through it. Range 0 is where
 /// the transect begins (the source, unless a run says otherwise); ranges below zero are the water
@@ -43,6 +51,7 @@ struct Environment {
   Absorption absorption = NoAbsorption{};  ///< a law of frequency, the same at every depth
   std::vector<BiologicalLayer> biology;    ///< resonant absorption of layers of fish, added to it
   DepthFunction attenuation_db_per_km = 0.0;  ///< added to both: at the one frequency of interest
+  Spreading spreading = Spreading::plane;     ///< of sea that varies with range
 
   [[nodiscard]] bool operator==(const Environment&) const = default;
 };
@@ -56,6 +65,9 @@ struct Environment {
 
 /// Whether water or boundaries vary along the transect.
 [[nodiscard]] bool varies_with_range(const Environment& environment) noexcept;
+
+/// By which formula sound spreads across the plane: the cylinder's wherever it is right.
+[[nodiscard]] Spreading spreading_across(const Environment& environment) noexcept;
 
 /// Whether the layered solver applies: speed a function of depth, flat boundaries, losses the same
 /// at every depth. Otherwise rays are marched.

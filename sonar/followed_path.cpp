@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -13,7 +14,7 @@ constexpr double furthest_turn = 0.02;  // of the launch angle [rad]
 constexpr int most_steps = 8;
 
 /// The path that a ray is which ends at the receiver. Equations as in docs/theory/layered-rays.md.
-Arrival described(const RayTrajectory& ray, const Arrival& before) {
+Arrival described(const RayTrajectory& ray, Spreading spreading, const Arrival& before) {
   const RaySegment& last = ray.segments.back();
   const RayState& end = last.end;
   Arrival path = before;  // counts are the same
@@ -25,8 +26,12 @@ Arrival described(const RayTrajectory& ray, const Arrival& before) {
   path.horizontal_slowness = end.xi;
   path.absorption_db = db_from_amplitude(std::exp(end.nepers));
   path.reflection = last.history.reflection;
-  path.spreading = std::sqrt(last.c_end * std::cos(ray.launch_elevation) /
-                             (ray.source_speed * end.range * std::abs(end.q)));
+  path.spreading = tube_amplitude(spreading, {.speed = last.c_end,
+                                              .q = end.q,
+                                              .range = end.range,
+                                              .launch_elevation = ray.launch_elevation,
+                                              .source_speed = ray.source_speed,
+                                              .speed_integral = end.speed_integral});
   path.amplitude = path.spreading * std::exp(-end.nepers) * path.reflection *
                    std::polar(1.0, 0.5 * pi * path.caustics);
   path.scattered =
@@ -59,7 +64,8 @@ std::optional<Arrival> followed_path(const RayTracer& tracer, const Arrival& pat
     if (!(std::abs(last.end.range - range) < 1e-6)) return {};
     const double cosine = last.c_end * last.end.xi;
     const double miss = receiver_depth - last.end.depth;
-    if (std::abs(miss) * cosine < near_enough) return described(ray, path);
+    if (std::abs(miss) * cosine < near_enough)
+      return described(ray, spreading_across(tracer.environment()), path);
     // ∂z/∂α at fixed range = ∓q/cos θ: the normal changes sides at every bounce.
     angle += miss * cosine / (side * last.end.q);
     if (!(std::abs(angle - path.launch_elevation) < furthest_turn)) return {};

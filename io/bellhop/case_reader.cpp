@@ -41,6 +41,7 @@ Input read_case(const Texts& texts, const std::string& root_name) {
   if (reading.options.altimetry) shape_of(reading, reading.ocean().surface, true);
   read_bottom_options(reading);
   if (reading.options.bathymetry) shape_of(reading, reading.ocean().bottom, false);
+  if (varies_with_range(reading.ocean())) reading.ocean().spreading = Spreading::cylindrical;
   read_receivers(reading);
   read_run(reading);
   add_warnings(warnings(reading.run_case()), reading.input.notes);

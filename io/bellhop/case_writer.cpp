@@ -169,6 +169,12 @@ Written write_case(const PropagationCase& run_case, bool binary_arrivals) {
       absorption_db_per_km(ocean.absorption, run_case.frequency) / (1000.0 * db_per_neper);
   if (!ocean.biology.empty())
     writing.note("layers of fish become attenuation at the nodes of the profile");
+  if (run_case.beams.source == SourceKind::point && spreading_across(ocean) == Spreading::plane)
+    writing.note(
+        "the sea is the same across the plane (environment.spreading), and BELLHOP takes it for "
+        "the same "
+        "all around the source: levels differ where boundaries slope or the speed varies with "
+        "range");
 
   std::string& env = writing.out.texts.env;
   env = quoted(run_case.title) + '\n' + decimal(run_case.frequency) + "\n1\n";

@@ -5,7 +5,13 @@
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
 
-namespace asdic::scenario {
+namespace asdic {
+
+std::string_view name(Spreading spreading) noexcept {
+  return spreading == Spreading::plane ? "plane" : "cylindrical";
+}
+
+namespace scenario {
 namespace {
 
 const double default_wind_speed = Scenario{}.wind_speed;
@@ -96,6 +102,9 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
   read_roughness(surface, wind, true, ocean.surface);
   surface.finish();
+  const std::string cylindrical(name(Spreading::cylindrical)), plane(name(Spreading::plane));
+  if (table.choice("spreading", {plane, cylindrical}, plane) == cylindrical)
+    ocean.spreading = Spreading::cylindrical;
   return ocean;
 }
 
@@ -108,4 +117,5 @@ void read_environment(TomlTable table, const std::filesystem::path& folder, doub
   table.finish();
 }
 
-}  // namespace asdic::scenario
+}  // namespace scenario
+}  // namespace asdic

@@ -2,13 +2,19 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/text/toml_table.h"
 #include "raytrace/environment.h"
 
+namespace asdic {
+
+/// How it is called in a file.
+[[nodiscard]] std::string_view name(Spreading spreading) noexcept;
+
 /// The parts of [environment] (docs/formats/scenario.md), one function per table.
-namespace asdic::scenario {
+namespace scenario {
 
 /// What the reading of an ocean needs to know besides its tables.
 struct OceanReading {
@@ -50,4 +56,5 @@ inline constexpr Quantity material_density{
     .noun = "density", .unit = "kg/m3", .low = 100.0, .high = 20000.0};
 inline const Quantity range_quantity{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 
-}  // namespace asdic::scenario
+}  // namespace scenario
+}  // namespace asdic

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/scenario/ocean.h"
 #include "io/scenario/propagation.h"
 #include "io/text/toml_writer.h"
 
@@ -143,6 +144,7 @@ void write_absorption(TomlWriter& out, const Absorption& absorption) {
 
 void write_environment(TomlWriter& out, const Environment& ocean) {
   out.table("environment");
+  if (varies_with_range(ocean)) out.text("spreading", name(ocean.spreading));
   if (ocean.water_density.is_constant())
     out.number("water_density", ocean.water_density.at(0.0));
   else

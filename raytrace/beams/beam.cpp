@@ -6,9 +6,12 @@
 
 namespace asdic {
 
-double beams::launch_factor(const BeamSetting& setting, const BeamLaunch& launch) noexcept {
-  return launch.amplitude *
-         (setting.point_source ? std::sqrt(std::abs(std::cos(launch.elevation))) : 1.0);
+double beams::launch_factor(const BeamSetting& setting, const BeamLaunch& launch,
+                            double source_speed) noexcept {
+  if (!setting.point_source) return launch.amplitude;
+  return launch.amplitude * std::sqrt(setting.spreading == Spreading::plane
+                                          ? source_speed
+                                          : std::abs(std::cos(launch.elevation)));
 }
 
 void add_beam(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
@@ -31,7 +34,8 @@ void add_beam(const BeamSetting& setting, const BeamLaunch& launch, const RayTra
 
 double field_scale(const BeamSetting& setting, double range) noexcept {
   if (!setting.point_source) return 4.0 * std::sqrt(pi);
-  return range == 0.0 ? 0.0 : 1.0 / std::sqrt(std::abs(range));
+  if (range == 0.0) return 0.0;
+  return setting.spreading == Spreading::plane ? 1.0 : 1.0 / std::sqrt(std::abs(range));
 }
 
 }  // namespace asdic

@@ -12,10 +12,11 @@ namespace asdic {
 /// What all beams of a field have in common.
 struct BeamSetting {
   BeamKind kind = BeamKind::hat;
-  bool coherent = true;       ///< pressures are added, else intensities
-  bool point_source = true;   ///< spreads into the third dimension too
-  double frequency = 1000.0;  ///< [Hz]
-  double spacing = 0.0;       ///< Δα, angle from beam to beam [rad]
+  bool coherent = true;                          ///< pressures are added, else intensities
+  bool point_source = true;                      ///< spreads into the third dimension too
+  Spreading spreading = Spreading::cylindrical;  ///< and then by this law
+  double frequency = 1000.0;                     ///< [Hz]
+  double spacing = 0.0;                          ///< Δα, angle from beam to beam [rad]
   CervenyBeams cerveny;
   const Environment* environment = nullptr;  ///< where images of Cerveny beams are mirrored
 };
@@ -51,8 +52,9 @@ struct FieldSum {
 void add_beam(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
               FieldSum& field);
 
-/// What is left to multiply a pressure with: 1/√|r| (0 at r = 0) for a point source, 4√π, which is
-/// BELLHOP's choice, for a line source.
+/// What is left to multiply a pressure with: 1/√|r| for a point source that spreads cylindrically,
+/// 1 for one whose crossings know how it spreads, 0 for either at r = 0, where the way up or down
+/// is no crossing; 4√π, which is BELLHOP's choice, for a line source.
 [[nodiscard]] double field_scale(const BeamSetting& setting, double range) noexcept;
 
 }  // namespace asdic

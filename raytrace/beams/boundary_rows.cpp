@@ -92,7 +92,7 @@ BeamTwins::BeamTwins(const BoundaryRows& rows, const FieldSum& field) : rows_(ro
 
 void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                     FieldSum& field) {
-  const double launched = beams::launch_factor(setting, launch);
+  const double launched = beams::launch_factor(setting, launch, ray.source_speed);
   switch (setting.kind) {
     case BeamKind::hat:
     case BeamKind::gaussian:
@@ -110,7 +110,7 @@ void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const 
       for (const AtWall& wall : walls_) {
         const std::int32_t row = rows_.row(wall.kind, column);
         if (row < 0) continue;
-        Crossing x = crossing_of(segment, state);
+        Crossing x = crossing_of(setting, segment, state);
         x.loss *= rows_.twin(wall.kind, column, x);
         const auto k = static_cast<std::size_t>(row);
         const auto depth = field.column_depths(column).subspan(k, 1);

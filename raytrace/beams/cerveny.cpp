@@ -96,8 +96,8 @@ double even_spacing(std::span<const double> depths, double frequency) noexcept {
 /// stationary phase the ray's own pressure.
 Complex beam_constant(const BeamSetting& setting, const BeamLaunch& launch,
                       const RayTrajectory& ray) {
-  return std::polar(launch_factor(setting, launch) * std::sqrt(setting.frequency) *
-                        setting.spacing / ray.source_speed,
+  return std::polar(launch_factor(setting, launch, ray.source_speed) *
+                        std::sqrt(setting.frequency) * setting.spacing / ray.source_speed,
                     -0.25 * pi);
 }
 
@@ -211,7 +211,8 @@ void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
       const double decay = 0.5 * omega * std::abs(gamma.imag());
       const double widest = std::min(window / std::sqrt(decay), 100.0 * wavelength);
       const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
-                                segment.history.reflection * std::exp(-state.nepers);
+                                segment.history.reflection *
+                                (std::exp(-state.nepers) * spread_across(setting, state));
       const std::span<const double> depths = field.column_depths(column);
       Complex* sum = field.column(column);
       for (int m = 0; m < setting.cerveny.images; ++m) {
@@ -279,7 +280,8 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
               mirror.sign * taper(foot.n, c / setting.frequency) *
               component(setting.cerveny, c * state.xi, (mirror.mirrored ? -c : c) * state.zeta);
           const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
-                                    foot.segment->history.reflection * std::exp(-state.nepers);
+                                    foot.segment->history.reflection *
+                                    (std::exp(-state.nepers) * spread_across(setting, state));
           add(setting, weight * amplitude * wave(omega, state.time + 0.5 * gamma * n2), *foot.sum);
         });
   }

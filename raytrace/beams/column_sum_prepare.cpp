@@ -22,7 +22,7 @@ void ColumnSum::prepare(const BeamLaunch& launch, const Crossings& x) {
   make_room(first_), make_room(last_);
   above_.resize(n), below_.resize(n);
   const double f = setting_.frequency, spacing = setting_.spacing;
-  launched_ = beams::launch_factor(setting_, launch);
+  launched_ = beams::launch_factor(setting_, launch, x.source_speed);
   const bool coherent = setting_.coherent;
   // n < times·L; for a Gaussian L is σ, which may stay at its least and then grow.
   constexpr double times = is_hat ? 1.0 : 4.0;

@@ -1,8 +1,10 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <span>
 
+#include "raytrace/beams/beam.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
 namespace asdic {
@@ -17,7 +19,7 @@ struct Crossing {
   double length = 0.0;        ///< arc length from the source [m]
   double q = 0.0;             ///< ∂n/∂α [m/rad]
   double dq_ds = 0.0;         ///< c·p [1/rad]
-  std::complex<double> loss;  ///< reflections × exp(−∫α ds) × i^caustics
+  std::complex<double> loss;  ///< reflections × exp(−∫α ds) × i^caustics × spread_across
   double mirror = 1.0;        ///< −1 after an odd number of reflections
 
   /// +1 where rays launched a little higher are deeper here, −1 where they are shallower.
@@ -35,7 +37,15 @@ inline int caustics_at(const RaySegment& segment, const RayState& state) noexcep
   return segment.history.caustics + (segment.begin.q * state.q < 0.0 ? 1 : 0);
 }
 
-inline Crossing crossing_of(const RaySegment& segment, const RayState& state) noexcept {
+/// What spreading across the plane leaves where a ray is, unless field_scale says it: 1/√∫c ds, 0
+/// at the source.
+inline double spread_across(const BeamSetting& setting, const RayState& state) noexcept {
+  if (!setting.point_source || setting.spreading == Spreading::cylindrical) return 1.0;
+  return state.speed_integral > 0.0 ? 1.0 / std::sqrt(state.speed_integral) : 0.0;
+}
+
+inline Crossing crossing_of(const BeamSetting& setting, const RaySegment& segment,
+                            const RayState& state) noexcept {
   const double c = 1.0 / std::hypot(state.xi, state.zeta);
   return {.depth = state.depth,
           .cosine = c * state.xi,
@@ -45,7 +55,8 @@ inline Crossing crossing_of(const RaySegment& segment, const RayState& state) no
           .length = state.length,
           .q = state.q,
           .dq_ds = c * state.p,
-          .loss = segment.history.reflection * std::exp(-state.nepers) *
+          .loss = segment.history.reflection *
+                  (std::exp(-state.nepers) * spread_across(setting, state)) *
                   power_of_i(caustics_at(segment, state)),
           .mirror = (segment.history.surface_bounces + segment.history.bottom_bounces) % 2 == 0
                         ? 1.0

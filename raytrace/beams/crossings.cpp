@@ -33,12 +33,13 @@ void pick_columns(const Crossings& from, std::size_t first, std::size_t every, C
   out.resize(picked);
 }
 
-void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out) {
+void find_crossings(const BeamSetting& setting, const RayTrajectory& ray,
+                    std::span<const double> ranges, Crossings& out) {
   out.resize(0);
   out.source_speed = ray.source_speed;
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, ranges, [&](std::size_t column, const RayState& state) {
-      const Crossing x = crossing_of(segment, state);
+      const Crossing x = crossing_of(setting, segment, state);
       out.column.push_back(static_cast<std::uint32_t>(column));
       out.depth.push_back(x.depth);
       out.cosine.push_back(x.cosine);
@@ -65,7 +66,8 @@ void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHist
   out_.time.push_back(y.time);
   out_.q.push_back(y.q);
   out_.dq_ds.push_back(c * y.p);
-  out_.level.push_back(std::abs(history.reflection) * std::exp(-y.nepers));
+  out_.level.push_back(std::abs(history.reflection) *
+                       (std::exp(-y.nepers) * spread_across(setting_, y)));
   out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
   out_.mirror.push_back(bounces % 2 == 0 ? 1.0 : -1.0);
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "raytrace/beams/beam.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {
@@ -17,7 +18,7 @@ struct Crossings {
   std::vector<double> speed;          ///< [n] c [m/s]
   std::vector<double> time;           ///< [n] τ [s]
   std::vector<double> q, dq_ds;       ///< [n] ∂n/∂α [m/rad] and its growth c·p [1/rad]
-  std::vector<double> level;          ///< [n] |reflections|·exp(−∫α ds)
+  std::vector<double> level;          ///< [n] |reflections|·exp(−∫α ds)·spread_across
   std::vector<double> phase;          ///< [n] of reflections and caustics [rad]
   std::vector<double> mirror;         ///< [n] −1 after an odd number of reflections, else 1
 
@@ -29,15 +30,19 @@ struct Crossings {
 void pick_columns(const Crossings& from, std::size_t first, std::size_t every, Crossings& out);
 
 /// The crossings of a traced ray.
-void find_crossings(const RayTrajectory& ray, std::span<const double> ranges, Crossings& out);
+void find_crossings(const BeamSetting& setting, const RayTrajectory& ray,
+                    std::span<const double> ranges, Crossings& out);
 
 /// The same as a ray is marched, without storing it.
 class MarchedCrossings final : public RangeVisitor {
  public:
-  explicit MarchedCrossings(Crossings& out) : out_(out) { out_.resize(0); }
+  MarchedCrossings(const BeamSetting& setting, Crossings& out) : setting_(setting), out_(out) {
+    out_.resize(0);
+  }
   void pass(std::size_t column, const RayState& y, const RayHistory& history) override;
 
  private:
+  const BeamSetting& setting_;
   Crossings& out_;
 };
 

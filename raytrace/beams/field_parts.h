@@ -169,7 +169,7 @@ class FastPart {
   BeamLaunch cross(std::size_t i, RayAtColumns& looked_at) {
     const double elevation = work_.fan.elevation[i];
     if (layered_ == nullptr || !layered_->find(elevation, workspace_, crossings_)) {
-      MarchedCrossings marched(crossings_);
+      MarchedCrossings marched(work_.setting, crossings_);
       crossings_.source_speed =
           work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
                                   elevation, work_.limits, marched);

@@ -30,6 +30,7 @@ BeamSetting beam_setting(const PropagationCase& run_case, const BeamFan& fan) {
   return {.kind = run_case.beams.kind,
           .coherent = run_case.field == FieldKind::coherent,
           .point_source = run_case.beams.source == SourceKind::point,
+          .spreading = spreading_across(run_case.environment),
           .frequency = run_case.frequency,
           .spacing = fan.spacing,
           .cerveny = run_case.beams.cerveny.value_or(CervenyBeams{}),
@@ -154,19 +155,21 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
 }
 
 /// What the errors of tubes are held against: what is given, or the fan's power spread evenly over
-/// the depths, Σ A²L/D with A² = 1/|q|.
-std::vector<double> tube_level(const PropagationCase& run_case, const FieldCheck& also) {
+/// the depths, Σ A²L/D with A² = 1/|q|, or 1/(r|q|) where field_scale leaves that to the crossings.
+std::vector<double> tube_level(const PropagationCase& run_case, const BeamSetting& setting,
+                               const FieldCheck& also) {
   const ReceiverGrid& grid = run_case.receivers;
+  const bool by_crossings = setting.point_source && setting.spreading == Spreading::plane;
   const bool coherent = run_case.field == FieldKind::coherent;
   std::vector<double> level(also.bound ? also.looked_at.count(grid.ranges.size()) : 0);
   const double depth = std::max(1.0, grid.depths.back() - grid.depths.front());
   const double power = (run_case.beams.highest - run_case.beams.lowest) / depth;
   for (std::size_t j = 0; j < level.size(); ++j) {
-    level[j] = coherent ? std::sqrt(power) : power;
-    if (also.level.empty()) continue;
     const std::size_t column = also.looked_at.column(j);
-    const double scale = field_scale({.point_source = run_case.beams.source == SourceKind::point},
-                                     grid.ranges[column]);
+    const double here = by_crossings ? power / std::max(std::abs(grid.ranges[column]), 1.0) : power;
+    level[j] = coherent ? std::sqrt(here) : here;
+    if (also.level.empty()) continue;
+    const double scale = field_scale(setting, grid.ranges[column]);
     if (scale > 0.0 && also.level[column] > 0.0)
       level[j] = also.level[column] / (coherent ? scale : scale * scale);
   }
@@ -202,15 +205,16 @@ FanField field_of_fan(const PropagationCase& run_case, const RayTracer& tracer, 
       fewer ? std::optional<BoundaryRows>(std::in_place, run_case.environment, run_case.frequency,
                                           *fewer, run_case.field == FieldKind::coherent)
             : std::nullopt;
+  const BeamSetting setting = beam_setting(run_case, fan);
   const FieldWork work{run_case,
                        tracer,
                        source_depth,
                        fan,
                        progress,
-                       beam_setting(run_case, fan),
+                       setting,
                        field_limits(run_case),
                        also,
-                       tube_level(run_case, also),
+                       tube_level(run_case, setting, also),
                        tube_share,
                        end_share,
                        boundary_rows,

@@ -80,12 +80,12 @@ void add_crossing(const BeamSetting& setting, const BeamLaunch& launch, double l
 
 void add_cartesian(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                    FieldSum& field) {
-  const double launched = launch_factor(setting, launch);
+  const double launched = launch_factor(setting, launch, ray.source_speed);
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
       std::complex<double>* sum = field.column(column);
-      add_crossing(setting, launch, launched, ray.source_speed, crossing_of(segment, state),
-                   field.column_depths(column),
+      add_crossing(setting, launch, launched, ray.source_speed,
+                   crossing_of(setting, segment, state), field.column_depths(column),
                    [sum](std::size_t k, std::complex<double> p) { sum[k] += p; });
     });
 }
@@ -108,7 +108,7 @@ void visit_ray_centred(const BeamSetting& setting, double launched, const RayTra
   for_each_foot(ray, field, reach, std::identity{}, [&](const Foot& foot) {
     const RayState& state = foot.state;
     if (state.q == 0.0 && is_hat) return;
-    const Crossing x = crossing_of(*foot.segment, state);
+    const Crossing x = crossing_of(setting, *foot.segment, state);
     const double least = gaussian_least_width(setting.frequency, x.time, x.speed);
     const Cut cut = is_hat
                         ? hat(std::abs(foot.n), x.q, setting.spacing, setting.coherent)
@@ -124,7 +124,7 @@ void visit_ray_centred(const BeamSetting& setting, double launched, const RayTra
 void add_ray_centred(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                      FieldSum& field) {
   visit_ray_centred(
-      setting, launch_factor(setting, launch), ray, field,
+      setting, launch_factor(setting, launch, ray.source_speed), ray, field,
       [](const Foot& foot, const Crossing&, std::complex<double> p) { *foot.sum += p; });
 }
 
@@ -163,11 +163,11 @@ void add_simple_crossing(const BeamSetting& setting, double launched, const Cros
 
 void add_simple_gaussian(const BeamSetting& setting, const BeamLaunch& launch,
                          const RayTrajectory& ray, FieldSum& field) {
-  const double launched = launch_factor(setting, launch);
+  const double launched = launch_factor(setting, launch, ray.source_speed);
   for (const RaySegment& segment : ray.segments)
     for_each_crossing(segment, field.ranges, [&](std::size_t column, const RayState& state) {
       std::complex<double>* sum = field.column(column);
-      add_simple_crossing(setting, launched, crossing_of(segment, state),
+      add_simple_crossing(setting, launched, crossing_of(setting, segment, state),
                           field.column_depths(column),
                           [sum](std::size_t k, std::complex<double> p) { sum[k] += p; });
     });

@@ -49,7 +49,9 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
 /// start narrow; the second keeps them open at caustics.
 [[nodiscard]] double gaussian_least_width(double frequency, double time, double speed) noexcept;
 
-/// Source pattern and √|cos α| of a point source.
-[[nodiscard]] double launch_factor(const BeamSetting& setting, const BeamLaunch& launch) noexcept;
+/// Source pattern and, of a point source, what spreading across the plane makes of its launch:
+/// √|cos α|, or √c₀ (tube_amplitude.h without what depends on where the ray gets to).
+[[nodiscard]] double launch_factor(const BeamSetting& setting, const BeamLaunch& launch,
+                                   double source_speed) noexcept;
 
 }  // namespace asdic::beams

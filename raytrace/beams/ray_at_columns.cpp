@@ -23,7 +23,7 @@ void RayAtColumns::resize(std::size_t n) {
 void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch) {
   const std::size_t n = crossings.size();
   resize(n);
-  const double launched = beams::launch_factor(setting, launch);
+  const double launched = beams::launch_factor(setting, launch, crossings.source_speed);
   const double launched2 = launched * launched / crossings.source_speed;
   const double f = setting.frequency, omega = 2.0 * pi * f;
   const bool coherent = setting.coherent;

@@ -207,6 +207,12 @@ PropagationResult search(const PropagationCase& run_case, const Progress& progre
         std::to_string(degrees(narrow.beams.highest)) + " deg (positive up)");
     return result;
   }
+  if (run_case.beams.source == SourceKind::line &&
+      run_case.environment.spreading != Spreading::cylindrical) {
+    PropagationCase line = run_case;  // spreads nowhere across: finish() takes the cylinder's off
+    line.environment.spreading = Spreading::cylindrical;
+    return search(line, progress, selection, with_rays, with_arrivals);
+  }
   check_sources(run_case);
   check_receivers(run_case);
   const ArrivalSearch paths(run_case, selection);

@@ -30,6 +30,7 @@ BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angl
   hit.speed = c;
   hit.nepers = y.nepers;
   hit.length = y.length;
+  hit.mean_slowness = y.speed_integral > 0.0 ? y.range / y.speed_integral : y.xi;
   hit.down = tz > 0.0 ? 1.0 : -1.0;
   hit.reflection = all_reflected(s.history);
   const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;

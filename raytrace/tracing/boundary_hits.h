@@ -21,6 +21,7 @@ struct BoundaryHit {
   double speed = 0.0;                     ///< of the water there [m/s]
   double nepers = 0.0;                    ///< absorption so far
   double length = 0.0;                    ///< of the path so far [m]
+  double mean_slowness = 0.0;             ///< r/∫c ds: of a layered sea Snell's invariant [s/m]
   double down = 0.0;                      ///< +1 where it goes down, −1 up
   std::complex<double> reflection = 1.0;  ///< of the bounces before, with all that rough ones
                                           ///< scattered about the ray

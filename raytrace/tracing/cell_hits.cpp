@@ -8,6 +8,7 @@
 #include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/fan_splitting.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -41,7 +42,8 @@ class CellSearch {
         spacing_(spacing),
         max_range_(max_range),
         frequency_(frequency),
-        limits_(limits) {}
+        limits_(limits),
+        spreading_(spreading_across(tracer.environment())) {}
 
   void trace(double angle, StrikingRay& out) {
     tracer_.trace(0.0, source_depth_, angle, limits_, trajectory_);
@@ -154,8 +156,13 @@ class CellSearch {
                                      : 0.0;
     const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
     const double r = (cell + 0.5) * spacing_;
-    const double spreading = std::sqrt(between(ha.speed, hb.speed) * std::abs(std::cos(alpha)) /
-                                       (a.source_speed * r * q));
+    const double spreading = tube_amplitude(
+        spreading_, {.speed = between(ha.speed, hb.speed),
+                     .q = q,
+                     .range = r,
+                     .launch_elevation = alpha,
+                     .source_speed = a.source_speed,
+                     .speed_integral = r / std::abs(between(ha.mean_slowness, hb.mean_slowness))});
     const bool like_a = (slope > 0.0) == (ha.d_range > 0.0);
     CellHit hit;
     hit.cell = cell;
@@ -176,6 +183,7 @@ class CellSearch {
   GroundLevel level_;
   double spacing_, max_range_, frequency_;
   TraceLimits limits_;
+  Spreading spreading_;
   RayTrajectory trajectory_;
 };
 

@@ -198,6 +198,7 @@ RayState Course::end_of_arc(double s) const noexcept {
         y.nepers + s / 6.0 * (row.alpha(y.depth) + 4.0 * row.alpha(middle) + row.alpha(b.depth));
   }
   b.length = y.length + s;
+  b.speed_integral = y.speed_integral + speed_integral;
   return b;
 }
 
@@ -227,6 +228,7 @@ RayState Course::end_of_parabola(double w) const noexcept {
   const double length = w * ((n[0] + n[1]) + (n[2] + n[3]));
   const Row& row = *cell_->row;
   b.length = y.length + length;
+  b.speed_integral = y.speed_integral + w;
   b.nepers = y.nepers + row.alpha(y.depth) * length +
              row.alpha_slope * w * ((n[0] * dz[0] + n[1] * dz[1]) + (n[2] * dz[2] + n[3] * dz[3]));
   // δx₀ = q·n, δ(slowness) = p·n + (c/2)·N_n·q·t; both projected on the end's n and t
@@ -262,6 +264,9 @@ RayState Course::end_of_series(double time) const noexcept {
   b.q_plane = q_plane;
   b.p_plane = growth_plane / c;
   b.length = y.length + series_.value(series_.length, time);
+  constexpr double upright = 1e-3;  // cosine
+  const bool layered = cell_->law != Law::bilinear && std::abs(tr_) > upright;
+  b.speed_integral = y.speed_integral + (layered ? range / y.xi : series_.speed_integral(time));
   b.nepers = y.nepers + series_.value(series_.nepers, time);
   return b;
 }

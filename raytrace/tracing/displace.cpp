@@ -1,5 +1,6 @@
 #include "raytrace/tracing/displace.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -56,6 +57,7 @@ int displace(const DisplacedReflection& r, RayState& y) noexcept {
   if (passed) caustics = rising ? 1 : -1;
   (void)tube(r.in.q_plane, r.in.p_plane, y.q_plane, y.p_plane);
   y.time += d * in.cosine / c;
+  y.speed_integral += std::abs(d) * c / std::max(std::abs(in.cosine), 1e-9);  // D/k_t
   y.xi = out_r / c_out;
   y.zeta = out_z / c_out;
   return caustics;

@@ -132,6 +132,7 @@ RayState March::crept(double way) const {
   y.q_plane += y_.p_plane * here_.c * way;
   y.nepers += cell_->row->alpha(y_.depth) * way;
   y.length += way;
+  y.speed_integral += here_.c * way;
   return y;
 }
 

@@ -93,6 +93,7 @@ double March::cross_by_invariant(double line) {
   carry_tube(y_.q_plane, y_.p_plane, y_.xi, tz, here_.c_z, x, tz_end, next_.q_plane, next_.p_plane);
   next_.nepers = y_.nepers + row.alpha(y_.depth) * x.length + row.alpha_slope * x.depth_integral;
   next_.length = y_.length + x.length;
+  next_.speed_integral = y_.speed_integral + x.speed_integral;
   const double cosine = x.c * y_.xi;
   there_ = {x.c, 0.0, x.c_z, x.c_zz * cosine * cosine};
   crossed_row_ = true;

@@ -51,6 +51,8 @@ struct PowerSeries {
   }
   /// All four at once.
   [[nodiscard]] std::array<double, 4> values(const FourSeries& a, double h) const noexcept;
+  /// ∫c ds = ∫c² dt.
+  [[nodiscard]] double speed_integral(double h) const noexcept;
   /// Of range and depth.
   [[nodiscard]] std::array<ValueSlope, 2> where(double h) const noexcept;
 };

@@ -143,6 +143,8 @@ bool RayFamily::tells_the_rest() const noexcept {
          (k[2].history.scattered == 0.0 ||
           good([&](std::size_t i) { return k[i].history.scattered; }, k[2].history.scattered)) &&
          good([&](std::size_t i) { return k[i].state.length; }, k[2].c * time) &&
+         good([&](std::size_t i) { return k[i].state.speed_integral; },
+              k[2].state.speed_integral) &&
          good([&](std::size_t i) { return k[i].state.nepers; }, 1.0);
 }
 
@@ -187,9 +189,13 @@ void RayFamily::complete(double angle, ExactCrossing& there) const noexcept {
   y.zeta = -std::sin(up) / there.c;
   y.q = by_slopes_ ? sign_ * there.crossing.slope * std::cos(up)  // ∂z/∂α = sign·q/(c·ξ)
                    : sum(w, [&](std::size_t i) { return k[i].state.q; });
-  // both over time, which hardly vary
-  y.length = y.time * sum(w, [&](std::size_t i) { return k[i].state.length / k[i].state.time; });
-  y.nepers = y.time * sum(w, [&](std::size_t i) { return k[i].state.nepers / k[i].state.time; });
+  // each over time, which hardly varies
+  const auto gathered = [&](double RayState::*what) {
+    return y.time * sum(w, [&](std::size_t i) { return k[i].state.*what / k[i].state.time; });
+  };
+  y.length = gathered(&RayState::length);
+  y.nepers = gathered(&RayState::nepers);
+  y.speed_integral = gathered(&RayState::speed_integral);
   const auto low = static_cast<std::size_t>(std::clamp(4.0 * t, 0.0, 3.0));
   const ExactCrossing &a = k[low], &b = k[low + 1];
   const bool nearer_b = 4.0 * t - static_cast<double>(low) > 0.5;

@@ -69,9 +69,10 @@ struct SegmentEnd {
     time = {y.time, 1.0 / c, -c_s / (c * c)};
     q = {y.q, c * y.p, c_s * y.p - c_nn / c * y.q};  // dq/ds = c p, dp/ds = −(c_nn/c²) q
     q_plane = {y.q_plane, c * y.p_plane, c_s * y.p_plane - c_nn / c * y.q_plane};
+    speed_integral = {y.speed_integral, c, c_s};
   }
   double tr, tz, c_s;
-  Jet range{}, depth{}, time{}, q{}, q_plane{};
+  Jet range{}, depth{}, time{}, q{}, q_plane{}, speed_integral{};
 };
 
 }  // namespace
@@ -89,6 +90,7 @@ SegmentStates::SegmentStates(const RaySegment& segment) noexcept : begin_(segmen
   time_ = quintic_terms(a.time, b.time, h);
   q_ = quintic_terms(a.q, b.q, h);
   q_plane_ = quintic_terms(a.q_plane, b.q_plane, h);
+  speed_integral_ = quintic_terms(a.speed_integral, b.speed_integral, h);
   c_ = cubic_terms(segment.c_begin, a.c_s, segment.c_end, b.c_s, h);
   nepers_ = cubic_terms(segment.begin.nepers, segment.alpha_begin, segment.end.nepers,
                         segment.alpha_end, h);

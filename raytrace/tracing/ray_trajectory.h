@@ -22,6 +22,8 @@ struct RayState {
   double p_plane = 0.0;
   double nepers = 0.0;  ///< ∫α ds
   double length = 0.0;  ///< s [m]
+  /// ∫c ds [m²/s]: ∂y/∂η, how far apart rays of different slowness η across the plane are
+  double speed_integral = 0.0;
 };
 
 /// What has happened to a ray before a segment.

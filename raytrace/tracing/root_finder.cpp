@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/neighbours.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -252,9 +253,12 @@ Arrival RootFinder::arrival(const ExactCrossing& there, double depth) const {
   path.delay = y.time + y.zeta * (depth - y.depth);  // ∇τ is the slowness
   path.q = y.q;
   path.caustics = h.caustics;
-  const double range = std::abs(column_->range - source_range_);
-  path.spreading = std::sqrt(there.c * std::abs(std::cos(path.launch_elevation)) /
-                             (ray_.source_speed * range * std::abs(y.q)));
+  path.spreading = tube_amplitude(spreading_, {.speed = there.c,
+                                               .q = y.q,
+                                               .range = std::abs(column_->range - source_range_),
+                                               .launch_elevation = path.launch_elevation,
+                                               .source_speed = ray_.source_speed,
+                                               .speed_integral = y.speed_integral});
   path.reflection = h.reflection;
   path.absorption_db = y.nepers * db_from_amplitude(std::exp(1.0));
   path.amplitude =

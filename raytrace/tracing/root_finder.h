@@ -25,6 +25,7 @@ class RootFinder {
         source_range_(source_range),
         source_depth_(source_depth),
         limits_(limits),
+        spreading_(spreading_across(tracer.environment())),
         columns_(columns) {
     for (const ReceiverColumn& column : columns) receivers_ += column.depths.size();
   }
@@ -59,6 +60,7 @@ class RootFinder {
   const RayTracer& tracer_;
   double source_range_, source_depth_;
   TraceLimits limits_;
+  Spreading spreading_;
   std::span<const ReceiverColumn> columns_;
   std::size_t receivers_ = 0;
   SearchCost cost_;

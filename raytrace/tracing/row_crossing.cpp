@@ -31,8 +31,8 @@ bool cross_arc(const Cell& cell, const RayState& y, const Local& here, double to
   const double sin1 = std::sqrt(square);
   x.turn = std::abs(sin0 * cos1 - sin1 * cos0);
   const double per_sines = 1.0 / (sin0 + sin1);
-  const double speed_integral = way * (c0 + c1) * per_sines;  // ∫c ds
-  x.range = y.xi * speed_integral;
+  x.speed_integral = way * (c0 + c1) * per_sines;
+  x.range = y.xi * x.speed_integral;
   const double chord = std::sqrt(dz * dz + x.range * x.range);
   const double half_sine = 0.5 * g * y.xi * chord;  // of half the turn
   const double per_c = 1.0 / (c0 * c1), stretch = 0.25 * g * g * chord * chord * per_c;
@@ -45,7 +45,7 @@ bool cross_arc(const Cell& cell, const RayState& y, const Local& here, double to
         0.5 * dz + 0.5 * x.range * half_sine / (1.0 + std::sqrt(1.0 - bent));  // chord and sagitta
     x.depth_integral = x.length / 6.0 * (4.0 * middle + dz);
   }
-  x.spread = speed_integral / (sin0 * sin1);
+  x.spread = x.speed_integral / (sin0 * sin1);
   x.sine = sin1;
   x.c = c1;
   x.c_z = g;
@@ -64,6 +64,7 @@ bool cross_parabola(const Cell& cell, const RayState& y, double to, RowCrossing&
   x.turn = std::abs(y.xi * (zeta1 - zeta0)) * x.c * x.c;  // about its sine: n changes by little
   if (x.turn > 0.9 * widest_bend) return false;
   const double w = 2.0 * std::abs(dz) / (zeta0 + zeta1);
+  x.speed_integral = w;
   x.range = y.xi * w;
   x.time = w * (na + gradient * w * (0.5 * y.zeta + gradient * w / 12.0));
   using Rule = GaussLegendre<4>;
@@ -110,6 +111,7 @@ void integrate(const SoundSpeed2D& m, double a3, double half, double xi, RowCros
     z += moment[i];
   }
   const double way = std::abs(half);
+  x.speed_integral = way * r;
   x.range = way * xi * r;
   x.time = way * t;
   x.length = way * l;

@@ -5,7 +5,8 @@ namespace asdic::tracing {
 
 /// What a ray gathers between two depths of a row where the speed depends on depth alone.
 struct RowCrossing {
-  double range = 0.0;                     ///< [m], signed
+  double speed_integral = 0.0;            ///< ∫c ds [m²/s]
+  double range = 0.0;                     ///< ξ·∫c ds [m], signed
   double time = 0.0;                      ///< [s]
   double length = 0.0;                    ///< [m]
   double depth_integral = 0.0;            ///< ∫(z − z₀) ds [m²]; lossy rows (α varies) only

@@ -36,6 +36,7 @@ class SegmentStates {
     y.q_plane = value(q_plane_, u), y.p_plane = slope(q_plane_, u) / c;
     y.nepers = value(nepers_, u);
     y.length = begin_.length + s;
+    y.speed_integral = value(speed_integral_, u);
     return y;
   }
 
@@ -56,7 +57,7 @@ class SegmentStates {
 
   RayState begin_;
   double per_h_ = 0.0;  // 0: a segment without length
-  Quintic range_{}, depth_{}, time_{}, q_{}, q_plane_{};
+  Quintic range_{}, depth_{}, time_{}, q_{}, q_plane_{}, speed_integral_{};
   Cubic c_{}, nepers_{};
 };
 

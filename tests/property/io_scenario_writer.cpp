@@ -160,6 +160,7 @@ Environment any_ocean() {
   for (int i = *rc::gen::inRange(0, 3); i > 0; --i)
     ocean.biology.push_back({between(0.0, 100.0), between(101.0, 500.0), between(100.0, 5000.0),
                              between(1.0, 10.0), between(0.0, 2.0)});
+  if (perhaps()) ocean.spreading = Spreading::cylindrical;
   return ocean;
 }
 
@@ -254,6 +255,7 @@ RC_GTEST_PROP(ScenarioWriter, ReadsBackBitForBit, ()) {
                          same.beams.lowest, same.beams.highest, same.literal.step};
   expect_same(read, numbers);
   const Environment &a = run.environment, &b = same.environment;
+  RC_ASSERT(spreading_across(a) == spreading_across(b));
   for (double z = -15.0; z < 1100.0; z += 37.0) {
     const double values[] = {a.water.at(z).c, a.water_density.at(z), a.attenuation_db_per_km.at(z),
                              sound_speed(a, 500.0, z).c, attenuation_np_per_m(a, 1e3).at(z)};

@@ -62,7 +62,7 @@ TEST(LayeredCrossings, AreTheTracers) {
          even_fan(run_case.beams.lowest, run_case.beams.highest, 37).elevation) {
       if (!layered->find(elevation, work, fast)) continue;
       tracer.trace(0.0, zs, elevation, limits, ray);
-      find_crossings(ray, run_case.receivers.ranges, plain);
+      find_crossings({}, ray, run_case.receivers.ranges, plain);
       ASSERT_EQ(fast.size(), plain.size()) << seed << ' ' << elevation;
       for (std::size_t i = 0; i < fast.size(); ++i) {
         SCOPED_TRACE(testing::Message()

@@ -176,6 +176,7 @@ TEST(LikeBellhop, DisplacedRaysAreOurOwn) {
           FluidHalfSpace{.speed = 1700.0, .density = 1800.0, .attenuation_db_per_wavelength = 0.0},
       .shape = BoundaryShape(std::vector{-1e3, 10e3}, std::vector{300.0, 200.0},
                              ShapeInterpolation::piecewise_linear)};
+  c.environment.spreading = Spreading::cylindrical;  // BELLHOP's
   c.source_depths = {100.0};
   c.beams.displacement = true;
   c.box_range = 6e3;

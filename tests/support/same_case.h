@@ -86,6 +86,7 @@ class CaseComparison {
     function("attenuation", a.attenuation_db_per_km, b.attenuation_db_per_km);
     boundary("surface", a.surface, b.surface);
     boundary("bottom", a.bottom, b.bottom);
+    same("spreading", spreading_across(a), spreading_across(b));
     same("absorption", a.absorption.index(), b.absorption.index());
     same("absorption at 1 kHz", absorption_db_per_km(a.absorption, 1000.0),
          absorption_db_per_km(b.absorption, 1000.0));

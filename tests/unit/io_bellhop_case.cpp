@@ -426,6 +426,22 @@ TEST(BellhopCase, MunksProfileHasNoRows) {
   EXPECT_EQ(run_case.environment.bottom.depth, 100.0);
 }
 
+// BELLHOP takes the sea for the same all around its source; a scenario for the same across its
+// plane.
+TEST(BellhopCase, SpreadsCylindrically) {
+  const Input wedge = read_case(data / "wedge-gauss" / "case");
+  EXPECT_EQ(spreading_across(wedge.run_case.environment), Spreading::cylindrical);
+  EXPECT_EQ(read_small().run_case.environment.spreading,
+            Spreading{});  // over level ground no matter
+  PropagationCase plane = wedge.run_case;
+  plane.environment.spreading = Spreading::plane;
+  const Written written = write_case(plane, false);
+  ASSERT_EQ(written.notes.size(), 1U);
+  EXPECT_NE(written.notes[0].find("environment.spreading"), std::string::npos);
+  plane.beams.source = SourceKind::line;  // spreads nowhere
+  EXPECT_TRUE(write_case(plane, false).notes.empty());
+}
+
 TEST(BellhopCase, AllSixteenAreWrittenAndReadBackTheSame) {
   for (const auto& root : all_roots()) {
     const Input first = read_case(root);

@@ -43,6 +43,22 @@ double loss(const std::string& key, double value) {
       .attenuation_db_per_wavelength;
 }
 
+TEST(ScenarioOcean, WhatIsBesideThePlane) {
+  const std::string sloping = water +
+                              "[environment.bottom]\nkind = \"rigid\"\n"
+                              "shape = { range = [0, 2000], depth = [100, 200] }\n";
+  EXPECT_EQ(spreading_across(read(sloping).environment), Spreading::plane);
+  EXPECT_EQ(
+      spreading_across(read("environment.spreading = \"cylindrical\"\n" + sloping).environment),
+      Spreading::cylindrical);
+  try {
+    static_cast<void>(read("environment.spreading = \"spherical\"\n" + sloping));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("environment.spreading"));
+  }
+}
+
 // At 500 Hz and 2000 m/s a wavelength is 4 m.
 TEST(ScenarioOcean, AttenuationInEveryUnit) {
   const double neper = 20.0 / std::log(10.0);

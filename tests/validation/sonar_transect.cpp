@@ -78,11 +78,13 @@ TEST(Transect, EchoFromUpslopeIsThePathsThereAndBack) {
 }
 
 // The way back is the way out reversed, though every leg was searched in a plane of its own: delays
-// to 1e-9 s. Amplitudes are those of a sea that is the same all around the source (N × 2D): over a
-// slope a ray's horizontal slowness ξ changes, and reversed tubes differ in width across the plane
-// by ξ_source/ξ_receiver, amplitudes by its root; to 1e-5, for they are derivatives.
-TEST(Transect, ReciprocityOverASlope) {
-  const Scenario s = wedge();
+// to 1e-9 s, amplitudes to 1e-5, for they are derivatives. In a sea that is the same all around
+// each source (spreading = "cylindrical") reversed tubes differ in width across the plane by
+// ξ_source/ξ_receiver, for over a slope a ray's horizontal slowness ξ changes; amplitudes by its
+// root.
+void expect_reversed(Spreading spreading) {
+  Scenario s = wedge();
+  s.environment.spreading = spreading;
   const PingSimulator simulator(s);
   const PingRecord record = simulator.simulate(1);
   const Arrivals &out = record.legs.at(0).arrivals, &back = record.legs.at(1).arrivals;
@@ -92,11 +94,18 @@ TEST(Transect, ReciprocityOverASlope) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     EXPECT_NEAR(out[i].delay, back[i].delay, 1e-9);
     EXPECT_NEAR(out[i].launch_elevation, -back[i].arrival_elevation, 1e-7);
-    const double widths = std::cos(out[i].launch_elevation) / c_source /
-                          (std::cos(out[i].arrival_elevation) / c_target);
+    const double widths = spreading == Spreading::plane
+                              ? 1.0
+                              : std::cos(out[i].launch_elevation) / c_source /
+                                    (std::cos(out[i].arrival_elevation) / c_target);
     EXPECT_LT(std::abs(out[i].amplitude - back[i].amplitude * std::sqrt(widths)),
               1e-5 * std::abs(out[i].amplitude));
   }
+}
+
+TEST(Transect, ReciprocityOverASlope) {
+  expect_reversed(Spreading::plane);
+  expect_reversed(Spreading::cylindrical);
 }
 
 /// The delay of the path like `like` between two places [s].
