@@ -96,7 +96,7 @@ int ping(const PingOptions& options) {
                  read_budget(options.scenario.path, options.scenario.overrides));
     try {
       static_cast<void>(made->memory());
-      const std::vector<std::string> missing = made->judge_paths();
+      const std::vector<std::string> missing = made->judge_paths().warnings;
       if (!options.quiet) warn(missing);
     } catch (const MemoryError& error) {
       throw told_of_scenario(error, options.scenario.path, overrides(options));

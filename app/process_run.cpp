@@ -168,6 +168,7 @@ ProcessedRun process_file(const PingRecordings& recordings, const PingProcessor&
       }
     if (of_array.size() > 1) track_array(processor, of_array, rows, run);
   }
+  if (const std::string lack = processor.lack(); !lack.empty()) run.warnings.push_back(lack);
   return run;
 }
 

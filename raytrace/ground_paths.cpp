@@ -65,6 +65,9 @@ class BranchFollower {
 
   void follow(const MonotoneStretch& s) {
     stop_point();
+    const int cycles = cycles_told_by(s.branch.vertices / 2);
+    if (cycles == 0) return;
+    strength_ = std::sqrt(cycles);
     if (level_.boundary && s.branch.arrives_upward() != (level_.boundary == BoundaryKind::surface))
       return;  // the field that falls on the boundary
     if (s.interval != reached_of_) reached_.clear();
@@ -193,7 +196,7 @@ class BranchFollower {
     per_slowness = std::max(std::abs(per_slowness), floor_);
     const int tops = stretch_->interval->turns_above ? 0 : branch.top_vertices();
     const int bottoms = stretch_->interval->turns_below ? 0 : branch.bottom_vertices();
-    const double size = builder_.spreading(r, range, per_slowness) *
+    const double size = strength_ * builder_.spreading(r, range, per_slowness) *
                         amplitude_from_db(-builder_.absorption_db_per_metre() * length);
     return {
         .delay = delay,
@@ -225,6 +228,7 @@ class BranchFollower {
   BranchWeights weights_;
   int turns_ = 0;
   double floor_ = 0.0;
+  double strength_ = 1.0;  // of the cycles that the branch stands for
 };
 
 /// Of a layered ocean: along the branches of its fan.
@@ -269,7 +273,9 @@ std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_dept
                       .horizontal_slowness = hit.slowness,
                       .slowness_slope = 0.0,
                       .downward = hit.down,
-                      .length = hit.length}});
+                      .length = hit.length,
+                      .surface_bounces = static_cast<std::uint16_t>(hit.surface_bounces),
+                      .bottom_bounces = static_cast<std::uint16_t>(hit.bottom_bounces)}});
   }
   return found;
 }
@@ -359,6 +365,18 @@ PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
 }
 
 }  // namespace
+
+int cycles_told_by(int cycle) noexcept {
+  int stride = 1;  // all_cycles is a multiple of 9: blocks begin where those before end
+  while (cycle >= all_cycles * stride) stride *= 3;
+  return cycle % stride == stride / 2 ? stride : 0;
+}
+
+int followed_cycles(int most) noexcept {
+  int followed = 0;
+  for (int cycle = 0; cycle <= most; ++cycle) followed += cycles_told_by(cycle) > 0 ? 1 : 0;
+  return followed;
+}
 
 /// Cells of very many paths get bundles of equal numbers of paths that follow each other in delay.
 void GroundPaths::bundle(double frequency, const StopPoint& stop) {

@@ -32,7 +32,7 @@ struct GroundPath {
   double slowness_slope = 0.0;  ///< d²τ/dr² [s/m²], held near caustics; 0 where it is not known
   double downward = 0.0;        ///< +1 where the path goes down at its end, −1 up
   double length = 0.0;          ///< of the path [m]
-  /// Reflections before the end; 0 where the fan was marched.
+  /// Reflections before the end.
   std::uint16_t surface_bounces = 0, bottom_bounces = 0;
   float chance = 1.0F;  ///< of this path and those before it, out of its PathBundle
 };
@@ -89,6 +89,16 @@ class GroundPaths {
   std::vector<std::uint32_t> first_bundle_;  // [cells + 1], or none
   std::vector<PathBundle> bundles_;
 };
+
+/// Of paths that go up and down very often, in layered water, not every cycle is followed: from
+/// `all_cycles` on the middle one of 3, from three times as many on of 9 and so on, each as strong
+/// as all for which it stands. A sum of energy over cycles is right to some 10⁻³, and the paths of
+/// a cell grow as the logarithm of their bounces. docs/theory/reverberation.md, "Many paths"
+inline constexpr int all_cycles = 63;
+/// How many cycles the followed one of a number stands for; 0 where it is not followed.
+[[nodiscard]] int cycles_told_by(int cycle) noexcept;
+/// Of the cycles up to a number, those that are followed.
+[[nodiscard]] int followed_cycles(int most) noexcept;
 
 /// Where the fan of a source meets a boundary, interpolated along each branch of the fan onto one
 /// ground grid: delay and range by cubics whose slopes are exact (dτ/dr = ξ), refined until range

@@ -1,6 +1,7 @@
 #include "serve/answers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sonar/sampling.h"
@@ -76,6 +77,14 @@ void add_warnings(const Scenario& scenario, OrderedJson& line) {
   if (!scenario.notes.empty()) line["warnings"] = scenario.notes;
 }
 
+/// What bounces that were not followed leave out of the ping, where that is estimated.
+void add_left_out(const Bounces& followed, const Scenario& scenario, OrderedJson& line) {
+  if (std::isnan(followed.left_out_db)) return;
+  line["left_out_db"] = followed.left_out_db;
+  const std::string lack = lacking(scenario.propagation, followed, "this ping");
+  if (!lack.empty()) line["warnings"].push_back(lack);
+}
+
 }  // namespace
 
 std::string greeting_line(const Scenario& scenario, const Pace& pace, const std::string& version) {
@@ -119,6 +128,7 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
                     {"expected_level", record.reuse.expected_level}};
   line["timings"] = timings(record.timings, served.prepare);
   add_warnings(scenario, line);
+  add_left_out(record.bounces, scenario, line);
   line["latency"] = served.latency;
   line["behind"] = served.behind;
   return text(line);

@@ -138,6 +138,7 @@ const PingSimulator& Session::simulator_of(LiveScenario::State state) {
     simulators_.splice(simulators_.begin(), simulators_, found);
   } else {
     auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
+    if (!std::exchange(judged_, true)) made->judge_paths();
     simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
     if (simulators_.size() > most_simulators) simulators_.pop_back();
   }

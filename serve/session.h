@@ -82,6 +82,7 @@ class Session {
   LiveScenario live_;
   Turns turns_;
   int pings_ = 0;                                   // done
+  bool judged_ = false;                             // what bounces leave out: at the first ping
   MemoryBudget budget_;                             // of a ping
   std::shared_ptr<SharedPropagation> propagation_;  // what was traced
   std::list<Simulator> simulators_;                 // the latest used first

@@ -100,7 +100,7 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
   const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
   const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
                cells = planes * std::ceil(settings.max_range / settings.spacing),
-               paths = 2.0 * (bounces + 1.0) * cells;
+               paths = 2.0 * (paths_.layered() ? followed_cycles(bounces) : bounces + 1.0) * cells;
   return {.where = "reverberation.ground_spacing",
           .what = "paths of up to " + std::to_string(bounces) + " bounces to " +
                   std::to_string(std::llround(cells)) + " cells of the ground",

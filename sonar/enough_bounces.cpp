@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numeric>
 
 namespace asdic {
 namespace {
 
-// Bounces that are tried at most: within a time, without its end, over slopes.
-constexpr int most_ever = 768, most_for_ever = 48, most_over_slopes = 24;
+// Bounces that are tried at most where no time ends.
+constexpr int most_for_ever = 48;
 
 /// What is missing of a whole, in dB of it.
 double missing_db(double missing, double all) {
@@ -43,6 +45,8 @@ EnergyByBounces::EnergyByBounces(std::size_t stretches, double latest, int most,
 
 void EnergyByBounces::add(double delay, int bounces, double energy) {
   if (delay > latest_) return;
+  // Of many bounces one path stands for those around it, up to a twentieth more (cycles_told_by).
+  any_has_most_ = any_has_most_ || bounces >= most_ - most_ / 16;
   const std::size_t row = static_cast<std::size_t>(most_) + 1, stretches = energy_.size() / row;
   const double share = std::isfinite(latest_) ? delay / latest_ : 0.0;
   const auto stretch = static_cast<std::size_t>(share * static_cast<double>(stretches));
@@ -62,8 +66,19 @@ double EnergyByBounces::left_out_db(int bounces) const {
 }
 
 int EnergyByBounces::enough(double db) const {
+  const auto row = static_cast<std::ptrdiff_t>(most_) + 1;
   int bounces = std::min(fewest_bounces, most_);
-  while (bounces < most_ && left_out_db(bounces) > db) ++bounces;
+  for (auto stretch = energy_.begin(); stretch != energy_.end(); stretch += row) {
+    const double all = std::accumulate(stretch, stretch + row, 0.0);
+    double missing = 0.0;  // of those of more bounces than n
+    int n = most_;
+    for (; n > bounces; --n) {
+      const double more = missing + stretch[n];
+      if (more > floor_ && missing_db(more, all) > db) break;
+      missing = more;
+    }
+    bounces = n;
+  }
   return bounces;
 }
 
@@ -80,32 +95,64 @@ PropagationSettings unlimited(const PropagationSettings& settings) noexcept {
   return open;
 }
 
+void HeardBounces::add(double delay, int surface, int bottom, double energy) {
+  const bool beyond = surface > asked_.surface || bottom > asked_.bottom;
+  by_most_.add(delay, std::max(surface, bottom), energy);
+  by_numbers_.add(delay, beyond ? 1 : 0, energy);
+}
+
+Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& search,
+                       const std::function<void(const PathLimits&, HeardBounces&)>& look) {
+  const bool numbers = in_numbers(settings);
+  for (int most = std::min(search.first, search.most);; most = std::min(2 * most, search.most)) {
+    const Bounces asked = as_asked(settings, most);
+    HeardBounces heard(search.stretches, search.latest, most, search.floor, asked);
+    look(limits_of(unlimited(settings), most), heard);
+    const EnergyByBounces& by_most = heard.by_most();
+    const bool converged = by_most.converged(search.tolerance_db);
+    if (!converged && most < search.most) continue;
+    const int bounces = by_most.enough(search.tolerance_db);
+    Bounces followed = numbers ? asked : as_asked(settings, bounces);
+    followed.left_out_db =
+        numbers ? heard.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
+    return followed;
+  }
+}
+
 Bounces enough_bounces(const PropagationPaths& paths, const PropagationSettings& settings,
                        const Vec3& from, const Vec3& to, double frequency, double latest,
                        bool judged) {
-  constexpr double of_a_leg = 0.5 * negligible_db;  // an echo has two
-  const bool numbers = in_numbers(settings), timed = std::isfinite(latest);
-  if (numbers && !(judged && paths.layered())) return as_asked(settings);
-  const int limit = !paths.layered() ? most_over_slopes : timed ? most_ever : most_for_ever;
-  for (int most = 2 * fewest_bounces;; most *= 2) {
-    PathLimits limits = limits_of(unlimited(settings), most);
+  if (in_numbers(settings) && !judged) return as_asked(settings);
+  const bool timed = std::isfinite(latest);
+  const BounceSearch search{.most = !timed            ? most_for_ever
+                                    : paths.layered() ? most_between_places
+                                                      : most_over_slopes,
+                            .tolerance_db = 0.5 * negligible_db,  // an echo has two legs
+                            .latest = latest};
+  return search_bounces(settings, search, [&](PathLimits limits, HeardBounces& heard) {
     limits.max_delay = latest;
     limits.diffraction = false;  // it has no bounces
-    const Bounces asked = as_asked(settings, most);
-    EnergyByBounces heard(1, latest, most, 0.0), by_numbers(1, latest, 1, 0.0);
-    for (const Arrival& a : paths.find(from, to, frequency, limits)) {
-      const bool beyond = a.surface_bounces > asked.surface || a.bottom_bounces > asked.bottom;
-      const double energy = std::norm(a.amplitude) + a.scattered;
-      heard.add(a.delay, std::max(a.surface_bounces, a.bottom_bounces), energy);
-      by_numbers.add(a.delay, beyond ? 1 : 0, energy);
-    }
-    const bool converged = heard.converged(of_a_leg);
-    if (!converged && most < limit) continue;
-    Bounces followed = numbers ? asked : as_asked(settings, heard.enough(of_a_leg));
-    followed.left_out_db =
-        numbers ? by_numbers.left_out_db(0) : heard.estimate_db(heard.enough(of_a_leg), converged);
-    return followed;
-  }
+    for (const Arrival& a : paths.find(from, to, frequency, limits))
+      heard.add(a.delay, a.surface_bounces, a.bottom_bounces, std::norm(a.amplitude) + a.scattered);
+  });
+}
+
+std::string lacking(const PropagationSettings& settings, const Bounces& followed,
+                    const char* sound) {
+  if (!(followed.left_out_db > tolerable_db)) return "";
+  const char* const key = settings.max_bottom_bounces || !settings.max_surface_bounces
+                              ? "propagation.max_bottom_bounces"
+                              : "propagation.max_surface_bounces";
+  char missing[64] = "all of it at some time";
+  if (std::isfinite(followed.left_out_db))
+    std::snprintf(missing, sizeof missing, "up to %.2g dB", followed.left_out_db);
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%s: %s lacks the paths of more than %d bounces off the surface or %d off the "
+                "bottom, %s%s",
+                key, sound, followed.surface, followed.bottom, missing,
+                in_numbers(settings) ? "; \"auto\" follows as many as there is sound in" : "");
+  return text;
 }
 
 }  // namespace asdic

@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "sonar/propagation_paths.h"
@@ -8,6 +10,11 @@ namespace asdic {
 
 /// What "auto" may leave out of a level: more is told as a warning once it is `tolerable_db`.
 inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
+
+/// Bounces off either boundary that "auto" follows at most over slopes and fronts, where every one
+/// takes longer marches, and between two places in layered water, where pairs of paths there and
+/// back grow with its square.
+inline constexpr int most_over_slopes = 96, most_between_places = 192;
 
 /// How many bounces are followed off either boundary, and an estimate of how much of the level is
 /// missing for it [dB].
@@ -19,8 +26,8 @@ struct Bounces {
   void include(const Bounces& other) noexcept;
 };
 
-/// What reaches a place or comes back from the ground, in stretches of delay, by the bounces of the
-/// path that has more of them.
+/// What reaches a place or comes back from the ground, in stretches of delay (or of whatever else
+/// may miss it), by the bounces of the path that has more of them.
 class EnergyByBounces {
  public:
   /// \param latest  end of the last stretch [s]   \param most  bounces   \param floor  what may be
@@ -36,14 +43,45 @@ class EnergyByBounces {
   /// left_out_db(); of a search that was given up, no less than its last half added: what is beyond
   /// adds about as much again.
   [[nodiscard]] double estimate_db(int bounces, bool converged) const;
-  /// Whether those of more than half of the bounces are so weak that still more will not count.
-  [[nodiscard]] bool converged(double db) const { return left_out_db(most_ / 2) <= 0.5 * db; }
+  /// Whether those of more than half of the bounces are so weak that still more will not count, or
+  /// nothing was found that has as many as were allowed: there is no more.
+  [[nodiscard]] bool converged(double db) const {
+    return !any_has_most_ || left_out_db(most_ / 2) <= 0.5 * db;
+  }
 
  private:
   double latest_;
   int most_;
   double floor_;
+  bool any_has_most_ = false;
   std::vector<double> energy_;  // [stretches × (most + 1)]
+};
+
+/// What a search for bounces has heard: of all paths, and of those beyond the numbers asked for.
+class HeardBounces {
+ public:
+  HeardBounces(std::size_t stretches, double latest, int most, double floor, const Bounces& asked)
+      : by_most_(stretches, latest, most, floor),
+        by_numbers_(stretches, latest, 1, floor),
+        asked_(asked) {}
+
+  void add(double delay, int surface, int bottom, double energy);
+  [[nodiscard]] const EnergyByBounces& by_most() const noexcept { return by_most_; }
+  [[nodiscard]] const EnergyByBounces& by_numbers() const noexcept { return by_numbers_; }
+
+ private:
+  EnergyByBounces by_most_, by_numbers_;  // by_numbers_: 0 within, 1 beyond
+  Bounces asked_;
+};
+
+/// How many bounces are looked for, and where.
+struct BounceSearch {
+  int first = 2 * fewest_bounces;  ///< tried first, then twice as many
+  int most = 768;                  ///< tried at most
+  double tolerance_db = negligible_db;
+  std::size_t stretches = 1;
+  double latest = std::numeric_limits<double>::infinity();  ///< end of the stretches
+  double floor = 0.0;                                       ///< as of EnergyByBounces
 };
 
 /// Whether the settings say how many off either boundary.
@@ -57,10 +95,21 @@ class EnergyByBounces {
 [[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
                                    const Bounces& enough) noexcept;
 
-/// Of the paths between two places that arrive by a time after they left [s]: doubled until twice
-/// as many bounces add next to nothing. Numbers of the settings are kept.
-/// docs/theory/eigenrays.md, "Enough bounces"
-/// \param judged  what numbers leave out is estimated, too; not over slopes
+/// Doubles the bounces until twice as many add next to nothing. Numbers of the settings are kept,
+/// and what they leave out is estimated. docs/theory/eigenrays.md, "Enough bounces"
+/// \param look  adds what there is within limits
+[[nodiscard]] Bounces search_bounces(
+    const PropagationSettings& settings, const BounceSearch& search,
+    const std::function<void(const PathLimits&, HeardBounces&)>& look);
+
+/// What a user should know of a sound that lacks bounces, in one line; "" where next to nothing is
+/// missing. \param sound  "an echo"
+[[nodiscard]] std::string lacking(const PropagationSettings& settings, const Bounces& followed,
+                                  const char* sound);
+
+/// Of the paths between two places that arrive by a time after they left [s]. Numbers of the
+/// settings are kept.
+/// \param judged  what numbers leave out is estimated, too
 [[nodiscard]] Bounces enough_bounces(const PropagationPaths& paths,
                                      const PropagationSettings& settings, const Vec3& from,
                                      const Vec3& to, double frequency, double latest,

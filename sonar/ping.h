@@ -56,9 +56,13 @@ class PingSimulator {
   /// too much, as simulate() does
   [[nodiscard]] MemoryBudget memory(int ping = 1) const;
 
-  /// Estimates what the bounces that are followed leave out of each transmitter's first ping, and
-  /// adds to the scenario's notes where that is more than a little. \return what it added
-  std::vector<std::string> judge_paths();
+  /// What the bounces that are followed leave out of a scenario.
+  struct JudgedPaths {
+    Bounces followed;                   ///< the most that any sound is given, and what is left out
+    std::vector<std::string> warnings;  ///< where that is more than a little
+  };
+  /// Estimates it for each transmitter's first ping, and adds the warnings to the scenario's notes.
+  JudgedPaths judge_paths();
 
   [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
   /// Of the ocean as the scenario gives it, along its transect where it has one.

@@ -8,18 +8,17 @@ namespace asdic {
 namespace {
 
 constexpr std::size_t stretches = 32;  // of the record
-constexpr int rings = 64, first_try = 8, most_ever = 2048;
+constexpr int rings = 64, first_try = 8;
+constexpr int most_ever = 1 << 14;     // bounces that are tried at most in layered water
+constexpr int bearings_looked_at = 8;  // and planes, over slopes
 
-/// What comes back from rings around the middle of two ends, by the bounces of either leg.
-struct Look {
-  EnergyByBounces by_most;     // of all paths
-  EnergyByBounces by_numbers;  // 0: within the numbers asked for, 1: beyond
-};
-
-void look(const ScatteringSheet& sheet, double reach, const Bounces& asked, Look& into) {
+/// Adds what comes back from rings around the middle of two ends, by the bounces of either leg.
+/// \param most  of the bounces
+void look(const ScatteringSheet& sheet, double reach, int most, HeardBounces& into) {
   const SheetEnds& ends = sheet.ends();
   const Vec2 middle = 0.5 * (ends.source.position + ends.receiver.position).head<2>();
-  const int bearings = sheet.all_round() ? 1 : 8;
+  // Where a path may stand for hundreds, a place that draws one tells too little of them.
+  const int bearings = sheet.all_round() && most < 2 * all_cycles ? 1 : bearings_looked_at;
   const double step = reach / rings;
   PathPairs pairs;
   for (int ring = 0; ring < rings; ++ring)
@@ -33,9 +32,7 @@ void look(const ScatteringSheet& sheet, double reach, const Bounces& asked, Look
       for (const PathPair& pair : pairs.found) {
         const int surface = std::max(pair.out->surface_bounces, pair.back->surface_bounces),
                   bottom = std::max(pair.out->bottom_bounces, pair.back->bottom_bounces);
-        const bool beyond = surface > asked.surface || bottom > asked.bottom;
-        into.by_most.add(pair.delay, std::max(surface, bottom), pair.power * area);
-        into.by_numbers.add(pair.delay, beyond ? 1 : 0, pair.power * area);
+        into.add(pair.delay, surface, bottom, pair.power * area);
       }
     }
 }
@@ -57,32 +54,27 @@ Bounces ReverberationModel::enough(const Part& part, const SheetEnds& ends,
                                    BoundaryFans::Settings fan,
                                    const ReverberationContext& context) const {
   const PropagationSettings& settings = scenario_.propagation;
-  const bool numbers = in_numbers(settings);
-  if (!paths_.layered() || (numbers && !context.judged)) return as_asked(settings);
+  if (in_numbers(settings) && !context.judged) return as_asked(settings);
   SheetEnds centre = ends;
   centre.band = {};
-  const double reach = fan.max_range, floor = inaudible(context);
+  const double reach = fan.max_range;
   const double max_delay = fan.limits.max_delay, home_slowness = fan.limits.home_slowness;
   fan.spacing = reach / rings;
-  for (int most = first_try;; most *= 2) {
-    fan.limits = limits_of(unlimited(settings), most);
+  fan.sectors = bearings_looked_at;
+  const BounceSearch search{.first = first_try,
+                            .most = paths_.layered() ? most_ever : most_over_slopes,
+                            .stretches = stretches,
+                            .latest = context.latest,
+                            .floor = inaudible(context)};
+  return search_bounces(settings, search, [&](const PathLimits& limits, HeardBounces& heard) {
+    fan.limits = limits;
     fan.limits.max_delay = max_delay;
     fan.limits.home_slowness = home_slowness;
     const ScatteringSheet sheet(fans_.around(ends.source.position, part.level, fan),
                                 fans_.around(ends.receiver.position, part.level, fan), part.law,
                                 centre, context.pattern);
-    const Bounces asked = as_asked(settings, most);
-    Look found{.by_most = EnergyByBounces(stretches, context.latest, most, floor),
-               .by_numbers = EnergyByBounces(stretches, context.latest, 1, floor)};
-    look(sheet, reach, asked, found);
-    const bool converged = found.by_most.converged(negligible_db);
-    if (!converged && most < most_ever) continue;
-    const int bounces = found.by_most.enough(negligible_db);
-    Bounces followed = numbers ? asked : as_asked(settings, bounces);
-    followed.left_out_db =
-        numbers ? found.by_numbers.left_out_db(0) : found.by_most.estimate_db(bounces, converged);
-    return followed;
-  }
+    look(sheet, reach, std::max(limits.max_surface_bounces, limits.max_bottom_bounces), heard);
+  });
 }
 
 }  // namespace asdic

@@ -48,6 +48,7 @@ std::string listed(const std::set<std::string>& texts) {
 Imprint imprint_of(const Study& study) {
   std::vector<Column> all = columns(study);
   all.insert(all.end(), reuse_columns().begin(), reuse_columns().end());
+  Judgement judgement = judge(study);
   return {.identity = identity(study),
           .title = study.title,
           .seed = study.seed,
@@ -56,7 +57,8 @@ Imprint imprint_of(const Study& study) {
           .text = study.text,
           .scenario_text = study.scenario_text,
           .overrides = study.overrides,
-          .warnings = warnings(study),
+          .warnings = std::move(judgement.warnings),
+          .left_out_db = judgement.left_out_db,
           .columns = std::move(all)};
 }
 

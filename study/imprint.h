@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ struct Imprint {
   std::string text{}, scenario_text{};
   std::vector<std::string> overrides{};
   std::vector<std::string> warnings{};  ///< what is to be known before the numbers are trusted
-  std::vector<Column> columns{};        ///< with those that tell what was reused
+  /// Of the levels, by paths of more bounces, estimated [dB]; not a number: not known.
+  double left_out_db = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Column> columns{};  ///< with those that tell what was reused
 };
 
 [[nodiscard]] Imprint imprint_of(const Study& study);

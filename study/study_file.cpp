@@ -68,6 +68,9 @@ StudyFile::StudyFile(const std::filesystem::path& path)
                                                           : std::vector<std::string>{},
         .warnings = file_.has_attribute("", "warnings") ? file_.attribute_texts("", "warnings")
                                                         : std::vector<std::string>{},
+        .left_out_db = file_.has_attribute("", "left_out_db")
+                           ? file_.attribute_number("", "left_out_db")
+                           : std::numeric_limits<double>::quiet_NaN(),
         .columns = columns_from_json(manifest.at("columns").dump())};
   } catch (const Json::exception& error) {
     throw no_manifest(path, error);

@@ -1,5 +1,6 @@
 // What a study's file says of itself: its root, summary, manifest, and how it came about.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -40,6 +41,8 @@ void StudyFileWriter::write_root() {
   if (!results_.stopped_by.empty()) file_.set_attribute("", "stopped_by", results_.stopped_by);
   if (!imprint.overrides.empty()) file_.set_attribute("", "overrides", imprint.overrides);
   if (!imprint.warnings.empty()) file_.set_attribute("", "warnings", imprint.warnings);
+  if (std::isfinite(imprint.left_out_db))
+    file_.set_attribute("", "left_out_db", imprint.left_out_db);
   const auto& sessions = results_.sessions;
   const auto version = [](const Session& s) { return s.made.program_version; };
   const auto build = [](const Session& s) { return s.made.build; };

@@ -2,30 +2,42 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "io/scenario_reader.h"
+#include "raytrace/warnings/warnings.h"
+#include "sonar/ping.h"
 #include "study/sampler.h"
 
 namespace asdic::study {
 
-std::vector<std::string> warnings(const Study& study) {
+Judgement judge(const Study& study) {
   constexpr std::uint64_t most = 32;
-  std::vector<std::string> all = study.warnings;
+  Judgement judgement{.warnings = study.warnings};
+  bool judged = false;
   const Sampler sampler(study);
   std::set<std::string> keys;
   for (std::uint64_t index = 0; index < std::min(most, study.realisations); ++index) {
     try {
       TomlValue tree = study.scenario;
       sampler.apply(sampler.draw(index), tree);
-      for (const std::string& one : scenario_of(tree, study.scenario_path).notes)
+      Scenario scenario = scenario_of(tree, study.scenario_path);
+      std::vector<std::string> notes = scenario.notes;
+      if (!std::exchange(judged, true)) {  // of one: it takes a search
+        const auto left_out = PingSimulator(std::move(scenario)).judge_paths();
+        judgement.left_out_db = left_out.followed.left_out_db;
+        add_warnings(left_out.warnings, notes);
+      }
+      for (const std::string& one : notes)
         if (keys.insert(one.substr(0, one.find(": "))).second)
-          all.push_back(one + (index == 0 ? "" : " (realisation " + std::to_string(index) + ")"));
+          judgement.warnings.push_back(
+              one + (index == 0 ? "" : " (realisation " + std::to_string(index) + ")"));
     } catch (const InputError&) {
       continue;  // told, or skipped, when it is made
     }
   }
-  return all;
+  return judgement;
 }
 
 }  // namespace asdic::study

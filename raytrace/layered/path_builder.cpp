@@ -13,8 +13,12 @@ namespace {
 /// path is left out, at 10⁻⁸ of the others' amplitude and less [m].
 constexpr double furthest_miss = 1.0;
 
+/// One factor after the other while they are few; of more, by squares.
 std::complex<double> integer_power(std::complex<double> base, int exponent) {
+  constexpr int few = 16;
   std::complex<double> product = 1.0;
+  for (; exponent > few; exponent /= 2, base *= base)
+    if (exponent % 2 == 1) product *= base;
   for (int i = 0; i < exponent; ++i) product *= base;
   return product;
 }

@@ -35,6 +35,8 @@ BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angl
   hit.reflection = all_reflected(s.history);
   const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;
   hit.caustics = s.history.caustics + (sense * y.q < 0.0 ? 1 : 0);
+  hit.surface_bounces = s.history.surface_bounces;
+  hit.bottom_bounces = s.history.bottom_bounces;
   return hit;
 }
 

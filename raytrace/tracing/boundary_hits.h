@@ -26,6 +26,7 @@ struct BoundaryHit {
   std::complex<double> reflection = 1.0;  ///< of the bounces before, with all that rough ones
                                           ///< scattered about the ray
   int caustics = 0;
+  int surface_bounces = 0, bottom_bounces = 0;  ///< before
 };
 
 /// The hits of a ray on one boundary or level.

@@ -172,6 +172,8 @@ class CellSearch {
     hit.slowness = between(ha.slowness, hb.slowness);
     hit.length = delay * between(ha.length / ha.time, hb.length / hb.time);  // by the mean speed
     hit.down = ha.down;
+    hit.surface_bounces = ha.surface_bounces;
+    hit.bottom_bounces = ha.bottom_bounces;
     hit.amplitude = spreading * std::exp(-between(ha.nepers, hb.nepers)) *
                     (ha.reflection + u * (hb.reflection - ha.reflection)) *
                     caustic_phase(like_a ? ha.caustics : hb.caustics);

@@ -15,6 +15,7 @@ struct CellHit {
   double launch_elevation = 0.0, delay = 0.0, grazing = 0.0, slowness = 0.0;
   double length = 0.0, down = 0.0;  // as of a BoundaryHit
   std::complex<double> amplitude = 0.0;
+  int surface_bounces = 0, bottom_bounces = 0;  ///< before
 };
 
 /// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck

@@ -16,19 +16,27 @@ PathHistory history_of(const Arrival& path) noexcept {
 }
 
 DelayTable::DelayTable(const EigenraySolver& solver, double platform_depth, double depth,
-                       std::span<const double> ranges, double frequency, const PathLimits& limits) {
-  step_ = ranges.size() > 1 ? ranges[1] - ranges[0] : 1.0;
-  const std::vector<Arrivals> found = solver.find(platform_depth, depth, ranges, frequency, limits);
+                       std::span<const double> ranges, double frequency, const PathLimits& limits)
+    : DelayTable(ranges, solver.find(platform_depth, depth, ranges, frequency, limits), limits) {}
+
+DelayTable::DelayTable(std::span<const double> ranges, std::span<const Arrivals> found,
+                       const PathLimits& limits)
+    : ranges_(ranges.begin(), ranges.end()),
+      step_(ranges.size() > 1 ? ranges[1] - ranges[0] : 1.0) {
   std::map<PathHistory, std::vector<Node>> nodes;
   for (std::size_t i = 0; i < ranges.size(); ++i)
     for (const Arrival& path : found[i]) {
+      if (path.surface_bounces > limits.max_surface_bounces ||
+          path.bottom_bounces > limits.max_bottom_bounces)
+        continue;
       auto& branch = nodes[history_of(path)];
       if (!branch.empty() && branch.back().range == ranges[i]) continue;  // the sooner of two
       branch.push_back({.range = ranges[i],
                         .delay = path.delay,
                         .slope = path.horizontal_slowness,
                         .elevation = path.launch_elevation,
-                        .amplitude = std::abs(path.amplitude)});
+                        .amplitude = std::abs(path.amplitude),
+                        .place = i});
     }
   for (auto& [history, list] : nodes) branches_.push_back({history, std::move(list)});
 }

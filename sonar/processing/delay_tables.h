@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,9 +15,15 @@ namespace asdic {
 class DelayTables {
  public:
   /// \param ranges  of a table
-  DelayTables(const PropagationPaths& paths, double frequency, const PathLimits& limits,
+  DelayTables(const PropagationPaths& paths, double frequency, const PropagationSettings& settings,
               std::size_t ranges)
-      : paths_(paths), frequency_(frequency), limits_(limits), ranges_(ranges) {}
+      : paths_(paths), frequency_(frequency), settings_(settings), ranges_(ranges) {}
+
+  /// Bounces off either boundary of a table's paths at most, where "auto" asks for as many as there
+  /// is sound in: pairs of paths out and home grow with its square.
+  static constexpr int most_bounces = 48;
+  /// Whether a table so far would have had paths of more.
+  [[nodiscard]] bool lack_bounces() const noexcept { return lack_bounces_; }
 
   /// The farthest that sound of 1600 m/s comes in a delay, from one of two ends so far apart [m];
   /// rounded up so that tables serve many detections.
@@ -27,14 +34,17 @@ class DelayTables {
                                                        double depth, double longest);
 
  private:
+  [[nodiscard]] DelayTable made(const Plane& plane, double platform_depth, double depth,
+                                double longest);
   using Key = std::tuple<double, double, double, double, double>;  // plane, depths, longest
 
   const PropagationPaths& paths_;
   double frequency_;
-  PathLimits limits_;
+  PropagationSettings settings_;
   std::size_t ranges_;
   std::map<Key, std::shared_ptr<const DelayTable>> made_;
   std::mutex lock_;
+  std::atomic<bool> lack_bounces_ = false;
 };
 
 }  // namespace asdic

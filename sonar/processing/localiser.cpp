@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "raytrace/environment.h"
 #include "raytrace/ray_path.h"
@@ -76,7 +77,17 @@ struct Localiser::Query {
 Localiser::Localiser(const PropagationPaths& paths, const LocaliserSettings& settings)
     : paths_(paths),
       settings_(settings),
-      tables_(paths, settings.frequency, settings.limits, settings.ranges) {}
+      tables_(paths, settings.frequency, settings.propagation, settings.ranges) {}
+
+/// Eigenrays between two places, with no more bounces than the path that is looked for has.
+Arrivals Localiser::like(const PathHistory& wanted, const Vec3& from, const Vec3& to) const {
+  PathLimits limits =
+      limits_of(settings_.propagation, std::max(wanted.surface_bounces, wanted.bottom_bounces));
+  limits.max_surface_bounces = std::min(limits.max_surface_bounces, wanted.surface_bounces);
+  limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, wanted.bottom_bounces);
+  limits.diffraction = false;  // it has no history
+  return paths_.find(from, to, settings_.frequency, limits);
+}
 
 std::optional<Location> Localiser::at_depth(const Query& query, double depth) const {
   const Vec3 from = query.places.source.position, back = query.heard_at;
@@ -123,21 +134,30 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
     double range, score, elevation_out, elevation_home, struck;
   };
   std::optional<Candidate> best;
-  for (const auto& there : out->branches())
+  // The other way to each node, once for all pairs.
+  std::vector<Separation> ways;
+  for (const double range : home->ranges()) ways.push_back(separation(from, point(range)));
+  std::vector<double> delays(ways.size());
+  for (const auto& there : out->branches()) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const auto leg = out->at(there, ways[i].range);
+      delays[i] = leg ? leg->delay : none;
+    }
     for (const auto& here : home->branches()) {
-      double last_range = 0.0, last_excess = 0.0;
-      bool has_last = false;
+      std::size_t last = 0;
+      double last_excess = none;
       for (const DelayTable::Node& node : here.nodes) {
-        const Separation way = separation(from, point(node.range));
-        const auto leg = out->at(there, way.range);
-        const double excess = leg ? leg->delay + node.delay - query.detection.time : 0.0;
-        if (leg && has_last && node.range - last_range < 1.5 * home->step() && last_excess <= 0.0 &&
-            excess > 0.0) {
+        const std::size_t i = node.place;
+        const double excess = delays[i] + node.delay - query.detection.time;
+        if (i == last + 1 && last_excess <= 0.0 && excess > 0.0) {
+          const auto leg = out->at(there, ways[i].range);
+          const double last_range = home->ranges()[last];
           const double range =
               last_range + (node.range - last_range) * last_excess / (last_excess - excess);
           double score = leg->amplitude * node.amplitude;
           if (query.places.pattern != nullptr)
-            score *= std::abs(query.places.pattern->towards(way.bearing, leg->elevation));
+            score *= std::abs(query.places.pattern->towards(ways[i].bearing, leg->elevation));
           if (query.elevation) {
             const double off = (node.elevation - *query.elevation) / query.elevation_sigma;
             score *= std::exp(-0.5 * off * off) + 1e-12;
@@ -146,11 +166,11 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
             best =
                 Candidate{&there, &here, range, score, leg->elevation, node.elevation, leg->delay};
         }
-        has_last = leg.has_value();
-        last_range = node.range;
+        last = i;
         last_excess = excess;
       }
     }
+  }
   if (!best) return std::nullopt;
 
   // Newton with exact eigenrays.
@@ -159,8 +179,8 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
   found.struck = best->struck;
   for (int i = 0; i < 6; ++i) {
     const Vec3 p = point(found.range);
-    const Arrivals homes = paths_.find(back, p, settings_.frequency, settings_.limits);
-    const Arrivals outs = paths_.find(from, p, settings_.frequency, settings_.limits);
+    const Arrivals homes = like(best->home->history, back, p);
+    const Arrivals outs = like(best->out->history, from, p);
     const Arrival* h = of_kind(homes, best->home->history, found.elevation);
     const Arrival* o = of_kind(outs, best->out->history, best->elevation_out);
     if (h == nullptr || o == nullptr) break;  // at the end of a branch: the table's answer stands

@@ -13,8 +13,8 @@
 namespace asdic {
 
 struct LocaliserSettings {
-  double frequency = 4000.0;  ///< sets losses, by which one pair of paths is preferred [Hz]
-  PathLimits limits;
+  double frequency = 4000.0;        ///< sets losses, by which one pair of paths is preferred [Hz]
+  PropagationSettings propagation;  ///< which paths may be taken
   std::optional<double> depth;  ///< of what answers [m]; none: where the ray that came in at the
                                 ///< measured elevation was, and `shallow` if none was measured
   double shallow = 100.0;       ///< [m]
@@ -60,11 +60,15 @@ class Localiser {
   [[nodiscard]] std::vector<double> ranges(double bearing, std::span<const double> times,
                                            const SonarPlaces& places) const;
 
+  /// The most bounces that were left out of account where sound has more than are asked for here.
+  [[nodiscard]] bool lacks_bounces() const noexcept { return tables_.lack_bounces(); }
+
  private:
   struct Query;
   [[nodiscard]] std::optional<Location> at_depth(const Query& query, double depth) const;
   [[nodiscard]] std::optional<Location> along_ray(const Query& query) const;
   [[nodiscard]] std::optional<Location> towards(Query query, std::optional<double> bearing) const;
+  [[nodiscard]] Arrivals like(const PathHistory& wanted, const Vec3& from, const Vec3& to) const;
 
   const PropagationPaths& paths_;
   LocaliserSettings settings_;

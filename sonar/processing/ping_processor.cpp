@@ -100,7 +100,7 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
         doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0, settings_.bank_loss_db));
     localisers_.push_back(std::make_unique<Localiser>(
         paths_, LocaliserSettings{.frequency = replica.centre_frequency(),
-                                  .limits = limits_of(scenario_.propagation),
+                                  .propagation = scenario_.propagation,
                                   .depth = settings_.target_depth,
                                   .speed = settings_.range_speed}));
   }
@@ -190,6 +190,16 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
   return done;
+}
+
+std::string PingProcessor::lack() const {
+  if (std::none_of(localisers_.begin(), localisers_.end(),
+                   [](const auto& localiser) { return localiser->lacks_bounces(); }))
+    return "";
+  return "propagation: places are found by paths of up to " +
+         std::to_string(DelayTables::most_bounces) +
+         " bounces off either boundary, and more hold sound here: an echo along one of those is "
+         "placed as if it came along another";
 }
 
 MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,

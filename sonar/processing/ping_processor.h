@@ -81,6 +81,9 @@ class PingProcessor {
   [[nodiscard]] MapRanges ranges_at(const ProcessedArray& processed, int transmitter,
                                     std::span<const double> times) const;
 
+  /// What the places found so far lack, in one line; "" where nothing: to be told at the end.
+  [[nodiscard]] std::string lack() const;
+
   /// Tolerances by which detections are told from false alarms.
   [[nodiscard]] Resolution resolution(const ProcessedArray& processed) const;
   [[nodiscard]] const ProcessingSettings& settings() const noexcept { return settings_; }

@@ -54,11 +54,13 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   const Vec3 middle = point(0.5 * 750.0 * times.back());
   const auto out =
       tables_.from(from, apart < 1.0 ? bearing : separation(from, middle).bearing, depth, longest);
+  std::vector<Separation> ways;
+  for (const double range : home->ranges()) ways.push_back(separation(from, point(range)));
   for (const auto& here : home->branches())
     for (const auto& there : out->branches()) {
       double before = 0.0, range_before = -1.0;
       for (const DelayTable::Node& node : here.nodes) {
-        const Separation way = separation(from, point(node.range));
+        const Separation& way = ways[node.place];
         const auto leg = out->at(there, way.range);
         const double delay = leg ? leg->delay + node.delay : 0.0;
         const double step = node.range - range_before;

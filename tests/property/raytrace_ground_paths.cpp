@@ -129,6 +129,41 @@ TEST_P(EveryCastAndRule, AMillimetreChangesLittle) {
   }
 }
 
+// Ten metres without loss: the energy that falls on the floor is that of the images, 1/R² each,
+// also where one cycle in 27 stands for all; cells have paths by the logarithm of their bounces.
+TEST(ManyBounces, CyclesStandForThoseAroundThem) {
+  constexpr double depth = 10.0, source = 3.0;
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  ocean.bottom = {.depth = depth, .material = Rigid{}};
+  constexpr int most = 1700;  // the end of a block: those up to 63·27
+  const GroundPaths ground =
+      ground_paths(EigenraySolver(ocean), source, BoundaryKind::bottom, 200.0, 4000.0, 1000.0,
+                   {.max_surface_bounces = most, .max_bottom_bounces = most, .max_vertices = 4000});
+  for (std::size_t cell = 0; cell < ground.cells(); ++cell) {
+    double images = 0.0, found = 0.0;
+    for (int cycle = 0; cycle <= most; ++cycle)
+      for (const double down : {depth - source, depth + source}) {
+        if (cycle == most && down > depth) continue;  // one more off the surface
+        const double height = 2.0 * depth * cycle + down, r = ground.range(cell);
+        images += 1.0 / (r * r + height * height);
+      }
+    for (const GroundPath& path : ground.paths(cell)) found += std::norm(path.amplitude);
+    EXPECT_NEAR(db_from_power(found / images), 0.0, 0.02) << cell;
+    EXPECT_LE(ground.paths(cell).size(), 2U * static_cast<std::size_t>(followed_cycles(most)));
+  }
+  EXPECT_LT(followed_cycles(most), 200);
+}
+
+TEST(ManyBounces, EveryCycleIsToldByOne) {
+  int told = 0;
+  for (int cycle = 0; cycle < 63 * 81; ++cycle) told += cycles_told_by(cycle);
+  EXPECT_EQ(told, 63 * 81);
+  for (int cycle = 0; cycle < 63; ++cycle) EXPECT_EQ(cycles_told_by(cycle), 1);
+  EXPECT_EQ(cycles_told_by(64), 3);
+  EXPECT_EQ(cycles_told_by(65), 0);
+}
+
 // Next to a smooth maximum c = c_m − ½κy² a ray that turns short of it, c_turn = c_m(1 − ε),
 // lingers: with every factor of four in ε the way in to the turn grows by ln 4·½·√(c_m/κ). Close to
 // it speeds differ by less than their rounding, 1.5e-16, does; the cubic's third term is below 1e-4

@@ -83,6 +83,40 @@ TEST_F(Honest, BouncesThatAreTooFewAreWarnedOf) {
   EXPECT_THAT(warnings_of("out.h5"), testing::Contains(HasSubstr(lacks)));
 }
 
+// A study judges its first realisation, a session its first ping, and both have the estimate.
+TEST_F(Honest, StudiesAndSessionsTellOfBouncesThatAreTooFew) {
+  constexpr const char* lacks = "propagation.max_bottom_bounces: ";
+  const std::string study =
+      "[study]\nscenario = \"small.toml\"\nrealisations = 2\n[vary]\n"
+      "\"environment.wind_speed\" = { law = \"uniform\", low = 5.0, high = 10.0 }\n"
+      "[measure]\necho_level = true\n";
+  static_cast<void>(folder.write("enough.toml", study));
+  static_cast<void>(folder.write("few.toml", study +
+                                                 "[set]\n\"propagation.max_surface_bounces\" = 1\n"
+                                                 "\"propagation.max_bottom_bounces\" = 1\n"));
+  const auto enough = asdic(folder, "study enough.toml -o enough.h5"),
+             few = asdic(folder, "study few.toml -o few.h5");
+  EXPECT_EQ(few.status, 0) << few.err;
+  EXPECT_THAT(enough.err, Not(HasSubstr(lacks)));
+  EXPECT_THAT(few.err, HasSubstr(std::string("asdic: warning: ") + lacks));
+  const auto left_out = [&](const char* file) {
+    return Hdf5File::open(folder / file).attribute_number("", "left_out_db");
+  };
+  EXPECT_LT(left_out("enough.h5"), 0.1);
+  EXPECT_GT(left_out("few.h5"), 0.1);
+
+  static_cast<void>(folder.write(
+      "pings.txt",
+      "{\"asdic\": 1}\n{\"command\": \"ping\", \"id\": 1}\n{\"command\": \"quit\"}\n"));
+  const auto served = asdic(folder, "serve small.toml < pings.txt");
+  EXPECT_THAT(served.out, testing::AllOf(HasSubstr("\"left_out_db\":"), Not(HasSubstr(lacks))));
+  EXPECT_THAT(asdic(folder,
+                    "serve small.toml --set propagation.max_surface_bounces=1 "
+                    "--set propagation.max_bottom_bounces=1 < pings.txt")
+                  .out,
+              HasSubstr(lacks));
+}
+
 TEST_F(Honest, AStudyTellsOfItsRealisations) {
   static_cast<void>(folder.write(
       "study.toml",
@@ -126,7 +160,8 @@ TEST_F(Honest, ARecordWithoutANumberIsNotProcessed) {
               HasSubstr("asdic: warning: pressure of ping 1, array 0: 36000 samples are not "
                         "finite"));
   const Hdf5File processed = Hdf5File::open(folder / "some.h5");
-  EXPECT_THAT(processed.attribute_texts("processed", "warnings"), testing::SizeIs(1));
+  EXPECT_THAT(processed.attribute_texts("processed", "warnings"),
+              testing::Contains(HasSubstr("not finite")));
   spoil(1, 0);
   const auto none = asdic(folder, "process p.h5 -o none.h5");
   EXPECT_EQ(none.status, 2);

@@ -10,6 +10,7 @@
 #include "io/scenario_reader.h"
 #include "raytrace/beam_error_text.h"
 #include "raytrace/propagation.h"
+#include "raytrace/warnings/warnings.h"
 #include "support/plain_sea.h"
 
 // What a scenario is warned of: just outside of a law's range, and not inside it.
@@ -218,6 +219,22 @@ kind = "cerveny-cartesian"
 [run.beams.cerveny]
 width = "minimum"
 )";
+
+// Incoherent fields add up mean fields: 0.55 m of height at 10 degrees and 1 kHz take from each
+// G² = (2kh sin 10°)² = 0.64 Np, 2.8 dB.
+TEST(Warnings, IncoherentFieldsOverARoughSeaLackWhatIsScattered) {
+  PropagationCase run_case;
+  run_case.task = Task::field;
+  run_case.frequency = 1000.0;
+  run_case.environment.surface.roughness.rms_height = 0.55;
+  run_case.field = FieldKind::coherent;
+  EXPECT_EQ(checks::mean_field_alone(run_case), "");
+  run_case.field = FieldKind::incoherent;
+  EXPECT_THAT(checks::mean_field_alone(run_case),
+              AllOf(HasSubstr("run.field: "), HasSubstr("rough surface"), HasSubstr("2.8 dB")));
+  run_case.environment.surface.roughness = {};
+  EXPECT_EQ(checks::mean_field_alone(run_case), "");
+}
 
 TEST(Warnings, SilentBeamsAreThoseThatCarryNoSound) {
   const auto run_with = [](const std::vector<std::string>& overrides,

@@ -125,7 +125,7 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
     const double rate = 0.5 * velocity.dot(1500.0 * in - 1500.0 * back);
     for (const std::optional<double> speed : {std::optional<double>(), {1500.0}}) {
       const Localiser localiser(paths,
-                                {.limits = {.max_surface_bounces = 0, .max_bottom_bounces = 0},
+                                {.propagation = {.max_surface_bounces = 0, .max_bottom_bounces = 0},
                                  .depth = 1000.0,
                                  .speed = speed});
       const auto found = localiser.locate(heard, places, 0.01);
@@ -151,6 +151,61 @@ TEST(LocaliserTest, TellsTheRangeRateOfABistaticPair) {
   }
 }
 
+/// 100 m over sand, the speed falling all the way down: at 10 km nothing comes with fewer than six
+/// bounces off the bottom.
+Environment downward() {
+  Environment ocean;
+  const std::vector<double> depth = {0.0, 100.0}, speed = {1530.0, 1490.0};
+  ocean.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  ocean.bottom = {.depth = 100.0,
+                  .material = FluidHalfSpace{
+                      .speed = 1700.0, .density = 2000.0, .attenuation_db_per_wavelength = 0.5}};
+  return ocean;
+}
+
+// The loudest pair of paths to a target there is placed where the target is, to the metre that two
+// kinds of path may differ by, by as many bounces as there is sound in; by three there is no place.
+TEST(LocaliserTest, FollowsAsManyBouncesAsThereIsSoundIn) {
+  const PropagationPaths paths(downward(), {});
+  SonarPlaces places;
+  places.source.position = places.array.start.position = {0.0, 0.0, 50.0};
+  places.shape = {.kind = ArrayKind::volume, .length = 2.0, .width = 2.0, .height = 2.0};
+  const Vec3 target(0.0, 10e3, 50.0);
+  const Arrivals there =
+      paths.find(places.source.position, target, 1000.0, limits_of(PropagationSettings{}, 20));
+  const auto loudest =
+      std::max_element(there.begin(), there.end(), [](const Arrival& a, const Arrival& b) {
+        return std::abs(a.amplitude) < std::abs(b.amplitude);
+      });
+  ASSERT_GE(loudest->bottom_bounces, 6);
+  const Detection heard{.time = 2.0 * loudest->delay,
+                        .look = direction(0.0, -loudest->launch_elevation)};
+  const Localiser all(paths, {.frequency = 1000.0, .depth = 50.0});
+  const auto found = all.locate(heard, places, 0.05);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_LT((found[0].position - target).norm(), 1.0);
+  EXPECT_EQ(found[0].bottom_bounces, 2 * loudest->bottom_bounces);
+  EXPECT_FALSE(all.lacks_bounces());
+  const Localiser few(paths, {.frequency = 1000.0,
+                              .propagation = {.max_surface_bounces = 3, .max_bottom_bounces = 3},
+                              .depth = 50.0});
+  EXPECT_TRUE(few.locate(heard, places, 0.05).empty());
+}
+
+// A guide without loss has more bounces than are tabulated, and the receiver says so.
+TEST(LocaliserTest, SaysWhereBouncesHaveNoEnd) {
+  Environment ocean;
+  ocean.water = SoundSpeedProfile::isovelocity(1500.0);
+  ocean.bottom = {.depth = 10.0, .material = Rigid{}};
+  const PropagationPaths paths(ocean, {});
+  SonarPlaces places;
+  places.source.position = places.array.start.position = {0.0, 0.0, 5.0};
+  const Localiser localiser(paths, {.frequency = 1000.0, .depth = 4.0, .ranges = 20});
+  const Detection heard{.time = 2.0, .look = Vec3::UnitY()};
+  static_cast<void>(localiser.locate(heard, places, 0.05));
+  EXPECT_TRUE(localiser.lacks_bounces());
+}
+
 // A vehicle at 10 m/s sets out east when it pings and turns north 4 s later; the echo comes at 6 s,
 // 40 m east and 20 m north of the ping. Found is where it came from, seen from there; on a straight
 // course it would be 28 m beside it.
@@ -173,7 +228,7 @@ TEST(LocaliserTest, FollowsTheWaypointsOfARecord) {
   ocean.bottom = {.depth = 4000.0, .material = Rigid{}};
   const PropagationPaths paths(ocean, {});
   const Localiser localiser(
-      paths, {.limits = {.max_surface_bounces = 0, .max_bottom_bounces = 0}, .depth = 1000.0});
+      paths, {.propagation = {.max_surface_bounces = 0, .max_bottom_bounces = 0}, .depth = 1000.0});
   // A target whose way out and back, to where it is heard, takes 6 s.
   const Vec3 ahead = direction(radians(30.0), 0.0);
   double range = 4500.0;

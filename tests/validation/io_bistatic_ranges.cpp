@@ -42,7 +42,7 @@ TEST(BistaticScenario, ADelayIsTheRangeOfItsPlaceAlongTheBearing) {
 
   const PropagationPaths paths(s.environment, s.transect);
   const Localiser localiser(paths, {.frequency = 1500.0,
-                                    .limits = limits_of(s.propagation),
+                                    .propagation = s.propagation,
                                     .depth = s.targets[0].track.at(0.0).position.z()});
   const std::vector<double> times{delay - 0.05, delay, delay + 0.05, 18.0};
   const std::vector<double> ranges = localiser.ranges(truth.bearing, times, places);

@@ -167,7 +167,7 @@ TEST(Diffraction, AWideBandHasTheWavesAtEveryFrequency) {
       worst = std::max(worst, std::abs(db_from_amplitude(std::abs(through / truth))));
       turned = std::max(turned, std::abs(std::arg(through / truth)));
     }
-    std::vector<std::string> told = simulator.judge_paths();
+    std::vector<std::string> told = simulator.judge_paths().warnings;
     if (wide) {
       EXPECT_LT(worst, 0.1);
       EXPECT_LT(turned, 0.02);
@@ -246,7 +246,7 @@ TEST(Diffraction, ReverberationOfDarkGroundIsWarnedOf) {
   s.reverberation.enabled = true;
   s.pings.recording_start = 0.0;
   s.pings.recording_duration = 8.0;
-  const auto told = [](const Scenario& of) { return PingSimulator(of).judge_paths(); };
+  const auto told = [](const Scenario& of) { return PingSimulator(of).judge_paths().warnings; };
   const auto dark = testing::Contains(testing::HasSubstr("no ray reaches the surface without"));
   EXPECT_THAT(told(s), dark);
   s.propagation.diffraction = false;

@@ -14,6 +14,7 @@
 namespace asdic {
 namespace {
 
+using enum ShapeInterpolation;
 using support::Csv;
 using Sea = support::ReverberantSea;
 
@@ -127,6 +128,83 @@ TEST(EnoughBounces, ReverberationHeardThreeKilometresAwayIsTheFlux) {
   expect_levels(summer(3000.0), table, "RL_truth_flux_dB", "summer");
 }
 
+// Ten metres for half a minute, with two thousand bounces: the law of late decay in a guide without
+// loss, 2πμE/(H²t), as of the hundred metres in reverb_guide_rigid.csv.
+TEST(EnoughBounces, HalfAMinuteInTenMetresHasAnEnd) {
+  Scenario s = guide();
+  s.environment.bottom = {.depth = 10.0, .material = Rigid{}};
+  s.platforms[0].track.start.position.z() = 3.0;
+  s.platforms[1].track.start.position.z() = 5.0;
+  s.pings.recording_duration = 30.0;
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  EXPECT_LE(ping.bounces().left_out_db, negligible_db);
+  EXPECT_GT(ping.bounces().bottom, 1000);
+  const double energy = 3.0 / 8.0 * s.pulse.duration;
+  for (const double t : {3.0, 8.0, 15.0, 22.0, 29.0}) {
+    const double law =
+        s.transmitters[0].source_level_db + db_from_power(2.0 * pi * power_from_db(-27.0) * energy /
+                                                          (100.0 * (t - 0.5 * s.pulse.duration)));
+    EXPECT_NEAR(level_about(ping, t), law, 0.5) << t;
+  }
+}
+
+/// That guide over a floor that goes from one depth to another between −30 and 30 km.
+Scenario sloping(double from, double to) {
+  Scenario s = guide();
+  const std::vector<double> ranges = {-30e3, 30e3}, depths = {from, to};
+  s.environment.bottom.shape = BoundaryShape(ranges, depths, piecewise_linear);
+  s.reverberation.azimuths = 8;
+  s.pings.recording_duration = 12.0;
+  return s;
+}
+
+// A slope of nothing is followed by as many bounces as the flat floor, to two that places decide
+// (it is looked at in eight bearings, the flat floor in one), and is as loud.
+TEST(EnoughBounces, ALevelSlopeIsTheFlatFloor) {
+  Scenario level = guide();
+  level.reverberation.azimuths = 8;
+  level.pings.recording_duration = 12.0;
+  const Sea flat(level), slope(sloping(100.0, 100.0));
+  const PingReverberation a = flat.ping(1), b = slope.ping(1);
+  EXPECT_NEAR(a.bounces().surface, b.bounces().surface, 2.0);
+  EXPECT_NEAR(a.bounces().bottom, b.bounces().bottom, 2.0);
+  EXPECT_LE(b.bounces().left_out_db, negligible_db);
+  for (const double t : {2.0, 4.0, 8.0, 11.0})
+    EXPECT_NEAR(level_about(a, t), level_about(b, t), 0.3) << t;
+}
+
+// Over a real slope, as loud as with half as many again; three are 7 dB short at 4 s.
+TEST(EnoughBounces, SlopesAreFollowedUntilLittleIsLeft) {
+  const Scenario s = sloping(60.0, 140.0);
+  Scenario more = s, few = s;
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  EXPECT_LE(ping.bounces().left_out_db, negligible_db);
+  more.propagation.max_surface_bounces = ping.bounces().surface * 3 / 2;
+  more.propagation.max_bottom_bounces = ping.bounces().bottom * 3 / 2;
+  few.propagation.max_surface_bounces = few.propagation.max_bottom_bounces = 3;
+  const Sea sea_of_more(more), sea_of_few(few);
+  const PingReverberation ping_of_more = sea_of_more.ping(1), ping_of_few = sea_of_few.ping(1);
+  for (const double t : {2.0, 4.0, 8.0, 11.0})
+    EXPECT_NEAR(level_about(ping, t), level_about(ping_of_more, t), 0.15) << t;
+  EXPECT_LT(level_about(ping_of_few, 4.0), level_about(ping, 4.0) - 5.0);
+  const auto told = PingSimulator(few).judge_paths();
+  ASSERT_EQ(told.warnings.size(), 1);
+  EXPECT_GT(told.followed.left_out_db, 5.0);
+}
+
+// Between two places, over a slope of nothing and a flat floor.
+TEST(EnoughBounces, LegsOverSlopesAreFollowedAlike) {
+  const Scenario flat = guide(), slope = sloping(100.0, 100.0);
+  const PropagationPaths a(flat.environment, flat.transect), b(slope.environment, slope.transect);
+  const Vec3 from(0.0, 0.0, 30.0), to(0.0, 8000.0, 60.0);
+  const Bounces level = enough_bounces(a, {}, from, to, 1000.0, 20.0),
+                sloped = enough_bounces(b, {}, from, to, 1000.0, 20.0);
+  EXPECT_EQ(level.surface, sloped.surface);
+  EXPECT_NEAR(level.left_out_db, sloped.left_out_db, 1e-4);
+}
+
 // What is drawn has the mean that is expected: three pings, one sample a pulse from 4 to 20 s, 4.9
 // sigma of an exponential's mean and, twice as much, of the places that stand still from ping to
 // ping.
@@ -184,12 +262,12 @@ TEST(EnoughBounces, NumbersAreObeyedAndJudged) {
   s.propagation.max_surface_bounces = 3;
   s.propagation.max_bottom_bounces = 3;
   PingSimulator simulator(s);
-  const std::vector<std::string> told = simulator.judge_paths();
+  const std::vector<std::string> told = simulator.judge_paths().warnings;
   ASSERT_EQ(told.size(), 1);
   EXPECT_NE(told[0].find("propagation.max_bottom_bounces: reverberation lacks"), std::string::npos)
       << told[0];
   s.propagation = {};
-  EXPECT_TRUE(PingSimulator(s).judge_paths().empty());
+  EXPECT_TRUE(PingSimulator(s).judge_paths().warnings.empty());
 }
 
 // Deep water: as many as were always followed.
@@ -280,7 +358,7 @@ bool warned(Scenario s, double frequency, const std::string& words) {
   s.pings.sample_rate = 40000.0;
   s.targets = {{.name = "boat", .track = {.start = {.position = {10000.0, 0.0, 60.0}}}}};
   bool found = false;
-  for (const std::string& line : PingSimulator(s).judge_paths())
+  for (const std::string& line : PingSimulator(s).judge_paths().warnings)
     found = found || line.find(words) != std::string::npos;
   return found;
 }
