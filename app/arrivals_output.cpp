@@ -62,6 +62,9 @@ const char* name_of(ArrivalKind kind) {
   return "";
 }
 
+/// Level of what rough boundaries scatter about the path.
+double scattered_db(const Arrival& a) { return db_from_power(a.scattered); }
+
 ordered_json json_of(const Arrivals& arrivals) {
   ordered_json paths = ordered_json::array();
   for (const Arrival& a : arrivals) {
@@ -82,6 +85,7 @@ ordered_json json_of(const Arrivals& arrivals) {
                      {"spreading_db", -db_from_amplitude(a.spreading)},
                      {"absorption_db", a.absorption_db},
                      {"reflection_db", 0.0 - db_from_amplitude(std::abs(a.reflection))},
+                     {"scattered_db", scattered_db(a)},
                      {"path_length", a.path_length},
                      {"upper_turns", a.upper_turns},
                      {"lower_turns", a.lower_turns},
@@ -107,6 +111,7 @@ std::string paths_table(const Arrivals& arrivals) {
                {"spreading", "dB"},
                {"absorption", "dB"},
                {"reflection", "dB"},
+               {"scattered", "dB"},
                {"turns"},
                {"caustics"},
                {"bounces", "deg", true}});
@@ -118,6 +123,7 @@ std::string paths_table(const Arrivals& arrivals) {
          number(db_from_amplitude(std::abs(a.amplitude)), 2),
          number(degrees(std::arg(a.amplitude)), 1), number(-db_from_amplitude(a.spreading), 2),
          number(a.absorption_db, 2), number(-db_from_amplitude(std::abs(a.reflection)), 2),
+         a.scattered > 0.0 ? number(scattered_db(a), 2) : "-",
          std::to_string(a.upper_turns + a.lower_turns), std::to_string(a.caustics), bounces_of(a)});
   }
   return table.text();
@@ -126,7 +132,8 @@ std::string paths_table(const Arrivals& arrivals) {
 std::string arrivals_legend(double frequency) {
   return fmt::format(
       "\nlosses at {} Hz; level re the pressure at 1 m; elevations of travel, "
-      "positive up; bounces: s surface, b bottom, with grazing angle\n",
+      "positive up; scattered: beside the level, of what rough boundaries scatter about the path; "
+      "bounces: s surface, b bottom, with grazing angle\n",
       frequency);
 }
 
