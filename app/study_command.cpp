@@ -3,12 +3,17 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
+#include "core/error.h"
+#include "raytrace/propagation.h"
+#include "raytrace/stop.h"
 
 namespace asdic::app {
 namespace {
@@ -24,7 +29,16 @@ int study_run(const StudyOptions& options) {
       "once");
   order.run.stop = interrupt.token();
   const study::Realiser realiser(order.study);
-  const study::Work work = study::work_of(order.study, realiser);
+  const study::Work work = [&] {
+    std::optional<study::Work> made;  // what its levels lack takes a search
+    try {
+      until_stopped(interrupt.token(),
+                    [&] { made.emplace(study::work_of(order.study, realiser)); });
+    } catch (const Interrupted&) {
+      throw RunError("interrupted before the first realisation was done");
+    }
+    return std::move(*made);
+  }();
   if (!options.quiet) warn(work.imprint.warnings);
   study::StudyOutcome outcome;
   {

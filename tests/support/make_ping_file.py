@@ -21,7 +21,7 @@ TABLES = {
     "arrivals": ("arrival",
         "ping leg target channel path bearing_deg range launch_elevation_deg "
         "arrival_elevation_deg delay amplitude_real amplitude_imag spreading_db "
-        "absorption_db path_length surface_bounces bottom_bounces upper_turns "
+        "absorption_db scattered path_length surface_bounces bottom_bounces upper_turns "
         "lower_turns caustics first_bounce bounce_count"),
     "bounces": ("bounce",
         "boundary grazing_deg range"),

@@ -219,7 +219,7 @@ def simulate(s: Settings):
                                             launch[k] if leg == 0 else -arrive[k],
                                             arrive[k] if leg == 0 else -launch[k], time[k],
                                             10 ** (-loss[k] / 20) * (-1) ** bounces[k], 0.0,
-                                            loss[k], 0.0,
+                                            loss[k], 0.0, 0.0,
                                             time[k] * 1500, bounces[k], 0, 0, 0, 0, 0, 0))
             best = (np.nan, np.nan)
             for a in range(launch.size):
