@@ -61,5 +61,6 @@ def compare(asdic, truth):
                                  "default / dB", "downslope / dB", "12 bounces / dB",
                                  "default / dB"], rows, draw,
                         [f"Means over {WIDTH:g} s and {PINGS} pings, one standard error "
-                         f"{sigma:.2f} dB; of asdic the differences are told. The bounds are 0.5 dB, of the mean over times 0.3 dB, "
+                         f"{sigma:.2f} dB; of asdic the differences are told. "
+                         "The bounds are 0.5 dB, of the mean over times 0.3 dB, "
                          "and three of them."])

@@ -13,7 +13,7 @@ BEARING_DEG, BEAM_DB = [0, 30, 60, 90, 180], [0.0, -1.0, -6.0, -20.0, -40.0]    
 
 def legs(end, slope_range, across, angle, orders, kept):
     """Ways [m] and energies times the sine at the floor of every path from depth `end` under the
-    origin to places of the floor: slope_range [m] from the apex along the floor, `across` the slope.
+    origin to places of the floor: slope_range [m] from the apex along it, `across` the slope.
 
     The wedge unfolds: the place's image j lies at the angle (2j + 1)·angle about the apex; as
     j ≥ 0 sound strikes the floor j times before, as j < 0 −j − 1 times. → [(way, energy,
