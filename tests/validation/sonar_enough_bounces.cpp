@@ -364,7 +364,7 @@ bool warned(Scenario s, double frequency, const std::string& words) {
 }
 
 // Where rays turn too close to a corner of the profile the run says so: echoes of the summer guide
-// are 7 and 12 dB off at 250 Hz and 1 kHz. Far above that, and without corners, it does not.
+// are 7 dB and more off at 250 Hz and 1 kHz. Far above that, and without corners, it does not.
 TEST(EnoughBounces, TurnsBesideCornersAreWarnedOf) {
   const std::string words = "turns so often beside corners";
   EXPECT_TRUE(warned(summer(), 250.0, words));
