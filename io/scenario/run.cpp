@@ -196,15 +196,28 @@ void read_literal(TomlTable table, LiteralSettings& literal) {
   table.finish();
 }
 
-/// Rays end a little behind the last receiver, and under the deepest bottom.
+/// Where rays need not be followed any further: a little behind the last receiver, or, where the
+/// bottom goes on to rise behind it and sound may turn round there, where it ends to rise, at twice
+/// that range at most [m].
+double usual_box_range(const Boundary& bottom, double furthest) {
+  double last = furthest, shallowest = bottom.depth_at(furthest);
+  if (bottom.shape)
+    for (std::size_t i = 0; i < bottom.shape->ranges().size(); ++i)
+      if (const double range = bottom.shape->ranges()[i];
+          range > furthest && bottom.shape->depths()[i] < shallowest)
+        last = range, shallowest = bottom.shape->depths()[i];
+  return 1.01 * std::min(last, 2.0 * furthest);
+}
+
+/// Rays end at a range of their own, and under the deepest bottom.
 void set_box(TomlTable& table, PropagationCase& run) {
   double furthest = 0.0;
   for (const double r : run.receivers.ranges) furthest = std::max(furthest, std::abs(r));
   const Boundary& bottom = run.environment.bottom;
   const double deepest = bottom.shape ? bottom.shape->deepest() : bottom.depth;
   const bool known = furthest > 0.0;
-  run.box_range =
-      known ? table.number("box_range", limit, 1.01 * furthest) : table.number("box_range", limit);
+  run.box_range = known ? table.number("box_range", limit, usual_box_range(bottom, furthest))
+                        : table.number("box_range", limit);
   run.box_depth = table.number("box_depth", limit, 1.01 * std::abs(deepest) + 1.0);
 }
 

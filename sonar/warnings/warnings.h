@@ -34,6 +34,8 @@ struct PulseFrequencies {
 [[nodiscard]] std::string reverberation_plane_waves(const Scenario& scenario);
 /// Coherent noise of a towed line that turns while it listens: it keeps the shape at the ping.
 [[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);
+/// Noise of sources at the surface, over a bottom that reflects it.
+[[nodiscard]] std::string noise_from_below(const Scenario& scenario);
 /// Targets, and an ocean or a range for which sound where no ray goes is not computed.
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.

@@ -102,6 +102,23 @@ TEST(ScenarioRun, WhatIsLeftOutIsTakenFromTheRest) {
   EXPECT_EQ(rays.beams.highest, radians(10.0));
 }
 
+// Where the bottom rises on behind the last receiver, sound may turn round there.
+TEST(ScenarioRun, TheBoxReachesUpARisingBottom) {
+  const auto box = [](const std::string& range, const std::string& depth) {
+    return read(
+               "[run]\nfrequency = 100\n[run.source]\ndepth = 5\n"
+               "[run.receivers]\ndepth = 5\nrange = 2000\n",
+               "[environment.sound_speed]\nkind = \"isovelocity\"\nspeed = 1500.0\n"
+               "[environment.bottom]\nkind = \"rigid\"\n[environment.bottom.shape]\nrange = " +
+                   range + "\ndepth = " + depth + "\n")
+        .box_range;
+  };
+  EXPECT_DOUBLE_EQ(box("[0, 3000]", "[200, 10]"), 1.01 * 3000.0);
+  EXPECT_DOUBLE_EQ(box("[0, 9000]", "[200, 10]"), 1.01 * 4000.0);
+  EXPECT_DOUBLE_EQ(box("[0, 2500, 3000]", "[200, 100, 150]"), 1.01 * 2500.0);
+  EXPECT_DOUBLE_EQ(box("[0, 3000]", "[100, 200]"), 1.01 * 2000.0);
+}
+
 // A sonar's scenario gives the frequency, the source's depth and the ocean along the transect.
 TEST(ScenarioRun, ASonarScenarioWillDo) {
   std::vector<std::string> notes;

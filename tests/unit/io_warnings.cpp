@@ -173,6 +173,21 @@ TEST(Warnings, CoherentNoiseOfALineThatTurns) {
   EXPECT_THAT(of({track, array, noise(""), "pings.recording_duration=60.0"}), IsEmpty());
 }
 
+TEST(Warnings, NoiseFromTheSurfaceOverABottomThatReflects) {
+  const auto noise = [](const std::string& coherence) {
+    return "noise={spectral_level_db=50.0, coherence=\"" + coherence + "\"}";
+  };
+  const auto bottom = [](double speed, double density) {
+    return "environment.bottom={depth=1000.0, kind=\"fluid\", speed=" + std::to_string(speed) +
+           ", density=" + std::to_string(density) + "}";
+  };
+  EXPECT_THAT(of({noise("surface")}),  // rigid
+              ElementsAre(HasSubstr("noise.coherence: \"surface\" is the sheet of sources above")));
+  EXPECT_THAT(of({noise("surface"), bottom(1700.0, 1800.0)}), testing::SizeIs(1));
+  EXPECT_THAT(of({noise("surface"), bottom(1500.0, 1100.0)}), IsEmpty());
+  EXPECT_THAT(of({noise("isotropic")}), IsEmpty());
+}
+
 TEST(Warnings, ScatteringOutsideOfItsLaw) {
   const auto sea = [](const std::string& law, double frequency, double wind) {
     return of(tone(frequency, {"reverberation={enabled=true, surface={kind=\"" + law + "\"}}",
