@@ -34,6 +34,14 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
+/// The share of a sample that has to stay below a value for 95 % of all to do so, but for a chance
+/// of 2 in 100: two standard errors of a share above. \param whole  the sample is all there is
+double share_of_sample(std::size_t size, bool whole) noexcept {
+  constexpr double of_all = 0.95;
+  if (whole || size == 0) return of_all;
+  return std::min(1.0, of_all + 2.0 * std::sqrt(of_all * (1.0 - of_all) / double(size)));
+}
+
 /// Rows of receivers that have no limit, [first, last).
 struct RowsLeftOut {
   std::size_t first = 0, last = 0, columns = 1;
@@ -161,7 +169,7 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
                                    .last_left_out = left_out.last});
     std::vector<double> shares =
         shares_of_bound(pass.field, grid.ranges.size(), pass.bound, looked_at, coherent, left_out);
-    const double share = quantile(shares, 0.95);
+    const double share = quantile(shares, share_of_sample(shares.size(), looked_at.every == 1));
     ConvergedField answer{.field = std::move(pass.field),
                           .beams = count,
                           .error_db = db_of_share(share, coherent),
