@@ -57,6 +57,7 @@ class RandomCase {
     boundary(ocean().bottom, false);
     receivers();
     beams();
+    if (varies_with_range(ocean())) ocean().spreading = Spreading::cylindrical;  // all it knows
     return run_;
   }
 
