@@ -97,8 +97,11 @@ double share_of_db(double db, bool coherent) noexcept {
 /// The bound is looked at in no fewer columns than these.
 constexpr std::size_t fewest_columns = 40;
 
-ColumnSample columns_looked_at(const ReceiverGrid& grid) noexcept {
-  return {.every = std::max<std::size_t>(1, grid.ranges.size() / fewest_columns)};
+/// All of them where the sea varies with range: tubes are torn in single columns there, a fan that
+/// is divided by some would suit these alone, and to follow rays costs more than their bound.
+ColumnSample columns_looked_at(const PropagationCase& run_case) noexcept {
+  if (varies_with_range(run_case.environment)) return {};
+  return {.every = std::max<std::size_t>(1, run_case.receivers.ranges.size() / fewest_columns)};
 }
 
 /// Root mean square over depth (mean intensity if not coherent) of each column.
@@ -155,10 +158,10 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   BeamFan fan = even_fan(beams.lowest, beams.highest, static_cast<int>(first));
   const ReceiverGrid& grid = run_case.receivers;
   const RowsLeftOut left_out = rows_without_limit(grid, level_rays, source_depth);
-  const ColumnSample looked_at = columns_looked_at(grid);
   const double wanted_share = share_of_db(wanted_bound_db, coherent);
   const double reach = std::max({std::abs(grid.ranges.front()), std::abs(grid.ranges.back()), 1.0});
   const FinestTubes finest{.width = finest_tube / reach, .level = level_rays.angle};
+  const ColumnSample looked_at = columns_looked_at(run_case);
   std::vector<double> level;
   while (true) {
     const std::size_t count = fan.elevation.size();
