@@ -203,6 +203,24 @@ void in_pieces(Shape start, Shape count, std::size_t most,
   }
 }
 
+/// \throws InputError where there is not so much memory: a damaged file may claim any number
+template <class T>
+void make_room(std::vector<T>& values, std::size_t count, const std::filesystem::path& path,
+               const std::string& dataset) {
+  const auto refuse = [&] {
+    return InputError({.where = path.string() + ": " + dataset,
+                       .got = std::to_string(count) + " values",
+                       .expected = "as many as there is memory for"});
+  };
+  try {
+    values.reserve(count);
+  } catch (const std::bad_alloc&) {
+    throw refuse();
+  } catch (const std::length_error&) {
+    throw refuse();
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -215,7 +233,7 @@ std::vector<T> Hdf5File::Impl::read_by_child(const std::string& dataset, const S
                         .got = "fewer values than another dataset tells of",
                         .expected = "a whole file"});
   std::vector<T> values;
-  values.reserve(product(count));
+  make_room(values, product(count), path, dataset);
   in_pieces(start, count, most_at_once / sizeof(T), [&](const Shape& from, const Shape& size) {
     const auto piece = hdf5::ask<hdf5::read_block<T>>(*child, dataset, from, size);
     values.insert(values.end(), piece.begin(), piece.end());
@@ -238,7 +256,9 @@ std::vector<T> Hdf5File::read(const std::string& dataset, const Shape& start,
   if (start.size() != shape.size() || start.size() != count.size())
     throw std::logic_error(dataset + ": a block of another rank");
   hdf5::check_sources(id, impl_->path);
-  std::vector<T> values(product(count));
+  std::vector<T> values;
+  make_room(values, product(count), impl_->path, dataset);
+  values.resize(product(count));
   if (values.empty()) return values;
   const Handle space(H5Dget_space(id), H5Sclose);
   const auto from = dims(start), size = dims(count);

@@ -69,7 +69,12 @@ std::vector<TargetSummary> PingFile::summary(std::size_t ping) const {
   check(ping);
   std::vector<TargetSummary> rows;
   if (!file_.has("summary/present")) return rows;
-  const std::size_t n = file_.info("summary/present").shape[1];
+  const Shape shape = file_.info("summary/present").shape;
+  if (shape.size() != 2)
+    throw InputError({.where = file_.path().string() + ": summary/present",
+                      .got = std::to_string(shape.size()) + " dimensions",
+                      .expected = "2, ping and target"});
+  const std::size_t n = shape[1];
   const auto column = [&](const std::string& key) {
     return file_.read<double>("summary/" + key, {ping, 0}, {1, n});
   };

@@ -29,55 +29,89 @@ Scenario scenario_of(const Hdf5File& file, const std::filesystem::path& path,
   return parse_embedded_scenario(text, name, overrides);
 }
 
+InputError wrong(const std::filesystem::path& path, const std::string& got,
+                 const std::string& expected) {
+  return InputError({.where = path.string(), .got = got, .expected = expected});
+}
+
+/// A column of a table, which has as many rows as the others. \throws InputError where it has not
+template <class T>
+std::vector<T> column_of(const Hdf5File& file, const std::string& name, std::size_t rows) {
+  std::vector<T> values = file.read<T>(name);
+  if (values.size() != rows)
+    throw wrong(file.path(), name + " with " + std::to_string(values.size()) + " rows",
+                std::to_string(rows) + ", as its table has");
+  return values;
+}
+
+/// \throws InputError unless every value is from `least` to below `end`
+template <class T>
+void check_all(const Hdf5File& file, const std::string& name, const std::vector<T>& values, T least,
+               std::size_t end) {
+  for (const T value : values)
+    if (value < least || (value >= 0 && static_cast<std::size_t>(value) >= end))
+      throw wrong(file.path(), std::to_string(value) + " in " + name,
+                  "a number from " + std::to_string(least) + " to below " + std::to_string(end));
+}
+
 }  // namespace
 
 PingRecordings::PingRecordings(const std::filesystem::path& path,
                                const std::optional<std::filesystem::path>& scenario_path)
     : path_(path), file_(open_ping_file(path)) {
-  const auto wrong = [&](const std::string& got, const std::string& expected) {
-    return InputError({.where = path_.string(), .got = got, .expected = expected});
-  };
   for (const char* name :
        {"pressure", "ping", "ping_time", "valid_samples", "phone_position", "replica", "scenario"})
-    if (!file_.has(name)) throw wrong(std::string("no dataset ") + name, "a file with a ping");
+    if (!file_.has(name))
+      throw wrong(path_, std::string("no dataset ") + name, "a file with a ping");
   shape_ = file_.info("pressure").shape;
   if (!(shape_.size() == 3 || (shape_.size() == 4 && shape_[3] == 2)))
-    throw wrong("pressure of another rank",
+    throw wrong(path_, "pressure of another rank",
                 "(ping, channel, sample) or (ping, channel, sample, iq)");
   numbers_ = file_.read<std::int32_t>("ping");
-  if (numbers_.empty()) throw wrong("no whole ping", "at least one");
+  if (numbers_.empty()) throw wrong(path_, "no whole ping", "at least one");
   scenario_ = scenario_of(file_, path_, scenario_path);
   if (shape_[1] != channels_of(scenario_))
-    throw wrong(std::to_string(shape_[1]) + " channels",
+    throw wrong(path_, std::to_string(shape_[1]) + " channels",
                 std::to_string(channels_of(scenario_)) + ", those of its scenario");
-  times_ = file_.read<double>("ping_time");
-  valid_ = file_.read<std::int64_t>("valid_samples");
-  if (file_.has("transmitter")) transmitters_ = file_.read<std::int32_t>("transmitter");
+  if (shape_[0] < numbers_.size())
+    throw wrong(path_, "pressure of " + std::to_string(shape_[0]) + " pings",
+                std::to_string(numbers_.size()) + ", as it has numbers of them");
+  const std::size_t rows = numbers_.size();
+  times_ = column_of<double>(file_, "ping_time", rows);
+  valid_ = column_of<std::int64_t>(file_, "valid_samples", rows);
+  check_all<std::int64_t>(file_, "valid_samples", valid_, 0, shape_[2] + 1);
+  if (file_.has("transmitter")) transmitters_ = column_of<std::int32_t>(file_, "transmitter", rows);
+  check_all(file_, "transmitter", transmitters_, 0, scenario_.transmitters.size());
   rate_ = file_.attribute_number("pressure", "sample_rate_hz");
   start_ = time_of_first(file_, "pressure", "time");
   if (complex_samples()) carrier_ = file_.attribute_number("pressure", "carrier_hz");
   if (file_.has_attribute("pressure", "continuous"))
     continuous_ = file_.attribute_number("pressure", "continuous") != 0.0;
   if (!(rate_ > 0.0))
-    throw wrong("a sample rate of " + std::to_string(rate_) + " Hz", "one above 0");
+    throw wrong(path_, "a sample rate of " + std::to_string(rate_) + " Hz", "one above 0");
 
   read_direct_sound();
   if (!file_.has("echoes/delay")) return;
-  const auto column = [&](const std::string& name) { return file_.read<double>("echoes/" + name); };
-  const auto channel = file_.read<std::int32_t>("echoes/channel"),
-             target = file_.read<std::int32_t>("echoes/target");
-  const auto delay = column("delay"), doppler = column("doppler_factor"),
-             level = column("level_db"), elevation = column("arrival_elevation_deg"),
-             bearing = column("arrival_bearing_deg");
+  const std::vector<double> delay = file_.read<double>("echoes/delay");
+  const auto column = [&](const std::string& name) {
+    return column_of<double>(file_, "echoes/" + name, delay.size());
+  };
+  const auto numbers = [&](const std::string& name) {
+    return column_of<std::int32_t>(file_, "echoes/" + name, delay.size());
+  };
+  const auto channel = numbers("channel"), target = numbers("target");
+  const auto doppler = column("doppler_factor"), level = column("level_db"),
+             elevation = column("arrival_elevation_deg"), bearing = column("arrival_bearing_deg");
   // Files of before 2026-11-22 do not tell: half the way, right for a pair in one place.
   std::vector<double> struck = delay;
   if (file_.has("echoes/struck"))
     struck = column("struck");
   else
     for (double& time : struck) time *= 0.5;
-  const auto ping = file_.read<std::int32_t>("echoes/ping");
+  const auto ping = numbers("ping");
   std::vector<std::int32_t> array(delay.size(), 0);
-  if (file_.has("echoes/array")) array = file_.read<std::int32_t>("echoes/array");
+  if (file_.has("echoes/array")) array = numbers("array");
+  check_all(file_, "echoes/array", array, -1, scenario_.arrays.size());
   for (std::size_t i = 0; i < delay.size(); ++i) {
     // Where every phone has its own paths, the middle one's stand for all.
     const auto phones =
@@ -96,12 +130,14 @@ PingRecordings::PingRecordings(const std::filesystem::path& path,
 
 void PingRecordings::read_direct_sound() {
   if (!file_.has("arrivals/array")) return;
-  const auto leg = file_.read<std::int32_t>("arrivals/leg"),
-             ping = file_.read<std::int32_t>("arrivals/ping"),
-             array = file_.read<std::int32_t>("arrivals/array");
-  const auto delay = file_.read<double>("arrivals/delay"),
-             elevation = file_.read<double>("arrivals/arrival_elevation_deg"),
-             bearing = file_.read<double>("arrivals/bearing_deg");
+  const std::vector<std::int32_t> leg = file_.read<std::int32_t>("arrivals/leg");
+  const auto column = [&](const std::string& name) {
+    return column_of<double>(file_, "arrivals/" + name, leg.size());
+  };
+  const auto ping = column_of<std::int32_t>(file_, "arrivals/ping", leg.size()),
+             array = column_of<std::int32_t>(file_, "arrivals/array", leg.size());
+  const auto delay = column("delay"), elevation = column("arrival_elevation_deg"),
+             bearing = column("bearing_deg");
   constexpr int source_to_array = 2;
   for (std::size_t i = 0; i < leg.size(); ++i) {
     if (leg[i] != source_to_array) continue;

@@ -149,6 +149,21 @@ class HostileFiles(unittest.TestCase):
 
         self.refused(f"info {self.changed(huge)}", "valid_samples", "claims more than")
 
+    def test_tables_whose_columns_do_not_fit_are_refused(self):
+        def shorten(f):
+            del f["echoes/struck"]
+            f["echoes/struck"] = [1.0] * (f["echoes/delay"].size + 1)
+
+        def another_array(f):
+            f["echoes/array"][...] = 7
+
+        def too_many_samples(f):
+            f["valid_samples"][...] = 10**9
+
+        self.refused(f"process {self.changed(shorten)} -q", "echoes/struck with")
+        self.refused(f"process {self.changed(another_array)} -q", "7 in echoes/array")
+        self.refused(f"process {self.changed(too_many_samples)} -q", "in valid_samples")
+
     def test_a_catalogue_shows_studies_only(self):
         def stranger(f):
             layout = h5py.VirtualLayout((3,), "i8")
