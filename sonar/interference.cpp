@@ -157,16 +157,22 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
           const std::complex<double> slope = du * (path->amplitude[1] - path->amplitude[0]);
           const std::complex<double> level =
               path->amplitude[0] + u0 * (path->amplitude[1] - path->amplitude[0]);
+          // What the sea's motion has turned since the node, and turns from sample to sample.
+          const std::complex<double> moved =
+              turns(path->shift * static_cast<double>(sample - node) / clock.rate);
+          const std::complex<double> moves = turns(path->shift / clock.rate);
           const double clock_cycles =
               carrier_ * (clock.carrier_zero + static_cast<double>(sample) / clock.rate);
           if (broadband && !band_.empty()) {
             add_band(*path, source, part_length, {u0, du}, left * source_rate_ - double(begin),
                      step * source_rate_,
-                     turns(source_carrier_ * left) * std::conj(turns(clock_cycles)),
-                     turns(source_carrier_ * step - carrier_ / clock.rate), sum);
+                     moved * turns(source_carrier_ * left) * std::conj(turns(clock_cycles)),
+                     moves * turns(source_carrier_ * step - carrier_ / clock.rate), sum);
           } else if (broadband) {
-            std::complex<double> z = turns(source_carrier_ * left) * std::conj(turns(clock_cycles));
-            const std::complex<double> turn = turns(source_carrier_ * step - carrier_ / clock.rate);
+            std::complex<double> z =
+                moved * turns(source_carrier_ * left) * std::conj(turns(clock_cycles));
+            const std::complex<double> turn =
+                moves * turns(source_carrier_ * step - carrier_ / clock.rate);
             for (std::int64_t i = 0; i < chunk; ++i, z *= turn) {
               const double at = (left + static_cast<double>(i) * step) * source_rate_;
               const double whole = std::floor(at);
@@ -182,9 +188,9 @@ void Interference::add(PingRecord& record, std::int64_t later) const {
             if (std::abs(f - (complex ? carrier_ : 0.25 * rate_)) > (complex ? 0.5 : 0.25) * rate_)
               continue;  // outside the recorded band
             const double length = path->length[0] + u0 * (path->length[1] - path->length[0]);
-            std::complex<double> z = tone[k] * std::exp(-loss[k] * length) * turns(f * left) *
-                                     std::conj(turns(clock_cycles));
-            const std::complex<double> turn = turns(f * step - carrier_ / clock.rate);
+            std::complex<double> z = moved * tone[k] * std::exp(-loss[k] * length) *
+                                     turns(f * left) * std::conj(turns(clock_cycles));
+            const std::complex<double> turn = moves * turns(f * step - carrier_ / clock.rate);
             for (std::int64_t i = 0; i < chunk; ++i, z *= turn)
               sum[static_cast<std::size_t>(i)] += (level + static_cast<double>(i) * slope) * z;
           }

@@ -6,6 +6,7 @@
 
 #include "sonar/block_noise.h"
 #include "sonar/carried.h"
+#include "sonar/forward_scatter.h"
 #include "sonar/ping_record.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/scenario.h"
@@ -26,7 +27,9 @@ namespace asdic {
 /// Losses are those at the first pulse's centre; with `wide_band` they are found at frequencies f_k
 /// of the recorded band, and a path's amplitude is straight between them: the signal is a sum of
 /// parts q_k, each through a hat over f_k, with an amplitude of its own.
-/// docs/theory/interference.md
+///
+/// What rough boundaries scatter about a path is heard beside it, by a few paths of equal strength
+/// (sonar/forward_scatter.h). docs/theory/interference.md
 class Interference {
  public:
   Interference(const Scenario& scenario, const PropagationPaths& paths);
@@ -38,10 +41,12 @@ class Interference {
  private:
   struct Clock;
   struct Stretch;
-  /// A path with its amplitudes across the band.
+  /// A path with its amplitudes across the band, and what is scattered about it.
   struct Heard {
     HeardPath path;
     std::vector<std::complex<double>> band;  // [frequencies]
+    std::vector<double> scattered_band;      // root of the intensity [frequencies]
+    std::vector<ScatteredPart> parts;        // of equal strength: of their weights the phase counts
   };
   /// \param hearer  reference point or phone of the array
   [[nodiscard]] std::vector<Heard> heard_at(const Interferer& ship, int array,
@@ -49,6 +54,11 @@ class Interference {
                                             bool across_the_band) const;
   [[nodiscard]] std::vector<Stretch> stretches(const Interferer& ship, int array,
                                                const Carried& hearer, const Clock& clock) const;
+  /// Draws what rough boundaries scatter about all that is heard at a time.
+  void scatter(const Interferer& ship, double time, std::vector<Heard>& heard) const;
+  /// Adds the parts scattered about a path that is at both ends of a stretch, or at one.
+  static void add_parts(const Heard* one, const Heard* other, std::int64_t begin, double seconds,
+                        std::vector<Stretch>& all);
   /// Whether the phones hear a ship by plane waves about their reference point all through a
   /// record.
   [[nodiscard]] bool plane_waves(const Interferer& ship, int array, const PingRecord& record,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/parallel.h"
+#include "reverb/scatterer_field.h"
 #include "sonar/enough_bounces.h"
 #include "sonar/geometry.h"
 #include "sonar/interference_stretch.h"
@@ -133,10 +134,13 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
                        .slowness = arriving,
                        .moveout = arriving / (1.0 - along),
                        .path = path},
-              .band = {}};
+              .band = {},
+              .scattered_band = {},
+              .parts = {}};
     for (const Arrivals& arrivals : at_frequencies) {
       const Arrival* same = same_path(arrivals, path, paths_.layered());
       one.band.push_back(same == nullptr ? 0.0 : same->amplitude);
+      one.scattered_band.push_back(same == nullptr ? 0.0 : std::sqrt(same->scattered));
     }
     heard.push_back(std::move(one));
   }
@@ -160,6 +164,75 @@ bool Interference::plane_waves(const Interferer& ship, int array, const PingReco
   return true;
 }
 
+void Interference::scatter(const Interferer& ship, double time, std::vector<Heard>& heard) const {
+  constexpr int most_parts = 8;
+  double loudest = 0.0;
+  for (const Heard& one : heard)
+    loudest = std::max(loudest, std::norm(one.path.path.amplitude) + one.path.path.scattered);
+  const auto number = static_cast<std::uint64_t>(&ship - scenario_.interferers.data());
+  for (Heard& one : heard) {
+    const Arrival& path = one.path.path;
+    if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) continue;
+    const double left = time - one.path.delay;
+    const ScatteredLeg leg{&path, ship.track.at(left).position.head<2>(), one.path.bearing, left};
+    const std::uint64_t entity = mixed(mixed(number, ~1ULL), scatter_history(path));
+    one.parts =
+        forward_scatter(scenario_.environment, std::span(&leg, 1), frequency_,
+                        path.scattered > 0.01 * loudest ? most_parts : 1, scenario_.seed, entity);
+  }
+}
+
+/// Between nodes a part's frequency is shifted by the mean of its ends', and by what more turns the
+/// phase of the one into the other's. Where a part is another draw at the other end, one fades out
+/// and the other in.
+void Interference::add_parts(const Heard* one, const Heard* other, std::int64_t begin,
+                             double seconds, std::vector<Stretch>& all) {
+  const auto end = [](const Heard& heard, std::size_t i, double phase, std::size_t side,
+                      Stretch& into) {
+    const ScatteredPart& part = heard.parts[i];
+    const std::complex<double> weight =
+        std::polar(1.0 / std::sqrt(double(heard.parts.size())), phase);
+    into.delay[side] = heard.path.delay + part.delay;
+    into.length[side] = heard.path.path.path_length;
+    into.moveout[side] = slowness_vector(heard.path.bearing + part.bearing,
+                                         heard.path.path.arrival_elevation + part.elevation,
+                                         1.0 / heard.path.moveout.norm());
+    into.amplitude[side] = std::sqrt(heard.path.path.scattered) * weight;
+    for (const double root : heard.scattered_band) into.band[side].push_back(root * weight);
+  };
+  const auto same_draw = [&](const ScatteredPart& a, const ScatteredPart& b) {
+    return std::abs(a.shift - b.shift) * seconds < 0.5 &&
+           std::abs(a.delay - b.delay) < 1e-5 + 0.2 * std::max(a.delay, b.delay);
+  };
+  const auto fades = [&](const Heard& heard, std::size_t i, std::size_t side) {
+    const ScatteredPart& part = heard.parts[i];
+    const double turned = side == 0 ? 0.0 : 2.0 * pi * part.shift * seconds;
+    Stretch s{.begin = begin, .shift = part.shift};
+    end(heard, i, std::arg(part.amplitude) - turned, 0, s);
+    end(heard, i, std::arg(part.amplitude) - turned, 1, s);
+    s.amplitude[1 - side] = 0.0;
+    for (std::complex<double>& amplitude : s.band[1 - side]) amplitude = 0.0;
+    all.push_back(std::move(s));
+  };
+  const std::size_t first = one == nullptr ? 0 : one->parts.size(),
+                    second = other == nullptr ? 0 : other->parts.size();
+  for (std::size_t i = 0; i < std::max(first, second); ++i) {
+    if (i >= first || i >= second || !same_draw(one->parts[i], other->parts[i])) {
+      if (i < first) fades(*one, i, 0);
+      if (i < second) fades(*other, i, 1);
+      continue;
+    }
+    const ScatteredPart &a = one->parts[i], &b = other->parts[i];
+    const double mean = 0.5 * (a.shift + b.shift), phase = std::arg(a.amplitude);
+    const double more = std::arg(b.amplitude * std::conj(a.amplitude) *
+                                 std::polar(1.0, -2.0 * pi * mean * seconds));
+    Stretch s{.begin = begin, .shift = mean + more / (2.0 * pi * seconds)};
+    end(*one, i, phase, 0, s);
+    end(*other, i, phase, 1, s);
+    all.push_back(std::move(s));
+  }
+}
+
 std::vector<Interference::Stretch> Interference::stretches(const Interferer& ship, int array,
                                                            const Carried& hearer,
                                                            const Clock& clock) const {
@@ -169,10 +242,11 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
   const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
   std::vector<std::vector<Heard>> nodes(count);
   in_parallel(count, [&](std::size_t i) {
-    nodes[i] =
-        heard_at(ship, array, hearer,
-                 clock.time((from + static_cast<std::int64_t>(i)) * clock.node), across_the_band);
+    const double time = clock.time((from + static_cast<std::int64_t>(i)) * clock.node);
+    nodes[i] = heard_at(ship, array, hearer, time, across_the_band);
+    scatter(ship, time, nodes[i]);
   });
+  const double seconds = static_cast<double>(clock.node) / clock.rate;
   std::vector<Stretch> all;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;
@@ -198,12 +272,17 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
       if (at < next.size() && !taken[at]) {
         taken[at] = true;
         add(one, nodes[i + 1][at], 1.0, 1.0);
+        add_parts(&one, &nodes[i + 1][at], begin, seconds, all);
       } else {
         add(one, one, 1.0, 0.0);
+        add_parts(&one, nullptr, begin, seconds, all);
       }
     }
-    for (std::size_t j = 0; j < next.size(); ++j)
-      if (!taken[j]) add(nodes[i + 1][j], nodes[i + 1][j], 0.0, 1.0);
+    for (std::size_t j = 0; j < next.size(); ++j) {
+      if (taken[j]) continue;
+      add(nodes[i + 1][j], nodes[i + 1][j], 0.0, 1.0);
+      add_parts(nullptr, &nodes[i + 1][j], begin, seconds, all);
+    }
   }
   return all;
 }

@@ -28,6 +28,7 @@ struct Interference::Stretch {
   std::array<std::complex<double>, 2> amplitude{};
   std::array<std::vector<std::complex<double>>, 2> band;  // across it
   std::array<Vec3, 2> moveout{};
+  double shift = 0.0;  // of its frequencies, by the sea's motion [Hz]
 };
 
 /// Of a grid: to the lower.

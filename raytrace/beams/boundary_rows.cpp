@@ -6,6 +6,7 @@
 
 #include "raytrace/beams/foot.h"
 #include "raytrace/beams/geometric.h"
+#include "raytrace/tracing/reflected.h"
 
 namespace asdic {
 
@@ -18,7 +19,7 @@ constexpr double least_reflection = 1e-3;  // below it the incident wave is not 
 
 BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
                            const ReceiverGrid& grid, bool coherent)
-    : environment_(environment), frequency_(frequency), ranges_(grid.ranges) {
+    : environment_(environment), frequency_(frequency), coherent_(coherent), ranges_(grid.ranges) {
   for (const BoundaryKind kind : {BoundaryKind::surface, BoundaryKind::bottom}) {
     std::vector<std::int32_t> rows(grid.ranges.size(), -1);
     bool any = false;
@@ -70,8 +71,8 @@ WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double 
       boundary.material_at(range), grazing,
       {.speed = c, .density = environment_.water_density.at(depth), .frequency = frequency_});
   if (!boundary.roughness.smooth())
-    reflection *=
-        coherent_reflection(boundary.roughness, std::sin(grazing), 2.0 * pi * frequency_ / c);
+    reflection *= left_by_roughness(boundary.roughness, std::sin(grazing),
+                                    2.0 * pi * frequency_ / c, coherent_);
   return {true, into_water >= 0.0, slope, reflection};
 }
 

@@ -69,6 +69,7 @@ class BoundaryRows {
   }
   const Environment& environment_;
   double frequency_;
+  bool coherent_;
   std::span<const double> ranges_;
   std::vector<std::int32_t> surface_, bottom_;               // [columns], or empty
   std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise

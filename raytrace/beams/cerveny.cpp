@@ -211,7 +211,7 @@ void add_cerveny_cartesian(const BeamSetting& setting, const BeamLaunch& launch,
       const double decay = 0.5 * omega * std::abs(gamma.imag());
       const double widest = std::min(window / std::sqrt(decay), 100.0 * wavelength);
       const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
-                                segment.history.reflection *
+                                reflected(segment.history, setting.coherent) *
                                 (std::exp(-state.nepers) * spread_across(setting, state));
       const std::span<const double> depths = field.column_depths(column);
       Complex* sum = field.column(column);
@@ -280,7 +280,7 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
               mirror.sign * taper(foot.n, c / setting.frequency) *
               component(setting.cerveny, c * state.xi, (mirror.mirrored ? -c : c) * state.zeta);
           const Complex amplitude = constant * std::sqrt(c) * beam.spread(state) *
-                                    foot.segment->history.reflection *
+                                    reflected(foot.segment->history, setting.coherent) *
                                     (std::exp(-state.nepers) * spread_across(setting, state));
           add(setting, weight * amplitude * wave(omega, state.time + 0.5 * gamma * n2), *foot.sum);
         });

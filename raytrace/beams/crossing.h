@@ -6,6 +6,7 @@
 
 #include "raytrace/beams/beam.h"
 #include "raytrace/tracing/ray_trajectory.h"
+#include "raytrace/tracing/reflected.h"
 
 namespace asdic {
 
@@ -55,7 +56,7 @@ inline Crossing crossing_of(const BeamSetting& setting, const RaySegment& segmen
           .length = state.length,
           .q = state.q,
           .dq_ds = c * state.p,
-          .loss = segment.history.reflection *
+          .loss = reflected(segment.history, setting.coherent) *
                   (std::exp(-state.nepers) * spread_across(setting, state)) *
                   power_of_i(caustics_at(segment, state)),
           .mirror = (segment.history.surface_bounces + segment.history.bottom_bounces) % 2 == 0

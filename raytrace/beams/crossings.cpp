@@ -66,7 +66,7 @@ void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHist
   out_.time.push_back(y.time);
   out_.q.push_back(y.q);
   out_.dq_ds.push_back(c * y.p);
-  out_.level.push_back(std::abs(history.reflection) *
+  out_.level.push_back(std::abs(reflected(history, setting_.coherent)) *
                        (std::exp(-y.nepers) * spread_across(setting_, y)));
   out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
   out_.mirror.push_back(bounces % 2 == 0 ? 1.0 : -1.0);

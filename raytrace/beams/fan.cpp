@@ -77,7 +77,12 @@ double launch_amplitude(const PropagationCase& run_case, double source_depth, do
   double amplitude = beams.pattern ? std::abs(beams.pattern->at(elevation)) : 1.0;
   if (run_case.field == FieldKind::semi_coherent) {
     const double k = 2.0 * pi * run_case.frequency / source_speed;
-    amplitude *= std::sqrt(2.0) * std::abs(std::sin(k * source_depth * std::sin(elevation)));
+    const double sine = std::abs(std::sin(elevation));
+    const RoughReflection left = rough_reflection(run_case.environment.surface.roughness, sine, k);
+    // 1 + E − 2m cos 2φ of the pair, shared as 1 : E. Of a mirror 2 sin²φ
+    const double mirrored = 2.0 * left.coherent / (1.0 + left.energy),
+                 lloyd = std::sin(k * source_depth * sine);
+    amplitude *= std::sqrt(1.0 - mirrored + 2.0 * mirrored * lloyd * lloyd);
   }
   return amplitude;
 }

@@ -43,7 +43,9 @@ struct FinestTubes {
 [[nodiscard]] BeamFan given_fan(const std::vector<double>& elevations);
 
 /// Amplitude with which the source launches a beam: its pattern and, for a semi-coherent field, the
-/// Lloyd mirror √2·|sin(ω z_s sin α / c₀)| of a surface at z = 0.
+/// Lloyd mirror √2·|sin φ|, φ = ω z_s sin α/c₀, of a surface at z = 0. Of a rough one, which leaves
+/// the mean field m and the energy E, the beam that it mirrors and the one that goes down have
+/// 1 + E − 2m cos 2φ together: each is launched with 1 − 2m/(1 + E)·cos 2φ of intensity.
 [[nodiscard]] double launch_amplitude(const PropagationCase& run_case, double source_depth,
                                       double source_speed, double elevation) noexcept;
 

@@ -8,6 +8,7 @@
 
 #include "raytrace/beams/fan.h"
 #include "raytrace/parallel.h"
+#include "raytrace/tracing/reflected.h"
 
 namespace asdic {
 namespace {
@@ -76,12 +77,14 @@ struct Wall {
   const Boundary& boundary;
   WaterAtBoundary water;
   double wavenumber;
+  bool coherent;
 
-  /// Reflection coefficient at a grazing angle [rad], its incoherent part left out.
+  /// Reflection coefficient at a grazing angle [rad]; where intensities are added its square is the
+  /// energy, with what a rough wall scatters.
   [[nodiscard]] Complex at(double grazing) const noexcept {
     const Complex mirror = reflection_coefficient(boundary.material, grazing, water);
     if (boundary.roughness.smooth()) return mirror;
-    return mirror * coherent_reflection(boundary.roughness, std::sin(grazing), wavenumber);
+    return mirror * left_by_roughness(boundary.roughness, std::sin(grazing), wavenumber, coherent);
   }
 };
 
@@ -185,7 +188,8 @@ class ImageGuide {
             {.speed = c_,
              .density = case_.environment.water_density.at(boundary.depth),
              .frequency = case_.frequency},
-            wavenumber_};
+            wavenumber_,
+            case_.field == FieldKind::coherent};
   }
   [[nodiscard]] double launch(double elevation) const noexcept {
     return launch_amplitude(case_, source_depth_, c_, elevation);

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/tracing/reflected.h"
+
 namespace asdic {
 namespace {
-
-/// As the history's reflection, its square the energy in all.
-std::complex<double> all_reflected(const RayHistory& history) {
-  if (!(history.scattered > 0.0)) return history.reflection;
-  return std::polar(std::sqrt(std::norm(history.reflection) + history.scattered),
-                    history.reflection_phase);
-}
 
 /// A ray's state where it meets a line of slope tan(angle).
 BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angle) {
@@ -32,7 +27,7 @@ BoundaryHit met_at(const RayState& y, const RaySegment& s, double c, double angl
   hit.length = y.length;
   hit.mean_slowness = y.speed_integral > 0.0 ? y.range / y.speed_integral : y.xi;
   hit.down = tz > 0.0 ? 1.0 : -1.0;
-  hit.reflection = all_reflected(s.history);
+  hit.reflection = reflected(s.history, false);
   const double sense = s.begin.q != 0.0 ? s.begin.q : s.begin.p;
   hit.caustics = s.history.caustics + (sense * y.q < 0.0 ? 1 : 0);
   hit.surface_bounces = s.history.surface_bounces;

@@ -33,11 +33,6 @@ namespace checks {
 /// A solid behind the surface or the bottom that reflects more than comes in. Scenarios refuse it;
 /// BELLHOP's files, and materials node by node, run as they stand.
 [[nodiscard]] std::string gaining_boundary(const Environment& ocean);
-/// "the rough surface scatters forward, 2.8 dB of a bounce at 10 degrees,": what the mean field
-/// alone leaves out; "" where that is next to nothing. \param frequency  [Hz]
-[[nodiscard]] std::string beside_the_mean_field(const Environment& ocean, double frequency);
-/// An incoherent field over rough boundaries, which has the mean field alone.
-[[nodiscard]] std::string mean_field_alone(const PropagationCase& run_case);
 /// Cerveny beams of no width, which carry no sound.
 [[nodiscard]] std::string silent_beams(const PropagationCase& run_case);
 

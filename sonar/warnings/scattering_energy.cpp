@@ -42,13 +42,4 @@ std::string scattering_energy(const Scenario& scenario) {
   return text;
 }
 
-std::string mean_field_of_ships(const Scenario& scenario) {
-  if (scenario.interferers.empty()) return "";
-  const std::string missing =
-      beside_the_mean_field(scenario.environment, pulse_frequencies(scenario).highest);
-  if (missing.empty()) return "";
-  return "interferer: ships are heard by the mean field of their paths alone: what " + missing +
-         " is left out";
-}
-
 }  // namespace asdic::checks

@@ -41,7 +41,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
                 checks::noise_table_band(scenario), checks::surface_scattering_range(scenario),
                 checks::reverberation_plane_waves(scenario), checks::noise_of_a_bent_line(scenario),
                 checks::noise_from_below(scenario), checks::left_out_diffraction(scenario),
-                checks::scattering_energy(scenario), checks::mean_field_of_ships(scenario)},
+                checks::scattering_energy(scenario)},
                all);
   return all;
 }

@@ -40,8 +40,6 @@ struct PulseFrequencies {
 [[nodiscard]] std::string left_out_diffraction(const Scenario& scenario);
 /// A scattering law of a rough boundary that hands out more energy than comes in.
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);
-/// Ships over rough boundaries, heard by the mean field of their paths alone.
-[[nodiscard]] std::string mean_field_of_ships(const Scenario& scenario);
 
 }  // namespace checks
 }  // namespace asdic

@@ -235,22 +235,6 @@ kind = "cerveny-cartesian"
 width = "minimum"
 )";
 
-// Incoherent fields add up mean fields: 0.55 m of height at 10 degrees and 1 kHz take from each
-// G² = (2kh sin 10°)² = 0.64 Np, 2.8 dB.
-TEST(Warnings, IncoherentFieldsOverARoughSeaLackWhatIsScattered) {
-  PropagationCase run_case;
-  run_case.task = Task::field;
-  run_case.frequency = 1000.0;
-  run_case.environment.surface.roughness.rms_height = 0.55;
-  run_case.field = FieldKind::coherent;
-  EXPECT_EQ(checks::mean_field_alone(run_case), "");
-  run_case.field = FieldKind::incoherent;
-  EXPECT_THAT(checks::mean_field_alone(run_case),
-              AllOf(HasSubstr("run.field: "), HasSubstr("rough surface"), HasSubstr("2.8 dB")));
-  run_case.environment.surface.roughness = {};
-  EXPECT_EQ(checks::mean_field_alone(run_case), "");
-}
-
 TEST(Warnings, SilentBeamsAreThoseThatCarryNoSound) {
   const auto run_with = [](const std::vector<std::string>& overrides,
                            std::vector<std::string>& told) {
