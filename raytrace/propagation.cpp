@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 #include "raytrace/beams/field_run.h"
 #include "raytrace/runs/arrivals_run.h"
@@ -38,6 +40,30 @@ std::string beyond_box_text(const PropagationCase& run_case) {
   return text;
 }
 
+/// How many receivers lie outside of the water, where no field is computed; "" where none does.
+std::string outside_text(const PropagationCase& run_case) {
+  constexpr double on_boundary = 1e-3;  // [m]
+  const Environment& ocean = run_case.environment;
+  const ReceiverGrid& grid = run_case.receivers;
+  std::size_t below = 0, above = 0;
+  for (std::size_t j = 0; j < grid.ranges.size(); ++j) {
+    const auto first = grid.depths.begin() + static_cast<std::ptrdiff_t>(grid.irregular ? j : 0);
+    const auto last = grid.irregular ? first + 1 : grid.depths.end();
+    const double floor = ocean.bottom.depth_at(grid.ranges[j]) + on_boundary,
+                 surface = ocean.surface.depth_at(grid.ranges[j]) - on_boundary;
+    below += static_cast<std::size_t>(last - std::upper_bound(first, last, floor));
+    above += static_cast<std::size_t>(std::lower_bound(first, last, surface) - first);
+  }
+  if (below + above == 0) return "";
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "of %zu receivers %zu lie below the bottom and %zu above the surface, where no field "
+      "is computed: they have nothing, or the tails of beams in the water",
+      grid.size(), below, above);
+  return text;
+}
+
 PropagationResult run_task(const PropagationCase& run_case, const Progress& progress) {
   switch (run_case.task) {
     case Task::rays:
@@ -61,6 +87,9 @@ PropagationResult run(const PropagationCase& run_case, const Progress& progress,
   PropagationResult result = run_task(run_case, progress);
   if (run_case.task != Task::rays && all_beyond_box(run_case))
     result.notes.push_back(beyond_box_text(run_case));
+  if (run_case.task != Task::rays)
+    if (std::string outside = outside_text(run_case); !outside.empty())
+      result.notes.push_back(std::move(outside));
   return result;
 }
 

@@ -15,6 +15,34 @@
 namespace asdic {
 namespace {
 
+// Over a floor that rises from 200 m to 100 m at 5 km, 120 m deep 4 km away: the run says how many.
+TEST(FieldsOutsideOfTheWater, AreNoneAndTheRunSaysSo) {
+  PropagationCase c;
+  c.frequency = 200.0;
+  c.environment.water = SoundSpeedProfile::isovelocity(1500.0);
+  c.environment.bottom = {.depth = 200.0, .material = FluidHalfSpace{}};
+  c.source_depths = {50.0};
+  c.receivers = {.depths = {0.0, 60.0, 150.0, 200.0}, .ranges = {500.0, 4000.0}};
+  const auto told = [](const PropagationResult& result) {
+    std::string all;
+    for (const std::string& note : result.notes) all += note + '\n';
+    return all;
+  };
+  EXPECT_EQ(told(run(c)).find("below the bottom"), std::string::npos);
+  const double range[] = {0.0, 5000.0}, depth[] = {200.0, 100.0};
+  c.environment.bottom.shape = BoundaryShape(range, depth, ShapeInterpolation::piecewise_linear);
+  const PropagationResult result = run(c);
+  EXPECT_NE(told(result).find("of 8 receivers 3 lie below the bottom and 0 above the surface"),
+            std::string::npos)
+      << told(result);
+  EXPECT_LT(std::abs(result.field[5]), 1e-3F * std::abs(result.field[3]));
+  EXPECT_GT(std::abs(result.field[3]), 0.0F);
+  c.receivers = {.depths = {-1.0, 150.0}, .ranges = {500.0, 4000.0}, .irregular = true};
+  c.task = Task::arrivals;
+  EXPECT_NE(told(run(c)).find("of 2 receivers 1 lie below the bottom and 1 above"),
+            std::string::npos);
+}
+
 /// 200 m of water over a fluid, the sound speed least at 50 m, with a kink.
 PropagationCase kinked_duct() {
   PropagationCase run_case;
