@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sonar/noise.h"
+#include "sonar/noise_in_guide.h"
 #include "sonar/noise_spectrum.h"
 #include "sonar/sampling.h"
 
@@ -52,8 +53,9 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
     const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
+    const NoiseField field = noise_field(scenario, static_cast<int>(a));
     arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
-                         shape_of(scenario, a, 1, 0.0), settings_.coherence, settings_.directions,
+                         shape_of(scenario, a, 1, 0.0), field.coherence, field.directions,
                          c,
                          NoiseKey{.seed = seed_,
                                   .purpose = Draw::coherent_noise,

@@ -6,6 +6,7 @@
 
 #include "sonar/detection_threshold.h"
 #include "sonar/noise_coherence.h"
+#include "sonar/noise_in_guide.h"
 #include "study/echo_filter.h"
 
 namespace asdic::study {
@@ -19,7 +20,7 @@ struct Beam {
 };
 
 /// 10 lg of 1/(wᴴΓw), w_n = e^{−iω s·x_n}/n: what the beam keeps of the scenario's noise [dB].
-double gain_over_noise(const Beam& beam, const NoiseSettings& noise) {
+double gain_over_noise(const Beam& beam, const NoiseField& noise) {
   const std::size_t n = beam.phones.size();
   if (noise.coherence == NoiseCoherence::independent) return db_from_power(static_cast<double>(n));
   const double wavenumber = beam.angular_frequency * beam.slowness.norm();
@@ -82,8 +83,8 @@ double detection_signal_excess_db(const PingSimulator& simulator, const PingReco
       beam.phones.push_back(record.phones[first + n] - record.phones[first]);
 
   const double energy = pulse.energy();
-  const double noise_gain =
-      db_from_power(energy * pulse.bandwidth_40db()) + gain_over_noise(beam, scenario.noise);
+  const double noise_gain = db_from_power(energy * pulse.bandwidth_40db()) +
+                            gain_over_noise(beam, noise_field(scenario, receiver.array));
   const double reverberation_gain =
       db_from_power(energy * noise_bandwidth(pulse)) + gain_over_reverberation(beam);
   const double background =
