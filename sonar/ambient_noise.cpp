@@ -6,6 +6,7 @@
 #include "sonar/noise.h"
 #include "sonar/noise_in_guide.h"
 #include "sonar/noise_spectrum.h"
+#include "sonar/plane_wave.h"
 #include "sonar/sampling.h"
 
 namespace asdic {
@@ -13,13 +14,12 @@ namespace {
 
 constexpr std::uint32_t before_all = 0x80000000U;  // no ping has that number
 
-bool deforms(const ReceiverArray& array) { return array.towed || !array.shapes.empty(); }
-
 /// Its phones to the micrometre: a towed line that goes straight on has the shape that it had, and
 /// its factors are found again.
 std::vector<Vec3> shape_of(const Scenario& scenario, std::size_t array, int ping, double time) {
   std::vector<Vec3> phones = phones_at(scenario, static_cast<int>(array), ping, time);
-  if (!deforms(scenario.arrays[array])) return phones;
+  const ReceiverArray& one = scenario.arrays[array];
+  if (!one.towed && one.shapes.empty()) return phones;
   for (Vec3& phone : phones) phone = (phone * 1e6).array().round().matrix() / 1e6;
   return phones;
 }
@@ -39,6 +39,15 @@ double extent(const ReceiverArray& array) {
 
 }  // namespace
 
+double noise_block(const Scenario& scenario, int array) {
+  const auto a = static_cast<std::size_t>(array);
+  const double rate = recorded_rate(scenario);
+  const std::size_t samples =
+      BlockNoise::block_length(rate, phones_at(scenario, array, 1, 0.0), extent(scenario.arrays[a]),
+                               speed_at(scenario, array_at(scenario, array, 0.0).position));
+  return static_cast<double>(samples) / rate;
+}
+
 AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& paths)
     : scenario_(scenario),
       settings_(scenario.noise),
@@ -55,8 +64,7 @@ AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& pat
     const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
     const NoiseField field = noise_field(scenario, static_cast<int>(a));
     arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
-                         shape_of(scenario, a, 1, 0.0), field.coherence, field.directions,
-                         c,
+                         shape_of(scenario, a, 1, 0.0), field.coherence, field.directions, c,
                          NoiseKey{.seed = seed_,
                                   .purpose = Draw::coherent_noise,
                                   .first_channel = first_channels_.back()},
@@ -76,15 +84,24 @@ void AmbientNoise::add(PingRecord& record, std::int64_t later) const {
                     seed_, later < 0 ? ping | before_all : ping);
     return;
   }
+  const double zero = record.recording.start + (continuous_ ? 0.0 : record.start_time);
   const std::size_t row = record.recording.samples * record.recording.components();
   // Pings of a stream leave at whole samples: the first sample of this part, counted from the
   // scenario's start.
   const std::int64_t first = (continuous_ ? std::llround(record.start_time * rate_) : 0) + later;
-  for (std::size_t a = 0; a < arrays_.size(); ++a)
-    arrays_[a].add(
+  for (std::size_t a = 0; a < arrays_.size(); ++a) {
+    const std::span<float> rows =
         std::span(record.pressure)
-            .subspan(first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row),
-        first, continuous_ ? 0 : ping, shape_of(scenario_, a, record.ping, record.start_time));
+            .subspan(first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row);
+    const std::uint32_t realisation = continuous_ ? 0 : ping;
+    const auto shape = [&](double time) { return shape_of(scenario_, a, record.ping, time); };
+    if (deforms(scenario_, static_cast<int>(a)))
+      arrays_[a].add(rows, first, realisation, [&](std::int64_t sample) {
+        return shape(zero + static_cast<double>(sample) / rate_);
+      });
+    else
+      arrays_[a].add(rows, first, realisation, shape(record.start_time));
+  }
 }
 
 }  // namespace asdic

@@ -13,8 +13,8 @@ namespace asdic {
 ///
 /// White noise, independent from phone to phone, is drawn sample by sample, ping by ping
 /// (sonar/noise.h). All other noise is BlockNoise: one coherent group an array, in the shape that
-/// it has in a ping, arrays independent of one another; separate pings are draws of their own, a
-/// stream is one draw of its absolute time.
+/// it has in a ping (a line that turns: in the middle of each block), arrays independent of one
+/// another; separate pings are draws of their own, a stream is one draw of its absolute time.
 class AmbientNoise {
  public:
   /// \param scenario, paths  must outlive this
@@ -36,5 +36,8 @@ class AmbientNoise {
   std::vector<BlockNoise> arrays_;           // [arrays], empty for plain noise
   std::vector<std::size_t> first_channels_;  // [arrays + 1]
 };
+
+/// How long the blocks are in which an array's coherent noise is made [s].
+[[nodiscard]] double noise_block(const Scenario& scenario, int array);
 
 }  // namespace asdic

@@ -17,19 +17,19 @@ namespace {
 constexpr std::size_t blocks_at_once = 4;
 constexpr std::size_t tile = 256;  // bins of all phones that stay in the cache
 
-std::size_t block_length(double rate, std::span<const Vec3> phones, double across,
-                         double sound_speed) {
+}  // namespace
+
+std::size_t BlockNoise::block_length(double sample_rate, std::span<const Vec3> phones,
+                                     double across, double sound_speed) {
   for (const Vec3& a : phones)
     for (const Vec3& b : {phones.front(), phones.back()})
       across = std::max(across, 2.0 * (a - b).norm());  // a bound on the longest separation
-  const double least =
-      std::clamp(std::max(0.25 * rate, 16.0 * across / sound_speed * rate), 256.0, 1048576.0);
+  const double least = std::clamp(
+      std::max(0.25 * sample_rate, 16.0 * across / sound_speed * sample_rate), 256.0, 1048576.0);
   std::size_t n = 256;
   while (static_cast<double>(n) < least) n *= 2;
   return n;
 }
-
-}  // namespace
 
 /// Spectra of a few blocks at once: [blocks × phones × bins], parts apart.
 struct BlockNoise::Scratch {
@@ -96,8 +96,10 @@ void BlockNoise::draw(std::span<const std::int64_t> blocks, std::uint32_t realis
   }
 }
 
-/// In place, from the last phone up: row i needs the rows before it as they were drawn.
-void BlockNoise::correlate(const CoherenceFactors& factors, std::size_t blocks, Scratch& s) const {
+/// Blocks `from` … `to` − 1 in place, from the last phone up: row i needs the rows before it as
+/// they were drawn.
+void BlockNoise::correlate(const CoherenceFactors& factors, std::size_t from, std::size_t to,
+                           Scratch& s) const {
   std::array<float, tile> re{}, im{};
   const bool real = factors.is_real();
   for (std::size_t first = 0; first < bins_; first += tile) {
@@ -105,7 +107,7 @@ void BlockNoise::correlate(const CoherenceFactors& factors, std::size_t blocks, 
     for (std::size_t i = phones_; i-- > 0;) {
       for (std::size_t j = i + 1; j-- > 0;) {
         factors.element(i, j, first, std::span(re).first(n), std::span(im).first(n));
-        for (std::size_t b = 0; b < blocks; ++b) {
+        for (std::size_t b = from; b < to; ++b) {
           float* __restrict yr = s.real.data() + (b * phones_ + i) * bins_ + first;
           float* __restrict yi = s.imaginary.data() + (b * phones_ + i) * bins_ + first;
           const float* xr = s.real.data() + (b * phones_ + j) * bins_ + first;
@@ -157,19 +159,29 @@ void BlockNoise::sound(std::size_t block, std::size_t phone, Scratch& s) const {
 }
 
 void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation) const {
-  add(rows, first, realisation, factors_.get());
+  add_blocks(rows, first, realisation, [&](std::int64_t) { return factors_; });
 }
 
 void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
                      std::span<const Vec3> shape) const {
   assert(shape.size() == phones_);
   const bool as_ever = !factors_ || std::equal(shape.begin(), shape.end(), shape_.begin());
-  const auto factors = as_ever ? factors_ : factors_of(shape);
-  add(rows, first, realisation, factors.get());
+  const Factors factors = as_ever ? factors_ : factors_of(shape);
+  add_blocks(rows, first, realisation, [&](std::int64_t) { return factors; });
 }
 
 void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
-                     const CoherenceFactors* factors) const {
+                     const ShapeAt& shape_at) const {
+  if (!factors_) return add(rows, first, realisation);
+  add_blocks(rows, first, realisation, [&](std::int64_t block) {
+    const std::vector<Vec3> shape = shape_at((block + 1) * static_cast<std::int64_t>(block_ / 2));
+    assert(shape.size() == phones_);
+    return shape == shape_ ? factors_ : factors_of(shape);
+  });
+}
+
+void BlockNoise::add_blocks(std::span<float> rows, std::int64_t first, std::uint32_t realisation,
+                            const std::function<Factors(std::int64_t block)>& factors_in) const {
   const std::size_t width = complex_ ? 2 : 1;
   assert(rows.size() % (phones_ * width) == 0);
   const auto samples = static_cast<std::int64_t>(rows.size() / (phones_ * width));
@@ -188,13 +200,19 @@ void BlockNoise::add(std::span<float> rows, std::int64_t first, std::uint32_t re
       if (((b % 2) + 2) % 2 == parity) blocks.push_back(b);
     const std::size_t tasks = (blocks.size() + blocks_at_once - 1) / blocks_at_once;
     in_parallel(tasks, [&](std::size_t task) {
-      Scratch& s = scratch.local();
       const std::span some =
           std::span(blocks)
               .subspan(task * blocks_at_once)
               .first(std::min(blocks_at_once, blocks.size() - task * blocks_at_once));
+      // Before the scratch memory is taken: while factors are made this thread may do other tasks.
+      std::vector<Factors> factors;
+      for (const std::int64_t block : some) factors.push_back(factors_in(block));
+      Scratch& s = scratch.local();
       draw(some, realisation, s);
-      if (factors != nullptr) correlate(*factors, some.size(), s);
+      for (std::size_t b = 0, next = 0; b < some.size(); b = next) {  // those of one shape at once
+        for (next = b + 1; next < some.size() && factors[next] == factors[b];) ++next;
+        if (factors[b]) correlate(*factors[b], b, next, s);
+      }
       for (std::size_t b = 0; b < some.size(); ++b) {
         const std::int64_t begin = some[b] * hop - first;  // of the block, in the rows
         const std::int64_t low = std::max<std::int64_t>(0, begin),

@@ -2,8 +2,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sonar/ambient_noise.h"
+#include "sonar/noise_coherence.h"
+#include "sonar/noise_in_guide.h"
 #include "sonar/phone_groups.h"
 #include "sonar/transmission.h"
 #include "sonar/warnings/warnings.h"
@@ -15,16 +19,34 @@ const ReceiverArray& array_of(const Scenario& scenario, int array) {
   return scenario.arrays[static_cast<std::size_t>(array)];
 }
 
-/// How far phones get from where they were at a ping, seen from their middle, until the end of its
-/// record [m].
-double bent_by(const Scenario& scenario, int array, int ping, double time) {
-  const PingSchedule& pings = scenario.pings;
-  const double end = time + pings.recording_start + pings.recording_duration;
-  const std::vector<Vec3> before = phones_at(scenario, array, ping, time),
-                          after = phones_at(scenario, array, ping, end);
+/// How far phones get from where they are at a time, seen from their middle [m].
+double bent_by(const Scenario& scenario, int array, double time, double later) {
+  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
+                          after = phones_at(scenario, array, 1, time + later);
   double most = 0.0;
   for (std::size_t n = 0; n < before.size(); ++n)
     most = std::max(most, (after[n] - before[n]).norm());
+  return most;
+}
+
+/// By how much the coherence of any two phones changes meanwhile: of neighbours, and of some
+/// others.
+double coherence_change(const Scenario& scenario, int array, double time, double later,
+                        double wavenumber, const NoiseField& noise) {
+  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
+                          after = phones_at(scenario, array, 1, time + later);
+  constexpr std::size_t looked_at = 16;  // each with as many
+  const std::size_t step = (before.size() + looked_at - 1) / looked_at;
+  double most = 0.0;
+  const auto look = [&](std::size_t a, std::size_t b) {
+    const auto of = [&](const std::vector<Vec3>& shape) {
+      return noise_coherence(noise.coherence, noise.directions, shape[a] - shape[b], wavenumber);
+    };
+    most = std::max(most, std::abs(of(after) - of(before)));
+  };
+  for (std::size_t a = 1; a < before.size(); ++a) look(a, a - 1);
+  for (std::size_t a = 0; a < before.size(); a += step)
+    for (std::size_t b = 0; b < a; b += step) look(a, b);
   return most;
 }
 
@@ -79,21 +101,37 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     const int array = static_cast<int>(a);
     if (!deforms(scenario, array)) continue;
+    // Half of a block's power lies within a quarter of it from its middle.
+    const double block = noise_block(scenario, array), quarter = 0.25 * block;
+    const PingSchedule& pings = scenario.pings;
     const std::vector<Transmission> sent = transmissions(scenario);
-    constexpr std::size_t looked_at = 100;
+    constexpr std::size_t looked_at = 100, times = 1000, closely = 4;
     const std::size_t step = (sent.size() + looked_at - 1) / looked_at;
-    double bent = 0.0;
+    const std::size_t each =
+        std::clamp<std::size_t>(static_cast<std::size_t>(pings.recording_duration / quarter), 1,
+                                std::max<std::size_t>(times * step / sent.size(), 8));
+    std::vector<std::pair<double, double>> bent;  // by how much, when
     for (std::size_t i = 0; i < sent.size(); i += step)
-      bent = std::max(bent, bent_by(scenario, array, static_cast<int>(i) + 1, sent[i].time));
+      for (std::size_t k = 0; k < each; ++k) {
+        const double time = sent[i].time + pings.recording_start +
+                            pings.recording_duration * double(k) / double(each);
+        bent.emplace_back(bent_by(scenario, array, time, quarter), time);
+      }
+    std::sort(bent.rbegin(), bent.rend());
     const double c = speed_at(scenario, array_at(scenario, array, 0.0).position);
-    const double periods = bent * highest / c;
-    if (periods <= reverberation_periods) continue;
+    const NoiseField field = noise_field(scenario, array);
+    double change = 0.0;
+    for (std::size_t i = 0; i < std::min(closely, bent.size()) && bent[i].first > 0.0; ++i)
+      change = std::max(change, coherence_change(scenario, array, bent[i].second, quarter,
+                                                 2.0 * pi * highest / c, field));
+    constexpr double heard = 0.1;
+    if (change <= heard) continue;
     char text[256];
     std::snprintf(text, sizeof text,
-                  "noise.coherence: array %s turns and bends by up to %.3g m while a ping is "
-                  "heard, and its noise keeps the shape at the ping: up to %.2g periods off at "
-                  "%g Hz",
-                  array_of(scenario, array).name.c_str(), bent, periods, highest);
+                  "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
+                  "shape of the block's middle: the coherence of two phones changes by up to %.2g "
+                  "at %g Hz meanwhile",
+                  array_of(scenario, array).name.c_str(), block, change, highest);
     return text;
   }
   return "";

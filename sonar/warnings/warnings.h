@@ -32,7 +32,7 @@ struct PulseFrequencies {
 /// Reverberation that may be drawn from its covariance, by plane waves, for an array that is too
 /// long for them (sonar/phone_groups.h).
 [[nodiscard]] std::string reverberation_plane_waves(const Scenario& scenario);
-/// Coherent noise of a towed line that turns while it listens: it keeps the shape at the ping.
+/// Coherent noise of a towed line that turns so fast that coherence changes within a block of it.
 [[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);
 /// Noise of sources at the surface, over a bottom that reflects it.
 [[nodiscard]] std::string noise_from_below(const Scenario& scenario);
