@@ -284,9 +284,12 @@ TEST(NoiseCoherence, OfALevelProfileIsIsotropic) {
   }
 }
 
-// The stated error of the interpolation, at all bins and not only where it was looked at.
-TEST(CoherenceFactors, AreWithinTheirTolerance) {
-  const auto phones = line_array(6, 0.4, 0.3, 0.7).phones;
+// The stated error of the interpolation, at all bins and not only where it was looked at; of a
+// tilted line, and of phones side by side, whose coherence is tabulated.
+class CoherenceFactorsOfALine : public testing::TestWithParam<double> {};
+
+TEST_P(CoherenceFactorsOfALine, AreWithinTheirTolerance) {
+  const auto phones = line_array(6, 0.4, 0.3, GetParam()).phones;
   const NoiseDirections sheet;
   const double step = 4.0;
   const CoherenceFactors factors(NoiseCoherence::surface, sheet, phones, c, 0.0, step, 513);
@@ -313,6 +316,8 @@ TEST(CoherenceFactors, AreWithinTheirTolerance) {
   EXPECT_LT(worst, 1.5 * CoherenceFactors::tolerance) << "the middle is not always the worst place";
   EXPECT_LT(factors.nodes(), 513U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Tilt, CoherenceFactorsOfALine, testing::Values(0.7, 0.0));
 
 TEST(BlockNoise, HasTheSameBitsInWhateverPartsItIsAskedFor) {
   for (const double carrier : {0.0, 1500.0}) {
