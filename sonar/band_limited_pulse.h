@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "core/units.h"
 #include "sonar/pulse.h"
@@ -23,6 +24,14 @@ class BandLimitedPulse {
   /// [Hz]; the filter is flat over 1/1.3 of it
   BandLimitedPulse(const Pulse& pulse, double sample_rate,
                    const std::function<double(double)>& filter = {}, double recorded = infinity);
+  /// A sound that is band-limited already. \param signal  about its middle, at(u) below
+  /// \param half_duration, half_band  beyond which there is nothing [s], [Hz]
+  BandLimitedPulse(SampledSignal signal, double centre_frequency, double half_duration,
+                   double half_band)
+      : signal_(std::move(signal)),
+        centre_frequency_(centre_frequency),
+        half_duration_(half_duration),
+        half_band_(half_band) {}
 
   [[nodiscard]] std::complex<double> at(double u) const noexcept { return signal_.at(u); }
   /// Real and imaginary parts at many times. \param u  [n]

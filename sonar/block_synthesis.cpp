@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
+#include "sonar/sound_synthesis.h"
 #include "sonar/spectrum_product.h"
 #include "sonar/synthesis_bytes.h"
 
@@ -47,9 +48,8 @@ SynthesisBytes synthesis_bytes(const Synthesizer& synthesizer, std::size_t phone
   return {.row = row, .all = rows * row + threads * of_thread + spectra + grids};
 }
 
-Baseband Synthesizer::baseband(std::span<const Return> returns,
-                               std::span<const Vec3> phones) const {
-  const Plan& plan = *plan_;
+Baseband BlockSynthesis::of_list(const Synthesizer::Plan& plan, std::span<const Return> returns,
+                                 std::span<const Vec3> phones) {
   std::vector<double> dopplers;
   dopplers.reserve(returns.size());
   for (const Return& r : returns) {
@@ -78,6 +78,26 @@ Baseband Synthesizer::baseband(const ReturnSource& source, std::span<const Vec3>
   auto bands = plan.expansion.cut(plan.expansion.bands_over(std::move(spans)), returns,
                                   cost_of_grid(plan.length));
   return BlockSynthesis(plan, std::move(bands), source, phones).run();
+}
+
+Baseband Synthesizer::baseband(std::span<const Return> returns,
+                               std::span<const Vec3> phones) const {
+  return BlockSynthesis::of_list(*plan_, returns, phones);
+}
+
+Baseband BlockSynthesis::of_sound(const BandLimitedPulse& sound, const Recording& recording,
+                                  double max_doppler, std::span<const Return> returns,
+                                  std::span<const Vec3> phones) {
+  return of_list(Synthesizer::Plan(sound, recording, max_doppler), returns, phones);
+}
+
+Baseband baseband_of(const BandLimitedPulse& sound, const Recording& recording, double max_doppler,
+                     std::span<const Return> returns, std::span<const Vec3> phones) {
+  return BlockSynthesis::of_sound(sound, recording, max_doppler, returns, phones);
+}
+
+const BandLimitedPulse& filtered_pulse(const Synthesizer& synthesizer) {
+  return BlockSynthesis::plan_of(synthesizer).pulses.front();
 }
 
 /// From one node's grid to the next: a multiple of a cache line (8 samples) and, modulo the 64

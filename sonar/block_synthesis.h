@@ -21,6 +21,13 @@ class BlockSynthesis {
   BlockSynthesis(const Synthesizer::Plan& plan, std::vector<DopplerBand> bands,
                  const ReturnSource& source, std::span<const Vec3> phones);
   [[nodiscard]] Baseband run();
+  /// Synthesizer::baseband() of returns that exist, and of a sound that is no pulse.
+  [[nodiscard]] static Baseband of_list(const Synthesizer::Plan& plan,
+                                        std::span<const Return> returns,
+                                        std::span<const Vec3> phones);
+  [[nodiscard]] static Baseband of_sound(const BandLimitedPulse& sound, const Recording& recording,
+                                         double max_doppler, std::span<const Return> returns,
+                                         std::span<const Vec3> phones);
   /// The plan of a synthesizer, for those who ask how large it is.
   [[nodiscard]] static const Synthesizer::Plan& plan_of(const Synthesizer& synthesizer) noexcept {
     return *synthesizer.plan_;

@@ -4,9 +4,8 @@
 
 #include "reverb/scatterer_field.h"
 #include "sonar/carried.h"
-#include "sonar/doppler.h"
-#include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
+#include "sonar/one_leg.h"
 #include "sonar/plane_wave.h"
 #include "sonar/sampling.h"
 
@@ -66,33 +65,6 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
   return delay_curve(pulse_moments(path), heard, Vec3::Zero(), highest, aperture);
 }
 
-/// What rough boundaries scatter about a path. \param heard  of the path's own
-void scatter(const EchoContext& context, const Kinematics& source, const MetPath& met,
-             const EchoPath& heard, std::vector<EchoPath>& found) {
-  constexpr int parts = 16;
-  const Arrival& path = met.path;
-  if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) return;
-  const double c = context.paths.speed_at(met.way.end.position);
-  const ScatteredLeg leg{&path, source.position.head<2>(), met.way.leg.bearing, context.ping_time};
-  const std::uint64_t entity =
-      mixed(mixed(static_cast<std::uint64_t>(context.transmitter), ~0ULL), scatter_history(path));
-  for (const ScatteredPart& part :
-       forward_scatter(context.scenario.environment, std::span(&leg, 1), context.frequency, parts,
-                       context.scenario.seed, entity)) {
-    EchoPath one = heard;
-    one.curve.reset();
-    one.heard.delay += part.delay;
-    one.heard.doppler *= 1.0 + part.shift / context.frequency;
-    one.heard.slowness =
-        met_by(met.way.end.velocity, slowness_vector(met.way.leg.bearing + part.bearing,
-                                                     path.arrival_elevation + part.elevation, c));
-    one.colour.without_pattern = std::sqrt(path.scattered) * part.amplitude;
-    one.heard.amplitude = one.colour.without_pattern *
-                          context.pattern.towards(one.colour.bearing, one.colour.elevation);
-    found.push_back(std::move(one));
-  }
-}
-
 /// The blast at one phone, or at the reference point for all of them.
 void hear(const EchoContext& context, int channel, DirectBlast& blast) {
   const Scenario& scenario = context.scenario;
@@ -120,31 +92,18 @@ void hear(const EchoContext& context, int channel, DirectBlast& blast) {
     std::erase_if(way.leg.arrivals, [](const Arrival& path) {
       return path.surface_bounces + path.bottom_bounces == 0;
     });
-  const double c_source = context.paths.speed_at(source.position);
   for (const Arrival& path : way.leg.arrivals) {
     const MetPath met = moving.meet(source.position, 0.0, hearer.track, hearer.offset, way, path);
-    const double c_array = context.paths.speed_at(met.way.end.position);
-    const Vec3 leaving = slowness_vector(met.way.leg.bearing, met.path.launch_elevation, c_source);
-    const Vec3 at_array = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation, c_array);
-    const Vec3 arriving = met_by(met.way.end.velocity, at_array);
-    EchoPath path_heard;
-    path_heard.target = -1;
-    path_heard.array = context.array;
-    path_heard.heard = {
-        .delay = met.time - arriving.dot(x),  // at the reference point
-        .amplitude = met.path.amplitude *
-                     context.pattern.towards(met.way.leg.bearing, met.path.launch_elevation),
-        .doppler = leg_doppler({source.velocity, leaving}, {met.way.end.velocity, at_array}),
-        .slowness = arriving,
-        .channel = channel < 0 ? Return::all_channels : channel};
-    path_heard.colour = {.path_length = met.path.path_length,
-                         .bearing = met.way.leg.bearing,
-                         .elevation = met.path.launch_elevation,
-                         .without_pattern = met.path.amplitude};
+    EchoPath path_heard = heard_along(context, source, met);
+    path_heard.heard.delay -= path_heard.heard.slowness.dot(x);  // at the reference point
+    path_heard.heard.channel = channel < 0 ? Return::all_channels : channel;
     path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard, limits);
     blast.heard.push_back(path_heard);
-    scatter(context, source, met, path_heard, blast.heard);
+    scatter_along(context, source, 0.0, met,
+                  mixed(static_cast<std::uint64_t>(context.transmitter), ~0ULL), path_heard,
+                  blast.heard);
   }
+  shorten_bounces(way.leg.arrivals, channel < 0 ? 1 : array.phones.size());
   blast.legs.push_back(std::move(way.leg));
 }
 

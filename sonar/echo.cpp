@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
 
 #include "reverb/scatterer_field.h"
 #include "sonar/carried.h"
 #include "sonar/doppler.h"
 #include "sonar/forward_scatter.h"
 #include "sonar/moving_paths.h"
+#include "sonar/one_leg.h"
 #include "sonar/plane_wave.h"
 #include "sonar/sampling.h"
 #include "sonar/target_response.h"
@@ -54,16 +59,26 @@ class EchoFinder {
     result.bounces = bounces_;
     result.legs.push_back(out.leg);
     if (out.leg.arrivals.empty()) return result;
-    if (scenario_.propagation.exact_per_phone) {
-      for (std::size_t n = 0; n < phones_.size(); ++n)
-        pair_up(source, out, static_cast<int>(n), result);
-      return result;
+    const bool exact = scenario_.propagation.exact_per_phone;
+    Way home = way_back(out, exact ? 0 : -1);
+    const bool many = home.leg.arrivals.size() > context_.most_pairs / out.leg.arrivals.size();
+    if (many) result.many = all_pairs(out, home);
+    for (std::size_t n = 0; n < (exact ? phones_.size() : 1); ++n) {
+      if (n > 0) home = way_back(out, static_cast<int>(n));
+      if (many) {
+        list_loudest(source, out, home, result);
+        shorten_bounces(home.leg.arrivals, exact ? phones_.size() : 1);
+      } else {
+        pair_up(source, out, home, result);
+      }
+      result.legs.push_back(std::move(home.leg));
     }
-    pair_up(source, out, -1, result);
-    if (context_.listens && !plane_waves(result)) {
+    if (many) {
+      shorten_bounces(result.legs.front().arrivals);
+    } else if (!exact && context_.listens && !plane_waves(result)) {
       TargetEchoes at_phones;
       for (std::size_t n = 0; n < phones_.size(); ++n)
-        pair_up(source, out, static_cast<int>(n), at_phones);
+        pair_up(source, out, way_back(out, static_cast<int>(n)), at_phones);
       result.at_phones = std::move(at_phones.echoes);
       result.scattered = std::move(at_phones.scattered);
     }
@@ -98,14 +113,25 @@ class EchoFinder {
   }
 
   /// \param channel  phone that hears it; −1: the reference point
-  void pair_up(const Kinematics& source, const Way& out, int channel, TargetEchoes& result) const {
-    const Carried hearer =
-        channel < 0 ? reference_ : phone_of(scenario_, context_.array, context_.ping, channel);
+  [[nodiscard]] Carried hearer(int channel) const {
+    return channel < 0 ? reference_ : phone_of(scenario_, context_.array, context_.ping, channel);
+  }
+
+  /// From where the first sound strikes the target.
+  [[nodiscard]] Way way_back(const Way& out, int channel) const {
+    const Carried hearer = this->hearer(channel);
     Way back = moving_.way(out.end.position, out.reference_time, hearer.track, hearer.offset);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
     back.leg.channel = channel;
     back.leg.array = context_.array;
+    return back;
+  }
+
+  void pair_up(const Kinematics& source, const Way& out, const Way& back,
+               TargetEchoes& result) const {
+    const int channel = back.leg.channel;
+    const Carried hearer = this->hearer(channel);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
       const MetPath there =
           moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
@@ -128,18 +154,109 @@ class EchoFinder {
         std::vector<EchoPath> echoes = answer(pair, hearer, channel);
         scatter(pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
                 result.scattered);
+        name(i, j, std::span(result.scattered).subspan(first));
+        name(i, j, echoes);
         for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
-        const auto name = [&](EchoPath& echo) {
-          echo.outgoing = static_cast<int>(i);
-          echo.returning = static_cast<int>(j);
-        };
-        std::for_each(result.scattered.begin() + std::ptrdiff_t(first), result.scattered.end(),
-                      name);
-        std::for_each(result.echoes.end() - std::ptrdiff_t(echoes.size()), result.echoes.end(),
-                      name);
       }
     }
-    result.legs.push_back(std::move(back.leg));
+  }
+
+  /// By the numbers of their paths.
+  static void name(std::size_t outgoing, std::size_t returning, std::span<EchoPath> echoes) {
+    for (EchoPath& echo : echoes) {
+      echo.outgoing = static_cast<int>(outgoing);
+      echo.returning = static_cast<int>(returning);
+    }
+  }
+
+  [[nodiscard]] ManyEchoes all_pairs(const Way& out, const Way& back) const {
+    const Arrivals &there = out.leg.arrivals, &home = back.leg.arrivals;
+    ManyEchoes many{.target = index_, .array = context_.array, .followed = bounces_};
+    const double c = context_.paths.speed_at(back.end.position);
+    std::size_t heard = home.size();  // of the paths home, after one more of those there
+    for (const Arrival& one : there) {
+      while (heard > 0 && one.delay + home[heard - 1].delay > latest_) --heard;
+      many.pairs += heard;
+    }
+    many.first = there.front().delay + home.front().delay;
+    many.last = std::min(latest_, there.back().delay + home.back().delay);
+    many.at_phones =
+        scenario_.propagation.exact_per_phone ||
+        (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
+           const Return heard_there{
+               .delay = there.front().delay + path.delay,
+               .slowness = met_by(back.end.velocity,
+                                  slowness_vector(back.leg.bearing, path.arrival_elevation, c))};
+           return is_plane_wave(context_, heard_there, path.path_length);
+         }));
+    return many;
+  }
+
+  /// The loudest of too many pairs, at one of the hearers.
+  void list_loudest(const Kinematics& source, const Way& out, const Way& back,
+                    TargetEchoes& result) const {
+    constexpr std::size_t most_listed = 1000;
+    const std::size_t most =
+        back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
+    const Carried hearer = this->hearer(back.leg.channel);
+    for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
+      const MetPath there =
+          moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
+      const Kinematics struck = target_.track.at(context_.ping_time + there.time);
+      const Arrival& known = back.leg.arrivals[j];
+      Way of_moved;
+      const bool moved = struck.position != out.end.position;
+      if (moved)
+        of_moved = moving_.way(struck.position, there.time, hearer.track, hearer.offset,
+                               std::span(&known, 1));
+      const Way& home = moved ? of_moved : back;
+      const Arrival* path = moved ? same_path(home.leg.arrivals, known, layered_) : &known;
+      if (path == nullptr) continue;  // by then it is gone
+      const TwoWayPaths pair{.source = source,
+                             .target = struck,
+                             .there = there,
+                             .home = moving_.meet(struck.position, there.time, hearer.track,
+                                                  hearer.offset, home, *path)};
+      std::vector<EchoPath> echoes = answer(pair, hearer, back.leg.channel);
+      name(i, j, echoes);
+      for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
+    }
+  }
+
+  /// The first pair and the loudest that are heard in time, by the numbers of their paths. Loudest
+  /// paths first on both legs, the best of every row of pairs is its first that is left.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> loudest_pairs(
+      const Leg& out, const Leg& back, std::size_t most) const {
+    const Arrivals &there = out.arrivals, &home = back.arrivals;
+    const auto power = [](const Arrival& path) {
+      return std::norm(path.amplitude) + path.scattered;
+    };
+    const auto ordered = [&](const Arrivals& paths, const auto& of) {
+      std::vector<std::pair<double, std::size_t>> found;
+      for (std::size_t i = 0; i < paths.size(); ++i) found.emplace_back(of(paths[i]), i);
+      std::sort(found.begin(), found.end(), std::greater<>());
+      return found;
+    };
+    const auto outward = ordered(there, [&](const Arrival& path) {
+      return power(path) * std::norm(context_.pattern.towards(out.bearing, path.launch_elevation));
+    });
+    const auto homeward = ordered(home, power);
+    using Best = std::tuple<double, std::size_t, std::size_t>;  // power; row, place in it
+    std::priority_queue<Best> best;
+    for (std::size_t row = 0; row < outward.size(); ++row)
+      best.emplace(outward[row].first * homeward[0].first, row, 0);
+    std::vector<std::pair<std::size_t, std::size_t>> found = {{0, 0}};
+    for (std::size_t looked = 0; !best.empty() && found.size() < most && looked < 32 * most;
+         ++looked) {
+      const auto [loud, row, place] = best.top();
+      best.pop();
+      const std::size_t i = outward[row].second, j = homeward[place].second;
+      if (there[i].delay + home[j].delay <= latest_ && i + j > 0) found.emplace_back(i, j);
+      if (place + 1 < homeward.size())
+        best.emplace(outward[row].first * homeward[place + 1].first, row, place + 1);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
   /// Into how many parts what is scattered about a pair of paths is drawn, of so many pairs.

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "sonar/enough_bounces.h"
@@ -14,19 +15,23 @@ struct EchoContext {
   const PropagationPaths& paths;
   const Scenario& scenario;
   const TransmitPattern& pattern;
-  double frequency;              ///< centre of the pulse [Hz]
-  double ping_time;              ///< since the start of the scenario [s]
-  int transmitter = 0;           ///< that pings, an index
-  int array = 0;                 ///< that hears it
-  int ping = 1;                  ///< of the run, counted from 1
-  int turn = 1;                  ///< of the transmitter's own pings, counted from 1
-  const Pulse* pulse = nullptr;  ///< none: its leading edge alone is followed
-  Reuse* reuse = nullptr;        ///< counts the eigenrays that were known
-  bool listens = true;           ///< false: nobody asks for the phones' samples
+  double frequency;               ///< centre of the pulse [Hz]
+  double ping_time;               ///< since the start of the scenario [s]
+  int transmitter = 0;            ///< that pings, an index
+  int array = 0;                  ///< that hears it
+  int ping = 1;                   ///< of the run, counted from 1
+  int turn = 1;                   ///< of the transmitter's own pings, counted from 1
+  const Pulse* pulse = nullptr;   ///< none: its leading edge alone is followed
+  Reuse* reuse = nullptr;         ///< counts the eigenrays that were known
+  bool listens = true;            ///< false: nobody asks for the phones' samples
+  std::size_t most_pairs = 4096;  ///< of paths: where there are more, the loudest are listed
 };
 
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
 /// highlight.
+///
+/// Where there are more than EchoContext::most_pairs, `echoes` are the loudest pairs alone and
+/// nothing of them is to be laid down: what is heard of `many` is two_step_echo().
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;
@@ -35,6 +40,7 @@ struct TargetEchoes {
   std::vector<EchoPath> at_phones;
   std::vector<EchoPath> scattered;  ///< by rough boundaries, about the paths of the echoes
   Bounces bounces;                  ///< that were followed on either leg
+  std::optional<ManyEchoes> many;
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is

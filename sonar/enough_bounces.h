@@ -12,9 +12,9 @@ namespace asdic {
 inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
 
 /// Bounces off either boundary that "auto" follows at most over slopes and fronts, where every one
-/// takes longer marches, and between two places in layered water, where pairs of paths there and
-/// back grow with its square.
-inline constexpr int most_over_slopes = 96, most_between_places = 192;
+/// takes longer marches, and between two places in layered water, where all bounces of four times
+/// as many paths are held.
+inline constexpr int most_over_slopes = 96, most_between_places = 768;
 
 /// How many bounces are followed off either boundary, and an estimate of how much of the level is
 /// missing for it [dB].

@@ -124,11 +124,18 @@ std::vector<TargetSummary> summarise(
         if (part.target == static_cast<int>(i) && part.array == row.array &&
             (part.heard.channel == Return::all_channels || part.heard.channel == 0))
           heard.push_back(&part);
+      const auto many = std::find_if(
+          record.many_echoes.begin(), record.many_echoes.end(), [&](const ManyEchoes& one) {
+            return one.target == static_cast<int>(i) && one.array == row.array;
+          });
+      const bool listed = many == record.many_echoes.end();
+      if (!listed) row.paths = static_cast<int>(std::min<std::size_t>(many->pairs, 1'000'000'000));
       row.echo_time = strongest->heard.delay;
       row.echo_level_db = strongest->level_db;
       row.reverberation_db = reverberation_db(
           row.array, strongest->heard.delay + 0.5 * pulse.duration() / strongest->heard.doppler);
-      row.echo_peak_db = peak_of_sum_db(heard, pulse, source_level_db);
+      row.echo_peak_db = listed ? peak_of_sum_db(heard, pulse, source_level_db)
+                                : source_level_db + db_from_amplitude(many->peak);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
     }

@@ -110,7 +110,16 @@ bool MovingPaths::settled(double moved, double c, double range) const {
 
 MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, const Vec3& offset,
                           const Way& reference, const Arrival& path) const {
-  MetPath met{reference, path, 0.0};
+  MetPath met{.way = {.leg = {.kind = reference.leg.kind,
+                              .target = reference.leg.target,
+                              .array = reference.leg.array,
+                              .channel = reference.leg.channel,
+                              .bearing = reference.leg.bearing,
+                              .range = reference.leg.range,
+                              .arrivals = {}},
+                      .end = reference.end,
+                      .reference_time = reference.reference_time},
+              .path = path};
   for (int i = 0; i < 4; ++i) {
     const double c = paths_.speed_at(met.way.end.position);
     met.time = arrival_time(met.way, start, met.path,
@@ -123,6 +132,7 @@ MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, co
     if (same == nullptr) break;
     met.path = *same;
     met.way = std::move(again);
+    met.way.leg.arrivals.clear();
   }
   return met;
 }

@@ -43,7 +43,7 @@ struct Way {
 
 /// One path to where the thing is when that path arrives.
 struct MetPath {
-  Way way;
+  Way way;  ///< without the other paths
   Arrival path;
   double time = 0.0;  ///< of arrival, since the start of the ping [s]
 };

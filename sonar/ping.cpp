@@ -17,9 +17,11 @@
 #include "sonar/reverberation_band.h"
 #include "sonar/reverberation_covariance.h"
 #include "sonar/sampling.h"
+#include "sonar/sound_synthesis.h"
 #include "sonar/sparse_sound.h"
 #include "sonar/stopwatch.h"
 #include "sonar/transmitter.h"
+#include "sonar/two_step_echo.h"
 
 namespace asdic {
 namespace {
@@ -34,6 +36,19 @@ std::shared_ptr<const PropagationPaths> paths_of(const Scenario& scenario,
 
 double end_of(const Recording& recording) {
   return recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
+}
+
+/// Of echoes by many paths: a sound as long as the record at the target, and what is heard of it,
+/// in a period of three records, before and after the transform.
+MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& heard) {
+  return {.where = "pings.recording_duration",
+          .what = "echoes by " + std::to_string(many.pairs) + " pairs of paths on " +
+                  std::to_string(heard.channels) + " phones",
+          .bytes = 6.0 * static_cast<double>(heard.values.size() + 4 * heard.samples) *
+                   sizeof(std::complex<float>),
+          .remedy =
+              "a shorter record, fewer phones or numbers in propagation.max_surface_bounces and "
+              "max_bottom_bounces"};
 }
 
 }  // namespace
@@ -97,6 +112,12 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
     TargetEchoes found = target_echoes(context, static_cast<int>(i));
     record.bounces.include(found.bounces);
+    if (found.many) {
+      found.many->peak = two_step_peak(context, *found.many, record.recording, max_doppler_);
+      record.many_echoes.push_back(*found.many);
+      record.echoes.insert(record.echoes.end(), found.echoes.begin(), found.echoes.end());
+      found.echoes.clear();
+    }
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
       if (found.at_phones.empty()) heard.push_back(echo);
@@ -118,6 +139,26 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     heard.insert(heard.end(), blast.heard.begin(), blast.heard.end());
   }
   return heard;
+}
+
+/// Of the targets whose pairs of paths are too many to be laid down one by one.
+void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& emission,
+                                    std::span<const Vec3> phones, const PingRecord& record,
+                                    Baseband& heard) const {
+  for (const ManyEchoes& many : record.many_echoes) {
+    if (many.array != context.array) continue;
+    std::vector<BandPart> band;
+    if (scenario_.propagation.wide_band) {
+      const PulseBand of_pulse(context, emission.projector, record.recording, max_doppler_);
+      const double longest = 1.1 * paths_->speed_at(record.platform.position) * many.last;
+      const BandNodes nodes = of_pulse.nodes(longest);
+      for (std::size_t k = 0; k < nodes.frequencies.size(); ++k)
+        band.push_back(of_pulse.part(nodes, k));
+    }
+    const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
+                                        max_doppler_, band);
+    if (more.channels > 0) add_resampled(more, heard);
+  }
 }
 
 PingSimulator::Emission PingSimulator::emit(const Transmission& sent) const {
@@ -281,6 +322,9 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
                             ? wide_band_sound(context, emission.projector, sparse, record.legs,
                                               phones, record.recording, max_doppler_)
                             : narrow_band_sound(synthesizer, sparse, phones);
+    for (const ManyEchoes& many : record.many_echoes)
+      if (many.array == array) budget.take(two_step_need(many, of_array));
+    add_many_echoes(context, emission, phones, record, of_array);
     append_channels(heard, std::move(of_array));
     record.timings.synthesis += watch.lap();
     const auto points = band ? band->points() : std::span<const BandPoint>();

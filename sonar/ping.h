@@ -93,6 +93,9 @@ class PingSimulator {
     BeamPattern pattern;
   };
   [[nodiscard]] Emission emit(const Transmission& sent) const;
+  void add_many_echoes(const EchoContext& context, const Emission& emission,
+                       std::span<const Vec3> phones, const PingRecord& record,
+                       Baseband& heard) const;
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
   [[nodiscard]] ReverberationContext reverberation_context(const Emission& emission, int array,

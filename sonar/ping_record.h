@@ -42,6 +42,19 @@ struct EchoPath {
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };
 
+/// The echoes of a target at an array where pairs of paths are too many to be taken one by one: the
+/// loudest alone are listed, all are heard (sonar/two_step_echo.h).
+struct ManyEchoes {
+  int target = 0;          ///< index in the scenario
+  int array = 0;           ///< index in the scenario
+  std::size_t pairs = 0;   ///< of paths, that are heard before the record ends
+  double first = 0.0;      ///< when the first of their leading edges is heard …
+  double last = 0.0;       ///< … and the last [s]
+  bool at_phones = false;  ///< every phone hears paths of its own
+  Bounces followed;        ///< on either leg
+  double peak = 0.0;       ///< largest envelope at the reference point, over the pulse's at 1 m
+};
+
 /// What scatters back from one ground cell, by one path pair: from the whole ring in a layered
 /// ocean, otherwise from the sector at `bearing` and the one mirrored about the transect.
 struct PatchRow {
@@ -126,7 +139,8 @@ struct PingRecord {
   std::vector<float> pressure;  ///< [channels × samples × components of the recording] [Pa]
   std::vector<Leg> legs;
   std::vector<EchoPath> echoes;
-  std::vector<EchoPath> scattered;  ///< what rough boundaries scatter about the echoes' paths
+  std::vector<EchoPath> scattered;      ///< what rough boundaries scatter about the echoes' paths
+  std::vector<ManyEchoes> many_echoes;  ///< of which `echoes` lists the loudest
   std::vector<PatchRow> patches;
   std::vector<HeardPath> interference;
   LevelSeries levels;

@@ -60,6 +60,40 @@ std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const Echo
 
 }  // namespace
 
+PulseBand::PulseBand(const EchoContext& context, const Transmitter& projector,
+                     const Recording& recording, double max_doppler)
+    : water_(context.paths.along_transect().environment().absorption),
+      projector_(projector),
+      centre_(context.pulse->centre_frequency()),
+      half_band_(
+          Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory()).half_band()),
+      sound_speed_(context.paths.speed_at(
+          transmitter_at(context.scenario, context.transmitter, context.ping_time).position)),
+      heading_(platform_heading(context.scenario, projector.platform, context.ping_time)) {}
+
+double PulseBand::nepers_per_metre(double frequency) const {
+  return absorption_db_per_km(water_, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
+}
+
+BeamPattern PulseBand::pattern_at(double frequency) const {
+  return {projector_, sound_speed_ / frequency, sound_speed_, heading_, sound_speed_ / centre_};
+}
+
+BandNodes PulseBand::nodes(double longest) const {
+  const double lowest = std::max(1.0, centre_ - half_band_);
+  const double nepers =
+      0.5 * longest * std::abs(nepers_per_metre(centre_ + half_band_) - nepers_per_metre(lowest));
+  return band_nodes(centre_, half_band_, nepers, pattern_at(centre_).longest_delay());
+}
+
+BandPart PulseBand::part(const BandNodes& nodes, std::size_t k) const {
+  const double f = std::max(1.0, nodes.frequencies[k]);
+  return {.filter = [nodes, k,
+                     centre = centre_](double beside) { return nodes.basis(k, centre + beside); },
+          .pattern = pattern_at(f),
+          .more_nepers_per_metre = nepers_per_metre(f) - nepers_per_metre(centre_)};
+}
+
 Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoPath> paths,
                            std::span<const Vec3> phones) {
   Returns straight;
@@ -79,27 +113,11 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
                          std::span<const Vec3> phones, const Recording& recording,
                          double max_doppler) {
   const Pulse& pulse = *context.pulse;
-  const double centre = pulse.centre_frequency();
-  const Absorption& water = context.paths.along_transect().environment().absorption;
-  const auto nepers_per_metre = [&](double frequency) {
-    return absorption_db_per_km(water, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
-  };
-  const Kinematics source =
-      transmitter_at(context.scenario, context.transmitter, context.ping_time);
-  const double c = context.paths.speed_at(source.position);
-  const double heading = platform_heading(context.scenario, projector.platform, context.ping_time);
-  const auto pattern_at = [&](double frequency) {
-    return BeamPattern(projector, c / frequency, c, heading, c / centre);
-  };
-
-  const double half_band =
-      Synthesizer(pulse, recording, max_doppler, context.paths.memory()).half_band();
+  const PulseBand of_pulse(context, projector, recording, max_doppler);
+  const double centre = of_pulse.centre(), half_band = of_pulse.half_width();
   double longest = 0.0;
   for (const EchoPath& path : paths) longest = std::max(longest, path.colour.path_length);
-  const double lowest = std::max(1.0, centre - half_band);
-  const double nepers =
-      0.5 * longest * std::abs(nepers_per_metre(centre + half_band) - nepers_per_metre(lowest));
-  BandNodes band = band_nodes(centre, half_band, nepers, pattern_at(centre).longest_delay());
+  BandNodes band = of_pulse.nodes(longest);
   const std::vector<PathWaves> waves = waves_of(context, paths, legs, centre, half_band);
   std::size_t of_waves = 0;
   for (const PathWaves& path : waves) of_waves = std::max(of_waves, path.degree());
@@ -109,17 +127,15 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   std::vector<EchoPath> coloured(paths.begin(), paths.end());
   for (std::size_t k = 0; k < band.frequencies.size(); ++k) {
     const double f = std::max(1.0, band.frequencies[k]);
-    const BeamPattern pattern = pattern_at(f);
-    const double more = nepers_per_metre(f) - nepers_per_metre(centre);
+    const BandPart at = of_pulse.part(band, k);
     for (std::size_t i = 0; i < coloured.size(); ++i) {
       const PathColour& colour = coloured[i].colour;
-      coloured[i].heard.amplitude = colour.without_pattern *
-                                    pattern.towards(colour.bearing, colour.elevation) *
-                                    std::exp(-more * waves[i].ray_length) * waves[i].at(f);
+      coloured[i].heard.amplitude =
+          colour.without_pattern * at.pattern.towards(colour.bearing, colour.elevation) *
+          std::exp(-at.more_nepers_per_metre * waves[i].ray_length) * waves[i].at(f);
     }
-    const Synthesizer part(pulse, recording, max_doppler,
-                           [&](double beside) { return band.basis(k, centre + beside); });
-    Baseband sound = narrow_band_sound(part, coloured, phones);
+    Baseband sound =
+        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), coloured, phones);
     if (k == 0)
       all = std::move(sound);
     else

@@ -68,6 +68,15 @@ std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& recor
   return pulses;
 }
 
+/// The same, and after several the pulse itself: what all of them share is worked out for it.
+std::vector<BandLimitedPulse> colours(const Pulse& sent, const Recording& record,
+                                      double max_doppler,
+                                      std::vector<std::function<double(double)>> filters) {
+  check(sent, record, max_doppler);
+  if (filters.size() > 1) filters.emplace_back();
+  return filtered(sent, record, max_doppler, filters);
+}
+
 std::uint64_t next_identity() {
   static std::atomic<std::uint64_t> next{0};
   return next++;
@@ -109,14 +118,20 @@ std::shared_ptr<const Synthesizer::Plan> Synthesizer::Plan::recalled(const Pulse
 
 Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
                         const std::vector<std::function<double(double)>>& filters)
+    : Plan(colours(sent, record, doppler, filters), sent.duration(), record, doppler) {}
+
+Synthesizer::Plan::Plan(const BandLimitedPulse& sound, const Recording& record, double doppler)
+    : Plan(std::vector{sound}, 0.0, record, doppler) {}
+
+Synthesizer::Plan::Plan(std::vector<BandLimitedPulse> sounds, double duration,
+                        const Recording& record, double doppler)
     : identity(next_identity()),
-      recording(without_epoch((check(sent, record, doppler), record))),
+      recording(without_epoch(record)),
       max_doppler(doppler),
-      pulse_duration(sent.duration()),
-      pulses(filtered(sent, record, doppler, filters)),
-      expansion(filters.size() == 1
-                    ? pulses.front()
-                    : filtered(sent, record, doppler, {std::function<double(double)>()}).front()) {
+      pulse_duration(duration),
+      pulses(std::move(sounds)),
+      expansion(pulses.back()) {
+  if (pulses.size() > 1) pulses.pop_back();
   const BandLimitedPulse& pulse = pulses.front();
   const double longest = pulse.half_duration() / (1.0 - max_doppler);
   const double record_duration = static_cast<double>(recording.samples) / recording.sample_rate;

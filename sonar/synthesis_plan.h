@@ -22,6 +22,8 @@ namespace asdic {
 struct Synthesizer::Plan {
   Plan(const Pulse& pulse, const Recording& recording, double max_doppler,
        const std::vector<std::function<double(double)>>& filters);
+  /// Of a sound that is no pulse: a return's delay is that of its middle.
+  Plan(const BandLimitedPulse& sound, const Recording& recording, double max_doppler);
 
   /// Of the pulse as it is, out of `memory` if an equal one was made before.
   [[nodiscard]] static std::shared_ptr<const Plan> recalled(const Pulse& pulse,
@@ -64,6 +66,11 @@ struct Synthesizer::Plan {
   void stretched_spectrum(const BandLimitedPulse& pulse, double doppler, const Period& on,
                           std::complex<float>* scratch,
                           std::span<std::complex<float>> spectrum) const;
+
+ private:
+  /// \param sounds  [colours], and after several the one that none of them has filtered
+  Plan(std::vector<BandLimitedPulse> sounds, double duration, const Recording& recording,
+       double max_doppler);
 };
 
 }  // namespace asdic

@@ -157,10 +157,15 @@ class Busy {
                                                .dot(record.phones[phone.channel] - reference)));
       add(other.heard.delay - echo.delay, apart + spread);
     }
+    const double c = simulator.paths().speed_at(reference);
+    for (const ManyEchoes& many : record.many_echoes)  // whose pairs are not all listed
+      if (many.array == array)
+        add(0.5 * (many.first + many.last) - echo.delay,
+            0.5 * (many.last - many.first) + apart + 2.0 * reach / c);
     for (const Leg& leg : record.legs)  // the direct blast: from whatever side
       if (leg.kind == Leg::Kind::source_to_array && leg.array == array)
         for (const Arrival& path : leg.arrivals)
-          add(path.delay - echo.delay, apart + 2.0 * reach / simulator.paths().speed_at(reference));
+          add(path.delay - echo.delay, apart + 2.0 * reach / c);
   }
 
   /// The filter hears nothing of them when it listens so many samples after the echo.

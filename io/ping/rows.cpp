@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "io/ping/writer.h"
 
@@ -12,6 +14,20 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_patches = 2000;  // rows a ping
+
+/// Pairs of paths that have no row in /echoes.
+std::size_t not_listed(const PingRecord& record) {
+  std::size_t all = 0, listed = 0;
+  for (const ManyEchoes& many : record.many_echoes) {
+    all += many.pairs;
+    std::set<std::pair<int, int>> pairs;
+    for (const EchoPath& echo : record.echoes)
+      if (echo.target == many.target && echo.array == many.array)
+        pairs.emplace(echo.outgoing, echo.returning);
+    listed += pairs.size();
+  }
+  return all - std::min(all, listed);
+}
 
 std::vector<double> flat(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -87,6 +103,8 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   echoes.write();
   patches.write();
   file.set_attribute("patches", "every", static_cast<std::int64_t>(every));
+  echoes_not_listed = std::max(echoes_not_listed, not_listed(record));
+  file.set_attribute("echoes", "not_listed", static_cast<std::int64_t>(echoes_not_listed));
 }
 
 void PingFileWriter::Impl::append_summary(const PingRecord& record) {

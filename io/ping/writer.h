@@ -23,6 +23,7 @@ struct PingFileWriter::Impl {
   GrowingTable echoes, patches;
   std::optional<GrowingTable> interference;  // where there are interferers
   std::size_t every = 1;
+  std::size_t echoes_not_listed = 0;        // pairs of paths, of the ping that has most
   std::size_t samples = 0, level_bins = 0;  // of the first record
 
   Impl(OutputFile&& to, const Scenario& s, SampleTimes times)
