@@ -178,54 +178,59 @@ int arrivals(const ArrivalsOptions& options) {
 }  // namespace
 
 void add_arrivals_command(Program& program) {
-  auto options = std::make_shared<ArrivalsOptions>();
-  const Command command = program.add_command(
+  program.add_command(
       "arrivals",
       "Every eigenray from the platform to the targets and back, or to any depth and range; of a "
-      "scenario with a [run], to all its receivers.");
-  add_scenario_options(command, options->scenario);
-  command
-      .add_option("--leg", options->legs,
-                  "target: platform to target; array: target to array; default: both")
-      .type_name("LEG")
-      .one_of({"target", "array"})
-      .one_at_a_time();
-  command.add_option("--target", options->target, "this target alone, from 0; default: all")
-      .type_name("N")
-      .check(not_negative());
-  command.add_option("--ping", options->ping, "positions of this ping")
-      .show_default()
-      .type_name("N")
-      .check(above_zero());
-  command.add_length("--receiver-depth", options->receiver_depth,
-                     "depth of a receiver, instead of targets; with --range");
-  command.add_length("--range", options->range, "horizontal distance of that receiver, e.g. 30km");
-  command.add_length("--source-depth", options->source_depth,
-                     "depth of the source, with --range; default: the platform's");
-  command
-      .add_option("--bearing", options->bearing,
-                  "of that receiver, where the ocean varies along a transect; default: along it "
-                  "[deg]")
-      .type_name("DEG")
-      .check(between(-360.0, 360.0));
-  command
-      .add_option("--frequency", options->frequency,
-                  "at which losses are told [Hz]; default: the pulse's centre")
-      .type_name("HZ")
-      .check(above_zero());
-  command.add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
-  command
-      .add_option("-o,--output", options->output,
-                  "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
-                  "the table")
-      .type_name("FILE");
-  add_force_option(command, options->force);
-  command.footer(
-      "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
-      "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"
-      "          asdic arrivals scenarios/deep_ocean.toml --receiver-depth 125m --range 25km "
-      "--json");
-  command.runs([options] { return arrivals(*options); });
+      "scenario with a [run], to all its receivers.",
+      [](const Command& command) {
+        auto options = std::make_shared<ArrivalsOptions>();
+        add_scenario_options(command, options->scenario);
+        command
+            .add_option("--leg", options->legs,
+                        "target: platform to target; array: target to array; default: both")
+            .type_name("LEG")
+            .one_of({"target", "array"})
+            .one_at_a_time();
+        command.add_option("--target", options->target, "this target alone, from 0; default: all")
+            .type_name("N")
+            .check(not_negative());
+        command.add_option("--ping", options->ping, "positions of this ping")
+            .show_default()
+            .type_name("N")
+            .check(above_zero());
+        command.add_length("--receiver-depth", options->receiver_depth,
+                           "depth of a receiver, instead of targets; with --range");
+        command.add_length("--range", options->range,
+                           "horizontal distance of that receiver, e.g. 30km");
+        command.add_length("--source-depth", options->source_depth,
+                           "depth of the source, with --range; default: the platform's");
+        command
+            .add_option(
+                "--bearing", options->bearing,
+                "of that receiver, where the ocean varies along a transect; default: along it "
+                "[deg]")
+            .type_name("DEG")
+            .check(between(-360.0, 360.0));
+        command
+            .add_option("--frequency", options->frequency,
+                        "at which losses are told [Hz]; default: the pulse's centre")
+            .type_name("HZ")
+            .check(above_zero());
+        command.add_flag("--json", options->json, "print JSON (docs/formats/arrivals.md)");
+        command
+            .add_option(
+                "-o,--output", options->output,
+                "write HDF5 (docs/formats/arrivals.md), of a run by its ending .arr, instead of "
+                "the table")
+            .type_name("FILE");
+        add_force_option(command, options->force);
+        command.footer(
+            "Levels are re the pressure at 1 m: the negative of the transmission loss.\n"
+            "Example:  asdic arrivals scenarios/deep_ocean.toml --leg target\n"
+            "          asdic arrivals scenarios/deep_ocean.toml --receiver-depth 125m --range 25km "
+            "--json");
+        command.runs([options] { return arrivals(*options); });
+      });
 }
 
 }  // namespace asdic::app

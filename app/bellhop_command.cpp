@@ -193,32 +193,36 @@ int bellhop_command(const BellhopOptions& options) {
 }  // namespace
 
 void add_bellhop_command(Program& program) {
-  auto options = std::make_shared<BellhopOptions>();
-  const Command command = program.add_command(
+  program.add_command(
       "bellhop",
       "Run a BELLHOP case: reads ROOT.env and its companions, writes ROOT.shd, ROOT.arr or\n"
-      "ROOT.ray, and ROOT.prt.");
-  command.add_option("root", options->root, "name of the case, with or without .env")
-      .type_name("ROOT")
-      .required();
-  command.add_flag("--like-bellhop", options->like_bellhop,
-                   "with BELLHOP's own steps, beams and merging, to compare with its files");
-  command.add_flag("--beams-as-written", options->beams_as_written,
-                   "exactly the beams of the file, where fields take as many as they need");
-  command
-      .add_option("--dialect", options->dialect,
-                  "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
-      .type_name("NAME")
-      .one_of({"fortran", "wide"});
-  command.add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
-      .type_name("ROOT");
-  add_threads_option(command, options->threads);
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  add_force_option(command, options->force);
-  command.footer(
-      "Ctrl-C stops; nothing half-written is left.\n"
-      "Example:  asdic bellhop munk -o /tmp/munk\n");
-  command.runs([options] { return bellhop_command(*options); });
+      "ROOT.ray, and ROOT.prt.",
+      [](const Command& command) {
+        auto options = std::make_shared<BellhopOptions>();
+        command.add_option("root", options->root, "name of the case, with or without .env")
+            .type_name("ROOT")
+            .required();
+        command.add_flag("--like-bellhop", options->like_bellhop,
+                         "with BELLHOP's own steps, beams and merging, to compare with its files");
+        command.add_flag("--beams-as-written", options->beams_as_written,
+                         "exactly the beams of the file, where fields take as many as they need");
+        command
+            .add_option(
+                "--dialect", options->dialect,
+                "of .shd and .arr: fortran (numbers of 4 bytes in the head; default) or wide")
+            .type_name("NAME")
+            .one_of({"fortran", "wide"});
+        command
+            .add_option("-o,--output", options->output, "ROOT of the files to write; default: ROOT")
+            .type_name("ROOT");
+        add_threads_option(command, options->threads);
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        add_force_option(command, options->force);
+        command.footer(
+            "Ctrl-C stops; nothing half-written is left.\n"
+            "Example:  asdic bellhop munk -o /tmp/munk\n");
+        command.runs([options] { return bellhop_command(*options); });
+      });
 }
 
 }  // namespace asdic::app

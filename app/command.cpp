@@ -155,10 +155,14 @@ Program::Program(const std::string& name, const std::string& description,
 
 Program::~Program() = default;
 
-Command Program::add_command(const std::string& name, const std::string& help) {
+void Program::add_command(const std::string& name, const std::string& help,
+                          std::function<void(const Command&)> define) {
   CLI::App* const command = app_->add_subcommand(name, help);
-  command->set_version_flag("--version", version_);
-  return {command, &chosen_};
+  // called when its name has been read, before its words are
+  command->preparse_callback([this, command, define = std::move(define)](std::size_t) {
+    command->set_version_flag("--version", version_);
+    define({command, &chosen_});
+  });
 }
 
 void Program::footer(const std::string& text) { app_->footer(text); }

@@ -103,7 +103,10 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  Command add_command(const std::string& name, const std::string& help);
+  /// \param define  gives the command its options, once it is the one that was typed: most of what
+  /// starting takes would be options of the others
+  void add_command(const std::string& name, const std::string& help,
+                   std::function<void(const Command&)> define);
   void footer(const std::string& text);
 
   /// \return what the chosen command does, or what prints the help or the version \throws

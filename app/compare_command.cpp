@@ -226,56 +226,62 @@ void add_thresholds(const Command& command, Thresholds& limits) {
 }  // namespace
 
 void add_compare_command(Program& program) {
-  auto options = std::make_shared<CompareOptions>();
-  const Command command = program.add_command(
-      "compare", "How far two fields, lists of arrivals or sets of rays are apart.");
-  command.add_option("A", options->a, ".shd, .arr, .ray, or HDF5 of asdic field, arrivals, rays")
-      .required()
-      .type_name("FILE");
-  command.add_option("B", options->b, "the reference, of the same kind")
-      .required()
-      .type_name("FILE");
-  command.add_option("--floor", options->field.floor_db, "fields: cells with TL below this [dB]")
-      .show_default()
-      .type_name("DB");
-  command.add_length("--min-range", options->field.min_range,
-                     "fields: leave out nearer cells, e.g. 500m");
-  command.add_flag("--resample", options->field.resample,
-                   "fields: take from A the cells of B's grid, where it has them");
-  command
-      .add_option("--rel-db", options->arrivals.below_strongest_db,
-                  "arrivals: leave out those further below the strongest at their receiver [dB]")
-      .show_default()
-      .type_name("DB")
-      .check(above_zero());
-  command
-      .add_option("--pair-us", options->pair_us,
-                  "arrivals: paths of one history are one within this delay [us]")
-      .show_default()
-      .type_name("US")
-      .check(above_zero());
-  command
-      .add_option("--join-us", options->join_us,
-                  "arrivals: neighbouring beams of one path are that close; 0 joins none [us]")
-      .show_default()
-      .type_name("US")
-      .check(not_negative());
-  command
-      .add_option("--pair-deg", options->rays.angle_deg,
-                  "rays: pair those within this launch angle [deg]")
-      .show_default()
-      .type_name("DEG")
-      .check(not_negative());
-  add_thresholds(command, options->limits);
-  command.add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
-  command.add_option("--picture", options->picture, "draw both and their difference")
-      .type_name("FILE.png");
-  add_force_option(command, options->force);
-  command.footer(
-      "Differences are A - B; TL is -20 log10 |p|.\n"
-      "Exit status: 0 within the thresholds, 1 outside, 2 the input is wrong.\n"
-      "Example:  asdic compare new.shd old.shd --max-p95 0.5 --picture difference.png");
-  command.runs([options] { return compare_files(*options); });
+  program.add_command(
+      "compare", "How far two fields, lists of arrivals or sets of rays are apart.",
+      [](const Command& command) {
+        auto options = std::make_shared<CompareOptions>();
+        command
+            .add_option("A", options->a, ".shd, .arr, .ray, or HDF5 of asdic field, arrivals, rays")
+            .required()
+            .type_name("FILE");
+        command.add_option("B", options->b, "the reference, of the same kind")
+            .required()
+            .type_name("FILE");
+        command
+            .add_option("--floor", options->field.floor_db, "fields: cells with TL below this [dB]")
+            .show_default()
+            .type_name("DB");
+        command.add_length("--min-range", options->field.min_range,
+                           "fields: leave out nearer cells, e.g. 500m");
+        command.add_flag("--resample", options->field.resample,
+                         "fields: take from A the cells of B's grid, where it has them");
+        command
+            .add_option(
+                "--rel-db", options->arrivals.below_strongest_db,
+                "arrivals: leave out those further below the strongest at their receiver [dB]")
+            .show_default()
+            .type_name("DB")
+            .check(above_zero());
+        command
+            .add_option("--pair-us", options->pair_us,
+                        "arrivals: paths of one history are one within this delay [us]")
+            .show_default()
+            .type_name("US")
+            .check(above_zero());
+        command
+            .add_option(
+                "--join-us", options->join_us,
+                "arrivals: neighbouring beams of one path are that close; 0 joins none [us]")
+            .show_default()
+            .type_name("US")
+            .check(not_negative());
+        command
+            .add_option("--pair-deg", options->rays.angle_deg,
+                        "rays: pair those within this launch angle [deg]")
+            .show_default()
+            .type_name("DEG")
+            .check(not_negative());
+        add_thresholds(command, options->limits);
+        command.add_flag("--json", options->json, "print JSON (docs/formats/compare.md)");
+        command.add_option("--picture", options->picture, "draw both and their difference")
+            .type_name("FILE.png");
+        add_force_option(command, options->force);
+        command.footer(
+            "Differences are A - B; TL is -20 log10 |p|.\n"
+            "Exit status: 0 within the thresholds, 1 outside, 2 the input is wrong.\n"
+            "Example:  asdic compare new.shd old.shd --max-p95 0.5 --picture difference.png");
+        command.runs([options] { return compare_files(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -112,36 +112,40 @@ int convert(const ConvertOptions& options) {
 }  // namespace
 
 void add_convert_command(Program& program) {
-  auto options = std::make_shared<ConvertOptions>();
-  const Command command = program.add_command(
+  program.add_command(
       "convert",
       "Convert BELLHOP's files: a case (.env and companions) to a scenario (.toml) and back, a\n"
-      "field, arrivals or rays (.shd, .arr, .ray) to HDF5 (.h5) and back.");
-  command.add_option("input", options->input, "what to read; its ending tells what it is")
-      .type_name("INPUT")
-      .required();
-  command.add_option("output", options->output, "what to write; its ending tells what it becomes")
-      .type_name("OUTPUT")
-      .required();
-  command
-      .add_option("--set", options->overrides,
-                  "of a scenario: replace a value, e.g. --set run.frequency=500")
-      .type_name("KEY=VALUE")
-      .one_at_a_time();
-  const auto either = [&](std::optional<bool>& choice, const char* yes, const char* what_yes,
-                          const char* no, const char* what_no) {
-    const Option one = command.add_flag(yes, choice, true, what_yes);
-    command.add_flag(no, choice, false, what_no).excludes(one);
-  };
-  either(options->wide, "--wide",
-         "numbers of 8 bytes in the head of .shd and .arr (the C++ port of BELLHOP)", "--fortran",
-         "numbers of 4 bytes there; by default as the input had it");
-  either(options->binary, "--binary", "arrivals as a binary .arr (run type a)", "--ascii",
-         "arrivals as text; by default as the input had them");
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  add_force_option(command, options->force);
-  command.footer("Example:  asdic convert munk.env munk.toml");
-  command.runs([options] { return convert(*options); });
+      "field, arrivals or rays (.shd, .arr, .ray) to HDF5 (.h5) and back.",
+      [](const Command& command) {
+        auto options = std::make_shared<ConvertOptions>();
+        command.add_option("input", options->input, "what to read; its ending tells what it is")
+            .type_name("INPUT")
+            .required();
+        command
+            .add_option("output", options->output,
+                        "what to write; its ending tells what it becomes")
+            .type_name("OUTPUT")
+            .required();
+        command
+            .add_option("--set", options->overrides,
+                        "of a scenario: replace a value, e.g. --set run.frequency=500")
+            .type_name("KEY=VALUE")
+            .one_at_a_time();
+        const auto either = [&](std::optional<bool>& choice, const char* yes, const char* what_yes,
+                                const char* no, const char* what_no) {
+          const Option one = command.add_flag(yes, choice, true, what_yes);
+          command.add_flag(no, choice, false, what_no).excludes(one);
+        };
+        either(options->wide, "--wide",
+               "numbers of 8 bytes in the head of .shd and .arr (the C++ port of BELLHOP)",
+               "--fortran", "numbers of 4 bytes there; by default as the input had it");
+        either(options->binary, "--binary", "arrivals as a binary .arr (run type a)", "--ascii",
+               "arrivals as text; by default as the input had them");
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        add_force_option(command, options->force);
+        command.footer("Example:  asdic convert munk.env munk.toml");
+        command.runs([options] { return convert(*options); });
+      });
 }
 
 }  // namespace asdic::app

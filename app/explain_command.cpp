@@ -45,33 +45,37 @@ int explain_case(const ExplainChoice& options) {
 }  // namespace
 
 void add_explain_command(Program& program) {
-  auto options = std::make_shared<ExplainChoice>();
-  const Command command = program.add_command(
-      "explain", "A BELLHOP case as BELLHOP does it and as it should be, and why they differ.");
-  command.add_option("ROOT", options->root, "the case: ROOT.env and its companions")
-      .required()
-      .type_name("ROOT");
-  command
-      .add_option("--finer-step", options->finer.finer_step,
-                  "by how much the step is divided to tell what it costs")
-      .show_default()
-      .type_name("N")
-      .check(between(1.0, 1e4));
-  command
-      .add_option("--denser-fan", options->finer.denser_fan,
-                  "by how much the number of beams is multiplied to tell what it costs")
-      .show_default()
-      .type_name("N")
-      .check(between(1.0, 1e3));
-  add_threads_option(command, options->threads);
-  command.add_flag("--json", options->json, "print JSON (docs/theory/like-bellhop.md)");
-  command.add_flag("-q,--quiet", options->quiet, "no progress on standard error");
-  command.footer(
-      "The table splits the difference into what BELLHOP's step, number of beams, merging of\n"
-      "arrivals and single precision each change alone. A ROOT.shd, .arr or .ray beside the case\n"
-      "is compared as well.\n"
-      "Example:  asdic explain cases/munk");
-  command.runs([options] { return explain_case(*options); });
+  program.add_command(
+      "explain", "A BELLHOP case as BELLHOP does it and as it should be, and why they differ.",
+      [](const Command& command) {
+        auto options = std::make_shared<ExplainChoice>();
+        command.add_option("ROOT", options->root, "the case: ROOT.env and its companions")
+            .required()
+            .type_name("ROOT");
+        command
+            .add_option("--finer-step", options->finer.finer_step,
+                        "by how much the step is divided to tell what it costs")
+            .show_default()
+            .type_name("N")
+            .check(between(1.0, 1e4));
+        command
+            .add_option("--denser-fan", options->finer.denser_fan,
+                        "by how much the number of beams is multiplied to tell what it costs")
+            .show_default()
+            .type_name("N")
+            .check(between(1.0, 1e3));
+        add_threads_option(command, options->threads);
+        command.add_flag("--json", options->json, "print JSON (docs/theory/like-bellhop.md)");
+        command.add_flag("-q,--quiet", options->quiet, "no progress on standard error");
+        command.footer(
+            "The table splits the difference into what BELLHOP's step, number of beams, merging "
+            "of\n"
+            "arrivals and single precision each change alone. A ROOT.shd, .arr or .ray beside the "
+            "case\n"
+            "is compared as well.\n"
+            "Example:  asdic explain cases/munk");
+        command.runs([options] { return explain_case(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -56,24 +56,27 @@ int export_wav(const ExportOptions& options) {
 }  // namespace
 
 void add_export_command(Program& program) {
-  auto options = std::make_shared<ExportOptions>();
-  const Command command =
-      program.add_command("export", "Write the phones of a ping file in another format.");
-  command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping").required();
-  command
-      .add_flag("--wav", options->wav,
+  program.add_command(
+      "export", "Write the phones of a ping file in another format.", [](const Command& command) {
+        auto options = std::make_shared<ExportOptions>();
+        command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")
+            .required();
+        command
+            .add_flag(
+                "--wav", options->wav,
                 "NAME_pingNNN.wav, 32-bit float, a channel a phone, and NAME_pingNNN.wav.json "
                 "with the scale in pascal")
-      .required();
-  command.add_option("-o,--output", options->folder, "folder to write into; made if need be")
-      .show_default()
-      .type_name("DIR");
-  command.add_option("--ping", options->ping, "this ping alone; default: all")
-      .type_name("N")
-      .check(above_zero());
-  add_force_option(command, options->force);
-  command.footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
-  command.runs([options] { return export_wav(*options); });
+            .required();
+        command.add_option("-o,--output", options->folder, "folder to write into; made if need be")
+            .show_default()
+            .type_name("DIR");
+        command.add_option("--ping", options->ping, "this ping alone; default: all")
+            .type_name("N")
+            .check(above_zero());
+        add_force_option(command, options->force);
+        command.footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
+        command.runs([options] { return export_wav(*options); });
+      });
 }
 
 }  // namespace asdic::app

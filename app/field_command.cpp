@@ -97,25 +97,29 @@ int field(const FieldOptions& options) {
 }  // namespace
 
 void add_field_command(Program& program) {
-  auto options = std::make_shared<FieldOptions>();
-  const Command command = program.add_command(
-      "field", "The pressure field of a source over range and depth: transmission loss.");
-  add_scenario_options(command, options->scenario);
-  command
-      .add_option("-o,--output", options->output,
-                  "file to write, HDF5 (docs/formats/field.md) or by its ending .shd; default: the "
-                  "scenario's name with .h5, in this folder")
-      .type_name("FILE");
-  add_threads_option(command, options->threads);
-  add_force_option(command, options->force);
-  command.add_flag("--like-bellhop", options->like_bellhop,
-                   "as BELLHOP does it, with its steps and beams; for comparison");
-  command.add_flag("--json", options->json, "print a summary as JSON (docs/formats/field.md)");
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command.footer(
-      "What is run stands in [run] of the scenario (docs/formats/scenario.md).\n"
-      "Example:  asdic field scenarios/wedge.toml -o wedge.h5 && asdic plot wedge.h5");
-  command.runs([options] { return field(*options); });
+  program.add_command(
+      "field", "The pressure field of a source over range and depth: transmission loss.",
+      [](const Command& command) {
+        auto options = std::make_shared<FieldOptions>();
+        add_scenario_options(command, options->scenario);
+        command
+            .add_option(
+                "-o,--output", options->output,
+                "file to write, HDF5 (docs/formats/field.md) or by its ending .shd; default: the "
+                "scenario's name with .h5, in this folder")
+            .type_name("FILE");
+        add_threads_option(command, options->threads);
+        add_force_option(command, options->force);
+        command.add_flag("--like-bellhop", options->like_bellhop,
+                         "as BELLHOP does it, with its steps and beams; for comparison");
+        command.add_flag("--json", options->json,
+                         "print a summary as JSON (docs/formats/field.md)");
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        command.footer(
+            "What is run stands in [run] of the scenario (docs/formats/scenario.md).\n"
+            "Example:  asdic field scenarios/wedge.toml -o wedge.h5 && asdic plot wedge.h5");
+        command.runs([options] { return field(*options); });
+      });
 }
 
 }  // namespace asdic::app

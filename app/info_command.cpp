@@ -127,18 +127,23 @@ int check(const std::string& path) {
 }  // namespace
 
 void add_info_command(Program& program) {
-  auto options = std::make_shared<InfoOptions>();
-  const Command command = program.add_command("info", "Say what a file that asdic wrote holds.");
-  command
-      .add_option("FILE", options->path,
-                  "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, field, arrivals "
-                  "or rays, or .shd, .arr, .ray, .wav")
-      .required();
-  command.add_flag("--check", options->check,
-                   "read all data and hold them against their checksums; exit status 2 where they "
-                   "differ");
-  command.footer("Example:  asdic info deep_ocean.h5 --check");
-  command.runs([options] { return options->check ? check(options->path) : info(options->path); });
+  program.add_command(
+      "info", "Say what a file that asdic wrote holds.", [](const Command& command) {
+        auto options = std::make_shared<InfoOptions>();
+        command
+            .add_option(
+                "FILE", options->path,
+                "HDF5 of asdic ping (NAME.XXXX.part too), process, study, merge, field, arrivals "
+                "or rays, or .shd, .arr, .ray, .wav")
+            .required();
+        command.add_flag(
+            "--check", options->check,
+            "read all data and hold them against their checksums; exit status 2 where they "
+            "differ");
+        command.footer("Example:  asdic info deep_ocean.h5 --check");
+        command.runs(
+            [options] { return options->check ? check(options->path) : info(options->path); });
+      });
 }
 
 }  // namespace asdic::app

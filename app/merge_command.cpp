@@ -102,26 +102,29 @@ int merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge_command(Program& program) {
-  auto options = std::make_shared<MergeOptions>();
-  const Command command = program.add_command(
-      "merge", "Put the parts of a study together: a catalogue of them, or one file.");
-  command.add_option("PARTS", options->parts, "files of asdic study --realisations or --shard")
-      .required();
-  command.add_option("-o,--output", options->output, "file to write")
-      .type_name("FILE.h5")
-      .required();
-  command.add_flag("--copy", options->merge.copy,
-                   "copy the rows: one file that needs no parts any more");
-  command.add_flag("--allow-gaps", options->merge.allow_gaps,
-                   "parts may be missing; the file says so");
-  command
-      .add_option("--study", options->study,
-                  "study file; default: where it was when the parts were made")
-      .type_name("STUDY.toml");
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  add_force_option(command, options->force);
-  command.footer("Example:  asdic merge part_*.h5 -o study.h5");
-  command.runs([options] { return merge(*options); });
+  program.add_command(
+      "merge", "Put the parts of a study together: a catalogue of them, or one file.",
+      [](const Command& command) {
+        auto options = std::make_shared<MergeOptions>();
+        command
+            .add_option("PARTS", options->parts, "files of asdic study --realisations or --shard")
+            .required();
+        command.add_option("-o,--output", options->output, "file to write")
+            .type_name("FILE.h5")
+            .required();
+        command.add_flag("--copy", options->merge.copy,
+                         "copy the rows: one file that needs no parts any more");
+        command.add_flag("--allow-gaps", options->merge.allow_gaps,
+                         "parts may be missing; the file says so");
+        command
+            .add_option("--study", options->study,
+                        "study file; default: where it was when the parts were made")
+            .type_name("STUDY.toml");
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        add_force_option(command, options->force);
+        command.footer("Example:  asdic merge part_*.h5 -o study.h5");
+        command.runs([options] { return merge(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -55,37 +55,41 @@ int ocean(const OceanOptions& options) {
 }  // namespace
 
 void add_ocean_command(Program& program) {
-  auto options = std::make_shared<OceanOptions>();
-  const Command command = program.add_command(
-      "ocean", "Write the [environment] of a real place, out of measured climatologies.");
-  command.add_option("--latitude", options->latitude, "degrees north")
-      .required()
-      .type_name("DEG")
-      .check(between(-90.0, 90.0));
-  command.add_option("--longitude", options->longitude, "degrees east, -180 to 180 or 0 to 360")
-      .required()
-      .type_name("DEG")
-      .check(between(-180.0, 360.0));
-  command.add_option("--month", options->month, "1 to 12; default: the mean of the year")
-      .type_name("N")
-      .check(between(1, 12));
-  command
-      .add_option("--bearing", options->bearing,
-                  "of a track: sea floor and water along it instead of one place's [deg]")
-      .type_name("DEG")
-      .check(between(-360.0, 360.0));
-  command.add_length("--range", options->range, "length of that track, e.g. 60km");
-  command
-      .add_option("--data", options->data,
-                  "folder of the climatologies; default: where Debian's ferret-datasets is")
-      .type_name("DIR");
-  command.add_option("-o,--output", options->output, "file to write; default: standard output")
-      .type_name("FILE.toml");
-  add_force_option(command, options->force);
-  command.footer(
-      "A scenario takes it with include = \"FILE.toml\".\n"
-      "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
-  command.runs([options] { return ocean(*options); });
+  program.add_command(
+      "ocean", "Write the [environment] of a real place, out of measured climatologies.",
+      [](const Command& command) {
+        auto options = std::make_shared<OceanOptions>();
+        command.add_option("--latitude", options->latitude, "degrees north")
+            .required()
+            .type_name("DEG")
+            .check(between(-90.0, 90.0));
+        command
+            .add_option("--longitude", options->longitude, "degrees east, -180 to 180 or 0 to 360")
+            .required()
+            .type_name("DEG")
+            .check(between(-180.0, 360.0));
+        command.add_option("--month", options->month, "1 to 12; default: the mean of the year")
+            .type_name("N")
+            .check(between(1, 12));
+        command
+            .add_option("--bearing", options->bearing,
+                        "of a track: sea floor and water along it instead of one place's [deg]")
+            .type_name("DEG")
+            .check(between(-360.0, 360.0));
+        command.add_length("--range", options->range, "length of that track, e.g. 60km");
+        command
+            .add_option("--data", options->data,
+                        "folder of the climatologies; default: where Debian's ferret-datasets is")
+            .type_name("DIR");
+        command
+            .add_option("-o,--output", options->output, "file to write; default: standard output")
+            .type_name("FILE.toml");
+        add_force_option(command, options->force);
+        command.footer(
+            "A scenario takes it with include = \"FILE.toml\".\n"
+            "Example:  asdic ocean --latitude 30.5 --longitude -60.5 --month 3 -o ocean.toml");
+        command.runs([options] { return ocean(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -142,31 +142,35 @@ int ping(const PingOptions& options) {
 }  // namespace
 
 void add_ping_command(Program& program) {
-  auto options = std::make_shared<PingOptions>();
-  const Command command = program.add_command(
-      "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.");
-  add_scenario_options(command, options->scenario);
-  command
-      .add_option("-o,--output", options->output,
-                  "file to write; default: the scenario's name with .h5, in this folder")
-      .type_name("FILE.h5");
-  command
-      .add_option("--pings", options->pings,
-                  "number of pings of each transmitter, instead of pings.count")
-      .type_name("N")
-      .check(above_zero());
-  command.add_option("--seed", options->seed, "of every random stream, instead of the scenario's")
-      .type_name("S")
-      .check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
-  add_threads_option(command, options->threads);
-  command.add_flag("--time-axis", options->time_axis,
-                   "write the time of every sample out as well, not start and step alone");
-  add_force_option(command, options->force);
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command.footer(
-      "Ctrl-C leaves the pings in hand and closes the file; a second one ends at once.\n"
-      "Example:  asdic ping scenarios/deep_ocean.toml --set target.0.strength_db=20");
-  command.runs([options] { return ping(*options); });
+  program.add_command(
+      "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.",
+      [](const Command& command) {
+        auto options = std::make_shared<PingOptions>();
+        add_scenario_options(command, options->scenario);
+        command
+            .add_option("-o,--output", options->output,
+                        "file to write; default: the scenario's name with .h5, in this folder")
+            .type_name("FILE.h5");
+        command
+            .add_option("--pings", options->pings,
+                        "number of pings of each transmitter, instead of pings.count")
+            .type_name("N")
+            .check(above_zero());
+        command
+            .add_option("--seed", options->seed,
+                        "of every random stream, instead of the scenario's")
+            .type_name("S")
+            .check(whole_number(0, std::numeric_limits<std::int64_t>::max(), "a seed"));
+        add_threads_option(command, options->threads);
+        command.add_flag("--time-axis", options->time_axis,
+                         "write the time of every sample out as well, not start and step alone");
+        add_force_option(command, options->force);
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        command.footer(
+            "Ctrl-C leaves the pings in hand and closes the file; a second one ends at once.\n"
+            "Example:  asdic ping scenarios/deep_ocean.toml --set target.0.strength_db=20");
+        command.runs([options] { return ping(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -80,30 +80,34 @@ int plot(const PlotOptions& options) {
 }  // namespace
 
 void add_plot_command(Program& program) {
-  auto options = std::make_shared<PlotOptions>();
-  const Command command = program.add_command(
-      "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).");
-  command
-      .add_option("FILE", options->file,
-                  "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
-      .required();
-  command
-      .add_option("-o,--output", options->folder,
-                  "folder for the pictures; default: FILE without its ending")
-      .type_name("DIR");
-  command.add_option("--ping", options->ping, "ping to draw; default: the first")
-      .type_name("N")
-      .check(above_zero());
-  command
-      .add_option("--array", options->array,
-                  "array of a ping file to draw; default: the first (range over bearing: the first "
-                  "that tells bearings)")
-      .type_name("NAME");
-  add_force_option(command, options->force);
-  command.footer(
-      "Needs Debian's python3-h5py and python3-matplotlib.\n"
-      "Example:  asdic plot deep_ocean.h5 -o pictures");
-  command.runs([options] { return plot(*options); });
+  program.add_command(
+      "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).",
+      [](const Command& command) {
+        auto options = std::make_shared<PlotOptions>();
+        command
+            .add_option(
+                "FILE", options->file,
+                "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
+            .required();
+        command
+            .add_option("-o,--output", options->folder,
+                        "folder for the pictures; default: FILE without its ending")
+            .type_name("DIR");
+        command.add_option("--ping", options->ping, "ping to draw; default: the first")
+            .type_name("N")
+            .check(above_zero());
+        command
+            .add_option(
+                "--array", options->array,
+                "array of a ping file to draw; default: the first (range over bearing: the first "
+                "that tells bearings)")
+            .type_name("NAME");
+        add_force_option(command, options->force);
+        command.footer(
+            "Needs Debian's python3-h5py and python3-matplotlib.\n"
+            "Example:  asdic plot deep_ocean.h5 -o pictures");
+        command.runs([options] { return plot(*options); });
+      });
 }
 
 }  // namespace asdic::app

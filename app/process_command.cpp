@@ -266,40 +266,44 @@ void add_place_options(const Command& command, ProcessOptions& o) {
 }  // namespace
 
 void add_process_command(Program& program) {
-  auto options = std::make_shared<ProcessOptions>();
-  const Command command = program.add_command(
+  program.add_command(
       "process",
       "What a sonar makes of a ping file: beams, matched filters, detections, places, tracks, and "
-      "how they compare with the truth. Written into the file's group /processed.");
-  command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping").required();
-  command
-      .add_option("-o,--output", options->output,
-                  "write another file, with all that FILE holds; default: FILE itself")
-      .type_name("FILE.h5");
-  command.add_flag("--no-file", options->no_file, "write no HDF5 at all");
-  command.add_flag("--no-maps", options->no_maps, "leave out the maps for pictures");
-  command
-      .add_option("--csv", options->csv,
-                  "folder for FILE_detections.csv and FILE_tracks.csv; made if need be")
-      .type_name("DIR");
-  command.add_flag("--json", options->json, "print a summary in JSON");
-  command.add_option("--ping", options->ping, "this ping alone; default: all")
-      .type_name("N")
-      .check(above_zero());
-  command
-      .add_option("--scenario", options->scenario,
-                  "where FILE's scenario was, if it names other files: they are looked for beside "
-                  "it")
-      .type_name("FILE.toml");
-  add_detection_options(command, *options);
-  add_place_options(command, *options);
-  add_threads_option(command, options->threads);
-  add_force_option(command, options->force);
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command.footer(
-      "The file is copied, changed and renamed: a stop at any moment leaves it whole.\n"
-      "Example:  asdic process two_targets.h5 --target-depth 125m --csv tables");
-  command.runs([options] { return process(*options); });
+      "how they compare with the truth. Written into the file's group /processed.",
+      [](const Command& command) {
+        auto options = std::make_shared<ProcessOptions>();
+        command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")
+            .required();
+        command
+            .add_option("-o,--output", options->output,
+                        "write another file, with all that FILE holds; default: FILE itself")
+            .type_name("FILE.h5");
+        command.add_flag("--no-file", options->no_file, "write no HDF5 at all");
+        command.add_flag("--no-maps", options->no_maps, "leave out the maps for pictures");
+        command
+            .add_option("--csv", options->csv,
+                        "folder for FILE_detections.csv and FILE_tracks.csv; made if need be")
+            .type_name("DIR");
+        command.add_flag("--json", options->json, "print a summary in JSON");
+        command.add_option("--ping", options->ping, "this ping alone; default: all")
+            .type_name("N")
+            .check(above_zero());
+        command
+            .add_option(
+                "--scenario", options->scenario,
+                "where FILE's scenario was, if it names other files: they are looked for beside "
+                "it")
+            .type_name("FILE.toml");
+        add_detection_options(command, *options);
+        add_place_options(command, *options);
+        add_threads_option(command, options->threads);
+        add_force_option(command, options->force);
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        command.footer(
+            "The file is copied, changed and renamed: a stop at any moment leaves it whole.\n"
+            "Example:  asdic process two_targets.h5 --target-depth 125m --csv tables");
+        command.runs([options] { return process(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -185,51 +185,59 @@ int rays(const RaysOptions& options) {
 }  // namespace
 
 void add_rays_command(Program& program) {
-  auto options = std::make_shared<RaysOptions>();
-  const Command command =
-      program.add_command("rays",
-                          "Trace a fan of rays from the platform, or from the "
-                          "source of a run, and tell where they go; a run whose task is "
-                          "rays or eigenrays is done as it says.");
-  add_scenario_options(command, options->scenario);
-  command
-      .add_option("--from", options->from,
-                  "first elevation, positive up; default: -20, or of a run of rays its own [deg]")
-      .type_name("DEG");
-  command.add_option("--to", options->to, "last elevation; default: 20, or the run's [deg]")
-      .type_name("DEG");
-  command.add_option("--count", options->count, "number of rays; default: 41, or the run's")
-      .type_name("N")
-      .check(between(1, 100000));
-  command
-      .add_option("--elevations", options->elevations,
-                  "these elevations instead, e.g. --elevations -5,0,5 [deg]")
-      .type_name("DEG,...")
-      .delimiter(',')
-      .one_at_a_time();
-  command.add_length("--range", options->range,
-                     "how far to trace, e.g. 50km; default: 50km, or the box of a run of rays");
-  command.add_length("--source-depth", options->depth,
-                     "depth of the source; default: the platform's at the start, or the run's");
-  command
-      .add_option("--bearing", options->bearing,
-                  "of the rays, where the ocean varies along a transect; default: along it [deg]")
-      .type_name("DEG")
-      .check(between(-360.0, 360.0));
-  command
-      .add_option("--bounces", options->bounces,
-                  "end a ray after so many bounces; default: 100, or as a run of rays does")
-      .type_name("N")
-      .check(between(0, 100000));
-  command.add_flag("--json", options->json, "print JSON (docs/formats/rays.md)");
-  command
-      .add_option("-o,--output", options->output,
-                  "write HDF5 (docs/formats/rays.md), or by its ending .ray, instead of the table")
-      .type_name("FILE");
-  add_force_option(command, options->force);
-  command.footer(
-      "Example:  asdic rays scenarios/deep_ocean.toml --from 0 --to 10 --count 11 --range 60km");
-  command.runs([options] { return rays(*options); });
+  program.add_command(
+      "rays",
+      "Trace a fan of rays from the platform, or from the "
+      "source of a run, and tell where they go; a run whose task is "
+      "rays or eigenrays is done as it says.",
+      [](const Command& command) {
+        auto options = std::make_shared<RaysOptions>();
+        add_scenario_options(command, options->scenario);
+        command
+            .add_option(
+                "--from", options->from,
+                "first elevation, positive up; default: -20, or of a run of rays its own [deg]")
+            .type_name("DEG");
+        command.add_option("--to", options->to, "last elevation; default: 20, or the run's [deg]")
+            .type_name("DEG");
+        command.add_option("--count", options->count, "number of rays; default: 41, or the run's")
+            .type_name("N")
+            .check(between(1, 100000));
+        command
+            .add_option("--elevations", options->elevations,
+                        "these elevations instead, e.g. --elevations -5,0,5 [deg]")
+            .type_name("DEG,...")
+            .delimiter(',')
+            .one_at_a_time();
+        command.add_length(
+            "--range", options->range,
+            "how far to trace, e.g. 50km; default: 50km, or the box of a run of rays");
+        command.add_length(
+            "--source-depth", options->depth,
+            "depth of the source; default: the platform's at the start, or the run's");
+        command
+            .add_option(
+                "--bearing", options->bearing,
+                "of the rays, where the ocean varies along a transect; default: along it [deg]")
+            .type_name("DEG")
+            .check(between(-360.0, 360.0));
+        command
+            .add_option("--bounces", options->bounces,
+                        "end a ray after so many bounces; default: 100, or as a run of rays does")
+            .type_name("N")
+            .check(between(0, 100000));
+        command.add_flag("--json", options->json, "print JSON (docs/formats/rays.md)");
+        command
+            .add_option(
+                "-o,--output", options->output,
+                "write HDF5 (docs/formats/rays.md), or by its ending .ray, instead of the table")
+            .type_name("FILE");
+        add_force_option(command, options->force);
+        command.footer(
+            "Example:  asdic rays scenarios/deep_ocean.toml --from 0 --to 10 --count 11 --range "
+            "60km");
+        command.runs([options] { return rays(*options); });
+      });
 }
 
 }  // namespace asdic::app

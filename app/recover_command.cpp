@@ -56,22 +56,24 @@ int recover(const RecoverOptions& options) {
 }  // namespace
 
 void add_recover_command(Program& program) {
-  auto options = std::make_shared<RecoverOptions>();
-  const Command command = program.add_command(
+  program.add_command(
       "recover",
-      "Make a ping file of the part that a run left which was killed, or out of power or disk.");
-  command.add_option("FILE", options->part, "what is left of asdic ping, NAME.XXXX.part")
-      .required();
-  command
-      .add_option("-o,--output", options->output,
-                  "file to write; default: NAME, if it is not there")
-      .type_name("FILE.h5");
-  add_force_option(command, options->force);
-  command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
-  command.footer(
-      "The part stays as it is. A study needs no recovery: the same command goes on.\n"
-      "Example:  asdic recover ping.h5.k3f9.part");
-  command.runs([options] { return recover(*options); });
+      "Make a ping file of the part that a run left which was killed, or out of power or disk.",
+      [](const Command& command) {
+        auto options = std::make_shared<RecoverOptions>();
+        command.add_option("FILE", options->part, "what is left of asdic ping, NAME.XXXX.part")
+            .required();
+        command
+            .add_option("-o,--output", options->output,
+                        "file to write; default: NAME, if it is not there")
+            .type_name("FILE.h5");
+        add_force_option(command, options->force);
+        command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
+        command.footer(
+            "The part stays as it is. A study needs no recovery: the same command goes on.\n"
+            "Example:  asdic recover ping.h5.k3f9.part");
+        command.runs([options] { return recover(*options); });
+      });
 }
 
 }  // namespace asdic::app

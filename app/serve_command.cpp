@@ -82,42 +82,50 @@ int serve_scenario(const ServeOptions& options) {
 }  // namespace
 
 void add_serve_command(Program& program) {
-  auto options = std::make_shared<ServeOptions>();
-  const Command command = program.add_command(
-      "serve", "Ping on command: a line of JSON each, by standard input, a Unix socket or TCP.");
-  add_scenario_options(command, options->scenario);
-  command.add_option("--socket", options->socket, "Unix socket to listen on, for this user alone")
-      .type_name("PATH");
-  command
-      .add_option("--tcp", options->port,
-                  "port of 127.0.0.1 to listen on, 0 for a free one; clients need a token, which "
-                  "is in --token-file, in the variable ASDIC_TOKEN, or made and printed")
-      .type_name("PORT")
-      .check(whole_number(0, 65535, "a port"));
-  command.add_option("--token-file", options->token_file, "file whose first line is the token")
-      .type_name("FILE");
-  command
-      .add_option("--pace", options->pace,
-                  "real: pings by the clock; a number: so many times as fast; fast: at once")
-      .type_name("real|fast|FACTOR")
-      .show_default();
-  command.add_option("--output-dir", options->output_dir, "folder for the files of pings")
-      .type_name("DIR");
-  command
-      .add_option("--data-dir", options->data_dir,
-                  "folder of files that commands may name; without it they may name none")
-      .type_name("DIR");
-  command
-      .add_option("--limit", options->limits,
-                  "what a client may ask for, e.g. samples=100000; may be repeated "
-                  "(docs/formats/serve.md)")
-      .type_name("NAME=VALUE")
-      .one_at_a_time();
-  add_threads_option(command, options->threads);
-  command.footer(
-      "Ctrl-C finishes the ping in hand, or leaves it after a second; a second one ends at once.\n"
-      "Example:  asdic serve scenarios/deep_ocean.toml --socket sonar.sock --output-dir pings");
-  command.runs([options] { return serve_scenario(*options); });
+  program.add_command(
+      "serve", "Ping on command: a line of JSON each, by standard input, a Unix socket or TCP.",
+      [](const Command& command) {
+        auto options = std::make_shared<ServeOptions>();
+        add_scenario_options(command, options->scenario);
+        command
+            .add_option("--socket", options->socket,
+                        "Unix socket to listen on, for this user alone")
+            .type_name("PATH");
+        command
+            .add_option(
+                "--tcp", options->port,
+                "port of 127.0.0.1 to listen on, 0 for a free one; clients need a token, which "
+                "is in --token-file, in the variable ASDIC_TOKEN, or made and printed")
+            .type_name("PORT")
+            .check(whole_number(0, 65535, "a port"));
+        command
+            .add_option("--token-file", options->token_file, "file whose first line is the token")
+            .type_name("FILE");
+        command
+            .add_option("--pace", options->pace,
+                        "real: pings by the clock; a number: so many times as fast; fast: at once")
+            .type_name("real|fast|FACTOR")
+            .show_default();
+        command.add_option("--output-dir", options->output_dir, "folder for the files of pings")
+            .type_name("DIR");
+        command
+            .add_option("--data-dir", options->data_dir,
+                        "folder of files that commands may name; without it they may name none")
+            .type_name("DIR");
+        command
+            .add_option("--limit", options->limits,
+                        "what a client may ask for, e.g. samples=100000; may be repeated "
+                        "(docs/formats/serve.md)")
+            .type_name("NAME=VALUE")
+            .one_at_a_time();
+        add_threads_option(command, options->threads);
+        command.footer(
+            "Ctrl-C finishes the ping in hand, or leaves it after a second; a second one ends at "
+            "once.\n"
+            "Example:  asdic serve scenarios/deep_ocean.toml --socket sonar.sock --output-dir "
+            "pings");
+        command.runs([options] { return serve_scenario(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -53,28 +53,33 @@ int study_run(const StudyOptions& options) {
 }  // namespace
 
 void add_study_command(Program& program) {
-  auto options = std::make_shared<StudyOptions>();
-  const Command command = program.add_command(
-      "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.");
-  add_study_options(command, *options);
-  const Option range =
-      command
-          .add_option("--realisations", options->range,
-                      "only these indices, FIRST up to but not including END; asdic merge puts "
-                      "parts together")
-          .type_name("FIRST:END");
-  command
-      .add_option("--shard", options->shard,
-                  "only the I-th of N parts, counted from 1; slurm: the part of this task of a "
-                  "Slurm job array")
-      .type_name("I/N|slurm")
-      .excludes(range);
-  command.add_flag("--assemble", options->assemble,
-                   "make no realisations: write a file of those that are there");
-  command.footer(
-      "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it was.\n"
-      "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
-  command.runs([options] { return study_run(*options); });
+  program.add_command(
+      "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.",
+      [](const Command& command) {
+        auto options = std::make_shared<StudyOptions>();
+        add_study_options(command, *options);
+        const Option range =
+            command
+                .add_option(
+                    "--realisations", options->range,
+                    "only these indices, FIRST up to but not including END; asdic merge puts "
+                    "parts together")
+                .type_name("FIRST:END");
+        command
+            .add_option(
+                "--shard", options->shard,
+                "only the I-th of N parts, counted from 1; slurm: the part of this task of a "
+                "Slurm job array")
+            .type_name("I/N|slurm")
+            .excludes(range);
+        command.add_flag("--assemble", options->assemble,
+                         "make no realisations: write a file of those that are there");
+        command.footer(
+            "Whatever stops it (Ctrl-C, a kill, a power cut), the same command goes on where it "
+            "was.\n"
+            "Example:  asdic study scenarios/studies/detection_range.toml -o detection_range.h5");
+        command.runs([options] { return study_run(*options); });
+      });
 }
 
 }  // namespace asdic::app

@@ -179,14 +179,16 @@ int validate(const ScenarioChoice& choice) {
 }  // namespace
 
 void add_validate_command(Program& program) {
-  auto choice = std::make_shared<ScenarioChoice>();
-  const Command command =
-      program.add_command("validate", "Read and check a scenario or a run, and say what it means.");
-  add_scenario_options(command, *choice);
-  command.footer(
-      "Exit status: 0 good, 2 not.\n"
-      "Example:  asdic validate scenarios/deep_ocean.toml --set pings.count=100");
-  command.runs([choice] { return validate(*choice); });
+  program.add_command(
+      "validate", "Read and check a scenario or a run, and say what it means.",
+      [](const Command& command) {
+        auto choice = std::make_shared<ScenarioChoice>();
+        add_scenario_options(command, *choice);
+        command.footer(
+            "Exit status: 0 good, 2 not.\n"
+            "Example:  asdic validate scenarios/deep_ocean.toml --set pings.count=100");
+        command.runs([choice] { return validate(*choice); });
+      });
 }
 
 }  // namespace asdic::app

@@ -105,24 +105,26 @@ int run(int argc, char** argv) {
                   "asdic-mpi makes the realisations of a study with all ranks of an MPI job.",
                   version_text());
   StudyOptions options;
-  const Command command = program.add_command(
-      "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.");
-  add_study_options(command, options);
   double silence = study::StudyRun{}.silence.count();
-  command
-      .add_option(
-          "--silence", silence,
-          "after so long without a word of a rank it is taken for dead, and the job ends [s]")
-      .show_default()
-      .type_name("SECONDS")
-      .check(above_zero());
-  command.footer("Example:  mpirun -n 4 asdic-mpi study study.toml -o study.h5");
-  command.runs([&] {
-    const study::mpi::Session session(argc, argv);
-    const int status = study_run(options, silence, session);
-    flush_output();  // MPI's end may be the process's
-    return status;
-  });
+  program.add_command(
+      "study", "Simulate the realisations of a Monte Carlo study, into one HDF5 file.",
+      [&](const Command& command) {
+        add_study_options(command, options);
+        command
+            .add_option(
+                "--silence", silence,
+                "after so long without a word of a rank it is taken for dead, and the job ends [s]")
+            .show_default()
+            .type_name("SECONDS")
+            .check(above_zero());
+        command.footer("Example:  mpirun -n 4 asdic-mpi study study.toml -o study.h5");
+        command.runs([&] {
+          const study::mpi::Session session(argc, argv);
+          const int status = study_run(options, silence, session);
+          flush_output();  // MPI's end may be the process's
+          return status;
+        });
+      });
   return program.parse(argc, argv)();  // before MPI: --help needs no ranks
 }
 
