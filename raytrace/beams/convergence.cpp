@@ -166,6 +166,7 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   while (true) {
     const std::size_t count = fan.elevation.size();
     FanField pass = field_of(fan, {.bound = true,
+                                   .between = true,
                                    .looked_at = looked_at,
                                    .level = level,
                                    .first_left_out = left_out.first,

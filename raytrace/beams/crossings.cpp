@@ -70,6 +70,8 @@ void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHist
                        (std::exp(-y.nepers) * spread_across(setting_, y)));
   out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
   out_.mirror.push_back(bounces % 2 == 0 ? 1.0 : -1.0);
+  out_.bounces.push_back(static_cast<std::uint32_t>(history.bottom_bounces) +
+                         65536U * static_cast<std::uint32_t>(history.surface_bounces));
 }
 
 }  // namespace asdic

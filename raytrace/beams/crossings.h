@@ -22,8 +22,11 @@ struct Crossings {
   std::vector<double> phase;          ///< [n] of reflections and caustics [rad]
   std::vector<double> mirror;         ///< [n] −1 after an odd number of reflections, else 1
 
+  std::vector<std::uint32_t> bounces;  ///< [n] off the bottom, and 65536 × off the surface; of
+                                       ///< marched rays alone, else empty
+
   [[nodiscard]] std::size_t size() const noexcept { return column.size(); }
-  void resize(std::size_t n);
+  void resize(std::size_t n);  ///< all but the bounces
 };
 
 /// Those with every n-th column from `first` on, which are columns 0, 1, 2, … then.
@@ -37,7 +40,7 @@ void find_crossings(const BeamSetting& setting, const RayTrajectory& ray,
 class MarchedCrossings final : public RangeVisitor {
  public:
   MarchedCrossings(const BeamSetting& setting, Crossings& out) : setting_(setting), out_(out) {
-    out_.resize(0);
+    out_.resize(0), out_.bounces.clear();
   }
   void pass(std::size_t column, const RayState& y, const RayHistory& history) override;
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <optional>
@@ -10,6 +12,7 @@
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/field_run.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/beams/rays_between.h"
 #include "raytrace/beams/tube_error.h"
 
 // The partial sums of a field: each adds rays of one fan, and a field is the sum of a few.
@@ -65,6 +68,10 @@ class PlainPart {
     if (work.also.half) field_[1] = field_[0];
   }
   [[nodiscard]] static std::size_t room(const FieldWork& /*work*/) noexcept { return 0; }
+  [[nodiscard]] static std::size_t packet(const FieldWork& /*work*/) noexcept { return 16; }
+  void add(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) add(i);
+  }
   void add(std::size_t i) {
     const double elevation = work_.fan.elevation[i];
     work_.tracer.trace(0.0, work_.source_depth, elevation, work_.limits, ray_);
@@ -121,30 +128,21 @@ class FastPart {
       tubes_.emplace(work.setting, grid.depths, work.also.looked_at.count(grid.ranges.size()),
                      work.also.first_left_out, work.also.last_left_out,
                      &work.boundary_rows_looked_at);
+    if (work.also.between && layered == nullptr) between_.emplace(work.run_case);
+  }
+  /// Neighbouring rays that a part takes at once.
+  [[nodiscard]] static std::size_t packet(const FieldWork& work, const LayeredCrossings* layered) {
+    return work.also.between && layered == nullptr ? 64 : 16;
   }
   /// Numbers of memory for the sums.
   [[nodiscard]] static std::size_t room(const FieldWork& work) noexcept {
     const ReceiverGrid& grid = work.run_case.receivers;
     return ColumnSum::room(grid.depths.size(), grid.ranges.size()) * (work.also.half ? 2 : 1);
   }
-  void add(std::size_t i) {
-    if (work_.also.bound && i > 0) {
-      if (last_ + 1 != i)
-        cross(i - 1, before_);  // the packet's first: another part has that ray
-      else
-        std::swap(here_, before_);
-    }
-    const BeamLaunch launch = cross(i, here_);
-    for (std::size_t h = 0; h < sum_.size(); ++h) {
-      if (h == 1 && i % 2 != 0) continue;
-      sum_[h].add(launch, crossings_, walls_);
-    }
-    if (work_.also.bound && i > 0)
-      work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
-    if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))
-      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
-          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
-    last_ = i;
+  /// Rays [first, last), and the tubes above each of them.
+  void add(std::size_t first, std::size_t last) {
+    if (between_) return add_between(first, last);
+    for (std::size_t i = first; i < last; ++i) add(i);
   }
   void finish() { tubes_->finish(); }
   /// Of the whole sum.
@@ -165,6 +163,92 @@ class FastPart {
   }
 
  private:
+  void add(std::size_t i) {
+    if (work_.also.bound && i > 0) {
+      if (last_ + 1 != i)
+        cross(i - 1, before_);  // the packet's first: another part has that ray
+      else
+        std::swap(here_, before_);
+    }
+    const BeamLaunch launch = cross(i, here_);
+    for (std::size_t h = 0; h < sum_.size(); ++h) {
+      if (h == 1 && i % 2 != 0) continue;
+      sum_[h].add(launch, crossings_, walls_);
+    }
+    if (work_.also.bound && i > 0)
+      work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
+    if (work_.also.bound && (i == 0 || i + 1 == work_.fan.elevation.size()))
+      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
+          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
+    last_ = i;
+  }
+
+  using Traced = RaysBetween::Traced;
+
+  void trace(std::size_t i, Traced& ray) {
+    ray.elevation = work_.fan.elevation[i];
+    MarchedCrossings marched(work_.setting, ray.crossings);
+    ray.crossings.source_speed =
+        work_.tracer.trace_past(work_.run_case.receivers.ranges, 0.0, work_.source_depth,
+                                ray.elevation, work_.limits, marched);
+  }
+
+  /// The same as add(), where most rays come from those around them.
+  void add_between(std::size_t first, std::size_t last) {
+    const std::size_t end =
+        work_.also.bound ? std::min(last, work_.fan.elevation.size() - 1) : last - 1;
+    last_ = last, previous_ = end + 1;
+    trace(first, traced_[0]);
+    put(first, traced_[0].crossings);
+    if (end == first) return;
+    trace(end, traced_[1]);
+    fill(first, traced_[0], end, traced_[1], 2);
+    put(end, traced_[1].crossings);
+  }
+
+  /// All rays between two, from below.
+  void fill(std::size_t low, const Traced& lowest, std::size_t high, const Traced& highest,
+            std::size_t depth) {
+    if (high - low < 2) return;
+    const std::size_t middle = low + (high - low) / 2;
+    Traced& halfway = traced_[depth];
+    trace(middle, halfway);
+    constexpr std::size_t worth_it = 4;
+    const double spacing = (highest.elevation - lowest.elevation) / static_cast<double>(high - low);
+    if (high - low >= worth_it && between_->fit(lowest, halfway, highest, spacing)) {
+      for (std::size_t i = low + 1; i < high; ++i) {
+        if (i == middle) {
+          put(i, halfway.crossings);
+          continue;
+        }
+        between_->at(work_.fan.elevation[i], crossings_);
+        put(i, crossings_);
+      }
+      return;
+    }
+    fill(low, lowest, middle, halfway, depth + 1);
+    put(middle, halfway.crossings);
+    fill(middle, halfway, high, highest, depth + 1);
+  }
+
+  /// A ray of add_between(), in order; ray last_ for its tube alone.
+  void put(std::size_t i, const Crossings& crossings) {
+    const BeamLaunch launch = work_.launch(i, crossings.source_speed);
+    const std::size_t beams = work_.fan.elevation.size();
+    if (i < last_)
+      for (std::size_t h = 0; h < sum_.size(); ++h)
+        if (h == 0 || i % 2 == 0) sum_[h].add(launch, crossings, walls_);
+    if (!work_.also.bound) return;
+    std::swap(here_, before_);
+    look_at(crossings, launch, here_);
+    if (previous_ + 1 == i)
+      work_.tube_share[i - 1] = tubes_->add(before_, here_, work_.fan.to_next(i - 1), work_.level);
+    if (i < last_ && (i == 0 || i + 1 == beams))
+      (i == 0 ? work_.end_share[0] : work_.end_share[1]) =
+          tubes_->add_end(here_, work_.fan.to_next(i), work_.level);
+    previous_ = i;
+  }
+
   /// Follows ray i to the columns, and to those looked at too if the bound is asked for.
   BeamLaunch cross(std::size_t i, RayAtColumns& looked_at) {
     const double elevation = work_.fan.elevation[i];
@@ -175,12 +259,14 @@ class FastPart {
                                   elevation, work_.limits, marched);
     }
     const BeamLaunch launch = work_.launch(i, crossings_.source_speed);
-    if (work_.also.bound) {
-      const ColumnSample& sample = work_.also.looked_at;
-      pick_columns(crossings_, sample.first(), sample.every, looked_at.crossings);
-      looked_at.foretell(work_.setting, launch);
-    }
+    if (work_.also.bound) look_at(crossings_, launch, looked_at);
     return launch;
+  }
+
+  void look_at(const Crossings& crossings, const BeamLaunch& launch, RayAtColumns& looked_at) {
+    const ColumnSample& sample = work_.also.looked_at;
+    pick_columns(crossings, sample.first(), sample.every, looked_at.crossings);
+    looked_at.foretell(work_.setting, launch);
   }
 
   const FieldWork& work_;
@@ -190,6 +276,9 @@ class FastPart {
   Crossings crossings_;                              // of the ray in hand
   RayAtColumns here_, before_;                       // at the columns looked at
   std::size_t last_ = static_cast<std::size_t>(-2);  // ray of here_
+  std::optional<RaysBetween> between_;
+  std::size_t previous_ = 0;  // ray of here_, in add_between()
+  std::array<RaysBetween::Traced, 9> traced_;
   std::vector<ColumnSum> sum_;
   std::optional<TubeError> tubes_;
 };

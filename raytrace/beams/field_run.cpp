@@ -86,11 +86,11 @@ TraceLimits field_limits(const PropagationCase& run_case) {
 namespace {
 
 /// Sums the fan in `count` parts, which take turns at packets of neighbouring rays. Each is made
-/// from `work`, room(work) numbers of memory and `more` by the thread that fills it, and has add(i)
-/// for ray i and at(column, row, half).
+/// from `work`, room(work) numbers of memory and `more` by the thread that fills it, and has
+/// add(first, last) for rays [first, last) and at(column, row, half).
 template <class Part, class... More>
 FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more) {
-  constexpr std::size_t packet = 16;
+  const std::size_t packet = Part::packet(work, more...);
   std::vector<std::optional<Part>> parts(count);
   // In one block: what a C library gives back to the system after each field, and gets again page
   // by page, goes by the largest block.
@@ -104,7 +104,7 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
       const std::size_t last = std::min(first + packet, beams);
-      for (std::size_t i = first; i < last; ++i) parts[p]->add(i);
+      parts[p]->add(first, last);
       const std::size_t n = done += last - first;
       if (work.progress && !work.progress(double(n) / double(beams))) stopped = true;
     }

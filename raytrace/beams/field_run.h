@@ -53,6 +53,7 @@ struct ColumnSample {
 struct FieldCheck {
   bool half = false;            ///< every second beam of it (an odd number of beams)
   bool bound = false;           ///< its error bound; hat and Gaussian beams, Cartesian, on a grid
+  bool between = false;         ///< rays between traced ones may be interpolated (RaysBetween)
   ColumnSample looked_at = {};  ///< the bound's columns
   std::span<const double>
       level;  ///< [ranges] the pressure that an error is held against (intensity

@@ -141,6 +141,50 @@ void TubeError::bound(const RayAtColumns& a, std::size_t i, const RayAtColumns& 
   bound_of_kind<false, false>(a, i, b, j, count, width, out);
 }
 
+inline double TubeError::put_between(std::size_t column, double error, double from, double to) {
+  const auto rows = static_cast<double>(depths_.size());
+  std::int32_t first, last;
+  if (per_spacing_ > 0.0) {
+    const double a = std::ceil((from - first_depth_) * per_spacing_);
+    const double b = std::floor((to - first_depth_) * per_spacing_) + 1.0;
+    first = static_cast<std::int32_t>(smaller(larger(a, 0.0), rows));
+    last = static_cast<std::int32_t>(smaller(larger(b, 0.0), rows));
+  } else {
+    first = static_cast<std::int32_t>(std::lower_bound(depths_.begin(), depths_.end(), from) -
+                                      depths_.begin());
+    last = static_cast<std::int32_t>(std::upper_bound(depths_.begin(), depths_.end(), to) -
+                                     depths_.begin());
+  }
+  if (last <= first) return 0.0;
+  double* sum = sum_.data() + column * stride_;
+  sum[first] += error;
+  sum[last] -= error;
+  std::int32_t counted = last - first;
+  if (first_left_out_ < last_left_out_)
+    counted -= std::max(0, std::min(last, static_cast<std::int32_t>(last_left_out_)) -
+                               std::max(first, static_cast<std::int32_t>(first_left_out_)));
+  if (walls_ != nullptr)
+    counted -= static_cast<std::int32_t>(
+        on_walls(column, static_cast<std::size_t>(first), static_cast<std::size_t>(last)));
+  return static_cast<double>(std::max(counted, 0));
+}
+
+double TubeError::put(std::size_t column, const Piece& piece, double level) {
+  const auto& [error, from, to, sigma] = piece;
+  double receivers = 0.0;
+  if (sigma == 0.0) {
+    receivers = put_between(column, error, from, to);
+  } else {  // a staircase over e^(−u²/2): steps at whole u
+    constexpr double step[4] = {1.0 - 0.60653066, 0.60653066 - 0.13533528, 0.13533528 - 0.011108997,
+                                0.011108997};
+    const bool heard = from - 4.0 * sigma <= depths_.back() && to + 4.0 * sigma >= first_depth_;
+    for (int u = 1; heard && u <= 4; ++u)
+      receivers +=
+          step[u - 1] * put_between(column, step[u - 1] * error, from - u * sigma, to + u * sigma);
+  }
+  return receivers * std::min(error / level, 1.0);
+}
+
 /// A ray without a neighbour: all that it brings is unsure.
 TubeError::Piece TubeError::alone(const RayAtColumns& ray, std::size_t i,
                                   double width) const noexcept {
@@ -215,47 +259,6 @@ double TubeError::put_tube(std::size_t column, std::size_t n, double level, cons
   if (bounds_.lower.error[n] > 0.0 || bounds_.higher.error[n] > 0.0)
     share += put(column, bounds_.lower[n], level) + put(column, bounds_.higher[n], level);
   return walls_ == nullptr ? share : share + put_tube_at_walls(column, n, level, pair);
-}
-
-double TubeError::put(std::size_t column, const Piece& piece, double level) {
-  const auto& [error, from, to, sigma] = piece;
-  double receivers;
-  if (sigma == 0.0) {
-    receivers = put_between(column, error, from, to);
-  } else {  // a staircase over e^(−u²/2): steps at whole u
-    constexpr double step[4] = {1.0 - 0.60653066, 0.60653066 - 0.13533528, 0.13533528 - 0.011108997,
-                                0.011108997};
-    receivers = 0.0;
-    for (int u = 1; u <= 4; ++u)
-      receivers +=
-          step[u - 1] * put_between(column, step[u - 1] * error, from - u * sigma, to + u * sigma);
-  }
-  return receivers * std::min(error / level, 1.0);
-}
-
-double TubeError::put_between(std::size_t column, double error, double from, double to) {
-  const auto rows = static_cast<double>(depths_.size());
-  std::size_t first, last;
-  if (per_spacing_ > 0.0) {
-    const double a = std::ceil((from - first_depth_) * per_spacing_);
-    const double b = std::floor((to - first_depth_) * per_spacing_) + 1.0;
-    first = static_cast<std::size_t>(std::clamp(a, 0.0, rows));
-    last = static_cast<std::size_t>(std::clamp(b, 0.0, rows));
-  } else {
-    first = static_cast<std::size_t>(std::lower_bound(depths_.begin(), depths_.end(), from) -
-                                     depths_.begin());
-    last = static_cast<std::size_t>(std::upper_bound(depths_.begin(), depths_.end(), to) -
-                                    depths_.begin());
-  }
-  if (last <= first) return 0.0;
-  double* sum = sum_.data() + column * stride_;
-  sum[first] += error;
-  sum[last] -= error;
-  const std::size_t from_left_out = std::max(first, first_left_out_),
-                    to_left_out = std::min(last, last_left_out_);
-  const std::size_t left_out = to_left_out > from_left_out ? to_left_out - from_left_out : 0;
-  const std::size_t apart = walls_ != nullptr ? on_walls(column, first, last) : 0;
-  return static_cast<double>(last - first - std::min(left_out + apart, last - first));
 }
 
 void TubeError::finish() {
