@@ -13,6 +13,7 @@
 #include "raytrace/parallel.h"
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/image_field.h"
+#include "raytrace/runs/path_field.h"
 #include "raytrace/runs/rays_run.h"
 #include "raytrace/runs/single_beam.h"
 #include "raytrace/waves/wave_field.h"
@@ -274,6 +275,8 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
       answer = std::move(*images);
     } else if (auto waves = wave_field(run_case, depth, progress, rays_alone)) {
       answer = std::move(*waves);
+    } else if (auto paths = path_field(run_case, depth, progress)) {
+      answer = std::move(*paths);
     } else if (run_case.beams.elevations.empty()) {
       answer = converged_field(
           run_case,

@@ -25,11 +25,8 @@ constexpr double hardly_lossy = 0.9;   // unless a cycle leaves this: there beam
 constexpr double most_terms_there = 1e9;
 constexpr int most_shells = 1 << 17;
 
-/// What became of a sum.
-struct ImageSum {
-  Complex value = 0.0;  ///< a pressure, or an intensity
-  double error = 0.0;   ///< of it
-  int images = 0;
+/// What became of a sum over images, its paths.
+struct ImageSum : RaySum {
   bool extrapolated = false;
 };
 
@@ -175,7 +172,7 @@ class ImageGuide {
     double intensity = 0.0;
     int images = 0;
     [[nodiscard]] ImageSum ended(double error) const noexcept {
-      return {sum, error, images, false};
+      return {{sum, error, images}, false};
     }
   };
 
@@ -259,7 +256,7 @@ class ImageGuide {
       while (tail.count() < LevinSum::most && tail.error() > wanted)
         tail.add(shell(to, k + tail.count(), ahead));
       if (tail.error() <= wanted || 2 * k > most_shells)
-        return {tail.value(), tail.error(), ahead.images, true};
+        return {{tail.value(), tail.error(), ahead.images}, true};
       for (const int next = 2 * k; k < next; ++k) add_shell(to, k, tally);
     }
   }
@@ -278,7 +275,7 @@ class ImageGuide {
     const double e1 = without_first(0, 1), e2 = without_first(1, 2);
     const double w1 = x[0] * x[1] * (x[0] + x[1]), w2 = x[1] * x[2] * (x[1] + x[2]);
     const double value = (e2 * w1 - e1 * w2) / (w1 - w2);
-    return {value, std::abs(value - e2), tally.images, true};
+    return {{value, std::abs(value - e2), tally.images}, true};
   }
 
   const PropagationCase& case_;
@@ -302,18 +299,6 @@ bool is_flat_guide(const PropagationCase& run_case) {
   return std::all_of(speeds.begin(), speeds.end(), [&](double c) { return c == speeds.front(); });
 }
 
-bool is_sum_of_paths(const PropagationCase& run_case) {
-  const BeamSettings& beams = run_case.beams;
-  const Environment& ocean = run_case.environment;
-  const bool hats = beams.kind == BeamKind::hat || beams.kind == BeamKind::ray_centred_hat;
-  const bool forward = beams.lowest >= -0.5 * pi - fan_edge && beams.highest <= 0.5 * pi + fan_edge;
-  const bool within_box =
-      !(run_case.box_depth > 0.0) ||
-      (run_case.box_depth >= ocean.bottom.depth && -run_case.box_depth <= ocean.surface.depth);
-  return hats && forward && within_box && beams.elevations.empty() && !beams.displacement &&
-         run_case.receivers.ranges.front() >= 0.0;
-}
-
 std::string note_of(int images, bool extrapolated, double error_db) {
   char text[240];
   std::snprintf(text, sizeof text,
@@ -325,10 +310,10 @@ std::string note_of(int images, bool extrapolated, double error_db) {
 }
 
 /// |ΔTL| that an error may make, at 95 % of those receivers that hear anything [dB].
-double error_at_95(const std::vector<ImageSum>& sums, bool coherent) {
+double error_at_95(const std::vector<RaySum>& sums, bool coherent) {
   std::vector<double> all;
-  for (const ImageSum& s : sums)
-    if (s.images > 0 && s.value != 0.0) {
+  for (const RaySum& s : sums)
+    if (s.paths > 0 && s.value != 0.0) {
       const double share = std::min(s.error / std::abs(s.value), 1.0);
       all.push_back((coherent ? 20.0 : 10.0) * std::log10(1.0 + share));
     }
@@ -340,9 +325,30 @@ double error_at_95(const std::vector<ImageSum>& sums, bool coherent) {
 
 }  // namespace
 
+bool narrows_to_paths(const PropagationCase& run_case) {
+  const BeamSettings& beams = run_case.beams;
+  const Environment& ocean = run_case.environment;
+  const bool hats = beams.kind == BeamKind::hat || beams.kind == BeamKind::ray_centred_hat;
+  const bool forward = beams.lowest >= -0.5 * pi - fan_edge && beams.highest <= 0.5 * pi + fan_edge;
+  const bool within_box =
+      !(run_case.box_depth > 0.0) ||
+      (run_case.box_depth >= ocean.bottom.depth && -run_case.box_depth <= ocean.surface.depth);
+  return hats && forward && within_box && beams.elevations.empty() && !beams.displacement &&
+         run_case.receivers.ranges.front() >= 0.0;
+}
+
+ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent) {
+  ConvergedField result;
+  result.field.reserve(sums.size());
+  for (const RaySum& s : sums)
+    result.field.push_back(coherent ? s.value : std::sqrt(std::max(s.value.real(), 0.0)));
+  result.error_db = error_at_95(sums, coherent);
+  return result;
+}
+
 std::optional<ConvergedField> image_field(const PropagationCase& run_case, double source_depth,
                                           const Progress& progress) {
-  if (!is_flat_guide(run_case) || !is_sum_of_paths(run_case)) return std::nullopt;
+  if (!is_flat_guide(run_case) || !narrows_to_paths(run_case)) return std::nullopt;
   const ImageGuide guide(run_case, source_depth);
   const ReceiverGrid& grid = run_case.receivers;
   const double images_each = guide.images_at(grid.ranges[grid.ranges.size() / 2]);
@@ -350,25 +356,23 @@ std::optional<ConvergedField> image_field(const PropagationCase& run_case, doubl
     return std::nullopt;
 
   const std::size_t columns = grid.ranges.size(), rows = grid.rows();
-  std::vector<ImageSum> sums(grid.size());
+  std::vector<RaySum> sums(grid.size());
+  std::atomic<bool> extrapolated = false;
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
   in_parallel(columns, [&](std::size_t j) {
-    for (std::size_t i = 0; i < rows && !stopped; ++i)
-      sums[i * columns + j] = guide.at(grid.ranges[j], grid.depths[grid.irregular ? j : i]);
+    for (std::size_t i = 0; i < rows && !stopped; ++i) {
+      const ImageSum sum = guide.at(grid.ranges[j], grid.depths[grid.irregular ? j : i]);
+      sums[i * columns + j] = sum;
+      if (sum.extrapolated) extrapolated = true;
+    }
     if (progress && !progress(double(++done) / double(columns))) stopped = true;
   });
   if (stopped) throw Interrupted();
 
-  ConvergedField result;
+  ConvergedField result = field_of_sums(sums, guide.coherent());
   int images = 0;
-  bool extrapolated = false;
-  for (const ImageSum& s : sums) {
-    images = std::max(images, s.images);
-    extrapolated = extrapolated || s.extrapolated;
-    result.field.push_back(guide.coherent() ? s.value : std::sqrt(std::max(s.value.real(), 0.0)));
-  }
-  result.error_db = error_at_95(sums, guide.coherent());
+  for (const RaySum& s : sums) images = std::max(images, s.paths);
   result.bounded = !extrapolated;
   result.note = note_of(images, extrapolated, result.error_db);
   return result;

@@ -6,6 +6,21 @@
 
 namespace asdic {
 
+/// What became of the sum of all paths to a receiver.
+struct RaySum {
+  std::complex<double> value = 0.0;  ///< a pressure, or an intensity
+  double error = 0.0;                ///< of it
+  int paths = 0;
+};
+
+/// Whether a case asks for hats of its own number, Cartesian or ray-centred, forward from the
+/// source and in water that is all within the box: then their limit is the sum of paths.
+[[nodiscard]] bool narrows_to_paths(const PropagationCase& run_case);
+
+/// Sums as a field, with the |ΔTL| that their errors may make at 95 % of the receivers that hear
+/// anything. \param sums  [rows × ranges]
+[[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);
+
 /// The field of a source in isovelocity water between flat boundaries, as a sum over its images: of
 /// rays that take every path there is, in closed form. Nothing if the case is no such guide, asks
 /// for beams whose limit is not the sum of paths, or has so many receivers and images that beams

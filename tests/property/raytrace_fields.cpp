@@ -276,25 +276,29 @@ TEST(Fields, HaveTheSameBitsForAnyNumberOfThreads) {
 // A field does not depend on the number of beams in the input but for what its own rule allows: two
 // of them are no further apart than the bounds of both.
 TEST(Fields, DoNotDependOnTheNumberOfBeamsAskedFor) {
-  const auto wide = [](const std::vector<std::complex<float>>& p) {
-    return std::vector<std::complex<double>>(p.begin(), p.end());
-  };
   for (const unsigned seed : {2U, 7U, 9U})
     for (const BeamKind kind : {BeamKind::hat, BeamKind::gaussian})
       for (const FieldKind field : {FieldKind::coherent, FieldKind::incoherent}) {
         PropagationCase run_case = random_channel(seed);
         run_case.field = field;
         run_case.beams.kind = kind;
-        const PropagationResult few = run_field(run_case);
+        const RayTracer tracer(run_case.environment, run_case.frequency);
+        const auto run = [&] {
+          return converged_field(run_case, [&](const BeamFan& fan, const FieldCheck& also) {
+            return field_of_fan(run_case, tracer, run_case.source_depths[0], fan, {},
+                                FieldMethod::fast, also);
+          });
+        };
+        const ConvergedField few = run();
         SCOPED_TRACE(testing::Message() << "seed " << seed << " kind " << int(kind) << " field "
                                         << int(field) << " beams " << few.beams);
-        EXPECT_TRUE(few.beam_error_bounded);
-        EXPECT_TRUE(!few.notes.empty() || few.beam_error_db <= wanted_bound_db);
+        EXPECT_TRUE(few.bounded);
+        EXPECT_TRUE(!few.note.empty() || few.error_db <= wanted_bound_db);
         for (const double factor : {0.3, 1.0, 1.7}) {
           run_case.beams.count = static_cast<int>(factor * double(few.beams));
-          const PropagationResult other = run_field(run_case);
-          EXPECT_LE(level_difference_db(wide(few.field), wide(other.field), 0.95),
-                    few.beam_error_db + other.beam_error_db);
+          const ConvergedField other = run();
+          EXPECT_LE(level_difference_db(few.field, other.field, 0.95),
+                    few.error_db + other.error_db);
         }
       }
 }

@@ -8,8 +8,9 @@
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_run.h"
 #include "raytrace/beams/rays_between.h"
+#include "raytrace/runs/path_field.h"
 
-// Fields with less tracing: rays between traced ones.
+// Fields with less tracing: rays between traced ones, and sums of paths instead of beams.
 namespace asdic {
 namespace {
 
@@ -116,6 +117,82 @@ TEST(RaysBetween, AreTheSameForAnyNumberOfThreads) {
         EXPECT_EQ(now.tube_share, first->tube_share) << threads;
       }
     }
+}
+
+/// Stratified water: lines, parabolas and smooth laws over a fluid bottom.
+PropagationCase stratified(unsigned seed) {
+  PropagationCase run_case = random_sea(6 * seed + seed % 2);  // spline, PCHIP
+  const auto& water = run_case.environment.water;
+  std::vector<double> z, c;
+  for (int i = 0; i <= 12; ++i) {
+    z.push_back(run_case.environment.bottom.depth * i / 10.0);
+    c.push_back(water.at(z.back()).c);
+  }
+  if (seed % 4 == 2)
+    run_case.environment.water = SoundSpeedProfile::table(z, c, Interpolation::c_linear);
+  if (seed % 4 == 3)
+    run_case.environment.water = SoundSpeedProfile::table(z, c, Interpolation::n2_linear);
+  if (seed % 3 == 0) run_case.environment.absorption = Thorp{};
+  run_case.receivers.depths.back() = run_case.environment.bottom.depth;
+  run_case.receivers.depths.front() = 0.0;
+  return run_case;
+}
+
+// The sum of all paths is what a fan of hats narrows to: as near to a fan as that says it is sure
+// to, of either source, with a pattern, for all three sums, on the boundaries too.
+TEST(PathField, IsWhatHatsNarrowTo) {
+  for (unsigned seed = 1; seed <= 8; ++seed)
+    for (const FieldKind sum :
+         {FieldKind::coherent, FieldKind::incoherent, FieldKind::semi_coherent})
+      for (const bool line : {false, true}) {
+        PropagationCase run_case = stratified(seed);
+        run_case.field = sum;
+        if (line) {
+          run_case.beams.source = SourceKind::line;
+          run_case.beams.pattern = SourcePattern{{-1.0, 0.0, 1.0}, {0.2, 1.0, 0.5}};
+        }
+        SCOPED_TRACE(testing::Message() << "seed " << seed << " sum " << int(sum) << ' ' << line);
+        const double zs = run_case.source_depths[0];
+        const auto paths = path_field(run_case, zs);
+        ASSERT_TRUE(paths);
+        EXPECT_EQ(paths->beams, 0U);
+        EXPECT_LT(paths->error_db, 0.05);
+        const RayTracer tracer(run_case.environment, run_case.frequency);
+        const ConvergedField hats =
+            converged_field(run_case, [&](const BeamFan& fan, const FieldCheck& also) {
+              return field_of_fan(run_case, tracer, zs, fan, {}, FieldMethod::fast, also);
+            });
+        const double apart = level_difference_db(paths->field, hats.field, 0.95);
+        EXPECT_LE(apart, std::min(hats.error_db, 0.5) + paths->error_db) << hats.beams;
+        EXPECT_LT(level_difference_db(paths->field, hats.field, 0.5), 0.05) << hats.beams;
+      }
+}
+
+// Not where their limit is another, there is none, or the water is no such guide.
+TEST(PathField, IsChosenOnlyWhereItIsTheBeamsLimit) {
+  const auto found = [](unsigned seed, auto&& change) {
+    PropagationCase run_case = stratified(seed);
+    change(run_case);
+    return path_field(run_case, run_case.source_depths[0]).has_value();
+  };
+  EXPECT_TRUE(found(1, [](auto&) {}));
+  EXPECT_TRUE(found(1, [](auto& c) { c.beams.kind = BeamKind::ray_centred_hat; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.beams.kind = BeamKind::gaussian; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.beams.elevations = {-0.1, 0.0, 0.1}; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.beams.displacement = true; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.box_depth = 0.9 * c.environment.bottom.depth; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.receivers.ranges.front() = -100.0; }));
+  EXPECT_FALSE(found(1, [](auto& c) { c.environment = random_sea(2).environment; }));
+  EXPECT_FALSE(found(1, [](auto& c) {  // a kink of least speed at the source
+    const double zs = c.source_depths[0], end = 2.0 * c.environment.bottom.depth;
+    const double z[] = {0.0, zs, end}, v[] = {1520.0, 1490.0, 1520.0};
+    c.environment.water = SoundSpeedProfile::table(z, v, Interpolation::c_linear);
+  }));
+  EXPECT_FALSE(found(1, [](auto& c) {  // more paths than beams
+    c.environment.bottom.material = Rigid{};
+    c.beams.lowest = -radians(89.0), c.beams.highest = radians(89.0);
+    c.receivers.ranges.back() = 1e6;
+  }));
 }
 
 }  // namespace

@@ -172,11 +172,14 @@ TEST(ImageField, IsChosenOnlyWhereItIsTheBeamsLimit) {
   EXPECT_GT(beams_of([](auto& c) { c.beams.elevations = {-0.1, 0.0, 0.1}; }), 0U);
   EXPECT_GT(beams_of([](auto& c) { c.beams.displacement = true; }), 0U);
   EXPECT_GT(beams_of([](auto& c) { c.box_depth = 90.0; }), 0U);
-  EXPECT_GT(beams_of([](auto& c) {
-              const double z[] = {0.0, 110.0}, v[] = {1490.0, 1491.0};
-              c.environment.water = SoundSpeedProfile::table(z, v, Interpolation::c_linear);
-            }),
-            0U);
+  PropagationCase refracting = ideal_guide();  // paths, but no images
+  refracting.environment.bottom.material = FluidHalfSpace{};
+  refracting.receivers.ranges = {300.0, 900.0};
+  const double z[] = {0.0, 110.0}, v[] = {1490.0, 1491.0};
+  refracting.environment.water = SoundSpeedProfile::table(z, v, Interpolation::c_linear);
+  const PropagationResult result = run(refracting);
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_NE(result.notes[0].find("stratified water"), std::string::npos) << result.notes[0];
 }
 
 }  // namespace
