@@ -157,11 +157,16 @@ Program::~Program() = default;
 
 void Program::add_command(const std::string& name, const std::string& help,
                           std::function<void(const Command&)> define) {
-  CLI::App* const command = app_->add_subcommand(name, help);
+  commands_.push_back({name, help, std::move(define)});
+}
+
+/// Tells the parser of a command.
+void Program::add(const Known& known) {
+  CLI::App* const command = app_->add_subcommand(known.name, known.help);
   // called when its name has been read, before its words are
-  command->preparse_callback([this, command, define = std::move(define)](std::size_t) {
+  command->preparse_callback([this, command, &known](std::size_t) {
     command->set_version_flag("--version", version_);
-    define({command, &chosen_});
+    known.define({command, &chosen_});
   });
 }
 
@@ -201,6 +206,12 @@ std::string Program::complaint_about_extras(int argc, char** argv) const {
 }
 
 Action Program::parse(int argc, char** argv) {
+  // The parser is told of one command if that is what comes first, of all for help and complaints.
+  const auto typed = std::find_if(commands_.begin(), commands_.end(), [&](const Known& command) {
+    return argc > 1 && command.name == argv[1];
+  });
+  for (const Known& command : commands_)
+    if (typed == commands_.end() || &command == &*typed) add(command);
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& help) {  // --help, --version

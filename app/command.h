@@ -117,7 +117,15 @@ class Program {
   [[nodiscard]] std::string complaint_about_extras(int argc, char** argv) const;
   [[nodiscard]] std::string see_help() const;
 
+  /// A command that may be typed.
+  struct Known {
+    std::string name, help;
+    std::function<void(const Command&)> define;
+  };
+  void add(const Known& command);
+
   std::string name_, version_;
+  std::vector<Known> commands_;
   std::unique_ptr<CLI::App> app_;
   Action chosen_;
 };
