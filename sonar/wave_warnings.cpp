@@ -7,6 +7,7 @@
 
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
+#include "raytrace/waves/focus.h"
 #include "sonar/enough_bounces.h"
 #include "sonar/sampling.h"
 #include "sonar/wave_response.h"
@@ -19,7 +20,7 @@ struct AcrossThePulse {
   double change_db = 0.0;  ///< from the centre to either edge, the most
   double error = 0.0;      ///< of what is computed across it, over the greatest
   double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
-  double caustics = 0.0;   ///< the same, of unmended_caustics()
+  double caustics = 0.0;   ///< the same, of unsure_amplitudes()
 };
 
 AcrossThePulse across_the_pulse(const PropagationPaths& paths, const WaveLeg& leg,
@@ -68,34 +69,46 @@ std::string line_of_corners(double share, const std::string& whose) {
   return text;
 }
 
-/// Share of the energy of pairs of rays that meet, ζ < 1, and have the amplitude of rays still:
-/// what is no simple fold (raytrace/waves/caustics.h).
-double unmended_caustics(const Arrivals& paths, double frequency) {
+/// Whether another ray meets this one, ζ < 1, where both have the amplitude of rays still: at what
+/// is no simple fold (raytrace/waves/caustics.h).
+bool meets_another(const Arrival& path, const Arrivals& paths, double frequency) {
   const double together = 4.0 / 3.0 / (2.0 * pi * frequency);  // of delays, at ζ = 1
-  double all = 0.0, meet = 0.0;
-  for (const Arrival& path : paths) {
-    const double energy = std::norm(path.amplitude);
-    all += energy;
-    const auto met = [&](const Arrival& other) {
-      return other.kind == ArrivalKind::ray && std::abs(other.caustics - path.caustics) == 1 &&
-             other.surface_bounces == path.surface_bounces &&
-             other.bottom_bounces == path.bottom_bounces &&
-             std::abs(other.delay - path.delay) < together &&
-             std::abs(other.launch_elevation - path.launch_elevation) < radians(3.0);
-    };
-    if (path.kind == ArrivalKind::ray && std::any_of(paths.begin(), paths.end(), met))
-      meet += energy;
-  }
-  return all > 0.0 ? meet / all : 0.0;
+  return std::any_of(paths.begin(), paths.end(), [&](const Arrival& other) {
+    return other.kind == ArrivalKind::ray && std::abs(other.caustics - path.caustics) == 1 &&
+           other.surface_bounces == path.surface_bounces &&
+           other.bottom_bounces == path.bottom_bounces &&
+           std::abs(other.delay - path.delay) < together &&
+           std::abs(other.launch_elevation - path.launch_elevation) < radians(3.0);
+  });
 }
 
+/// Share of the energy of rays whose amplitude is not to be trusted: they meet at what is no simple
+/// fold, pass a focus, or are the last of their family.
+double unsure_amplitudes(const EigenraySolver& solver, double source_depth, double receiver_depth,
+                         double frequency, const PathLimits& limits, const Arrivals& paths) {
+  constexpr double faintest = 0.01, tolerable_error = 0.12;  // 1 dB
+  const std::vector<double> errors =
+      focusing_errors(solver, source_depth, receiver_depth, frequency, limits, paths, faintest);
+  double all = 0.0, unsure = 0.0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const double energy = std::norm(paths[i].amplitude);
+    all += energy;
+    if (paths[i].kind == ArrivalKind::ray &&
+        (errors[i] > tolerable_error || meets_another(paths[i], paths, frequency)))
+      unsure += energy;
+  }
+  return all > 0.0 ? unsure / all : 0.0;
+}
+
+/// \param share  of the energy, of unsure_amplitudes()
 std::string line_of_caustics(double share, const std::string& whose) {
   constexpr double tolerable_share = 0.25;
   if (!(share > tolerable_share)) return "";
   char text[320];
   std::snprintf(text, sizeof text,
-                "propagation: %.0f %% of the sound to or from %.60s comes by rays that meet at a "
-                "caustic which is no simple fold: they are too loud",
+                "propagation: %.0f %% of the sound to or from %.60s comes by rays at a focus, at a "
+                "caustic which is no simple fold or at the end of their family: their level may be "
+                "decibels off",
                 100.0 * share, whose.c_str());
   return text;
 }
@@ -231,7 +244,8 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
     double energy = 0.0;
     for (const Arrival& path : arrivals) energy += std::norm(path.amplitude);
     AcrossThePulse worst;
-    worst.caustics = unmended_caustics(arrivals, centre);
+    worst.caustics =
+        unsure_amplitudes(paths.along_transect(), from.z(), to.z(), centre, limits, arrivals);
     worst.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
     for (const Arrival& path : arrivals) {
       if (path.kind == ArrivalKind::ray || std::norm(path.amplitude) < matters * energy) continue;

@@ -75,6 +75,8 @@ class BranchTable {
   /// The column's legs out of the ocean's series, or nullptr.
   [[nodiscard]] const OceanLegs* kept() const noexcept { return legs_ ? &*legs_ : nullptr; }
   [[nodiscard]] const PathLimits& limits() const noexcept { return limits_; }
+  /// By growing reference speed.
+  [[nodiscard]] std::span<const FanInterval> intervals() const noexcept { return intervals_; }
 
   /// Exact r and dr/dσ of a branch.
   struct RangeSlope {

@@ -351,12 +351,13 @@ TEST(EnoughBounces, EchoesInGuidesHaveTheWavesLevel) {
   }
 }
 
-/// Whether the paths of an echo from 10 km are warned of in these words.
-bool warned(Scenario s, double frequency, const std::string& words) {
+/// Whether the paths of an echo from a place are warned of in these words.
+bool warned(Scenario s, double frequency, const std::string& words,
+            const Vec3& place = {10000.0, 0.0, 60.0}) {
   s.reverberation.enabled = false;
   s.pulse.frequency = frequency;
   s.pings.sample_rate = 40000.0;
-  s.targets = {{.name = "boat", .track = {.start = {.position = {10000.0, 0.0, 60.0}}}}};
+  s.targets = {{.name = "boat", .track = {.start = {.position = place}}}};
   bool found = false;
   for (const std::string& line : PingSimulator(s).judge_paths().warnings)
     found = found || line.find(words) != std::string::npos;
@@ -385,6 +386,19 @@ TEST(EnoughBounces, CausticsThatAreNoFoldsAreWarnedOf) {
   s.environment.water = SoundSpeedProfile::table(depth, speed, Interpolation::spline);
   EXPECT_TRUE(warned(s, 3500.0, "no simple fold"));
   EXPECT_FALSE(warned(summer(), 3500.0, "no simple fold"));
+}
+
+// Both ends at 1000 m in Munk's channel: at 48 km all rays about the horizontal come together once
+// round, and the one that is left is 9 dB loud at 100 Hz. At 45 km none is near a focus.
+TEST(EnoughBounces, FociAreWarnedOf) {
+  Scenario s = support::even_sea();
+  s.environment.water = SoundSpeedProfile::munk();
+  s.environment.bottom.depth = 5000.0;
+  s.platforms[0].track.start.position = {0.0, 0.0, 1000.0};
+  s.propagation = {};
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 0;
+  EXPECT_TRUE(warned(s, 100.0, "at a focus", {48000.0, 0.0, 1000.0}));
+  EXPECT_FALSE(warned(s, 100.0, "at a focus", {45000.0, 0.0, 1000.0}));
 }
 
 }  // namespace
