@@ -8,6 +8,7 @@
 
 #include "core/normal.h"
 #include "raytrace/parallel.h"
+#include "sonar/own_grid.h"
 #include "sonar/place_weights.h"
 #include "sonar/pulse_spectrum.h"
 #include "sonar/reverberation_covariance.h"
@@ -111,12 +112,6 @@ void draw_stretch(const ReverberationCovariance& of, std::size_t index, const Co
   }
 }
 
-/// A multiple of 16 at least so long: FFTW takes twice as long for odd ones.
-std::size_t grid_length(double least) {
-  return lanes *
-         fast_fft_length(static_cast<std::size_t>(std::ceil(least / static_cast<double>(lanes))));
-}
-
 }  // namespace
 
 /// [K × bins] the pulse through ℓ_k, over the FFT's length; beyond the band ℓ_k is as at its edge.
@@ -151,13 +146,18 @@ std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_
 
 Baseband Synthesizer::silence(const ReverberationCovariance& covariance,
                               std::vector<std::complex<float>> memory) const {
-  constexpr double least_rate = 50.0;  // [Hz]; a level's step holds two samples or more
-  const Plan& plan = *plan_;
   const std::size_t colours = covariance.band.frequencies.size();
-  const std::size_t phones = covariance.components / colours;
-  if (!interpolates()) return silence(phones, std::move(memory));
   const double bins = static_cast<double>(covariance_spectra(covariance.band)->size()) /
                       static_cast<double>(colours);
+  return silence_of_band(covariance.components / colours, bins, std::move(memory));
+}
+
+/// \param bins  of the period that its sound fills
+Baseband Synthesizer::silence_of_band(std::size_t phones, double bins,
+                                      std::vector<std::complex<float>> memory) const {
+  constexpr double least_rate = 50.0;  // [Hz]; a level's step holds two samples or more
+  const Plan& plan = *plan_;
+  if (!interpolates()) return silence(phones, std::move(memory));
   const double period = static_cast<double>(plan.length) / plan.rate;
   // A finer grid, of which half as many taps are enough, where that is far from the record's rate.
   const double oversampling = 4.0 * bins < static_cast<double>(plan.passband_length)

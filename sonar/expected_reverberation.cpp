@@ -221,7 +221,7 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   key.add_all(pulse_duration, fields.size());
   for (const ScatteringField& f : fields) {
     // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
-    const auto& [sheet, grid, field, weights, boundary, depth, thickness, by_covariance, bearings,
+    const auto& [sheet, grid, field, weights, boundary, depth, thickness, heard_by, bearings,
                  divided_below, bounces, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;

@@ -16,6 +16,7 @@
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_band.h"
 #include "sonar/reverberation_covariance.h"
+#include "sonar/reverberation_streams.h"
 #include "sonar/sampling.h"
 #include "sonar/sound_synthesis.h"
 #include "sonar/sparse_sound.h"
@@ -208,30 +209,46 @@ ReverberationContext PingSimulator::reverberation_context(const Emission& emissi
 
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
                                                PingRecord& record, std::span<const Vec3> phones,
-                                               std::span<const BandPoint> band,
-                                               MemoryBudget budget) const {
-  return reverberation_->ping(
-      reverberation_context(emission, array, record, phones, band, &budget));
+                                               std::span<const BandPoint> band, MemoryBudget budget,
+                                               bool plane_waves) const {
+  ReverberationContext context =
+      reverberation_context(emission, array, record, phones, band, &budget);
+  context.plane_waves = plane_waves;
+  return reverberation_->ping(context);
+}
+
+/// The whole array, with what plane waves of reverberation would be wrong at its worst phone.
+PhoneGroups PingSimulator::plane_wave_fit(const Emission& emission, int array,
+                                          const PingRecord& record) const {
+  const Listening here{
+      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
+  return one_group(here, front_of_reverberation(here, emission),
+                   reverberation_point(scenario_, emission.sent.transmitter, array, record.ping,
+                                       here.ping_time));
+}
+
+Front PingSimulator::front_of_reverberation(const Listening& here, const Emission& emission) const {
+  return nearest_reverberation(
+      here, emission.sent.transmitter, emission.pulse.duration(),
+      emission.pulse.centre_frequency() + 0.5 * emission.pulse.bandwidth_40db());
 }
 
 /// The parts of an array that hear reverberation by themselves: every phone where that is asked
 /// for, else those that plane waves fit. Where its covariance or sectors are drawn, all hear it
-/// together; and groups lay down no more returns than are allowed one by one.
+/// together; streams are spheres; and groups lay down no more returns than are allowed one by one.
 PhoneGroups PingSimulator::reverberation_groups(const Emission& emission, int array,
-                                                const PingRecord& record,
+                                                const PingRecord& record, PhoneGroups whole,
                                                 const PingReverberation& heard) const {
   if (heard.fields().empty()) return {};
   const Listening here{
       .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
-  const Front front = nearest_reverberation(
-      here, emission.sent.transmitter, emission.pulse.duration(),
-      emission.pulse.centre_frequency() + 0.5 * emission.pulse.bandwidth_40db());
+  const Front front = front_of_reverberation(here, emission);
   if (scenario_.propagation.exact_per_phone) return phone_groups(here, front, infinity, 0.0);
-  const bool one_by_one = heard.covariance() == nullptr && heard.one_by_one() > 0.0;
-  PhoneGroups all = one_group(here, front,
-                              reverberation_point(scenario_, emission.sent.transmitter, array,
-                                                  record.ping, here.ping_time));
-  if (!one_by_one || all.error <= reverberation_periods) return all;
+  if (heard.streams() != nullptr && heard.covariance() == nullptr && heard.blocks() == 0)
+    whole.error = 0.0;
+  if (heard.covariance() != nullptr || !(heard.one_by_one() > 0.0) ||
+      whole.error <= reverberation_periods)
+    return whole;
   const auto most = static_cast<double>(scenario_.reverberation.most_returns);
   return phone_groups(here, front, most / heard.one_by_one());
 }
@@ -331,14 +348,22 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     const std::vector<Vec3> around =
         phones_from(reverberation_point(scenario_, sent.transmitter, array, ping, sent.time),
                     scenario_, array, ping, sent.time);
-    scattered.push_back(reverberation(emission, array, record, around, points, budget));
+    const PhoneGroups whole = plane_wave_fit(emission, array, record);
+    const bool plane = whole.error <= reverberation_periods;
+    // A line that bends while it listens has phones with velocities of their own.
+    const bool drawn =
+        !scenario_.propagation.exact_per_phone && (plane || !deforms(scenario_, array));
+    scattered.push_back(reverberation(
+        emission, array, record, drawn ? std::span<const Vec3>(around) : std::span<const Vec3>(),
+        points, budget, plane));
     record.bounces.include(scattered.back().bounces());
     record.timings.rays += watch.lap();
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled) {
       const Synthesizer& voice = coloured ? *coloured : synthesizer;
-      const PhoneGroups groups = reverberation_groups(emission, array, record, scattered.back());
+      const PhoneGroups groups =
+          reverberation_groups(emission, array, record, whole, scattered.back());
       record.plane_waves.groups =
           std::max(record.plane_waves.groups, static_cast<int>(groups.parts.size()));
       record.plane_waves.error = std::max(record.plane_waves.error, groups.error);
@@ -349,13 +374,15 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
         continue;
       }
       const ReverberationCovariance* dense = scattered.back().covariance();
+      const ReverberationStreams* streams = scattered.back().streams();
       Baseband sea = scattered.back().blocks() > 0 ? voice.baseband(scattered.back(), around)
+                     : streams != nullptr ? synthesizer.silence(*streams, std::move(used_before))
                      : dense != nullptr
                          ? synthesizer.silence(*dense, std::move(used_before))
                          : synthesizer.silence(phones.size(), std::move(used_before));
-      if (dense != nullptr)
-        synthesizer.add_gaussian(
-            *dense, {.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)}, sea);
+      const CovarianceDraw draw{.seed = scenario_.seed, .ping = static_cast<std::uint32_t>(ping)};
+      if (dense != nullptr) synthesizer.add_gaussian(*dense, draw, sea);
+      if (streams != nullptr) synthesizer.add_streams(*streams, around, draw, sea);
       append_channels(reverberated, std::move(sea));
     }
     record.timings.synthesis += watch.lap();

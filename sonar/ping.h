@@ -106,9 +106,12 @@ class PingSimulator {
   [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
                                                 PingRecord& record, std::span<const Vec3> phones,
                                                 std::span<const BandPoint> band,
-                                                MemoryBudget budget) const;
+                                                MemoryBudget budget, bool plane_waves = true) const;
+  [[nodiscard]] Front front_of_reverberation(const Listening& here, const Emission& emission) const;
+  [[nodiscard]] PhoneGroups plane_wave_fit(const Emission& emission, int array,
+                                           const PingRecord& record) const;
   [[nodiscard]] PhoneGroups reverberation_groups(const Emission& emission, int array,
-                                                 const PingRecord& record,
+                                                 const PingRecord& record, PhoneGroups whole,
                                                  const PingReverberation& heard) const;
   [[nodiscard]] Baseband sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
                                        int array, PingRecord& record, const PhoneGroups& groups,

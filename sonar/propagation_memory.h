@@ -28,6 +28,7 @@ enum class Kept : std::uint64_t {
   patch_rows,
   reverberation_covariance,
   covariance_spectra,
+  reverberation_streams,
   noise_factors
 };
 

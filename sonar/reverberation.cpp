@@ -24,21 +24,24 @@ Vec3 own_velocity(double rms, std::uint64_t entity, std::uint64_t seed) {
 PingReverberation::PingReverberation(const Scenario& scenario, const ReverberationContext& context,
                                      std::vector<ScatteringField> fields,
                                      std::shared_ptr<const ExpectedReverberation> expected,
-                                     std::shared_ptr<const ReverberationCovariance> covariance)
+                                     std::shared_ptr<const ReverberationCovariance> covariance,
+                                     std::shared_ptr<const ReverberationStreams> streams)
     : scenario_(scenario),
       context_(context),
       fields_(std::move(fields)),
       expected_(std::move(expected)),
-      covariance_(std::move(covariance)) {
+      covariance_(std::move(covariance)),
+      streams_(std::move(streams)) {
   context_.phones = {};  // of the caller's, who needs not keep them
   context_.budget = nullptr;
   for (std::size_t i = 0; i < fields_.size(); ++i)
-    if (!fields_[i].by_covariance) one_by_one_ += expected_->returns_of(i);
+    if (fields_[i].heard_by == HeardBy::scatterers) one_by_one_ += expected_->returns_of(i);
   // A part of the array hears the scatterers that its neighbours hear, one by one.
   by_sectors_ =
       !context_.point && one_by_one_ > static_cast<double>(scenario_.reverberation.most_returns);
   blocks_ = by_sectors_ ? sector_blocks() : expected_->blocks;
-  std::erase_if(blocks_, [&](const Block& b) { return fields_[b.field].by_covariance; });
+  std::erase_if(blocks_,
+                [&](const Block& b) { return fields_[b.field].heard_by != HeardBy::scatterers; });
 }
 
 PingReverberation::Met PingReverberation::meet(const ScatteringField& field,

@@ -18,6 +18,7 @@
 namespace asdic {
 
 struct ReverberationCovariance;
+struct ReverberationStreams;
 
 /// One ping as one array hears it.
 struct ReverberationContext {
@@ -34,6 +35,7 @@ struct ReverberationContext {
   std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
   MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
+  bool plane_waves = true;               ///< fit all of the phones, whatever is heard
   bool judged = false;                   ///< what numbers of bounces leave out is estimated
 };
 
@@ -52,7 +54,8 @@ class PingReverberation final : public ReturnSource {
   PingReverberation(const Scenario& scenario, const ReverberationContext& context,
                     std::vector<ScatteringField> fields,
                     std::shared_ptr<const ExpectedReverberation> expected,
-                    std::shared_ptr<const ReverberationCovariance> covariance = nullptr);
+                    std::shared_ptr<const ReverberationCovariance> covariance = nullptr,
+                    std::shared_ptr<const ReverberationStreams> streams = nullptr);
 
   /// What the array's reference point hears. The weakest pairs are left out as long as all that is
   /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
@@ -76,11 +79,14 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] const ReverberationCovariance* covariance() const noexcept {
     return covariance_.get();
   }
+  /// The same as streams of noise.
+  [[nodiscard]] const ReverberationStreams* streams() const noexcept { return streams_.get(); }
   /// That were followed, the most of all fields.
   [[nodiscard]] Bounces bounces() const;
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
-  /// How many of them are laid down one by one; none where sectors or a covariance stand for them.
+  /// How many of them are laid down one by one; none where sectors, a covariance or streams
+  /// stand for them.
   [[nodiscard]] double one_by_one() const noexcept { return by_sectors_ ? 0.0 : one_by_one_; }
 
   /// Expected level at time t since the ping [dB re 1 µPa, peak envelope/√2]: SL + 10·log₁₀ Σ_cells
@@ -135,6 +141,7 @@ class PingReverberation final : public ReturnSource {
   std::vector<ScatteringField> fields_;
   std::shared_ptr<const ExpectedReverberation> expected_;
   std::shared_ptr<const ReverberationCovariance> covariance_;
+  std::shared_ptr<const ReverberationStreams> streams_;
   double one_by_one_ = 0.0;
   bool by_sectors_;
   std::vector<Block> blocks_;  // those of returns()
@@ -167,6 +174,9 @@ class ReverberationModel {
   };
   /// All that a ping hears.
   [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context) const;
+  /// Whether nothing tells where in the world a part of the sea lies: each ping has weights of its
+  /// own, there is one array, and the ocean is the same everywhere.
+  [[nodiscard]] bool forgets_places(const Part& part, const ReverberationContext& context) const;
   /// Bounces after which a stretch of the record lacks next to nothing, found on a coarse grid.
   [[nodiscard]] Bounces enough(const Part& part, const SheetEnds& ends, BoundaryFans::Settings fan,
                                const ReverberationContext& context) const;
@@ -184,6 +194,9 @@ class ReverberationModel {
   [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
       std::span<const ScatteringField> fields, const ReverberationContext& context) const;
   [[nodiscard]] std::shared_ptr<const ReverberationCovariance> covariance(
+      std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+      const ReverberationContext& context) const;
+  [[nodiscard]] std::shared_ptr<const ReverberationStreams> streams(
       std::span<ScatteringField> fields, const ExpectedReverberation& expected,
       const ReverberationContext& context) const;
 

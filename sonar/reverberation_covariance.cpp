@@ -41,7 +41,6 @@ struct Circles {
 void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits& limits,
                  PathPairs& pairs, std::vector<Heard>& heard) {
   const ScatteringField& field = circles.field;
-  const ScatteringSheet& sheet = field.sheet;
   const double step = circles.edges[circle + 1] - circles.edges[circle];
   const double range = circles.edges[circle] + 0.5 * step;
   const double area = 2.0 * pi * range * step / static_cast<double>(circles.sectors);  // a place's
@@ -49,45 +48,27 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
   // Circles' first bearings differ, so that no bearing is left out where a stretch has several.
   const double turned = golden * static_cast<double>(circle);
   const double offset = circles.all_round() ? 0.5 : turned - std::floor(turned);
-  const Vec2 middle = sheet.ends().source.position.head<2>();
+  const Vec2 middle = field.sheet.ends().source.position.head<2>();
   for (std::size_t sector = 0; sector < circles.sectors; ++sector) {
     const double bearing = field.grid.first_bearing + 2.0 * pi *
                                                           (static_cast<double>(sector) + offset) /
                                                           static_cast<double>(circles.sectors);
     const Vec2 outward(std::sin(bearing), std::cos(bearing));
-    sheet.pairs_at(middle + range * outward, pairs, &limits, ring, 0.0, mixed(circle, sector));
-    for (const PathPair& pair : pairs.found) {
-      const PathPair* other = nullptr;
-      if (sheet.one_fan()) {
-        for (const PathPair& p : pairs.found)
-          if (p.out_index == pair.back_index && p.back_index == pair.out_index && &p != &pair) {
-            other = &p;
-            break;
-          }
-        if (other != nullptr && pair.out_index > pair.back_index) continue;
-      }
-      const double root = std::sqrt(area * pair.area);
-      const double along = pair.out->horizontal_slowness * pair.leaving.dot(outward) -
-                           pair.back->horizontal_slowness * pair.coming.dot(outward);
-      const double through = pair.out_ends->down + pair.back_ends->down;
-      Heard h{.delay = pair.delay,
-              .extent = std::abs(along) * step + std::abs(through) * field.thickness,
-              .one = root * pair.amplitude,
-              .one_slowness = sheet.arriving(pair),
-              .all_round = circles.all_round()};
-      if (other != nullptr) {
-        h.other = root * other->amplitude;
-        h.other_slowness = sheet.arriving(*other);
-      }
-      heard.push_back(h);
-    }
+    hear(field,
+         {.middle = middle + range * outward,
+          .outward = outward,
+          .length = step,
+          .area = area,
+          .ring = ring,
+          .chance = mixed(circle, sector)},
+         limits, circles.all_round(), pairs, heard);
   }
 }
 
 /// All that is heard, field by field, some circles after the other.
-std::vector<std::vector<Heard>> hear(std::span<const ScatteringField* const> fields,
-                                     const AudibleLimits& limits, double bin,
-                                     std::size_t bearings) {
+std::vector<std::vector<Heard>> hear_all(std::span<const ScatteringField* const> fields,
+                                         const AudibleLimits& limits, double bin,
+                                         std::size_t bearings) {
   constexpr std::size_t together = 32, usual = 8;  // circles of a task; pairs of a place
   std::vector<std::vector<Heard>> all;
   for (const ScatteringField* field : fields) {
@@ -193,7 +174,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   stretches = stretches_of(intensity.size());
   const Steering steering(listener.phones, listener.band.frequencies);
   components = steering.components();
-  std::vector<std::vector<Heard>> parts = hear(fields, limits, bin, bearings_for(listener));
+  std::vector<std::vector<Heard>> parts = hear_all(fields, limits, bin, bearings_for(listener));
   std::vector<Heard*> heard;
   for (std::vector<Heard>& part : parts)
     for (Heard& h : part) heard.push_back(&h);

@@ -5,6 +5,7 @@
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_covariance.h"
+#include "sonar/reverberation_streams.h"
 
 namespace asdic {
 namespace {
@@ -34,7 +35,21 @@ SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context)
       .band = context.band};
   ends.source.position += transmitter.offset;
   for (ReceiverLeg& leg : ends.legs) leg.line.position += hearer.offset;
+  // Who moves so little in a record that no phase changes by a twentieth of a radian is at rest.
+  constexpr double still = 0.05, slowest_sea = 1400.0;  // [rad], [m/s]
+  const double fastest = ends.source.velocity.norm() + ends.receiver.velocity.norm();
+  if (ends.legs.empty() && 2.0 * pi * ends.frequency * fastest * ends.latest / slowest_sea < still)
+    ends.source.velocity = ends.receiver.velocity = Vec3::Zero();
   return ends;
+}
+
+/// Puts the source above the origin, the receiver beside it as it was.
+void move_to_source(SheetEnds& ends) {
+  const auto tidy = [](double metres) { return 1e-6 * std::round(1e6 * metres); };  // of rounding
+  Vec3& receiver = ends.receiver.position;
+  receiver.x() = tidy(receiver.x() - ends.source.position.x());
+  receiver.y() = tidy(receiver.y() - ends.source.position.y());
+  ends.source.position.head<2>().setZero();
 }
 
 /// How far the receiver gets from where it is at the ping's start [m].
@@ -125,6 +140,14 @@ GroundLevel off(const GroundLevel& level, double thickness, double depth) {
 
 }  // namespace
 
+bool ReverberationModel::forgets_places(const Part& part,
+                                        const ReverberationContext& context) const {
+  const ScattererStatistics& statistics = part.field.statistics;
+  return paths_.layered() && !context.phones.empty() && scenario_.arrays.size() == 1 &&
+         scenario_.reverberation.synthesis != ScattererSynthesis::scatterers &&
+         statistics.coherence_time == 0.0 && !statistics.k_shape;
+}
+
 bool ReverberationModel::seas_compared(const ScattererField& field) const {
   return field.statistics.coherence_time > 0.0 ||
          std::any_of(scenario_.arrays.begin(), scenario_.arrays.end(),
@@ -149,9 +172,16 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
                   platform(scenario_.arrays[static_cast<std::size_t>(array)].platform));
   };
   const double reach = 0.5 * fastest_water_ * context.latest;  // the ellipse's half axis
+  // A sea that nobody finds again lies around the source, so that it is the same for every ping.
+  const bool around = forgets_places(part, context) && ends.legs.empty();
+  if (around) move_to_source(ends);
   const std::vector<Anchor> anchors =
-      anchors_of(middle(0, 0, 0.0), middle(context.transmitter, context.array, context.time),
-                 context.time, field.motion.current, reach / 8.0, part.id, seas_compared(field));
+      around ? std::vector{Anchor{
+                   .place = 0.5 * (ends.source.position + ends.receiver.position).head<2>(),
+                   .identity = mixed(part.id, part.id)}}
+             : anchors_of(middle(0, 0, 0.0),
+                          middle(context.transmitter, context.array, context.time), context.time,
+                          field.motion.current, reach / 8.0, part.id, seas_compared(field));
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
   const double moved = way_of_receiver(ends);
   const double apart = (source - receiver).norm() + moved;
@@ -253,31 +283,36 @@ std::shared_ptr<const ExpectedReverberation> ReverberationModel::expected(
   return key ? memory.keep(*key, std::move(made), bytes) : made;
 }
 
+namespace {
+
+constexpr double many = 20'000.0;  // returns: fewer are laid down as soon
+
+}  // namespace
+
 /// Marks the fields that are heard by their covariance: those that it serves, if they have many
 /// returns. Two arrays that hear the same scatterers would have one covariance: not if there are
 /// several. Out of the paths' memory if it is there.
 std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
     std::span<ScatteringField> fields, const ExpectedReverberation& expected,
     const ReverberationContext& context) const {
-  constexpr double many = 20'000.0;  // returns: fewer are laid down as soon
   // Its work grows with their square, a second at so many.
   constexpr std::size_t most_components = 128;
   const ScattererSynthesis how = scenario_.reverberation.synthesis;
-  if (how == ScattererSynthesis::scatterers || context.phones.empty() ||
-      scenario_.arrays.size() > 1)
+  if (how == ScattererSynthesis::scatterers || how == ScattererSynthesis::streams ||
+      context.phones.empty() || scenario_.arrays.size() > 1)
     return nullptr;
   const BandNodes band = ReverberationCovariance::frequencies_for(
       context.phones, context.pulse.centre_frequency(), context.pulse.bandwidth_99());
   if (how == ScattererSynthesis::automatic &&
-      band.frequencies.size() * context.phones.size() > most_components)
+      (!context.plane_waves || band.frequencies.size() * context.phones.size() > most_components))
     return nullptr;
   std::vector<const ScatteringField*> served;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    fields[i].by_covariance =
-        ReverberationCovariance::serves(fields[i]) &&
-        (how == ScattererSynthesis::covariance || expected.returns_of(i) > many);
-    if (fields[i].by_covariance) served.push_back(&fields[i]);
-  }
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (ReverberationCovariance::serves(fields[i]) &&
+        (how == ScattererSynthesis::covariance || expected.returns_of(i) > many)) {
+      fields[i].heard_by = HeardBy::covariance;
+      served.push_back(&fields[i]);
+    }
   if (served.empty()) return nullptr;
   const ReverberationCovariance::Listener listener = {.phones = context.phones,
                                                       .band = band,
@@ -288,11 +323,55 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
   PropagationMemory& memory = paths_.memory();
   if (key) {
     key->add(listener.band.frequencies);
-    for (const ScatteringField& field : fields) key->add_all(field.by_covariance, field.thickness);
+    for (const ScatteringField& field : fields)
+      key->add_all(static_cast<int>(field.heard_by), field.thickness);
     for (const Vec3& phone : context.phones) key->add(phone);
     if (auto known = memory.find<ReverberationCovariance>(*key)) return known;
   }
   auto made = std::make_shared<ReverberationCovariance>(served, expected.limits, listener);
+  const std::size_t bytes = made->bytes();
+  return key ? memory.keep(*key, std::move(made), bytes) : made;
+}
+
+/// Marks the fields that are heard as streams: those that they serve, if they have many returns and
+/// no covariance. Out of the paths' memory if they are there.
+std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
+    std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+    const ReverberationContext& context) const {
+  const ScattererSynthesis how = scenario_.reverberation.synthesis;
+  if (how == ScattererSynthesis::scatterers || how == ScattererSynthesis::covariance ||
+      context.phones.empty() || scenario_.arrays.size() > 1)
+    return nullptr;
+  const ReverberationStreams::Listener listener = {
+      .phones = context.phones,
+      .frequency = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99(),
+      .bandwidth = context.pulse.bandwidth_99(),
+      .pulse_duration = context.pulse.duration(),
+      .latest = context.latest};
+  std::vector<const ScatteringField*> served;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (fields[i].heard_by == HeardBy::scatterers && ReverberationStreams::serves(fields[i]) &&
+        (how == ScattererSynthesis::streams ||
+         expected.returns_of(i) >
+             std::max(many, ReverberationStreams::worth(listener, fields[i])))) {
+      fields[i].heard_by = HeardBy::streams;
+      served.push_back(&fields[i]);
+    }
+  if (served.empty()) return nullptr;
+  auto key =
+      ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_streams);
+  PropagationMemory& memory = paths_.memory();
+  if (key) {
+    key->add(listener.frequency);
+    for (const ScatteringField& field : fields) {
+      const ScattererMotion& motion = field.field.motion;
+      key->add_all(static_cast<int>(field.heard_by), field.thickness, field.boundary,
+                   static_cast<int>(motion.kind), motion.receding_share, motion.current);
+    }
+    for (const Vec3& phone : context.phones) key->add(phone);
+    if (auto known = memory.find<ReverberationStreams>(*key)) return known;
+  }
+  auto made = std::make_shared<ReverberationStreams>(served, expected.limits, listener);
   const std::size_t bytes = made->bytes();
   return key ? memory.keep(*key, std::move(made), bytes) : made;
 }
@@ -319,7 +398,13 @@ PingReverberation ReverberationModel::ping(const ReverberationContext& context) 
   std::vector<ScatteringField> heard = fields(context);
   auto known = expected(heard, context);
   auto by_covariance = covariance(heard, *known, context);
-  return {scenario_, context, std::move(heard), std::move(known), std::move(by_covariance)};
+  auto as_streams = streams(heard, *known, context);
+  return {scenario_,
+          context,
+          std::move(heard),
+          std::move(known),
+          std::move(by_covariance),
+          std::move(as_streams)};
 }
 
 }  // namespace asdic

@@ -25,9 +25,10 @@ struct VolumeLayer {
 
 /// How the sound of scatterers is made.
 enum class ScattererSynthesis {
-  automatic,   ///< by their covariance where that serves and there are many; else one by one
+  automatic,   ///< where there are many: by their covariance or as streams; else one by one
   scatterers,  ///< one by one, or by sectors beyond `most_returns`
   covariance,  ///< by their covariance wherever that serves, one by one elsewhere
+  streams,     ///< as streams of noise wherever that serves, one by one elsewhere
 };
 
 /// Reverberation of surface, bottom and volume as scatterers on polar grids.

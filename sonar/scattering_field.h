@@ -9,6 +9,13 @@
 
 namespace asdic {
 
+/// How the sound of a field's scatterers is made.
+enum class HeardBy {
+  scatterers,  ///< one after the other
+  covariance,  ///< drawn from their covariance (sonar/reverberation_covariance.h)
+  streams      ///< as streams of noise (sonar/reverberation_streams.h)
+};
+
 /// The scatterers of one boundary or layer, as one ping meets them.
 struct ScatteringField {
   ScatteringSheet sheet;
@@ -16,9 +23,9 @@ struct ScatteringField {
   ScattererField field;  ///< motion and statistics
   Draw weights;          ///< purpose of their draws
   std::uint64_t boundary = 0;
-  double depth = 0.0;               ///< near the ends [m]
-  double thickness = 0.0;           ///< of a sheet of the volume [m]
-  bool by_covariance = false;       ///< heard by it, not one scatterer after the other
+  double depth = 0.0;      ///< near the ends [m]
+  double thickness = 0.0;  ///< of a sheet of the volume [m]
+  HeardBy heard_by = HeardBy::scatterers;
   int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
   Bounces bounces = {};             ///< that were followed

@@ -132,6 +132,9 @@ class ScatteringSheet {
                                double bragg) const noexcept;
   /// Stretches that hold every factor that doppler() gives with scatterers that move so.
   [[nodiscard]] std::vector<DopplerSpan> dopplers(const ScattererMotion& motion) const;
+  /// Sum of the speeds with which source and receiver go along at most, by which Doppler factors
+  /// change with the bearing [m/s].
+  [[nodiscard]] double fastest_ends() const noexcept;
   /// The sound's slowness at the receiver.
   [[nodiscard]] Vec3 arriving(const PathPair& pair) const noexcept;
 

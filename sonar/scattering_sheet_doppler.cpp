@@ -11,6 +11,12 @@ Vec3 ScatteringSheet::arriving(const PathPair& pair) const noexcept {
   return {level * pair.coming.x(), level * pair.coming.y(), -pair.back_ends->launch_down};
 }
 
+double ScatteringSheet::fastest_ends() const noexcept {
+  double heard = ends_.receiver.velocity.norm();
+  for (const ReceiverLeg& leg : ends_.legs) heard = std::max(heard, leg.line.velocity.norm());
+  return ends_.source.velocity.norm() + heard;
+}
+
 double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
                                 double bragg) const noexcept {
   double factor = 1.0;

@@ -75,7 +75,7 @@ StretchSum::~StretchSum() = default;
 
 void StretchSum::add(Heard& h) {
   if (h.all_round) {
-    const HeardAllRound circle = h.from_all_round();
+    const HeardAllRound circle = from_all_round(h);
     h.power = array_.power(circle);
     all_round_.add(circle);
     return;

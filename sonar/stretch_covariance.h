@@ -7,29 +7,20 @@
 
 #include "core/level_namespace.h"
 #include "sonar/all_round_covariance.h"
+#include "sonar/heard_places.h"
 
 namespace asdic {
 
-/// What one place sends back by one pair of paths, or by a pair and its reciprocal, whose delay is
-/// the same.
-struct Heard {
-  double delay = 0.0, extent = 0.0;  // of the cell around the place [s]
-  double power = 0.0;                // mean over components: found with the covariance
-  std::complex<double> one = 0.0, other = 0.0;
-  Vec3 one_slowness = Vec3::Zero(), other_slowness = Vec3::Zero();
-  bool all_round = false;  // stands for all bearings
-
-  /// Of a circle. Both slownesses lie in one vertical plane.
-  [[nodiscard]] HeardAllRound from_all_round() const noexcept {
-    return {.one = std::norm(one),
-            .other = std::norm(other),
-            .both = one * std::conj(other),
-            .level_one = one_slowness.head<2>().norm(),
-            .down_one = one_slowness.z(),
-            .level_other = other_slowness.head<2>().norm(),
-            .down_other = other_slowness.z()};
-  }
-};
+/// What is heard of a circle. Both slownesses lie in one vertical plane.
+[[nodiscard]] inline HeardAllRound from_all_round(const Heard& h) noexcept {
+  return {.one = std::norm(h.one),
+          .other = std::norm(h.other),
+          .both = h.one * std::conj(h.other),
+          .level_one = h.one_slowness.head<2>().norm(),
+          .down_one = h.one_slowness.z(),
+          .level_other = h.other_slowness.head<2>().norm(),
+          .down_other = h.other_slowness.z()};
+}
 
 /// Phases of a direction at every component: k·phones + n is phone n at frequency f_k. Private to
 /// the reverberation's covariance, as is all of this file.

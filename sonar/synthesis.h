@@ -16,6 +16,7 @@ namespace asdic {
 struct BandNodes;
 struct CovarianceDraw;
 struct ReverberationCovariance;
+struct ReverberationStreams;
 
 /// When, how finely and about which carrier the phones record. t = 0 is the leading edge of the
 /// pulse at the projector.
@@ -107,6 +108,16 @@ class Synthesizer {
   void add_gaussian(const ReverberationCovariance& covariance, const CovarianceDraw& draw,
                     Baseband& baseband) const;
 
+  /// The same for streams.
+  [[nodiscard]] Baseband silence(const ReverberationStreams& sea,
+                                 std::vector<std::complex<float>> memory = {}) const;
+
+  /// Adds reverberation that is known as streams of noise, through the pulse. \param phones  [n]
+  /// that the streams were made for [m]   \param baseband  of as many phones, one of this
+  /// synthesizer's silences, at least
+  void add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
+                   const CovarianceDraw& draw, Baseband& baseband) const;
+
   /// The pulse has nothing further than this from its centre frequency [Hz].
   [[nodiscard]] double half_band() const noexcept;
 
@@ -123,6 +134,10 @@ class Synthesizer {
   void add_by_interpolation(const Baseband& baseband, double scale, std::span<float> samples) const;
   [[nodiscard]] Baseband silence_of(std::size_t phones, std::size_t length, double oversampling,
                                     std::vector<std::complex<float>> memory) const;
+  [[nodiscard]] Baseband silence_of_band(std::size_t phones, double bins,
+                                         std::vector<std::complex<float>> memory) const;
+  /// On either side of the carrier [bins of the period].
+  [[nodiscard]] double half_band_of(const ReverberationStreams& sea) const;
   [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
       const BandNodes& band) const;
 

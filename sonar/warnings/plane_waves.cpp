@@ -66,8 +66,8 @@ bool has_still_sea(const ReverberationSettings& sea) {
 
 std::string reverberation_plane_waves(const Scenario& scenario) {
   const ReverberationSettings& sea = scenario.reverberation;
-  // Elsewhere groups of phones hear it by themselves.
-  if (!sea.enabled || sea.synthesis == ScattererSynthesis::scatterers ||
+  // Elsewhere streams have round fronts, and groups of phones hear scatterers by themselves.
+  if (!sea.enabled || sea.synthesis != ScattererSynthesis::covariance ||
       scenario.arrays.size() != 1 || scenario.propagation.exact_per_phone || !has_still_sea(sea))
     return "";
   const Listening here{.scenario = scenario};
@@ -84,10 +84,9 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
     const double far = front.length * error / reverberation_periods;
     char text[320];
     std::snprintf(text, sizeof text,
-                  "reverberation.synthesis: where it is drawn from its covariance, it is plane "
-                  "waves for array %s: the first are up to %.2g periods off at its ends, 1/16 "
-                  "after %.2g s; with \"scatterers\" or propagation.exact_per_phone = true they "
-                  "are not",
+                  "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
+                  "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
+                  "\"automatic\" they are not",
                   array_of(scenario, 0).name.c_str(), error,
                   2.0 * far / speed_at(scenario, hears.position));
     return text;

@@ -8,6 +8,7 @@
 #include "sonar/ping_bounds.h"
 #include "sonar/reverberation.h"
 #include "sonar/reverberation_covariance.h"
+#include "sonar/reverberation_streams.h"
 #include "sonar/synthesis.h"
 #include "support/thesis.h"
 
@@ -65,24 +66,29 @@ class ReverberantSea {
          .time = time,
          .ping = ping,
          .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration,
-         .phones = scenario_.reverberation.synthesis == ScattererSynthesis::covariance
-                       ? std::span<const Vec3>(scenario_.arrays[0].phones)
-                       : std::span<const Vec3>()});
+         .phones = drawn() ? std::span<const Vec3>(scenario_.arrays[0].phones)
+                           : std::span<const Vec3>()});
   }
   [[nodiscard]] Baseband hear(std::span<const Return> returns) const {
     return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
   }
-  /// One scatterer after the other, unless the scenario asks for the covariance.
+  /// One scatterer after the other, unless the scenario asks for the covariance or for streams.
   [[nodiscard]] Baseband hear(std::uint32_t number, double time = 0.0) const {
     const PingReverberation scattered = ping(number, time);
     Baseband heard = synthesizer_.baseband(scattered, scenario_.arrays[0].phones);
+    const CovarianceDraw draw{.seed = scenario_.seed, .ping = number};
     if (scattered.covariance() != nullptr)
-      synthesizer_.add_gaussian(*scattered.covariance(), {.seed = scenario_.seed, .ping = number},
-                                heard);
+      synthesizer_.add_gaussian(*scattered.covariance(), draw, heard);
+    if (scattered.streams() != nullptr)
+      synthesizer_.add_streams(*scattered.streams(), scenario_.arrays[0].phones, draw, heard);
     return heard;
   }
 
  private:
+  [[nodiscard]] bool drawn() const {
+    const ScattererSynthesis how = scenario_.reverberation.synthesis;
+    return how == ScattererSynthesis::covariance || how == ScattererSynthesis::streams;
+  }
   [[nodiscard]] Vec3 source() const { return scenario_.platforms[0].track.at(0.0).position; }
 
   Scenario scenario_;

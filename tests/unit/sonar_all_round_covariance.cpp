@@ -79,7 +79,7 @@ Matrix over_bearings(const Listening& to, const Heard& h) {
 
 Matrix closed(const AllRoundArray& array, std::span<const Heard> all) {
   AllRoundSum sum(array);
-  for (const Heard& h : all) sum.add(h.from_all_round());
+  for (const Heard& h : all) sum.add(from_all_round(h));
   const auto n = static_cast<Eigen::Index>(array.components());
   Matrix found = Matrix::Zero(n, n);
   sum.add_to({found.data(), static_cast<std::size_t>(found.size())});
@@ -97,7 +97,7 @@ TEST(AllRoundCovariance, IsTheMeanOverBearings) {
       const std::vector<Heard> all = {heard(0.3, 0.5, other)};
       const Matrix expected = over_bearings(to, all[0]), found = closed(array, all);
       EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-6) << to.phones.size() << other;
-      EXPECT_NEAR(array.power(all[0].from_all_round()), expected.diagonal().real().mean(), 5e-6);
+      EXPECT_NEAR(array.power(from_all_round(all[0])), expected.diagonal().real().mean(), 5e-6);
       Heard alone = all[0];
       alone.one = std::sqrt(std::norm(alone.one) + std::norm(alone.other));
       alone.other = 0.0;

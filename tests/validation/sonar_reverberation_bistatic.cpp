@@ -101,8 +101,28 @@ void expect_level(const Scenario& s, double depth, Law&& law) {
   EXPECT_GT(std::abs(db_from_power(off)), 0.4);
 }
 
-TEST(BistaticReverberation, LambertBottomIsTheGroundIntegral) {
-  Scenario s = pair_of_platforms();
+/// One by one or as streams.
+class BistaticReverberation : public ::testing::TestWithParam<ScattererSynthesis> {
+ protected:
+  [[nodiscard]] static Scenario pair() {
+    Scenario s = pair_of_platforms();
+    s.reverberation.synthesis = GetParam();
+    // An array so wide has tens of thousands of streams.
+    if (GetParam() == ScattererSynthesis::streams)
+      for (Vec3& phone : s.arrays[0].phones) phone *= 0.25;
+    return s;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Synthesis, BistaticReverberation,
+                         ::testing::Values(ScattererSynthesis::scatterers,
+                                           ScattererSynthesis::streams),
+                         [](const auto& how) {
+                           return how.param == ScattererSynthesis::streams ? "streams"
+                                                                           : "scatterers";
+                         });
+
+TEST_P(BistaticReverberation, LambertBottomIsTheGroundIntegral) {
+  Scenario s = pair();
   s.reverberation.surface_scatters = false;
   s.reverberation.bottom = Lambert{.mu_db = -27.0};
   s.reverberation.bottom_field.statistics.coherence_time = 0.0;
@@ -113,8 +133,8 @@ TEST(BistaticReverberation, LambertBottomIsTheGroundIntegral) {
 
 // Chapman and Harris (1962) by both grazing angles, √(θ_in θ_out): 3.3β log₁₀(θ°/30) − 42.4
 // log₁₀ β + 2.6 dB, β = 158 (v f^{1/3})^{−0.58}, v in knots; no more than 0 dB.
-TEST(BistaticReverberation, ChapmanHarrisSurfaceIsTheGroundIntegral) {
-  Scenario s = pair_of_platforms();
+TEST_P(BistaticReverberation, ChapmanHarrisSurfaceIsTheGroundIntegral) {
+  Scenario s = pair();
   s.wind_speed = 10.0;
   s.reverberation.surface = ChapmanHarris{};
   const double beta = 158.0 * std::pow(10.0 * 3600.0 / 1852.0 * std::cbrt(4000.0), -0.58);
@@ -170,7 +190,7 @@ double far_surface(double apart) {
 
 // Receivers on two platforms a fraction of a wavelength apart hear one sea, as two phones of one
 // array do. N = 30·49 samples of two Gaussians, 4.9 sigma 0.09; seas of their own would have 0.
-TEST(BistaticReverberation, TwoPlatformsBesideEachOtherHearOneSea) {
+TEST(BistaticSeas, TwoPlatformsBesideEachOtherHearOneSea) {
   for (const double apart : {0.05, 0.1}) {
     double pairs = 0.0;
     const double found = coherence(vehicle_and_receivers({Vec3(apart, 0.0, 0.0)}), 0, 1, pairs);
@@ -183,7 +203,7 @@ TEST(BistaticReverberation, TwoPlatformsBesideEachOtherHearOneSea) {
 // which one sea goes over into the next around them. Seen from them the ground is lit by an ellipse
 // of eccentricity e = 1144/(1500·9), uneven over bearing by terms of e, which J₀ does not see, and
 // e².
-TEST(BistaticReverberation, NoBorderIsHeardBetweenTwoPlatforms) {
+TEST(BistaticSeas, NoBorderIsHeardBetweenTwoPlatforms) {
   constexpr double pitch = 0.5 * c * 12.2 / 8.0, apart = 0.1;
   const Scenario s = vehicle_and_receivers(
       {Vec3(pitch - 0.5 * apart, 0.0, 0.0), Vec3(pitch + 0.5 * apart, 0.0, 0.0)});
@@ -199,7 +219,7 @@ TEST(BistaticReverberation, NoBorderIsHeardBetweenTwoPlatforms) {
 // reaches, may tell. Marched over a slope and by the layered table; the vehicle 300 m above a floor
 // of some 900 m, from 2 s on, grazing below 25 degrees. Level to 0.05 dB: hundredths of a cell in
 // range (`hits_on_cells`).
-TEST(BistaticReverberation, LevelDoesNotDependOnTheFansRays) {
+TEST(BistaticSeas, LevelDoesNotDependOnTheFansRays) {
   for (const bool slope : {false, true}) {
     Scenario s = support::even_sea();
     s.environment.bottom = {.depth = 900.0, .material = Rigid{}};

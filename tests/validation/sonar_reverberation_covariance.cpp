@@ -6,13 +6,14 @@
 #include "sonar/ping.h"
 #include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
+#include "support/sound_moments.h"
 
 // Reverberation by its covariance against closed forms, and against the plain sum over scatterers
 // by mean, covariance between phones and Doppler spectrum.
 namespace asdic {
 namespace {
 
-using support::at;
+using support::at, support::cross_spectrum, support::moments, support::Moments;
 using Sea = support::ReverberantSea;
 
 constexpr double c = 1500.0, depth = 500.0;
@@ -139,29 +140,6 @@ TEST(ReverberationCovariance, HasTheExpectedLevelOfAllPairsOfPaths) {
   EXPECT_NEAR(sum / count, 0.0, 0.1);
 }
 
-/// ⟨b_m* b_n⟩/expected power over pings and independent times, one sample a step.
-struct Moments {
-  Eigen::MatrixXcd mean;
-  double count = 0.0;
-};
-Moments moments(const Sea& sea, int pings, double from, double to, double step) {
-  const auto phones = static_cast<Eigen::Index>(sea.scenario().arrays[0].phones.size());
-  Moments found{.mean = Eigen::MatrixXcd::Zero(phones, phones)};
-  const PingReverberation first = sea.ping(1);
-  const double level = sea.scenario().transmitters[0].source_level_db;
-  for (std::uint32_t ping = 1; ping <= std::uint32_t(pings); ++ping) {
-    const Baseband heard = sea.hear(ping);
-    for (double t = from; t < to; t += step, found.count += 1.0) {
-      Eigen::VectorXcd b(phones);
-      for (Eigen::Index n = 0; n < phones; ++n) b[n] = at(heard, std::size_t(n), t);
-      b /= std::sqrt(power_from_db(first.expected_db(t) - level));
-      found.mean += b.conjugate() * b.transpose();
-    }
-  }
-  found.mean /= found.count;
-  return found;
-}
-
 // The plain sum and the covariance's, 30 pings of 38 times 0.25 s apart (two pulse lengths): 1140
 // samples each; elements of a sample covariance have a standard deviation of the powers' geometric
 // mean over √count (real and imaginary part 1/√2 of it, or all of it in one), the difference of two
@@ -177,30 +155,6 @@ TEST(ReverberationCovariance, HasTheMomentsOfThePlainSum) {
   const double allowed = 4.9 * std::sqrt(2.0 / a.count);
   EXPECT_LT((a.mean - b.mean).cwiseAbs().maxCoeff(), allowed);
   EXPECT_GT((a.mean - w.mean).cwiseAbs().maxCoeff(), allowed);
-}
-
-/// Mean of conj(B_m(ν))·B_n(ν) over pings and windows at a frequency off the carrier.
-std::complex<double> cross_spectrum(const std::vector<Baseband>& pings, std::size_t m,
-                                    std::size_t n, double from, double to, double length,
-                                    double frequency) {
-  std::complex<double> sum = 0.0;
-  double count = 0.0;
-  for (const Baseband& heard : pings)
-    for (double start = from; start + length < to; start += length, count += 1.0) {
-      std::complex<double> a = 0.0, b = 0.0;
-      const auto first = static_cast<std::size_t>((start - heard.start) * heard.sample_rate);
-      const auto samples = static_cast<std::size_t>(length * heard.sample_rate);
-      for (std::size_t i = 0; i < samples; ++i) {
-        const double u = (double(i) + 0.5) / double(samples);
-        const std::complex<double> w =
-            std::polar((0.5 - 0.5 * std::cos(2.0 * pi * u)) * std::pow(start, 1.5),
-                       -2.0 * pi * frequency * double(i) / heard.sample_rate);
-        a += w * std::complex<double>(heard.channel(m)[first + i]);
-        b += w * std::complex<double>(heard.channel(n)[first + i]);
-      }
-      sum += std::conj(a) * b;
-    }
-  return sum / count;
 }
 
 // A broad pulse: at f the coherence of two phones d apart is J₀(2πf d cos θ/c), 1.2 m at 830 and
@@ -360,8 +314,8 @@ TEST(ReverberationCovariance, TakesOverBeyondTwentyThousandReturns) {
     std::size_t blocks = 0;
     for (std::size_t b = 0; b < ping.blocks(); ++b) blocks += ping.expected(b) > 0 ? 1 : 0;
     EXPECT_GT(blocks, 0U);
-    EXPECT_FALSE(ping.fields()[1].by_covariance);
-    return ping.covariance() != nullptr && ping.fields()[0].by_covariance;
+    EXPECT_EQ(ping.fields()[1].heard_by, HeardBy::scatterers);
+    return ping.covariance() != nullptr && ping.fields()[0].heard_by == HeardBy::covariance;
   };
   EXPECT_FALSE(fields(12));
   EXPECT_TRUE(fields(360));

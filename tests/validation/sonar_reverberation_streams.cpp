@@ -1,0 +1,293 @@
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "sonar/ping.h"
+#include "sonar/reverberation_streams.h"
+#include "support/reverberant_sea.h"
+#include "support/sound_moments.h"
+
+// Reverberation as streams of noise against closed forms, brute force and the plain sum over
+// scatterers: power, covariance between phones, Doppler factors, fronts near by.
+namespace asdic {
+namespace {
+
+using support::cross_spectrum, support::moments, support::Moments;
+using Sea = support::ReverberantSea;
+
+constexpr double c = 1500.0, depth = 500.0, speed = 4.0;
+
+/// A vehicle that makes 4 m/s 500 m below the surface, no bounces.
+Scenario under_way() {
+  Scenario s = support::even_sea();
+  s.platforms[0].track.start = {.position = {0.0, 0.0, depth},
+                                .velocity = {0.6 * speed, 0.8 * speed, 0.0}};
+  s.pulse = {.frequency = 1000.0, .duration = 0.12};
+  s.pings.sample_rate = 4000.0;
+  s.pings.recording_duration = 12.2;
+  s.reverberation.synthesis = ScattererSynthesis::streams;
+  s.arrays[0].phones = {Vec3::Zero(), Vec3(0.3, 0.4, 0.0), Vec3(-0.9, 0.5, 0.0),
+                        Vec3(0.2, -0.7, 0.6)};
+  return s;
+}
+
+/// What the streams heard at a delay say: power [1/s], covariance between phones, moments of the
+/// Doppler factors weighted with the power.
+struct Said {
+  double power = 0.0, doppler = 0.0, doppler2 = 0.0;
+  Eigen::MatrixXcd covariance;
+};
+
+Said said(const ReverberationStreams& sea, double delay, const std::vector<Vec3>& phones,
+          double frequency) {
+  const auto n = static_cast<Eigen::Index>(phones.size());
+  Said all{.covariance = Eigen::MatrixXcd::Zero(n, n)};
+  const auto bin = static_cast<std::size_t>(delay / sea.bin);
+  for (const auto& block : sea.blocks) {
+    if (bin < block.begin || bin >= block.end) continue;
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      const ReverberationStreams::Stream& stream = sea.streams[i];
+      double before = 0.0;
+      for (std::size_t j = 0; j < stream.parts; ++j) {
+        const ReverberationStreams::Part& part = sea.parts[stream.first_part + j];
+        const double power =
+            (part.chance - before) * double(sea.intensity[stream.first + bin - block.begin]);
+        before = part.chance;
+        for (const auto& weight : part.weight) {
+          Eigen::VectorXcd heard = Eigen::VectorXcd::Zero(n);
+          for (std::size_t wave = 0; wave < 2; ++wave)
+            for (Eigen::Index p = 0; p < n; ++p) {
+              // A sphere about a point so far away that it is what its curvature says.
+              const double radius = 1.0 / std::max(1e-9, part.curvature[wave]);
+              const Vec3 s = part.slowness[wave];
+              const double lag =
+                  s.isZero()
+                      ? 0.0
+                      : s.norm() *
+                            ((-radius * s.normalized() - phones[std::size_t(p)]).norm() - radius);
+              heard[p] += weight[wave] * std::polar(1.0, -2.0 * pi * frequency * lag);
+            }
+          all.covariance += power * heard * heard.adjoint();
+        }
+        all.power += power;
+        all.doppler += power * (part.doppler - 1.0);
+        all.doppler2 += power * (part.doppler - 1.0) * (part.doppler - 1.0);
+      }
+    }
+  }
+  all.covariance /= all.power;
+  all.doppler /= all.power;
+  all.doppler2 /= all.power;
+  return all;
+}
+
+/// Intensity over delay of a vehicle at rest, 2π∫σR⁻³dR by dR = c/2 dτ [1/s].
+double intensity(const Sea& sea, double delay) {
+  const double slant = 0.5 * c * delay, grazing = std::asin(depth / slant);
+  const double sigma = scattering_cross_section(
+      sea.scenario().reverberation.surface,
+      {.grazing_in = grazing, .grazing_out = grazing, .azimuth = pi}, 1000.0);
+  return pi * c * sigma / (slant * slant * slant);
+}
+
+// Sound from all bearings at the elevation θ: covariance J₀(kd cos θ) times the phase of depth, as
+// for a vehicle at rest but for the way that she makes (4 m/s × 12 s of 9 km: 0.3 % of cos θ, and
+// of her own Doppler, 0.5 % of k). η = 1 + 2v cos θ cos φ/c: no mean, variance ½(2v cos θ/c)², less
+// what lies within a part, (¼/T)²/12 of 14 Hz². Parts are 0.7 rad wide at the array's ends: of
+// e^{iψ} across 1.3 rad between them the mean instead of all is off by 0.07, which neighbours share
+// with either sign: 0.03. Power: bins and circles, 3 %. Blocks hold an eighth of their delay, over
+// which sin θ of the phases of depth (4 rad × 0.6 m) changes by as much: 0.01.
+TEST(ReverberationStreams, AreABesselFunctionOfPlacesAndTheAnnulusIntegral) {
+  Scenario s = under_way();
+  s.pulse.duration = 0.5;
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  ASSERT_NE(ping.streams(), nullptr);
+  const std::vector<Vec3>& x = s.arrays[0].phones;
+  for (const double t : {3.0, 5.5, 9.0, 11.7}) {
+    const Said all = said(*ping.streams(), t, x, 1000.0);
+    const double sine = depth / (0.5 * c * t), cosine = std::sqrt(1.0 - sine * sine);
+    for (std::size_t m = 0; m < x.size(); ++m)
+      for (std::size_t n = 0; n < x.size(); ++n) {
+        const Vec3 apart = x[m] - x[n];
+        const std::complex<double> expected =
+            std::cyl_bessel_j(0.0, 2.0 * pi * 1000.0 * apart.head<2>().norm() * cosine / c) *
+            std::polar(1.0, -2.0 * pi * 1000.0 * apart.z() * sine / c);
+        EXPECT_NEAR(std::abs(all.covariance(Eigen::Index(m), Eigen::Index(n)) - expected), 0.0,
+                    0.04)
+            << t << " " << m << n;
+      }
+    const double middle = (std::floor(t / ping.streams()->bin) + 0.5) * ping.streams()->bin;
+    EXPECT_NEAR(all.power / intensity(sea, middle), 1.0, 0.03) << t;
+    EXPECT_NEAR(all.doppler / (2.0 * speed / c), 0.0, 0.01) << t;
+    const double widest = 2.0 * speed * cosine / c;
+    EXPECT_NEAR(all.doppler2 / (0.5 * widest * widest), 1.0, 0.03) << t;
+  }
+}
+
+// The plain sum and the streams, 30 pings of 38 times two pulse lengths apart: as in
+// sonar_reverberation_covariance.cpp, 4.9·√2/√1140. Phones in another place must fail.
+TEST(ReverberationStreams, HaveTheMomentsOfThePlainSum) {
+  Scenario s = under_way();
+  s.propagation.max_surface_bounces = 1;
+  s.propagation.max_bottom_bounces = 1;
+  s.environment.bottom = {.depth = 1500.0, .material = Rigid{}};
+  Scenario plain = s, wrong = s;
+  plain.reverberation.synthesis = ScattererSynthesis::scatterers;
+  for (Vec3& phone : wrong.arrays[0].phones) phone = Vec3(0.7 * phone.y(), 0.5 * phone.x(), 0.0);
+  const Moments a = moments(Sea(plain), 30, 2.5, 12.0, 0.25);
+  const Moments b = moments(Sea(s), 30, 2.5, 12.0, 0.25);
+  const Moments w = moments(Sea(wrong), 30, 2.5, 12.0, 0.25);
+  const double allowed = 4.9 * std::sqrt(2.0 / a.count);
+  EXPECT_LT((a.mean - b.mean).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_GT((a.mean - w.mean).cwiseAbs().maxCoeff(), allowed);
+}
+
+// A tone of 1 s by a vehicle at 4 m/s: ±5.3 Hz. Windows of 2 s of 30 pings, 120 exponential
+// samples, as in sonar_reverberation_covariance.cpp: a factor of 1.63 to either side. The same sea
+// at rest must fail.
+TEST(ReverberationStreams, HaveTheDopplerSpectrumOfThePlainSum) {
+  Scenario s = under_way();
+  s.pulse = {.frequency = 1000.0, .duration = 1.0};
+  s.arrays[0].phones = {Vec3::Zero()};
+  Scenario plain = s, still = s;
+  plain.reverberation.synthesis = ScattererSynthesis::scatterers;
+  still.platforms[0].track.start.velocity.setZero();
+  std::vector<Baseband> one, other, wrong;
+  const Sea as_streams(s), one_by_one(plain), at_rest(still);
+  for (std::uint32_t ping = 1; ping <= 120; ++ping) {
+    one.push_back(as_streams.hear(ping));
+    other.push_back(one_by_one.hear(ping));
+    wrong.push_back(at_rest.hear(ping));
+  }
+  double furthest = 0.0;
+  for (double f = -6.0; f <= 6.0; f += 0.5) {
+    const auto at = [&](const std::vector<Baseband>& heard) {
+      return cross_spectrum(heard, 0, 0, 3.5, 12.0, 2.0, f).real();
+    };
+    EXPECT_NEAR(std::log(at(one) / at(other)), 0.0, std::log(1.32)) << f;
+    furthest = std::max(furthest, std::abs(std::log(at(wrong) / at(other))));
+  }
+  EXPECT_GT(furthest, std::log(1.32));
+}
+
+// Phones up to 40 m apart, scatterers from 525 m away: fronts are spheres, whose ends lie
+// k·x²/8R up to 1.6 rad behind. Against the sum over the surface, each place with its own distance
+// to either phone. The mean over a part 1.3 rad wide between the ends is off by 0.07 of it. Plane
+// waves must fail.
+TEST(ReverberationStreams, FrontsNearByAreSpheres) {
+  Scenario s = under_way();
+  s.platforms[0].track.start.velocity.setZero();
+  s.arrays[0].phones = {Vec3::Zero(), Vec3(16.0, -12.0, 3.0), Vec3(-16.0, 12.0, 0.0)};
+  s.pings.recording_duration = 4.0;
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  ASSERT_NE(ping.streams(), nullptr);
+  ReverberationStreams flat = *ping.streams();
+  for (auto& part : flat.parts) part.curvature = {0.0, 0.0};
+  const std::vector<Vec3>& x = s.arrays[0].phones;
+  double most = 0.0;
+  for (const double t : {0.70, 0.74, 0.8, 1.0}) {
+    const double bin = ping.streams()->bin, from = std::floor(t / bin) * bin;
+    Eigen::MatrixXcd sum = Eigen::MatrixXcd::Zero(3, 3);
+    double power = 0.0;
+    constexpr int parts = 60, bearings = 1440;
+    for (int i = 0; i < parts; ++i) {
+      const double slant = 0.5 * c * (from + (i + 0.5) / parts * bin);
+      const double level = std::sqrt(slant * slant - depth * depth);
+      for (int j = 0; j < bearings; ++j) {
+        const double towards = 2.0 * pi * j / bearings;
+        const Vec3 place(level * std::sin(towards), level * std::cos(towards), -depth);
+        Eigen::VectorXcd heard(3);
+        for (Eigen::Index p = 0; p < 3; ++p)
+          heard[p] = std::polar(
+              1.0, -2.0 * pi * 1000.0 / c * ((place - x[std::size_t(p)]).norm() - slant));
+        sum += heard * heard.adjoint();
+        power += 1.0;
+      }
+    }
+    const auto off = [&](const ReverberationStreams& streams) {
+      return (said(streams, t, x, 1000.0).covariance - sum / power).cwiseAbs().maxCoeff();
+    };
+    EXPECT_LT(off(*ping.streams()), 0.07) << t;
+    most = std::max(most, off(flat));
+  }
+  EXPECT_GT(most, 0.12);
+}
+
+// Waves that come and go: shares of the power above and below the sound's own frequency.
+TEST(ReverberationStreams, BraggLinesHaveTheirShares) {
+  Scenario s = under_way();
+  s.platforms[0].track.start.velocity.setZero();
+  s.pulse.duration = 1.0;  // the lines are 1.4 Hz off
+  s.reverberation.surface_field.motion = {.kind = ScattererMotion::Kind::bragg,
+                                          .receding_share = 0.2};
+  const Sea sea(s);
+  const PingReverberation ping = sea.ping(1);
+  ASSERT_NE(ping.streams(), nullptr);
+  double low = 0.0, all = 0.0;
+  for (const auto& block : ping.streams()->blocks)
+    for (std::size_t i = block.first; i < block.last; ++i)
+      for (std::size_t bin = block.begin; bin < block.end; ++bin) {
+        const auto& stream = ping.streams()->streams[i];
+        const double power = double(ping.streams()->intensity[stream.first + bin - block.begin]);
+        all += power;
+        if (ping.streams()->parts[stream.first_part].doppler < 1.0) low += power;
+      }
+  EXPECT_NEAR(low / all, 0.2, 1e-3);
+}
+
+// They serve whoever moves and hears where the sea forgets from ping to ping; what it remembers is
+// heard one scatterer after the other.
+TEST(ReverberationStreams, ServeSeasThatForget) {
+  const auto with = [](auto&& change) {
+    Scenario s = under_way();
+    change(s);
+    return Sea(s).ping(1).streams() != nullptr;
+  };
+  EXPECT_TRUE(with([](Scenario&) {}));
+  EXPECT_TRUE(with([](Scenario& s) { s.reverberation.surface_field.motion.current.x() = 0.1; }));
+  EXPECT_TRUE(with([](Scenario& s) {
+    s.platforms.push_back(s.platforms[0]);
+    s.platforms[1].track.start.position.x() += 100.0;
+    s.arrays[0].platform = 1;
+  }));
+  EXPECT_FALSE(
+      with([](Scenario& s) { s.reverberation.surface_field.statistics.coherence_time = 10.0; }));
+  EXPECT_FALSE(with([](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 1.0; }));
+  EXPECT_FALSE(with([](Scenario& s) {
+    s.reverberation.surface_field.motion = {.kind = ScattererMotion::Kind::spread,
+                                            .speed_rms = 0.5};
+  }));
+  EXPECT_FALSE(with([](Scenario& s) { s.arrays.push_back(s.arrays[0]); }));
+  EXPECT_FALSE(
+      with([](Scenario& s) { s.reverberation.synthesis = ScattererSynthesis::scatterers; }));
+}
+
+// One thread or several, propagation known or not: the same bits. Another ping, another seed:
+// others.
+TEST(ReverberationStreams, BitsDoNotDependOnThreadsOrOnWhatIsKept) {
+  Scenario s = under_way();
+  s.pings.count = 2;
+  s.pings.samples = Samples::baseband;
+  s.pings.carrier = 1000.0;
+  s.pings.baseband_rate = 200.0;
+  const auto shared = std::make_shared<SharedPropagation>();
+  std::vector<float> alone;
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    alone = PingSimulator(s, shared).simulate(1).pressure;
+  }
+  EXPECT_EQ(PingSimulator(s).simulate(1).pressure, alone);
+  EXPECT_EQ(PingSimulator(s, shared).simulate(1).pressure, alone);
+  EXPECT_NE(PingSimulator(s, shared).simulate(2).pressure, alone);
+  s.seed = 2;
+  EXPECT_NE(PingSimulator(s, shared).simulate(1).pressure, alone);
+}
+
+}  // namespace
+}  // namespace asdic
