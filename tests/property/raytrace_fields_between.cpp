@@ -133,7 +133,7 @@ PropagationCase stratified(unsigned seed) {
   if (seed % 4 == 3)
     run_case.environment.water = SoundSpeedProfile::table(z, c, Interpolation::n2_linear);
   if (seed % 3 == 0) run_case.environment.absorption = Thorp{};
-  run_case.receivers.depths.back() = run_case.environment.bottom.depth;
+  run_case.receivers.depths.back() = run_case.environment.bottom.depth + 1e-9;  // by rounding
   run_case.receivers.depths.front() = 0.0;
   return run_case;
 }
