@@ -144,9 +144,10 @@ class ImageGuide {
   /// \param range  [m], ≥ 0   \param depth  [m]
   [[nodiscard]] ImageSum at(double range, double depth) const {
     const Environment& ocean = case_.environment;
-    if (depth < ocean.surface.depth || depth > ocean.bottom.depth) return {};
+    const std::optional<double> there = depth_in_water(ocean, depth);
+    if (!there) return {};
     if (case_.box_range > 0.0 && range > case_.box_range) return {};
-    const Receiver to{std::max(range, nearest), depth - ocean.surface.depth};
+    const Receiver to{std::max(range, nearest), *there - ocean.surface.depth};
     Tally tally;
     const auto tail = static_cast<int>(first_tail_shell(to.range));
     for (int k = 0; k < most_shells; ++k) {
@@ -335,6 +336,12 @@ bool narrows_to_paths(const PropagationCase& run_case) {
       (run_case.box_depth >= ocean.bottom.depth && -run_case.box_depth <= ocean.surface.depth);
   return hats && forward && within_box && beams.elevations.empty() && !beams.displacement &&
          run_case.receivers.ranges.front() >= 0.0;
+}
+
+std::optional<double> depth_in_water(const Environment& ocean, double depth) noexcept {
+  constexpr double on_boundary = 1e-3;
+  const double there = std::clamp(depth, ocean.surface.depth, ocean.bottom.depth);
+  return std::abs(depth - there) <= on_boundary ? std::optional(there) : std::nullopt;
 }
 
 ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent) {

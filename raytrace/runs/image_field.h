@@ -17,6 +17,10 @@ struct RaySum {
 /// source and in water that is all within the box: then their limit is the sum of paths.
 [[nodiscard]] bool narrows_to_paths(const PropagationCase& run_case);
 
+/// A receiver's depth between flat boundaries: up to 1 mm beyond one, by rounding, it is on it;
+/// further off there is no water.
+[[nodiscard]] std::optional<double> depth_in_water(const Environment& ocean, double depth) noexcept;
+
 /// Sums as a field, with the |ΔTL| that their errors may make at 95 % of the receivers that hear
 /// anything. \param sums  [rows × ranges]
 [[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);

@@ -19,7 +19,6 @@ constexpr double edge_of_fan_here = 1e-12;   // elevations there belong to it [r
 constexpr double faintest = 1e-4;            // of reflections, as beams are followed
 constexpr int most_bounces_of_paths = 2048;  // off either boundary
 constexpr double most_paths = 1e6;           // beyond this beams are cheaper
-constexpr double on_boundary_at = 1e-3;      // receivers so near to a boundary are on it [m]
 constexpr std::size_t counted = 5;           // ranges where paths are counted to know
 
 class PathSum {
@@ -67,10 +66,9 @@ class PathSum {
 
  private:
   [[nodiscard]] std::vector<Arrivals> to(double depth, std::span<const double> ranges) const {
-    const Environment& ocean = case_.environment;
-    const double there = std::clamp(depth, ocean.surface.depth, ocean.bottom.depth);
-    if (std::abs(depth - there) > on_boundary_at) return {};
-    return solver_.find(source_depth_, there, ranges, case_.frequency, limits_);
+    const std::optional<double> there = depth_in_water(case_.environment, depth);
+    if (!there) return {};
+    return solver_.find(source_depth_, *there, ranges, case_.frequency, limits_);
   }
   /// Whether what comes in and what is reflected leave nothing there.
   [[nodiscard]] bool silent(std::size_t row, std::size_t column) const noexcept {

@@ -157,6 +157,18 @@ TEST(ImageField, IsThePlainSumOverManyImages) {
       }
 }
 
+// A row that rounding has a little below the bottom is on it; one further off is in no water.
+TEST(ImageField, ReachesReceiversOnTheBottom) {
+  PropagationCase c = ideal_guide();
+  c.environment.bottom.material = FluidHalfSpace{};
+  const double bottom = c.environment.bottom.depth;
+  c.receivers = {.depths = {bottom, bottom + 1e-9, bottom + 1.0}, .ranges = {900.0}};
+  const auto field = run(c).field;
+  EXPECT_GT(std::abs(field[0]), 0.0F);
+  EXPECT_NEAR(std::abs(field[1] - field[0]), 0.0F, 1e-5F * std::abs(field[0]));
+  EXPECT_EQ(std::abs(field[2]), 0.0F);
+}
+
 // Images where the beams' limit is not the sum of paths, or the water no guide, would be wrong.
 TEST(ImageField, IsChosenOnlyWhereItIsTheBeamsLimit) {
   const auto beams_of = [](auto&& change) {
