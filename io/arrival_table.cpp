@@ -33,7 +33,7 @@ std::vector<GrowingTable::Column> arrival_columns() {
           {"upper_turns", "turning points below the surface", "", Type::int32},
           {"lower_turns", "turning points above the bottom", "", Type::int32},
           {"caustics", "caustics passed", "", Type::int32},
-          {"kind", "0 a ray, 1 diffracted: where no ray comes, 2 one of two at a caustic", "",
+          {"kind", "0 a ray, 1 diffracted: where no ray comes, 2 with the amplitude of waves", "",
            Type::int8},
           {"first_bounce", "first row of /bounces, -1: none", "", Type::int32},
           {"bounce_count", "rows of /bounces", "", Type::int32}};

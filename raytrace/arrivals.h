@@ -18,7 +18,7 @@ struct Bounce {
 enum class ArrivalKind : std::uint8_t {
   ray,
   diffracted,  ///< where no ray comes: waves/diffraction.h. No bounces, turns or q
-  caustic,     ///< one of two that meet at a caustic, or would: waves/caustics.h
+  caustic,     ///< a ray with waves' amplitude: waves/caustics.h, waves/cycles.h
 };
 
 /// One eigenray: a path that sound takes from a source to a receiver. Unit source at 1 m; neither

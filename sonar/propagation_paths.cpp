@@ -8,6 +8,7 @@
 
 #include "raytrace/ocean/slice.h"
 #include "raytrace/waves/caustics.h"
+#include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
 #include "sonar/followed_path.h"
 #include "sonar/geometry.h"
@@ -61,6 +62,18 @@ PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
   limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);
   limits.max_launch_angle = std::min(limits.max_launch_angle, needed.max_launch_angle);
   return limits;
+}
+
+/// Gives a ray that was followed the amplitude of waves that it had, where that has hardly changed:
+/// two wavelengths further it has by some per cent. \return false: it must be found anew
+bool keeps_amplitude(const Arrival& known, Arrival& followed, double frequency) {
+  constexpr double periods = 2.0;
+  if (!(std::abs(followed.delay - known.delay) * frequency < periods)) return false;
+  followed.kind = known.kind;
+  followed.amplitude = known.amplitude;
+  followed.spreading = known.spreading;
+  followed.scattered = known.scattered;
+  return true;
 }
 
 }  // namespace
@@ -151,6 +164,15 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
     Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
     if (limits.diffraction) {
       put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
+      put_waves(along_, from.z(), to.z(), range, frequency, limits, found,
+                [&](const CycleNeed& need, const CyclesMaker& make) {
+                  ExactKey kept_as = key(Kept::slice);  // of which layered oceans have none
+                  kept_as.add_all(need.source_depth, need.receiver_depth, need.frequency,
+                                  need.furthest, need.without_surface, need.without_bottom);
+                  if (const auto kept = memory_->find<CycleWaves>(kept_as)) return kept;
+                  const auto made = make();
+                  return memory_->keep(kept_as, made, made->bytes());
+                });
       auto more =
           diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
       if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
@@ -171,7 +193,11 @@ Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequen
 Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits, Reuse* reuse) const {
   ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
-  for (const Arrival& path : known) add_path(key, path);
+  for (const Arrival& path : known) {
+    add_path(key, path);
+    if (path.kind == ArrivalKind::caustic)
+      key.add_all(path.delay, path.amplitude.real(), path.amplitude.imag());
+  }
   return recall_or(key, reuse, [&] {
     const double range = separation(from, to).range;
     std::optional<RayTracer> tracer;
@@ -184,10 +210,12 @@ Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& fr
       std::optional<Arrival> same;
       if (path.kind == ArrivalKind::diffracted)
         same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
-      else if (layered_ && path.kind == ArrivalKind::ray)
+      else if (layered_)
         same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
       else if (!layered_)
         same = followed_path(*tracer, path, from.z(), to.z(), range);
+      if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
+        return find(from, to, frequency, limits);  // that of all rays of its term
       if (!same) return search(from, to, frequency, limits_around(known, limits));
       followed.push_back(std::move(*same));
     }

@@ -19,6 +19,14 @@ const Arrival* become(const Arrivals& found, const Arrival& path, bool layered) 
   return same_path(found, path, layered);
 }
 
+/// The paths between two places at a frequency, among them what one is there: all of them, known or
+/// not, but of a diffracted one itself.
+Arrivals at_place(const PropagationPaths& paths, const Arrival& path, const Vec3& from,
+                  const Vec3& to, double frequency, const PathLimits& limits) {
+  if (path.kind != ArrivalKind::diffracted) return paths.find(from, to, frequency, limits);
+  return paths.follow(std::span(&path, 1), from, to, frequency, limits);
+}
+
 }  // namespace
 
 std::complex<double> SampledResponse::at(double frequency) const noexcept {
@@ -58,7 +66,7 @@ SampledResponse sampled_response(double centre, double half_width, double error,
 std::complex<double> wave_response(const PropagationPaths& paths, const WaveLeg& leg,
                                    double frequency) {
   const double f = std::max(1.0, frequency);
-  const Arrivals there = paths.follow(std::span(&leg.path, 1), leg.from, leg.to, f, leg.limits);
+  const Arrivals there = at_place(paths, leg.path, leg.from, leg.to, f, leg.limits);
   const Arrival* same = become(there, leg.path, paths.layered());
   if (same == nullptr) return 0.0;  // too faint there
   const double turns = std::fmod(f * (same->delay - leg.path.delay), 1.0);
@@ -80,12 +88,14 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
   const Vec3 source = transmitter_at(scenario, context.transmitter, context.ping_time).position,
              phone = hearer.at(context.ping_time + heard.heard.delay).position;
   std::vector<WaveLeg> waves;
-  const auto add = [&](const Vec3& from, const Vec3& to, const Arrival& path) {
+  const auto add = [&](const Vec3& from, const Vec3& to, const Leg& leg, const Arrival& path) {
     if (path.kind == ArrivalKind::ray) return;
-    PathLimits limits =
-        limits_of(scenario.propagation, std::max(path.surface_bounces, path.bottom_bounces));
-    const Arrivals there =
-        context.paths.follow(std::span(&path, 1), from, to, context.frequency, limits);
+    // A wave's amplitude is that of all rays of its term, which bounce once more at most.
+    int bounces = 0;
+    for (const Arrival& a : leg.arrivals)
+      bounces = std::max({bounces, a.surface_bounces, a.bottom_bounces});
+    const PathLimits limits = limits_of(scenario.propagation, bounces + 2);
+    const Arrivals there = at_place(context.paths, path, from, to, context.frequency, limits);
     if (const Arrival* met = become(there, path, context.paths.layered()))
       if (met->kind != ArrivalKind::ray)
         waves.push_back({.from = from, .to = to, .path = *met, .limits = limits});
@@ -107,7 +117,7 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
     const auto path =
         std::min_element(leg->arrivals.begin(), leg->arrivals.end(),
                          [&](const Arrival& a, const Arrival& b) { return off(a) < off(b); });
-    if (path != leg->arrivals.end()) add(source, phone, *path);
+    if (path != leg->arrivals.end()) add(source, phone, *leg, *path);
     return waves;
   }
   const auto& track = scenario.targets[static_cast<std::size_t>(heard.target)].track;
@@ -117,9 +127,9 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
     return leg != legs.end() && static_cast<std::size_t>(path) < leg->arrivals.size();
   };
   if (has(out, heard.outgoing))
-    add(source, target, out->arrivals[static_cast<std::size_t>(heard.outgoing)]);
+    add(source, target, *out, out->arrivals[static_cast<std::size_t>(heard.outgoing)]);
   if (has(home, heard.returning))
-    add(target, phone, home->arrivals[static_cast<std::size_t>(heard.returning)]);
+    add(target, phone, *home, home->arrivals[static_cast<std::size_t>(heard.returning)]);
   return waves;
 }
 

@@ -8,6 +8,7 @@
 #include "raytrace/warnings/warnings.h"
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/focus.h"
+#include "raytrace/waves/ray_errors.h"
 #include "sonar/enough_bounces.h"
 #include "sonar/sampling.h"
 #include "sonar/wave_response.h"
@@ -113,44 +114,15 @@ std::string line_of_caustics(double share, const std::string& whose) {
   return text;
 }
 
-/// A depth at which the gradient of the speed jumps.
-struct Corner {
-  double speed, steepest, jump;  // [m/s], gradients [1/s]
-};
-
-std::vector<Corner> corners_of(const SoundSpeedProfile& water) {
-  std::vector<Corner> corners;
-  for (std::size_t i = 1; i < water.intervals(); ++i) {
-    const double depth = water.law(i).z0;
-    const double above = water.at(depth, i - 1).dc_dz, below = water.at(depth, i).dc_dz;
-    corners.push_back({.speed = water.at(depth).c,
-                       .steepest = std::max(std::abs(above), std::abs(below)),
-                       .jump = std::abs(above - below)});
-  }
-  return corners;
-}
-
 /// Share of the energy that comes by rays which turn so often, so near a corner of the profile,
-/// that their phase is a radian off: a corner h from the turn sends back some ¼(h/L)^{−3/2} of it,
-/// L = (c/2k²|c′|)^{1/3} Airy's length, times its share of the gradient.
+/// that their phase is a radian off.
 double turned_at_corners(const Environment& ocean, const Arrivals& paths, double frequency) {
-  const std::vector<Corner> corners = corners_of(ocean.water);
+  const std::vector<double> errors = corner_errors(ocean, frequency, paths, false);
   double all = 0.0, off = 0.0;
-  for (const Arrival& path : paths) {
-    const double energy = std::norm(path.amplitude);
-    const int turns = path.upper_turns + path.lower_turns;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const double energy = std::norm(paths[i].amplitude);
     all += energy;
-    if (turns == 0) continue;
-    double phase = 0.0;
-    for (const Corner& corner : corners) {
-      if (!(corner.jump > 0.0)) continue;
-      const double k = 2.0 * pi * frequency / corner.speed;
-      const double length = std::cbrt(corner.speed / (2.0 * k * k * corner.steepest));
-      const double away =
-          std::abs(1.0 / path.horizontal_slowness - corner.speed) / corner.steepest / length;
-      phase = std::max(phase, corner.jump / corner.steepest * 0.25 * std::pow(away, -1.5));
-    }
-    if (turns * phase > 1.0) off += energy;
+    if (paths[i].kind == ArrivalKind::ray && errors[i] > 1.0) off += energy;
   }
   return all > 0.0 ? off / all : 0.0;
 }

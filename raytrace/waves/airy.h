@@ -3,18 +3,20 @@
 
 namespace asdic {
 
-/// Airy's functions and their derivatives at a real place.
+/// Airy's functions and their derivatives at one place, real or complex.
+template <class Number>
 struct Airy {
-  double ai, ai_slope, bi, bi_slope;
+  Number ai, ai_slope, bi, bi_slope;
 };
 
 /// By the power series: 1e-8 of the greatest for −10 ≤ x ≤ 6. DLMF 9.4
-[[nodiscard]] inline Airy airy(double x) noexcept {
+template <class Number>
+[[nodiscard]] Airy<Number> airy(Number x) noexcept {
   constexpr double ai_0 = 0.355028053887817239, ai_slope_0 = -0.258819403792806798;
-  const double cube = x * x * x;
+  const Number cube = x * x * x;
   // f = 1 + x³/3! + …, g = x + 2x⁴/4! + …, and their derivatives
-  double f = 1.0, g = x, df = 0.5 * x * x, dg = 1.0;
-  double f_sum = f, g_sum = g, df_sum = df, dg_sum = dg;
+  Number f = 1.0, g = x, df = 0.5 * x * x, dg = 1.0;
+  Number f_sum = f, g_sum = g, df_sum = df, dg_sum = dg;
   for (int k = 1; k < 60; ++k) {
     const double n = 3.0 * k;
     f *= cube / ((n - 1.0) * n);

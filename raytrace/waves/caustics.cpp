@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/waves/airy.h"
+#include "raytrace/waves/make_wave.h"
 
 namespace asdic {
 namespace {
@@ -45,7 +46,7 @@ struct UniformPair {
   /// Of the earlier ray (sign −1) or the later (+1): their sum is the field. \param at  delay that
   /// the amplitude belongs to [s]
   [[nodiscard]] Complex part(double sign, double omega, double at) const {
-    const Airy w = airy(-zeta);
+    const Airy<double> w = airy(-zeta);
     const Complex turned(0.0, zeta > 0.0 ? sign : 0.0);
     return 0.5 * std::sqrt(pi) *
            (direct * (w.ai + turned * w.bi) + slope * (w.ai_slope + turned * w.bi_slope)) *
@@ -204,14 +205,6 @@ class FoldField {
   std::array<UniformPair, sample_places.size()> pairs_{};
   std::array<Arrival, 2> nearest_;
 };
-
-/// Gives a ray the amplitude of one of two at a caustic. \param times  the ray's own
-void make_wave(Arrival& ray, Complex times) {
-  ray.kind = ArrivalKind::caustic;
-  ray.amplitude *= times;
-  ray.spreading *= std::abs(times);
-  ray.scattered *= std::norm(times);
-}
 
 }  // namespace
 

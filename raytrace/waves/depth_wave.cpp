@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "raytrace/waves/airy.h"
+
 namespace asdic {
 namespace {
 
@@ -27,7 +29,7 @@ struct AirySeries {
     }
   }
 };
-constexpr AirySeries airy;
+constexpr AirySeries for_large;
 
 /// Of the two waves q^{−1/4}·e^{∓iη}, what their amplitudes and those of their derivatives are
 /// multiplied with at one place.
@@ -42,8 +44,8 @@ Corrections corrections(Complex inverse_eta) {
   const Complex x(-inverse_eta.imag(), inverse_eta.real());  // i/η
   Complex power = 1.0, c[2] = {0.0, 0.0}, d[2] = {0.0, 0.0};
   for (int k = 0; k < terms; ++k) {
-    c[k % 2] += airy.c[std::size_t(k)] * power;
-    d[k % 2] += airy.d[std::size_t(k)] * power;
+    c[k % 2] += for_large.c[std::size_t(k)] * power;
+    d[k % 2] += for_large.d[std::size_t(k)] * power;
     power *= x;
   }
   return {c[0] + c[1], c[0] - c[1], d[0] + d[1], d[0] - d[1]};
@@ -113,6 +115,20 @@ void normalise(DepthWave& wave, Complex q) {
 Complex vertical_wavenumber(Complex q) noexcept {
   const Complex w = root(q);
   return w.imag() > 0.0 ? -w : w;
+}
+
+TravellingWaves travelling_waves(Complex q, double slope) noexcept {
+  const Complex i(0.0, 1.0), w = vertical_wavenumber(q);
+  if (std::abs(q * w) >= 1.5 * least_eta * std::abs(slope)) {
+    const Corrections c = corrections(1.5 * slope / (q * w));
+    return {c.down, -i * w * c.down_slope, c.up, i * w * c.up_slope};
+  }
+  const double scale = std::cbrt(slope);
+  const Airy<Complex> a = airy(-q / (scale * scale));
+  const TravellingWaves there{a.bi - i * a.ai, -scale * (a.bi_slope - i * a.ai_slope),
+                              a.bi + i * a.ai, -scale * (a.bi_slope + i * a.ai_slope)};
+  if (slope > 0.0) return there;
+  return {there.up, there.up_slope, there.down, there.down_slope};
 }
 
 void follow(DepthWave& wave, Complex q_from, Complex q_to, double thickness) noexcept {

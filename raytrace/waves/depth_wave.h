@@ -25,6 +25,17 @@ struct DepthWave {
 void follow(DepthWave& wave, std::complex<double> q_from, std::complex<double> q_to,
             double thickness) noexcept;
 
+/// A wave that goes down and one that goes up, with their derivatives downwards. Each to a factor
+/// of its own.
+struct TravellingWaves {
+  std::complex<double> down, down_slope, up, up_slope;
+};
+
+/// Those of a place where q is a line: of Airy's functions Bi ∓ iAi, so that a turning point beside
+/// it turns them into each other without a word; far from one by their series. \param slope  dq/dz,
+/// not 0 [1/m³]
+[[nodiscard]] TravellingWaves travelling_waves(std::complex<double> q, double slope) noexcept;
+
 /// √q with Im ≤ 0: e^{−iwz} goes down, or dies out downwards.
 [[nodiscard]] std::complex<double> vertical_wavenumber(std::complex<double> q) noexcept;
 

@@ -7,21 +7,19 @@
 #include "core/units.h"
 #include "raytrace/parallel.h"
 #include "raytrace/stop.h"
-#include "raytrace/waves/wave_column.h"
+#include "raytrace/waves/water_window.h"
 
 namespace asdic {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double least_angle = radians(4.0), airy_spreads = 6.0;
-constexpr double bell_width = 60.0;  // wavenumbers of an edge, times the range
-constexpr double ranges_of_a_period = 1.5, suppressed = 9.21;
 constexpr double nearest_shadow = 50.0;   // wavelengths: no shadow is nearer
 constexpr double faintest = 1e-3;         // of 1/r: the integral's own noise is 1e-5
 constexpr double faintest_beside = 0.01;  // of the rays
 constexpr double slowness_share = 0.02;   // by which slownesses may differ from 1/c
-constexpr double depth_step = 0.05;       // wavelengths
+constexpr double window_edge = 60.0;
+constexpr double depth_step = 0.05;  // wavelengths
 
 /// The pressure at a place and how it changes there.
 struct WaveAt {
@@ -37,15 +35,13 @@ class WaterborneField {
       : ocean_(ocean), source_(source_depth), receiver_(receiver_depth), range_(range) {
     ocean_.bottom.material = ReflectionTable{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}};
     ocean_.bottom.roughness = {};
-    for (std::size_t i = 0; i < ocean_.water.intervals(); ++i) steepest(ocean_.water.law(i).z0);
-    steepest(ocean_.surface.depth);
-    steepest(ocean_.bottom.depth);
   }
 
   /// Whether two frequencies are.
   [[nodiscard]] bool affordable(double frequency) const {
     const WaveColumn column(ocean_, frequency, source_, std::span(&receiver_, 1));
-    const double steps = double(column.layers()) * double(window(column, frequency).count);
+    const double steps = double(column.layers()) *
+                         double(water_window(ocean_, column, frequency, range_, window_edge).count);
     return 2.0 * steps <= most_diffraction_steps;
   }
 
@@ -56,7 +52,7 @@ class WaterborneField {
                                              receiver_,
                                              std::min(ocean_.bottom.depth, receiver_ + h)};
     const WaveColumn column(ocean_, frequency, source_, depths);
-    const Window w = window(column, frequency);
+    const WaterWindow w = water_window(ocean_, column, frequency, range_, window_edge);
     constexpr std::size_t stretch = 16;
     std::vector<Complex> g(rows * w.count), by_source(rows * w.count);
     in_parallel_stretches(w.count, stretch, [&](std::size_t begin, std::size_t end) {
@@ -68,11 +64,9 @@ class WaterborneField {
       }
     });
     WaveAt sum;
-    const double scale = 0.5 * w.spacing * std::sqrt(2.0 / (pi * range_));
     for (std::size_t j = 0; j < w.count; ++j) {
       const Complex xi = w.at(j), down = (g[rows * j + 2] - g[rows * j]) / (depths[2] - depths[0]);
-      const Complex f = scale * w.weight(xi.real()) * std::sqrt(xi) *
-                        std::exp(Complex(0.0, -1.0) * (xi * range_ - 0.25 * pi));
+      const Complex f = w.factor(xi, range_);
       sum.p += f * g[rows * j + 1];
       sum.along += Complex(0.0, -1.0) * xi * f * g[rows * j + 1];
       sum.by_source += f * by_source[rows * j + 1];
@@ -82,45 +76,10 @@ class WaterborneField {
   }
 
  private:
-  struct Window {
-    double spacing, offset, begin, end, low_width, high_width;
-    std::size_t count;
-    [[nodiscard]] Complex at(std::size_t j) const {
-      return {begin + (double(j) + 0.5) * spacing, offset};
-    }
-    [[nodiscard]] double weight(double s) const {
-      const auto rise = [](double x) { return 0.5 * std::erfc(-4.0 * (2.0 * x - 1.0)); };
-      return rise((s - begin) / low_width) * rise((end - s) / high_width);
-    }
-  };
-
   static constexpr std::size_t rows = 3;
-
-  void steepest(double depth) {
-    gradient_ = std::max(gradient_, std::abs(ocean_.water.at(depth).dc_dz));
-  }
-
-  /// From waves too steep to stay in the water at this range: those whose angle at the fastest
-  /// depth is above four degrees and above what Airy's function spreads, (2c′/ω)^{1/3}, by far.
-  Window window(const WaveColumn& column, double frequency) const {
-    const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
-    const double spread = std::cbrt(2.0 * gradient_ / (2.0 * pi * frequency));
-    const double angle = std::clamp(airy_spreads * spread, least_angle, radians(50.0));
-    const double flat = fast * std::cos(angle), steep = fast * std::cos(1.5 * angle);
-    Window w{};
-    w.spacing = 2.0 * pi / (ranges_of_a_period * range_);
-    w.offset = suppressed / (ranges_of_a_period * range_);
-    w.low_width = std::max(flat - steep, bell_width / range_);
-    w.high_width = std::max(0.003 * slow, bell_width / range_);
-    w.begin = std::max(flat - w.low_width, 0.02 * fast);
-    w.end = slow + w.high_width;
-    w.count = std::size_t((w.end - w.begin) / w.spacing);
-    return w;
-  }
 
   Environment ocean_;
   double source_, receiver_, range_;
-  double gradient_ = 0.0;  ///< the steepest |dc/dz| [1/s]
 };
 
 /// Elevation of travel at a depth, positive up, of a slowness [s/m]. \param down  downward flux

@@ -13,6 +13,7 @@ namespace asdic {
 namespace {
 
 constexpr double flattest_ray = 1e-7;  // that is looked at [rad]
+constexpr double widest_zone = radians(10.0);
 
 /// The widths of ray tubes over the angle at that end where sound is faster: each family of rays is
 /// a smooth function of it, through the horizontal too, where it goes on with one vertex more.
@@ -84,14 +85,16 @@ std::vector<double> focusing_errors(const EigenraySolver& solver, double source_
   const double wavelength = solver.environment().water.at(source_depth).c / frequency;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Arrival& ray = rays[i];
-    if (ray.kind != ArrivalKind::ray || !(std::norm(ray.amplitude) > faintest * energy)) continue;
+    if (ray.kind == ArrivalKind::diffracted || !(std::norm(ray.amplitude) > faintest * energy))
+      continue;
     if (!tubes) tubes.emplace(solver, source_depth, receiver_depth, limits);
     const double angle = tubes->angle(ray);
     const auto here = tubes->at(ray, angle);
     if (!here) continue;
     // The phase of a ray δθ beside it differs by ½k·q·δθ², its wavefront's turn being that of its
     // launch about a focus.
-    const double zone = std::sqrt(wavelength / std::max(std::abs(ray.q), 1e-9));
+    const double zone =
+        std::min(widest_zone, std::sqrt(wavelength / std::max(std::abs(ray.q), 1e-9)));
     const auto above = tubes->at(ray, angle + zone), below = tubes->at(ray, angle - zone);
     if (!above || !below) {
       errors[i] = std::numeric_limits<double>::infinity();

@@ -11,8 +11,8 @@ namespace asdic {
 /// ray's tube differs a Fresnel zone to either side of it. Infinite where the family ends within
 /// that. One ray that goes through a focus or beside a cusp has no other to tell it by.
 /// docs/theory/waves.md, "Caustics"
-/// \param solver  layered()   \param rays  found between these depths; none but those of kind `ray`
-/// are judged   \param faintest  share of their energy below which a ray is not [-]
+/// \param solver  layered()   \param rays  found between these depths; `diffracted` ones are not
+/// judged   \param faintest  share of their energy below which a ray is not [-]
 /// \return [rays] of the amplitude
 [[nodiscard]] std::vector<double> focusing_errors(const EigenraySolver& solver, double source_depth,
                                                   double receiver_depth, double frequency,

@@ -18,11 +18,11 @@ constexpr double turn_phase = 0.002;  // that a layer may be off by where a wave
 constexpr double thinnest = 0.01;     // layer of our own making [m]
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-/// (ω/c)² with its derivatives.
-struct Squared {
+/// Of (ω/c)².
+struct Derivatives {
   double first, second;
 };
-Squared derivatives(const SoundSpeed& at, double omega) {
+Derivatives derivatives(const SoundSpeed& at, double omega) {
   const double k2 = omega * omega / (at.c * at.c), g = at.dc_dz / at.c;
   return {-2.0 * k2 * g, k2 * (6.0 * g * g - 2.0 * at.d2c_dz2 / at.c)};
 }
@@ -30,7 +30,7 @@ Squared derivatives(const SoundSpeed& at, double omega) {
 /// How thick a layer may be in which (ω/c)² bends as it does here: what the line leaves out,
 /// k2″h²/12·P₂, turns the phase by it times h/(2w), w² = k2′h or, at an extremum, k2″h²/8.
 double thickness_at(const SoundSpeed& at, double omega) {
-  const Squared k2 = derivatives(at, omega);
+  const Derivatives k2 = derivatives(at, omega);
   const double bend = std::abs(k2.second);
   if (!(bend > 0.0)) return std::numeric_limits<double>::infinity();
   const double sloping = std::pow(24.0 * turn_phase * std::sqrt(std::abs(k2.first)) / bend, 0.4);
@@ -111,6 +111,7 @@ WaveColumn::WaveColumn(const Environment& environment, double frequency, double 
   std::stable_sort(order_.begin(), order_.end(),
                    [&](std::size_t a, std::size_t b) { return edge_of_[a] < edge_of_[b]; });
   while (!order_.empty() && edge_of_[order_.back()] == none) order_.pop_back();
+  if (!edge_of_.empty() && edge_of_.front() != none) slowest_edge_ = slowest_edge();
   largest_ = 0.0;
   smallest_ = std::numeric_limits<double>::infinity();
   for (const double z : edges_) {
@@ -151,18 +152,70 @@ WaveLayer WaveColumn::layer(double from, double to) const noexcept {
   return {.thickness = to - from, .k2 = {mean - slope, mean + slope}};
 }
 
+DepthWave WaveColumn::beside(const Boundary& boundary, Complex xi, Complex k2) const noexcept {
+  const WaterAtBoundary water{.speed = environment_.water.at(boundary.depth).c,
+                              .density = environment_.water_density.at(boundary.depth),
+                              .frequency = frequency_};
+  return wave_at(boundary, water, omega_, xi, k2 - xi * xi);
+}
+
+WaveColumn::Squared WaveColumn::squared(std::size_t edge) const noexcept {
+  const auto slope = [](const WaveLayer& l) { return (l.k2[1] - l.k2[0]).real() / l.thickness; };
+  if (edge == 0) return {layers_.front().k2[0], slope(layers_.front())};
+  if (edge == layers_.size()) return {layers_.back().k2[1], slope(layers_.back())};
+  const WaveLayer &above = layers_[edge - 1], &below = layers_[edge];
+  return {0.5 * (above.k2[1] + below.k2[0]), 0.5 * (slope(above) + slope(below))};
+}
+
+std::size_t WaveColumn::slowest_edge() const noexcept {
+  const auto slower = [&](std::size_t a, std::size_t than) {
+    const double k2 = squared(than).k2.real();
+    return squared(a).k2.real() > k2 * (1.0 - 1e-12);
+  };
+  const auto [first, last] = std::minmax(source_edge_, edge_of_.front());
+  std::size_t edge = first;
+  for (std::size_t e = first + 1; e <= last; ++e)
+    if (slower(e, edge)) edge = e;
+  const std::size_t between = edge;
+  while (edge + 1 < edges_.size() && slower(edge + 1, edge)) ++edge;
+  if (edge != between) return edge;
+  while (edge > 0 && slower(edge - 1, edge)) --edge;
+  return edge;
+}
+
+WaveColumn::AtDepths WaveColumn::solutions(Complex xi) const noexcept {
+  const Complex xi2 = xi * xi;
+  const std::size_t receiver_edge = edge_of_.front();
+  const auto [first, last] = std::minmax({source_edge_, receiver_edge, slowest_edge_});
+  AtDepths at;
+  const auto keep = [&](std::size_t edge, DepthWave Solutions::*side, const DepthWave& wave) {
+    if (edge == source_edge_) at.source.*side = wave;
+    if (edge == receiver_edge) at.receiver.*side = wave;
+    if (edge == slowest_edge_) at.slowest.*side = wave;
+  };
+  DepthWave wave = beside(environment_.surface, xi, layers_.front().k2[0]);
+  for (std::size_t edge = 0;; ++edge) {
+    keep(edge, &Solutions::above, wave);
+    if (edge == last) break;
+    const WaveLayer& layer = layers_[edge];
+    follow(wave, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
+  }
+  wave = beside(environment_.bottom, xi, layers_.back().k2[1]);
+  for (std::size_t edge = layers_.size();; --edge) {
+    keep(edge, &Solutions::below, {wave.u, -wave.du, wave.growth});
+    if (edge == first) break;
+    const WaveLayer& layer = layers_[edge - 1];
+    follow(wave, layer.k2[1] - xi2, layer.k2[0] - xi2, layer.thickness);
+  }
+  return at;
+}
+
 void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex> g,
                         std::span<Complex> by_source) const noexcept {
   const Complex xi2 = xi * xi;
-  const auto beside = [&](const Boundary& boundary, Complex k2) {
-    const WaterAtBoundary water{.speed = environment_.water.at(boundary.depth).c,
-                                .density = environment_.water_density.at(boundary.depth),
-                                .frequency = frequency_};
-    return wave_at(boundary, water, omega_, xi, k2 - xi2);
-  };
   for (Complex& value : g) value = 0.0;
   for (Complex& value : by_source) value = 0.0;
-  DepthWave above = beside(environment_.surface, layers_.front().k2[0]);
+  DepthWave above = beside(environment_.surface, xi, layers_.front().k2[0]);
   auto next = order_.begin();
   for (std::size_t edge = 0;; ++edge) {
     for (; next != order_.end() && edge_of_[*next] == edge && edge < source_edge_; ++next)
@@ -172,7 +225,7 @@ void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex>
     follow(above, layer.k2[0] - xi2, layer.k2[1] - xi2, layer.thickness);
   }
   const auto first_below = next;
-  DepthWave below = beside(environment_.bottom, layers_.back().k2[1]);
+  DepthWave below = beside(environment_.bottom, xi, layers_.back().k2[1]);
   auto last = order_.end();
   for (std::size_t edge = layers_.size();; --edge) {
     for (; last != first_below && edge_of_[*(last - 1)] == edge; --last)

@@ -29,6 +29,28 @@ class WaveColumn {
   void kernel(std::complex<double> xi, std::span<double> growth, std::span<std::complex<double>> g,
               std::span<std::complex<double>> by_source = {}) const noexcept;
 
+  /// What the surface and the bottom each let be at one depth, derivatives downwards.
+  struct Solutions {
+    DepthWave above, below;
+  };
+  /// At the source, the first receiver and the slowest depth of their duct: where the speed has the
+  /// minimum that both are sloping down to.
+  struct AtDepths {
+    Solutions source, receiver, slowest;
+  };
+  [[nodiscard]] AtDepths solutions(std::complex<double> xi) const noexcept;
+
+  /// (ω/c − iα)² at one depth [1/m²] and its slope there, the mean of both sides of a corner
+  /// [1/m³].
+  struct Squared {
+    std::complex<double> k2;
+    double slope;
+  };
+  [[nodiscard]] Squared at_source() const noexcept { return squared(source_edge_); }
+  /// Of the first.
+  [[nodiscard]] Squared at_receiver() const noexcept { return squared(edge_of_.front()); }
+  [[nodiscard]] Squared at_slowest() const noexcept { return squared(slowest_edge_); }
+
   [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }
   /// ω over the lowest and the highest speed [1/m].
   [[nodiscard]] double largest_wavenumber() const noexcept { return largest_; }
@@ -36,7 +58,12 @@ class WaveColumn {
 
  private:
   void cut(double from, double to);
+  [[nodiscard]] std::size_t slowest_edge() const noexcept;
   [[nodiscard]] WaveLayer layer(double from, double to) const noexcept;
+  [[nodiscard]] Squared squared(std::size_t edge) const noexcept;
+  /// The wave beside a boundary, at the column's edge, its derivative away from it.
+  [[nodiscard]] DepthWave beside(const Boundary& boundary, std::complex<double> xi,
+                                 std::complex<double> k2) const noexcept;
 
   const Environment& environment_;
   double frequency_, omega_;
@@ -45,7 +72,7 @@ class WaveColumn {
   std::vector<double> edges_;         // [layers + 1] their depths [m]
   std::vector<std::size_t> edge_of_;  // [n] of each receiver; none: none_
   std::vector<std::size_t> order_;    // [n] receivers from the top downwards
-  std::size_t source_edge_ = 0;
+  std::size_t source_edge_ = 0, slowest_edge_ = 0;
   double largest_ = 0.0, smallest_ = 0.0;
 };
 

@@ -66,7 +66,7 @@ TEST(Airy, FunctionsOfTheirTables) {  // DLMF table 9.4, and the Wronskian 1/π
   EXPECT_NEAR(airy(-2.338107410459767).ai, 0.0, 1e-12);
   EXPECT_NEAR(airy(-1.0).bi, 0.1039973895, 1e-10);
   for (double x = -10.0; x <= 6.0; x += 0.37) {
-    const Airy w = airy(x);
+    const Airy<double> w = airy(x);
     EXPECT_NEAR(w.ai * w.bi_slope - w.ai_slope * w.bi, 1.0 / pi, 2e-6) << x;
   }
 }

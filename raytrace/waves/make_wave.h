@@ -1,0 +1,16 @@
+#pragma once
+#include <complex>
+
+#include "raytrace/arrivals.h"
+
+namespace asdic {
+
+/// Gives a ray the amplitude of waves, of kind `caustic` then. \param times  the ray's own
+inline void make_wave(Arrival& ray, std::complex<double> times) {
+  ray.kind = ArrivalKind::caustic;
+  ray.amplitude *= times;
+  ray.spreading *= std::abs(times);
+  ray.scattered *= std::norm(times);
+}
+
+}  // namespace asdic

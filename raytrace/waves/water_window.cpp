@@ -1,0 +1,55 @@
+#include "raytrace/waves/water_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+
+namespace asdic {
+namespace {
+
+constexpr double least_angle = radians(4.0), airy_spreads = 6.0;
+constexpr double ranges_of_a_period = 1.5, suppressed = 9.21;
+
+/// The steepest |dc/dz| [1/s].
+double steepest_gradient(const Environment& ocean) {
+  double gradient = 0.0;
+  const auto look = [&](double depth) {
+    gradient = std::max(gradient, std::abs(ocean.water.at(depth).dc_dz));
+  };
+  for (std::size_t i = 0; i < ocean.water.intervals(); ++i) look(ocean.water.law(i).z0);
+  look(ocean.surface.depth);
+  look(ocean.bottom.depth);
+  return gradient;
+}
+
+}  // namespace
+
+double WaterWindow::weight(double s) const noexcept {
+  const auto rise = [](double x) { return 0.5 * std::erfc(-4.0 * (2.0 * x - 1.0)); };
+  return rise((s - begin) / low_width) * rise((end - s) / high_width);
+}
+
+std::complex<double> WaterWindow::factor(std::complex<double> xi, double range) const noexcept {
+  return 0.5 * spacing * std::sqrt(2.0 / (pi * range)) * weight(xi.real()) * std::sqrt(xi) *
+         std::exp(std::complex<double>(0.0, -1.0) * (xi * range - 0.25 * pi));
+}
+
+WaterWindow water_window(const Environment& ocean, const WaveColumn& column, double frequency,
+                         double range, double edge) {
+  const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
+  const double spread = std::cbrt(2.0 * steepest_gradient(ocean) / (2.0 * pi * frequency));
+  const double angle = std::clamp(airy_spreads * spread, least_angle, radians(50.0));
+  const double flat = fast * std::cos(angle), steep = fast * std::cos(1.5 * angle);
+  WaterWindow w;
+  w.spacing = 2.0 * pi / (ranges_of_a_period * range);
+  w.offset = suppressed / (ranges_of_a_period * range);
+  w.low_width = std::max(flat - steep, edge / range);
+  w.high_width = std::max(0.003 * slow, edge / range);
+  w.begin = std::max(flat - w.low_width, 0.02 * fast);
+  w.end = slow + w.high_width;
+  w.count = std::size_t((w.end - w.begin) / w.spacing);
+  return w;
+}
+
+}  // namespace asdic

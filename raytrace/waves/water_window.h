@@ -1,0 +1,32 @@
+#pragma once
+#include <complex>
+#include <cstddef>
+
+#include "raytrace/waves/wave_column.h"
+
+namespace asdic {
+
+/// The wavenumbers that stay in the water at one range, evenly spaced above the real axis: those
+/// whose angle at the fastest depth is below four degrees, or what Airy's function spreads,
+/// (2c′/ω)^{1/3}, by far. Steeper ones fade out over half of that angle more.
+struct WaterWindow {
+  double spacing = 0.0, offset = 0.0;        ///< [1/m]
+  double begin = 0.0, end = 0.0;             ///< real parts [1/m]
+  double low_width = 0.0, high_width = 0.0;  ///< of its edges [1/m]
+  std::size_t count = 0;
+
+  [[nodiscard]] std::complex<double> at(std::size_t j) const noexcept {
+    return {begin + (double(j) + 0.5) * spacing, offset};
+  }
+  /// From nothing to one and back. \param s  wavenumber [1/m]
+  [[nodiscard]] double weight(double s) const noexcept;
+  /// What g(ξ) is multiplied with, so that the sum over the window is p(r). \param range  > 0 [m]
+  [[nodiscard]] std::complex<double> factor(std::complex<double> xi, double range) const noexcept;
+};
+
+/// \param range  the furthest [m]   \param edge  radians that its edges hold there, at least: 60
+/// for two depths apart; where g falls off as slowly as between equal depths 200 take 80 dB off
+[[nodiscard]] WaterWindow water_window(const Environment& ocean, const WaveColumn& column,
+                                       double frequency, double range, double edge);
+
+}  // namespace asdic
