@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Where the sound goes that a Pierson-Moskowitz sea scatters: shares of what is scattered within angles of the mirrored
-direction, by the first-order small-slope approximation over an isotropic sea, in numpy and scipy alone.
+"""Where the sound goes that a Pierson-Moskowitz sea scatters: shares of what is scattered within
+angles of the mirrored direction, by the first-order small-slope approximation over an isotropic
+sea, in numpy and scipy alone. With Q = q_i + q_s, the sum of the vertical wavenumbers k sin(theta),
+K the change of the horizontal one and C(r) = int S(K) J0(K r) dK,
 
-    sigma = 4 (q_i q_s/Q)^2 (1/2pi) int [exp(-Q^2 (h^2 - C(r))) - exp(-Q^2 h^2)] J0(K r) r dr,    Q = q_i + q_s
+    sigma = 4 (q_i q_s/Q)^2 (1/2pi) int [exp(-Q^2 (h^2 - C)) - exp(-Q^2 h^2)] J0(K r) r dr:
 
-q the vertical wavenumbers k sin(theta), K the change of the horizontal one, C(r) = int S(K) J0(K r) dK: perturbation's
-4 q_i^2 q_s^2 W(K) where the sea is hardly rough, Kirchhoff's slopes where it is (Voronovich, Sov. Phys. JETP 62, 65,
-1985). Waves to 400 rad/m. Energy scattered is int sigma dOmega/sin(theta_i). Prints lobe.csv; three minutes.
+perturbation's 4 q_i^2 q_s^2 W(K) where the sea is hardly rough, Kirchhoff's slopes where it is
+(Voronovich, Sov. Phys. JETP 62, 65, 1985). Waves to 400 rad/m. Energy scattered is int sigma dOmega
+over sin(theta_i). Prints lobe.csv; three minutes.
 """
 import numpy as np
 from scipy.fft import fht, fhtoffset
@@ -24,7 +26,8 @@ def structure(wind):
     """h^2 - C over R, and h^2 [m^2]."""
     u2 = (1.026 * wind) ** 2
     wave = np.exp(np.linspace(np.log(0.05 * GRAVITY / u2), np.log(400.0), 6000))
-    part = 0.5 * ALPHA * wave**-2 * np.exp(-BETA * (GRAVITY / (wave * u2)) ** 2) * np.gradient(np.log(wave))
+    part = 0.5 * ALPHA * wave**-2 * np.exp(-BETA * (GRAVITY / (wave * u2)) ** 2)
+    part *= np.gradient(np.log(wave))
     out = np.empty(R.size)
     for i in range(0, R.size, 256):
         x = np.outer(R[i:i + 256], wave)
@@ -32,9 +35,10 @@ def structure(wind):
     return out, part.sum()
 
 
-def scattered(wind, frequency, grazing, edges=EDGES, elevations=240, bearings=360):
-    """Energy scattered within angles `edges` [deg] of the mirrored direction, and Rayleigh's parameter squared."""
-    lag, h2 = structure(wind) if not isinstance(wind, tuple) else wind
+def scattered(sea, frequency, grazing, edges=EDGES, elevations=240, bearings=360):
+    """Energy scattered within angles `edges` [deg] of the mirrored direction, and Rayleigh's
+    parameter squared. sea: structure()"""
+    lag, h2 = sea
     k, sine, cosine = 2 * np.pi * frequency / SPEED, np.sin(grazing), np.cos(grazing)
     u, v = np.arange(elevations + 1) / elevations, np.arange(bearings + 1) / bearings
     out, turn = 0.5 * np.pi * (0.5 * (u[1:] + u[:-1])) ** 2, np.pi * (0.5 * (v[1:] + v[:-1])) ** 2
@@ -43,17 +47,21 @@ def scattered(wind, frequency, grazing, edges=EDGES, elevations=240, bearings=36
         q = k * (np.sin(angle) + sine)
         lobe = (np.exp(-q * q * lag) - np.exp(-q * q * h2)) * R
         spectrum = fht(lobe, STEP, mu=0.0, offset=OFFSET) / WAVES / (2 * np.pi)
-        change = k * np.sqrt(np.maximum(np.cos(angle)**2 + cosine**2 - 2 * np.cos(angle) * cosine * np.cos(turn), 1e-12))
-        sigma = 4 * (k * k * np.sin(angle) * sine / q) ** 2 * np.interp(np.log(change), np.log(WAVES), spectrum)
-        off = np.degrees(np.arccos(np.clip(np.sin(angle) * sine + np.cos(angle) * cosine * np.cos(turn), -1, 1)))
+        flat = np.cos(angle) * cosine * np.cos(turn)
+        change = k * np.sqrt(np.maximum(np.cos(angle) ** 2 + cosine**2 - 2 * flat, 1e-12))
+        sigma = 4 * (k * k * np.sin(angle) * sine / q) ** 2
+        sigma = sigma * np.interp(np.log(change), np.log(WAVES), spectrum)
+        off = np.degrees(np.arccos(np.clip(np.sin(angle) * sine + flat, -1, 1)))
         energy = 2 * sigma * np.pi * np.diff(v**2) * np.cos(angle) * width / sine
         sum_ += [energy[off <= edge].sum() for edge in edges]
     return sum_, 4 * k * k * h2 * sine * sine
 
 
 if __name__ == "__main__":
-    print("# tests/data/surface-lobe/lobe.py: shares of the energy scattered within so many degrees of the mirrored direction")
-    print("wind_mps,f_Hz,grazing_deg,rayleigh_squared,scattered,within_10,within_20,within_30,within_45,within_60")
+    print("# tests/data/surface-lobe/lobe.py: shares of the energy scattered within so many degrees "
+          "of the mirrored direction")
+    print("wind_mps,f_Hz,grazing_deg,rayleigh_squared,scattered," +
+          ",".join(f"within_{edge}" for edge in EDGES[:-1]))
     for wind in (5, 10, 15):
         sea = structure(wind)
         for frequency in (1000, 3500, 10000, 20000):
