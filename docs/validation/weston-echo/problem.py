@@ -1,4 +1,4 @@
-"""Target echoes, asdic's pairs of paths against the energy of all images."""
+"""Target echoes, asdic's paths against the energy of all images."""
 from pathlib import Path
 
 import h5py
@@ -12,19 +12,23 @@ RANGES = np.array([2000.0, 5000.0, 10000.0])
 MANY = {"propagation__max_bottom_bounces": 30, "propagation__max_surface_bounces": 30}
 
 
-def levels(file):
-    """Sum of the energies of every pair of paths, by target [dB re 1 µPa²]"""
+def levels(file, truth):
+    """Energies of all paths out times those of all paths home, by target [dB re 1 µPa²]"""
     with h5py.File(file) as f:
-        echoes = f["echoes"]
-        return np.array([suite.db((10 ** (0.1
-                                          * echoes["level_db"][:][echoes["target"][:] == k])).sum())
-                                          for k in range(len(RANGES))])
+        paths = f["arrivals"]
+        energy = paths["amplitude_real"][:]**2 + paths["amplitude_imag"][:]**2
+        leg, target = paths["leg"][:], paths["target"][:]
+        return np.array([truth.LEVEL + truth.STRENGTH
+                         + suite.db(energy[(leg == 0) & (target == k)].sum()
+                                    * energy[(leg == 1) & (target == k)].sum())
+                         for k in range(len(RANGES))])
 
 
 def compare(asdic, truth):
     scenario = Path(__file__).with_name("scenario.toml")
     exact = np.array([truth.level(r) for r in RANGES])
-    default, many = levels(asdic.ping(scenario)), levels(asdic.ping(scenario, **MANY))
+    default = levels(asdic.ping(scenario), truth)
+    many = levels(asdic.ping(scenario, **MANY), truth)
 
     def draw(axes, style):
         r = np.geomspace(1500.0, 12000.0, 40)
