@@ -145,21 +145,18 @@ Carried phone_of(const Scenario& scenario, int array, int ping, int phone) {
   return middle_of(scenario, array, ping, {static_cast<std::size_t>(phone), 1});
 }
 
-Carried reverberation_point(const Scenario& scenario, int transmitter, int array, int ping,
-                            double time) {
-  constexpr double rounding = 1.0 + 1e-9;
+Carried reverberation_point(const Scenario& scenario, int transmitter, int array, double time,
+                            double frequency) {
+  constexpr double in_phase = 0.25, sea = 1500.0;  // [wavelengths], [m/s]
   const Transmitter& sender = scenario.transmitters[static_cast<std::size_t>(transmitter)];
   const Track& sent_from = scenario.platforms[static_cast<std::size_t>(sender.platform)].track;
   const bool stays = sender.platform == array_of(scenario, array).platform ||
                      (rests(sent_from) && rests(carrier_of(scenario, array)));
   if (!stays || deforms(scenario, array)) return reference_of(scenario, array);
-  double farthest = 0.0;
-  for (const Vec3& phone : phones_at(scenario, array, ping, time))
-    farthest = std::max(farthest, phone.norm());
   const double away = (transmitter_at(scenario, transmitter, time).position -
                        array_at(scenario, array, time).position)
                           .norm();
-  if (away <= rounding * farthest) return {sent_from, sender.offset};
+  if (away * frequency <= in_phase * sea) return {sent_from, sender.offset};
   return reference_of(scenario, array);
 }
 

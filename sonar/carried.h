@@ -41,12 +41,11 @@ struct PhoneRange {
                                             int array, int ping, double time);
 
 /// The point about which the reverberation of a transmitter's ping is heard. The transmitter's own
-/// place, where the array is around it: it lies no farther from the phones' middle than they do,
-/// and stays there. Then sound comes back along the paths that it went out on, and no phone is
-/// farther from that point than the array is long. Elsewhere the reference point. \param time  of
-/// the ping, since the start of the scenario [s]
+/// place, where it lies within a quarter of a wavelength of the phones' middle and stays there:
+/// then sound comes back along the paths that it went out on, and in phase. Elsewhere the reference
+/// point. \param time  of the ping, since the start of the scenario [s]   \param frequency  [Hz]
 [[nodiscard]] Carried reverberation_point(const Scenario& scenario, int transmitter, int array,
-                                          int ping, double time);
+                                          double time, double frequency);
 
 /// Whether its phones move against one another while they listen: a towed line that turns.
 [[nodiscard]] bool deforms(const Scenario& scenario, int array);

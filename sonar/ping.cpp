@@ -223,8 +223,8 @@ PhoneGroups PingSimulator::plane_wave_fit(const Emission& emission, int array,
   const Listening here{
       .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
   return one_group(here, front_of_reverberation(here, emission),
-                   reverberation_point(scenario_, emission.sent.transmitter, array, record.ping,
-                                       here.ping_time));
+                   reverberation_point(scenario_, emission.sent.transmitter, array, here.ping_time,
+                                       emission.pulse.centre_frequency()));
 }
 
 Front PingSimulator::front_of_reverberation(const Listening& here, const Emission& emission) const {
@@ -346,7 +346,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     record.timings.synthesis += watch.lap();
     const auto points = band ? band->points() : std::span<const BandPoint>();
     const std::vector<Vec3> around =
-        phones_from(reverberation_point(scenario_, sent.transmitter, array, ping, sent.time),
+        phones_from(reverberation_point(scenario_, sent.transmitter, array, sent.time,
+                                        emission.pulse.centre_frequency()),
                     scenario_, array, ping, sent.time);
     const PhoneGroups whole = plane_wave_fit(emission, array, record);
     const bool plane = whole.error <= reverberation_periods;

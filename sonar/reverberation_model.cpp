@@ -23,7 +23,7 @@ SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context)
   const Carried hearer = context.point
                              ? *context.point
                              : reverberation_point(scenario, context.transmitter, context.array,
-                                                   static_cast<int>(context.ping), context.time);
+                                                   context.time, context.pulse.centre_frequency());
   const double duration = context.pulse.duration();
   SheetEnds ends = {
       .source = sent_from(scenario.platforms[static_cast<std::size_t>(transmitter.platform)].track,

@@ -75,10 +75,12 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
   if (array_of(scenario, 0).phones.size() < 2 || !hears.velocity.isZero()) return "";
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const int sender = static_cast<int>(t);
-    const Carried point = reverberation_point(scenario, sender, 0, 1, 0.0);
+    const PulseFrequencies band = pulse_frequencies(scenario);
+    const Carried point =
+        reverberation_point(scenario, sender, 0, 0.0, 0.5 * (band.lowest + band.highest));
     if (point.at(0.0).position != transmitter_at(scenario, sender, 0.0).position) continue;
-    const Front front = nearest_reverberation(here, sender, pulse_of(scenario, sender).duration,
-                                              pulse_frequencies(scenario).highest);
+    const Front front =
+        nearest_reverberation(here, sender, pulse_of(scenario, sender).duration, band.highest);
     const double error = one_group(here, front, point).error;
     if (error <= reverberation_periods) continue;
     const double far = front.length * error / reverberation_periods;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sonar/ping.h"
+#include "support/reverberant_sea.h"
 #include "support/two_platforms.h"
 
 namespace asdic {
@@ -58,28 +59,59 @@ double difference(const PingRecord& one, const PingRecord& other, std::size_t ph
   return std::sqrt(sum / power);
 }
 
-Vec3 point_of(const Scenario& s) { return reverberation_point(s, 0, 0, 1, 0.0).at(0.0).position; }
+Vec3 point_of(const Scenario& s) {
+  return reverberation_point(s, 0, 0, 0.0, 1000.0).at(0.0).position;
+}
 
-// Phones 0 to 4 m east of where they are fixed: around a transmitter 0 to 4 m east of there.
-TEST(ReverberationPoint, IsTheTransmitterWithinTheArrayAndTheMiddleBeyond) {
+// Phones 0 to 4 m east of where they are fixed: their middle at 2 m, a quarter of a wavelength is
+// 0.375 m.
+TEST(ReverberationPoint, IsTheTransmitterAtTheArraysMiddleElseThatMiddle) {
   Scenario s = ship(line(5, 1.0, 0.0));
   const Vec3 here = s.platforms[0].track.start.position;
-  for (const double east : {0.0, 0.7, 4.0}) {
+  for (const double east : {2.0, 1.63, 2.37}) {
     s.transmitters[0].offset = {east, 0.0, 0.0};
     EXPECT_EQ(point_of(s), Vec3(here + s.transmitters[0].offset)) << east;
   }
-  for (const double east : {-0.1, 4.1, 300.0}) {
+  for (const double east : {0.0, 1.6, 2.4, 300.0}) {
     s.transmitters[0].offset = {east, 0.0, 0.0};
     EXPECT_LT((point_of(s) - here - Vec3(2, 0, 0)).norm(), 1e-9) << east;
   }
   // On another platform only if both stay.
-  s.transmitters[0].offset = {1.0, 0.0, 0.0};
+  s.transmitters[0].offset = {1.8, 0.0, 0.0};
   s.platforms[1] = s.platforms[0];
   s.arrays[0].platform = 1;
-  EXPECT_EQ(point_of(s), Vec3(here + Vec3(1, 0, 0)));
+  EXPECT_EQ(point_of(s), Vec3(here + Vec3(1.8, 0, 0)));
   s.platforms[1].track.start.velocity.x() = 1.0;
   EXPECT_LT((point_of(s) - here - Vec3(2, 0, 0)).norm(), 1e-9);
   EXPECT_LT((point_of(towed()) - here - Vec3(-308.625, 0, 0)).norm(), 1e-9);
+}
+
+/// A guide with many paths, a vertical line of phones 20 m below the source that reaches up to it
+/// or not.
+Scenario guide_below(double spacing) {
+  std::vector<Vec3> phones;
+  for (int n = 0; n < 33; ++n) phones.emplace_back(0.0, 0.0, 20.0 + spacing * (n - 16));
+  Scenario s = ship(phones);
+  s.environment.bottom = {.depth = 200.0, .material = Rigid{}};
+  s.propagation.max_surface_bounces = 30;
+  s.propagation.max_bottom_bounces = 30;
+  s.pings.recording_duration = 4.0;
+  return s;
+}
+
+// What is expected of the sea does not jump when a line of phones becomes longer than its distance
+// to the transmitter: paths and their reciprocals are in phase at the transmitter's own place
+// alone, 3 dB above what is heard 20 m below.
+TEST(ReverberationPoint, TheExpectedLevelDoesNotDependOnTheArraysLength) {
+  const auto level = [](const Scenario& s) {
+    const support::ReverberantSea sea(s);
+    const PingReverberation ping = sea.ping(1);
+    double sum = 0.0;
+    for (double t = 2.0; t < 3.9; t += 0.05) sum += power_from_db(ping.expected_db(t));
+    return db_from_power(sum);
+  };
+  const double within = level(guide_below(1.3)), beyond = level(guide_below(1.2));
+  EXPECT_NEAR(within, beyond, 0.3);
 }
 
 // Wherever phones are seen from, they are in one place.
@@ -103,29 +135,31 @@ TEST(PhonesFrom, GiveTheirPlacesSeenFromAnyPoint) {
   }
 }
 
-// A millionth of its length within the array and beyond its end: heard about one end, by the same
-// paths out and back, and about the middle, by pairs of paths. Both are plane waves to 2π times the
-// error that is told, r.m.s. less, of what each phone hears from where it is.
-TEST(ReverberationPoint, TheSoundGoesSmoothlyOverTheArraysEnd) {
+// The transmitter a millionth less than a quarter of a wavelength from the array's middle, and
+// more: heard about the transmitter, by the same paths out and back, and about the middle, by pairs
+// of paths. Both are plane waves to 2π times the error that is told, r.m.s. less, of what each
+// phone hears from where it is.
+TEST(ReverberationPoint, TheSoundGoesSmoothlyFromOneToTheOther) {
   Scenario s = ship(line(4, 1.0, -1.5));
   const auto record = [&](double east, bool exact) {
     s.transmitters[0].offset = {east, 0.0, 0.0};
     s.propagation.exact_per_phone = exact;
     return PingSimulator(s).sound(1);
   };
-  const PingRecord within = record(1.5 * (1.0 - 1e-6), false),
-                   beyond = record(1.5 * (1.0 + 1e-6), false), exact = record(1.5, true);
+  constexpr double border = 0.375;
+  const PingRecord within = record(border * (1.0 - 1e-6), false),
+                   beyond = record(border * (1.0 + 1e-6), false), exact = record(border, true);
   EXPECT_EQ(within.plane_waves.groups, 1);
   EXPECT_EQ(exact.plane_waves.groups, 4);
-  // 3²/(2·300·1.5) wavelengths and a quarter of it: 0.063 and 0.016 rad at the ends.
-  EXPECT_NEAR(within.plane_waves.error, 9.0 / 900.0, 0.15 * 9.0 / 900.0);
+  // 1.875²/(2·300·1.5) and 1.5²/(2·300·1.5) wavelengths: 0.025 and 0.016 rad at the ends.
+  EXPECT_NEAR(within.plane_waves.error, 3.52 / 900.0, 0.15 * 3.52 / 900.0);
   EXPECT_NEAR(beyond.plane_waves.error, 2.25 / 900.0, 0.15 * 2.25 / 900.0);
   // Amplitudes are those of the point: 1/r and the square root of Lambert's sine there, at most
-  // 1.5|x|/r, 0.015 and 0.0075.
+  // 1.5|x|/r, 0.0094 and 0.0075.
   for (std::size_t phone = 0; phone < 4; ++phone) {
-    EXPECT_LT(difference(within, exact, phone), 0.063 + 0.015) << phone;
+    EXPECT_LT(difference(within, exact, phone), 0.025 + 0.0094) << phone;
     EXPECT_LT(difference(beyond, exact, phone), 0.016 + 0.0075) << phone;
-    EXPECT_LT(difference(within, beyond, phone), 0.063 + 0.015) << phone;
+    EXPECT_LT(difference(within, beyond, phone), 0.041 + 0.0094) << phone;
   }
 }
 

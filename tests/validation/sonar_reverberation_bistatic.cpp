@@ -189,11 +189,13 @@ double far_surface(double apart) {
 }
 
 // Receivers on two platforms a fraction of a wavelength apart hear one sea, as two phones of one
-// array do. N = 30·49 samples of two Gaussians, 4.9 sigma 0.09; seas of their own would have 0.
+// array do. They are a metre from the vehicle: not in its own place. N = 30·49 samples of two
+// Gaussians, 4.9 sigma 0.09; seas of their own would have 0.
 TEST(BistaticSeas, TwoPlatformsBesideEachOtherHearOneSea) {
   for (const double apart : {0.05, 0.1}) {
     double pairs = 0.0;
-    const double found = coherence(vehicle_and_receivers({Vec3(apart, 0.0, 0.0)}), 0, 1, pairs);
+    const Scenario s = vehicle_and_receivers({Vec3(1.0, 0.0, 0.0), Vec3(1.0 + apart, 0.0, 0.0)});
+    const double found = coherence(s, 1, 2, pairs);
     EXPECT_NEAR(found, far_surface(apart), 4.9 / std::sqrt(2.0 * pairs));
   }
 }
