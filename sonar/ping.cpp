@@ -204,7 +204,8 @@ ReverberationContext PingSimulator::reverberation_context(const Emission& emissi
           .reuse = &record.reuse,
           .phones = phones,
           .band = band,
-          .budget = budget};
+          .budget = budget,
+          .drifts = true};
 }
 
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,

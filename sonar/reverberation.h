@@ -36,7 +36,9 @@ struct ReverberationContext {
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
   MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
   bool plane_waves = true;               ///< fit all of the phones, whatever is heard
-  bool judged = false;                   ///< what numbers of bounces leave out is estimated
+  /// Whether a sea that every ping draws anew may lie around the source, wherever that is.
+  bool drifts = false;
+  bool judged = false;  ///< what numbers of bounces leave out is estimated
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.

@@ -143,7 +143,7 @@ GroundLevel off(const GroundLevel& level, double thickness, double depth) {
 bool ReverberationModel::forgets_places(const Part& part,
                                         const ReverberationContext& context) const {
   const ScattererStatistics& statistics = part.field.statistics;
-  return paths_.layered() && !context.phones.empty() && scenario_.arrays.size() == 1 &&
+  return paths_.layered() && context.drifts && !context.point && scenario_.arrays.size() == 1 &&
          scenario_.reverberation.synthesis != ScattererSynthesis::scatterers &&
          statistics.coherence_time == 0.0 && !statistics.k_shape;
 }
