@@ -165,8 +165,9 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   std::vector<double> level;
   while (true) {
     const std::size_t count = fan.elevation.size();
+    // Displaced rays have other slopes than their q tells.
     FanField pass = field_of(fan, {.bound = true,
-                                   .between = true,
+                                   .between = !run_case.beams.displacement,
                                    .looked_at = looked_at,
                                    .level = level,
                                    .first_left_out = left_out.first,
