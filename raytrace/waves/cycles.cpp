@@ -45,7 +45,7 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   turns_ = upper > 0.0 && lower > 0.0   ? Turns::above
            : upper < 0.0 && lower < 0.0 ? Turns::below
                                         : Turns::between;
-  affordable_ = double(column.layers()) * double(window_.count) <= most_diffraction_steps;
+  affordable_ = double(column.layers()) * double(window_.count) <= most_cycle_steps;
   if (!affordable_) return;
   constexpr std::size_t stretch = 16;
   kernels_.resize(window_.count);

@@ -11,6 +11,10 @@
 
 namespace asdic {
 
+/// Layers times wavenumbers of one pair of depths at one frequency: some tenths of a second of one
+/// core. A target under way asks for it every few wavelengths.
+inline constexpr double most_cycle_steps = 5e5;
+
 /// The field of one range by the number of cycles, turn above and turn below, that its waves have
 /// gone through. With u, the solution that obeys the surface, and v, that obeys the bottom, as a
 /// wave that goes down and one that goes up, each other's reflection V_u and V_v,
@@ -27,7 +31,7 @@ class CycleWaves {
   CycleWaves(const Environment& ocean, double frequency, double source_depth, double receiver_depth,
              double furthest);
 
-  /// False where it would have taken more than `most_diffraction_steps`: then there is nothing.
+  /// False where it would have taken more than `most_cycle_steps`: then there is nothing.
   [[nodiscard]] bool affordable() const noexcept { return affordable_; }
   [[nodiscard]] const WaterWindow& window() const noexcept { return window_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -76,7 +80,7 @@ using CyclesKeeper =
 /// (ray_errors.h): their sum is the waves' field. They are of kind `caustic`, each with its own
 /// delay and angles. Rays whose amplitude changes by less than 0.1 % of the whole stay as they are,
 /// and all do where their errors would be 1 % of the whole at most, in water of one speed, and
-/// where it would take more than `most_diffraction_steps`. What a `diffracted` arrival holds is
+/// where it would take more than `most_cycle_steps`. What a `diffracted` arrival holds is
 /// left to it. \param solver  layered()   \param found  all arrivals of these places within the
 /// limits \param keeper  none: made anew   \throws Interrupted
 void put_waves(const EigenraySolver& solver, double source_depth, double receiver_depth,
