@@ -345,26 +345,31 @@ std::vector<double> powers(std::span<const GroundPath> paths, const std::vector<
   return power;
 }
 
-/// A bundle of some paths, which are told their chances.
+/// A bundle of some paths, which are told their shares.
 PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
                      std::uint32_t first) {
   PathBundle bundle{.first = first, .count = static_cast<std::uint32_t>(paths.size())};
-  double squares = 0.0;
-  for (const double p : power) {
-    bundle.power += p;
-    squares += p * p;
-  }
+  for (const double p : power) bundle.power += p;
   if (bundle.power <= 0.0) return bundle;
-  bundle.alone = squares / (bundle.power * bundle.power);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    sum += power[i];
-    paths[i].chance = static_cast<float>(sum / bundle.power);
-  }
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    paths[i].share = static_cast<float>(power[i] / bundle.power);
   return bundle;
 }
 
 }  // namespace
+
+DrawnPath draw(const PathBundle& bundle, std::span<const GroundPath> paths,
+               double uniform) noexcept {
+  constexpr double evenly = 0.1;
+  const double even = evenly / bundle.count;
+  const auto chance = [&](std::uint32_t i) {
+    return (1.0 - evenly) * double(paths[i].share) + even;
+  };
+  std::uint32_t i = bundle.first;
+  for (double sum = chance(i); sum < uniform && i + 1 < bundle.first + bundle.count;)
+    sum += chance(++i);
+  return {.path = i, .power = bundle.power * double(paths[i].share) / chance(i)};
+}
 
 int cycles_told_by(int cycle) noexcept {
   int stride = 1;  // all_cycles is a multiple of 9: blocks begin where those before end

@@ -34,18 +34,26 @@ struct GroundPath {
   double length = 0.0;          ///< of the path [m]
   /// Reflections before the end.
   std::uint16_t surface_bounces = 0, bottom_bounces = 0;
-  float chance = 1.0F;  ///< of this path and those before it, out of its PathBundle
+  float share = 1.0F;  ///< of the power of its PathBundle
 };
 
-/// Paths of a cell that follow each other in delay, of which one stands for all: chosen with the
-/// chance of its power and as strong as all of them, it has the mean of whatever the paths do, by
-/// any law. docs/theory/reverberation.md, "Many paths"
+/// Paths of a cell that follow each other in delay, of which one stands for all: drawn with a
+/// known chance, and as much stronger as it is rarely drawn, it has the mean of whatever the paths
+/// do, by any law. docs/theory/reverberation.md, "Many paths"
 struct PathBundle {
   std::uint32_t first = 0, count = 0;  ///< among the paths of the cell
   double power = 0.0;                  ///< of all: Σ|A|², a path and its image coherent
-  double alone = 1.0;  ///< Σ|A|⁴/(Σ|A|²)²: of the pairs within the bundle, those of a path with
-                       ///< itself
 };
+
+/// One path of a bundle, drawn by its power, and one in ten times evenly: else the weak and late
+/// ones would be heard from few places, and there too loud.
+struct DrawnPath {
+  std::uint32_t path = 0;  ///< among the paths of the cell
+  double power = 0.0;      ///< that it stands for: its own over its chance, Σ|A|²
+};
+/// \param uniform  in (0, 1)
+[[nodiscard]] DrawnPath draw(const PathBundle& bundle, std::span<const GroundPath> paths,
+                             double uniform) noexcept;
 
 /// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
 /// i·spacing to (i + 1)·spacing. Paths of one cell add coherently; the cells are the same whatever

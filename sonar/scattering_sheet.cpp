@@ -31,7 +31,15 @@ double bundle_draw(std::uint64_t chance, std::size_t bundle) noexcept {
   return (static_cast<double>(mixed(chance, bundle) >> 11) + 0.5) * 0x1p-53;
 }
 
-/// The paths of a cell that are followed: all, or one of each bundle, drawn by its power.
+TakenPath drawn_of(std::span<const GroundPath> paths, const PathBundle& bundle, std::uint32_t index,
+                   double uniform) noexcept {
+  const DrawnPath drawn = draw(bundle, paths, uniform);
+  const double own = std::norm(paths[drawn.path].amplitude);
+  return {
+      .path = drawn.path, .bundle = index, .gain = own > 0.0 ? std::sqrt(drawn.power / own) : 0.0};
+}
+
+/// The paths of a cell that are followed: all, or one of each bundle.
 void take(std::span<const GroundPath> paths, std::span<const PathBundle> bundles,
           std::uint64_t chance, std::vector<TakenPath>& taken) {
   taken.clear();
@@ -40,15 +48,8 @@ void take(std::span<const GroundPath> paths, std::span<const PathBundle> bundles
     return;
   }
   for (std::uint32_t b = 0; b < bundles.size(); ++b) {
-    const PathBundle& bundle = bundles[b];
-    if (bundle.power <= 0.0) continue;
-    const auto drawn = static_cast<float>(bundle_draw(chance, b));
-    std::uint32_t i = bundle.first;
-    while (i + 1 < bundle.first + bundle.count && paths[i].chance < drawn) ++i;
-    taken.push_back({.path = i,
-                     .bundle = b,
-                     .gain = std::sqrt(bundle.power / std::norm(paths[i].amplitude)),
-                     .alone = bundle.alone});
+    if (bundles[b].power > 0.0)
+      taken.push_back(drawn_of(paths, bundles[b], b, bundle_draw(chance, b)));
   }
 }
 
@@ -189,7 +190,12 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const Grazing grazing_in = grazing_of(a, a_ends, out.tilt);
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t n = 0; n < backs; ++n) {
-      const TakenPath& second = pairs.back_taken_[n];
+      // Pairs within a bundle are those of two draws: that of a path with itself is one of many.
+      const bool one_bundle = of_many && one_cell && first.bundle == pairs.back_taken_[n].bundle;
+      const TakenPath second = one_bundle
+                                   ? drawn_of(back.paths, back.bundles[first.bundle], first.bundle,
+                                              bundle_draw(~chance, first.bundle))
+                                   : pairs.back_taken_[n];
       const std::size_t j = second.path;
       const GroundPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
@@ -213,8 +219,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
       // A path of a bundle with another of it is heard twice where its reciprocal is in phase.
-      const bool one_bundle = of_many && in_phase_ && one_cell && first.bundle == second.bundle;
-      const double gain = one_bundle ? second.gain * std::sqrt(2.0 - second.alone) : second.gain;
+      const bool twice = one_bundle && in_phase_ && i != j;
+      const double gain = twice ? second.gain * std::sqrt(2.0) : second.gain;
       const double before = std::norm(sent) * std::norm(b.amplitude) * gain * gain;
       if (limits && points == 0 && before * ring * strongest <= least) continue;
       const Grazing grazing_out = grazing_of(b, b_ends, back.tilt);

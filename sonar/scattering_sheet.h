@@ -54,7 +54,6 @@ struct TakenPath {
   std::uint32_t path = 0;            ///< among the paths of the cell
   std::uint32_t bundle = no_bundle;  ///< that it stands for
   double gain = 1.0;                 ///< of its amplitude, to stand for all
-  double alone = 0.0;                ///< PathBundle::alone
 };
 
 class ScatteringSheet;

@@ -97,15 +97,35 @@ TEST(EnoughBounces, BundlesHoldThePowerOfTheirPaths) {
       EXPECT_EQ(bundle.first, next);
       next += bundle.count;
       held += bundle.power;
-      EXPECT_FLOAT_EQ(ground.paths(cell)[next - 1].chance, 1.0F);
-      EXPECT_LE(bundle.alone, 1.0 + 1e-12);
-      EXPECT_GE(bundle.alone, 1.0 / bundle.count - 1e-12);
+      double shares = 0.0;
+      for (const GroundPath& path : ground.paths(cell).subspan(bundle.first, bundle.count))
+        shares += double(path.share);
+      EXPECT_NEAR(shares, 1.0, 1e-5);
     }
     EXPECT_EQ(next, ground.paths(cell).size());
     // Images, whose power is that of their sum, are few here: 20 wavelengths of depth.
     EXPECT_NEAR(held / all, 1.0, 0.5) << cell;
   }
   EXPECT_GT(bundled, 200);
+}
+
+// Every path is drawn, the weakest too, and has on average the power that it has.
+TEST(EnoughBounces, DrawsOfABundleHaveTheMeanOfEveryPath) {
+  constexpr double shares[] = {0.9, 1e-6, 0.0999, 9.9e-5};
+  constexpr int draws = 1'000'000;
+  std::vector<GroundPath> paths(1 + std::size(shares));  // the first belongs to another bundle
+  for (std::size_t i = 0; i < std::size(shares); ++i)
+    paths[i + 1].share = static_cast<float>(shares[i]);
+  const PathBundle bundle{.first = 1, .count = std::size(shares), .power = 3.0};
+  std::vector<double> sum(paths.size());
+  for (int n = 0; n < draws; ++n) {
+    const DrawnPath drawn = draw(bundle, paths, (n + 0.5) / draws);
+    EXPECT_LE(drawn.power, bundle.power / 0.9);
+    sum.at(drawn.path) += drawn.power / draws;
+  }
+  EXPECT_EQ(sum[0], 0.0);
+  for (std::size_t i = 0; i < std::size(shares); ++i)
+    EXPECT_NEAR(sum[i + 1] / (bundle.power * shares[i]), 1.0, 1e-4) << i;
 }
 
 TEST(EnoughBounces, PekerisReverberationIsTheSumOfImages) {
