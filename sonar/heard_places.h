@@ -2,8 +2,12 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "sonar/all_round_covariance.h"
+#include "sonar/pulse_coherence.h"
 #include "sonar/scattering_field.h"
 
 namespace asdic {
@@ -23,16 +27,59 @@ struct Heard {
 
 /// A piece of ground, in whose middle the pairs of paths are looked at.
 struct Ground {
-  Vec2 middle = Vec2::Zero();       ///< [m]
-  Vec2 outward = Vec2::Zero();      ///< unit vector along which it is `length` long
-  double length = 1.0, area = 1.0;  ///< [m], [m²]
+  Vec2 middle = Vec2::Zero();                    ///< [m]
+  Vec2 outward = Vec2::Zero();                   ///< unit vector along which it is `length` long
+  double length = 1.0, width = 0.0, area = 1.0;  ///< [m], [m], [m²]
   double ring = 1.0;         ///< area of all that is heard at its range: what is inaudible [m²]
   std::uint64_t chance = 0;  ///< which path stands for each bundle
 };
 
-/// Adds what a piece of ground sends back. \param all_round  it is a whole circle
-/// \param pairs  memory for them
+/// Who hears sounds of one place that come by different paths, and so how far they add up in phase:
+/// through a pulse, and as a mean over the phones.
+class PathInterference {
+ public:
+  /// \param phones  relative to the array's reference point [m]   \param frequency  [Hz]
+  /// \param all_round  of the mean over bearings
+  PathInterference(std::span<const Vec3> phones, double frequency, const PulseCoherence& pulse,
+                   bool all_round);
+  [[nodiscard]] double frequency() const noexcept { return frequency_; }
+  [[nodiscard]] const PulseCoherence& pulse() const noexcept { return pulse_; }
+  /// Mean over phones of e^{−iω(s_a − s_b)·x}. \param apart  s_a − s_b [s/m]
+  [[nodiscard]] std::complex<double> over_phones(const Vec3& apart) const noexcept;
+
+ private:
+  const PulseCoherence& pulse_;
+  double frequency_;
+  double reach_ = 0.0;                 // of the furthest
+  std::vector<Vec3> phones_;           // times the frequency
+  std::optional<BesselTable> bessel_;  // of the mean over bearings
+};
+
+/// One of a place's sounds, by one pair of paths.
+struct PlaceSound {
+  std::complex<double> amplitude = 0.0;  ///< with the phase of its delay
+  double delay = 0.0;                    ///< [s]
+  double along = 0.0, across = 0.0;  ///< ∂delay over the ground, outward and beside that [s/m]
+  double through = 0.0;              ///< the same over the depth [s/m]
+  double doppler = 1.0;
+  Vec3 slowness = Vec3::Zero();  ///< as the array meets it [s/m]
+  std::size_t heard = 0;         ///< of which Heard
+};
+
+/// Memory that hearing a place takes: used again from place to place.
+struct HearingMemory {
+  PathPairs pairs;
+  std::vector<PlaceSound> sounds;
+  std::vector<double> power, between;  // of each Heard
+  std::vector<const PathPair*> by;     // which each is heard
+};
+
+/// Adds what a piece of ground sends back. Sounds that come by several paths interfere, as under a
+/// source close to the surface (Lloyd's mirror): the mean over the piece, the array and the pulse
+/// is put into their powers. docs/theory/reverberation.md, "Covariance" \param all_round  it is a
+/// whole circle
 void hear(const ScatteringField& field, const Ground& ground, const AudibleLimits& limits,
-          bool all_round, PathPairs& pairs, std::vector<Heard>& heard);
+          const PathInterference& interference, bool all_round, HearingMemory& memory,
+          std::vector<Heard>& heard);
 
 }  // namespace asdic

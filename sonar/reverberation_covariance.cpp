@@ -5,6 +5,7 @@
 
 #include "core/grouped.h"
 #include "raytrace/parallel.h"
+#include "sonar/delay_bins.h"
 #include "sonar/stretch_covariance.h"
 
 namespace asdic {
@@ -13,7 +14,6 @@ namespace {
 using Listener = ReverberationCovariance::Listener;
 using Stretch = ReverberationCovariance::Stretch;
 
-constexpr double slowest_sea = 1400.0;  // [m/s]
 constexpr double golden = 0.6180339887498949;
 
 /// The places of a field at which pairs are looked at: on circles half a bin of two-way delay apart
@@ -39,7 +39,8 @@ struct Circles {
 
 /// All that is heard of one circle.
 void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits& limits,
-                 PathPairs& pairs, std::vector<Heard>& heard) {
+                 const PathInterference& interference, HearingMemory& memory,
+                 std::vector<Heard>& heard) {
   const ScatteringField& field = circles.field;
   const double step = circles.edges[circle + 1] - circles.edges[circle];
   const double range = circles.edges[circle] + 0.5 * step;
@@ -58,30 +59,44 @@ void hear_circle(const Circles& circles, std::size_t circle, const AudibleLimits
          {.middle = middle + range * outward,
           .outward = outward,
           .length = step,
+          .width = area / step,
           .area = area,
           .ring = ring,
           .chance = mixed(circle, sector)},
-         limits, circles.all_round(), pairs, heard);
+         limits, interference, circles.all_round(), memory, heard);
   }
+}
+
+/// Bearings all round, as many as the array can tell apart and some more: the mean of
+/// e^{i2πf ξ d cos φ} over N equal steps of φ is J₀ to within 2J_N of its argument. Those of four
+/// circles interleave, and in a stretch that holds a part of a circle more the alias is J_{N/4}.
+std::size_t bearings_for(const Listener& listener) {
+  double furthest = 0.0, highest = 0.0;
+  for (const Vec3& phone : listener.phones)
+    furthest = std::max(furthest, (phone - listener.phones.front()).head<2>().norm());
+  for (const double f : listener.band.frequencies) highest = std::max(highest, f);
+  return static_cast<std::size_t>(2.0 * pi * highest * furthest / slowest_sea) + 64;
 }
 
 /// All that is heard, field by field, some circles after the other.
 std::vector<std::vector<Heard>> hear_all(std::span<const ScatteringField* const> fields,
                                          const AudibleLimits& limits, double bin,
-                                         std::size_t bearings) {
+                                         const Listener& listener) {
   constexpr std::size_t together = 32, usual = 8;  // circles of a task; pairs of a place
   std::vector<std::vector<Heard>> all;
   for (const ScatteringField* field : fields) {
-    const Circles circles(*field, bin, bearings);
+    const Circles circles(*field, bin, bearings_for(listener));
+    const PathInterference interference(listener.phones, field->sheet.ends().frequency,
+                                        *listener.coherence, circles.all_round());
     const std::size_t before = all.size();
     all.resize(before + (circles.count() + together - 1) / together);
     in_parallel(all.size() - before, [&](std::size_t part) {
-      PathPairs pairs;
+      HearingMemory memory;
       std::vector<Heard>& heard = all[before + part];
       heard.reserve(usual * together * circles.sectors);
       const std::size_t end = std::min(circles.count(), (part + 1) * together);
       for (std::size_t i = part * together; i < end; ++i)
-        hear_circle(circles, i, limits, pairs, heard);
+        hear_circle(circles, i, limits, interference, memory, heard);
     });
   }
   return all;
@@ -107,38 +122,6 @@ double fastest_of(std::span<Heard* const> heard) {
       fastest2 = std::max({fastest2, h->one_slowness.head<2>().squaredNorm(),
                            h->other_slowness.head<2>().squaredNorm()});
   return std::sqrt(fastest2);
-}
-
-/// Bearings all round, as many as the array can tell apart and some more: the mean of
-/// e^{i2πf ξ d cos φ} over N equal steps of φ is J₀ to within 2J_N of its argument. Those of four
-/// circles interleave, and in a stretch that holds a part of a circle more the alias is J_{N/4}.
-std::size_t bearings_for(const Listener& listener) {
-  double furthest = 0.0, highest = 0.0;
-  for (const Vec3& phone : listener.phones)
-    furthest = std::max(furthest, (phone - listener.phones.front()).head<2>().norm());
-  for (const double f : listener.band.frequencies) highest = std::max(highest, f);
-  return static_cast<std::size_t>(2.0 * pi * highest * furthest / slowest_sea) + 64;
-}
-
-/// Adds a power that is heard evenly from `first` to `last` [bins].
-void spread(double power, double first, double last, std::vector<double>& bins) {
-  const double all = static_cast<double>(bins.size());
-  first = std::clamp(first, 0.0, all);
-  last = std::clamp(last, first, all);
-  if (last - first < 1e-9) {
-    if (first < all) bins[static_cast<std::size_t>(first)] += power;
-    return;
-  }
-  const double each = power / (last - first);
-  auto i = static_cast<std::size_t>(first);
-  const auto end = static_cast<std::size_t>(last);  // the last one, of which it may fill nothing
-  if (i == end) {
-    bins[i] += power;
-    return;
-  }
-  bins[i] += each * (static_cast<double>(i + 1) - first);
-  while (++i < end) bins[i] += each;
-  if (end < bins.size()) bins[end] += each * (last - static_cast<double>(end));
 }
 
 }  // namespace
@@ -167,14 +150,13 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
                                                  const AudibleLimits& limits,
                                                  const Listener& listener)
     : band(listener.band) {
-  constexpr double most_bins = 16'000.0, widest = 0.1;  // [1], [s]
-  bin = std::max(std::min(listener.pulse_duration / 16.0, widest), listener.latest / most_bins);
+  bin = delay_bin(listener.pulse_duration, listener.latest);
   intensity.assign(static_cast<std::size_t>(std::ceil(listener.latest / bin)), 0.0);
   if (intensity.empty()) return;
   stretches = stretches_of(intensity.size());
   const Steering steering(listener.phones, listener.band.frequencies);
   components = steering.components();
-  std::vector<std::vector<Heard>> parts = hear_all(fields, limits, bin, bearings_for(listener));
+  std::vector<std::vector<Heard>> parts = hear_all(fields, limits, bin, listener);
   std::vector<Heard*> heard;
   for (std::vector<Heard>& part : parts)
     for (Heard& h : part) heard.push_back(&h);
@@ -215,7 +197,7 @@ ReverberationCovariance::ReverberationCovariance(std::span<const ScatteringField
   for (std::size_t s = stretches.size() - 1; s > 0; --s) take_over(stretches[s - 1], stretches[s]);
   for (const Heard* h : heard)
     spread(h->power / bin, (h->delay - 0.5 * h->extent) / bin, (h->delay + 0.5 * h->extent) / bin,
-           intensity);
+           std::span(intensity));
 }
 
 std::size_t ReverberationCovariance::bytes() const noexcept {

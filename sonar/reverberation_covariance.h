@@ -2,12 +2,14 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "sonar/band_response.h"
 #include "sonar/propagation_memory.h"
+#include "sonar/pulse_coherence.h"
 #include "sonar/scattering_field.h"
 
 namespace asdic {
@@ -20,7 +22,7 @@ namespace asdic {
 /// the array hears an impulse x(τ) with ⟨x x^H⟩ = I(τ)·C(τ) dτ, C(τ) = F F^H of unit mean diagonal,
 /// summed over all pairs of paths through places at all bearings. Each phone has a component for
 /// each of K frequencies f_k, at which a direction's phase is e^{−i2πf_k s·x}: between them it is a
-/// polynomial. What is left out: that one scatterer is heard at several delays.
+/// polynomial. What is left out: that one scatterer is heard again later than a pulse.
 /// docs/theory/reverberation.md, "Covariance"
 struct ReverberationCovariance {
   /// Who hears, and how finely.
@@ -28,7 +30,9 @@ struct ReverberationCovariance {
     std::span<const Vec3> phones;  ///< relative to the array's reference point [m]
     BandNodes band;                ///< f_k
     double pulse_duration = 1.0;   ///< [s]
-    double latest = 60.0;          ///< end of the record [s]
+    /// Of the pulse with itself; none: a tone that never ends.
+    std::shared_ptr<const PulseCoherence> coherence = std::make_shared<const PulseCoherence>();
+    double latest = 60.0;  ///< end of the record [s]
   };
   /// Bins of delay that share a factor.
   struct Stretch {

@@ -36,7 +36,7 @@ SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context)
   ends.source.position += transmitter.offset;
   for (ReceiverLeg& leg : ends.legs) leg.line.position += hearer.offset;
   // Who moves so little in a record that no phase changes by a twentieth of a radian is at rest.
-  constexpr double still = 0.05, slowest_sea = 1400.0;  // [rad], [m/s]
+  constexpr double still = 0.05;  // [rad]
   const double fastest = ends.source.velocity.norm() + ends.receiver.velocity.norm();
   if (ends.legs.empty() && 2.0 * pi * ends.frequency * fastest * ends.latest / slowest_sea < still)
     ends.source.velocity = ends.receiver.velocity = Vec3::Zero();
@@ -317,12 +317,14 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
   const ReverberationCovariance::Listener listener = {.phones = context.phones,
                                                       .band = band,
                                                       .pulse_duration = context.pulse.duration(),
+                                                      .coherence = pulse_coherence(context.pulse),
                                                       .latest = context.latest};
   auto key =
       ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_covariance);
   PropagationMemory& memory = paths_.memory();
   if (key) {
     key->add(listener.band.frequencies);
+    key->add(listener.coherence->fingerprint());
     for (const ScatteringField& field : fields)
       key->add_all(static_cast<int>(field.heard_by), field.thickness);
     for (const Vec3& phone : context.phones) key->add(phone);
@@ -347,6 +349,7 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
       .frequency = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99(),
       .bandwidth = context.pulse.bandwidth_99(),
       .pulse_duration = context.pulse.duration(),
+      .coherence = pulse_coherence(context.pulse),
       .latest = context.latest};
   std::vector<const ScatteringField*> served;
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -363,6 +366,7 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
   PropagationMemory& memory = paths_.memory();
   if (key) {
     key->add(listener.frequency);
+    key->add(listener.coherence->fingerprint());
     for (const ScatteringField& field : fields) {
       const ScattererMotion& motion = field.field.motion;
       key->add_all(static_cast<int>(field.heard_by), field.thickness, field.boundary,

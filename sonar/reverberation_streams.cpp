@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/parallel.h"
+#include "sonar/delay_bins.h"
 #include "sonar/heard_places.h"
 
 namespace asdic {
@@ -14,8 +15,6 @@ namespace {
 
 using StreamBlock = ReverberationStreams::Block;
 using Listener = ReverberationStreams::Listener;
-
-constexpr double slowest_sea = 1400.0;  // [m/s]
 
 /// Blocks of a quarter of a pulse and, later, of an eighth of the delay: no direction depends on
 /// them, but each asks for transforms that are a pulse longer.
@@ -240,8 +239,8 @@ struct GroundAround {
   }
 
   /// Adds what is heard of one circle.
-  void hear(std::size_t circle, const AudibleLimits& limits, PathPairs& pairs,
-            std::vector<Heard>& heard) const {
+  void hear(std::size_t circle, const AudibleLimits& limits, const PathInterference& interference,
+            HearingMemory& memory, std::vector<Heard>& heard) const {
     const double inner = edges[circle], outer = edges[circle + 1];
     const double ring =
         field.heard_area(static_cast<std::uint32_t>(0.5 * (inner + outer) / field.grid.spacing));
@@ -270,10 +269,11 @@ struct GroundAround {
                       {.middle = middle + r * out,
                        .outward = out,
                        .length = length,
+                       .width = r * width / around,
                        .area = field.share * field.share * r * length * width / around,
                        .ring = ring,
                        .chance = mixed(mixed(circle, field.boundary), piece)},
-                      limits, false, pairs, heard);
+                      limits, interference, false, memory, heard);
         }
     }
   }
@@ -324,20 +324,6 @@ class Gatherer {
   }
 
  private:
-  /// Adds a power that is heard evenly from `first` to `last` [bins].
-  static void spread(double power, double first, double last, std::span<float> bins) {
-    const auto begin = std::min(static_cast<std::size_t>(first), bins.size() - 1);
-    if (last - first < 1e-9) {
-      bins[begin] += static_cast<float>(power);
-      return;
-    }
-    const double each = power / (last - first);
-    for (std::size_t i = begin; i < bins.size() && static_cast<double>(i) < last; ++i) {
-      const double from = std::max(first, static_cast<double>(i));
-      bins[i] += static_cast<float>(each * (std::min(last, static_cast<double>(i) + 1.0) - from));
-    }
-  }
-
   const Resolution& resolution_;
   std::span<const StreamBlock> blocks_;
   std::span<const std::uint32_t> block_of_;
@@ -390,8 +376,7 @@ double ReverberationStreams::worth(const Listener& listener, const ScatteringFie
 ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* const> fields,
                                            const AudibleLimits& limits, const Listener& listener)
     : phones(listener.phones.size()) {
-  constexpr double most_bins = 16'000.0, widest = 0.1;  // [1], [s]
-  bin = std::max(std::min(listener.pulse_duration / 16.0, widest), listener.latest / most_bins);
+  bin = delay_bin(listener.pulse_duration, listener.latest);
   const auto bins = static_cast<std::size_t>(std::ceil(listener.latest / bin));
   if (bins == 0) return;
   blocks = blocks_of(bins, listener.pulse_duration / bin);
@@ -407,14 +392,16 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
   CellSums sums(blocks);
   for (const ScatteringField* field : fields) {
     const GroundAround ground(*field, bin, 1.5 * bearings_of(resolution, listener, *field));
+    const PathInterference interference(listener.phones, field->sheet.ends().frequency,
+                                        *listener.coherence, false);
     const std::size_t circles = ground.edges.size() - 1;
     std::vector<CellSums> parts((circles + together - 1) / together, CellSums(blocks));
     in_parallel(parts.size(), [&](std::size_t part) {
-      PathPairs pairs;
+      HearingMemory memory;
       std::vector<Heard> heard;
       for (std::size_t i = part * together; i < std::min(circles, (part + 1) * together); ++i) {
         heard.clear();
-        ground.hear(i, limits, pairs, heard);
+        ground.hear(i, limits, interference, memory, heard);
         for (const Heard& h : heard) gatherer.add(h, parts[part]);
       }
     });

@@ -3,10 +3,12 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sonar/propagation_memory.h"
+#include "sonar/pulse_coherence.h"
 #include "sonar/scattering_field.h"
 
 namespace asdic {
@@ -28,7 +30,9 @@ struct ReverberationStreams {
     double frequency = 1000.0;     ///< the highest that matters [Hz]
     double bandwidth = 10.0;       ///< of the pulse [Hz]
     double pulse_duration = 1.0;   ///< [s]
-    double latest = 60.0;          ///< end of the record [s]
+    /// Of the pulse with itself; none: a tone that never ends.
+    std::shared_ptr<const PulseCoherence> coherence = std::make_shared<const PulseCoherence>();
+    double latest = 60.0;  ///< end of the record [s]
   };
   /// A part of a cell: where its sound comes from. Fronts are spheres about a point so far back as
   /// the way from the ground is long.

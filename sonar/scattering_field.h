@@ -9,6 +9,9 @@
 
 namespace asdic {
 
+/// No water carries sound so slowly [m/s].
+inline constexpr double slowest_sea = 1400.0;
+
 /// How the sound of a field's scatterers is made.
 enum class HeardBy {
   scatterers,  ///< one after the other
