@@ -2,12 +2,9 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "sonar/all_round_covariance.h"
-#include "sonar/pulse_coherence.h"
+#include "sonar/path_interference.h"
 #include "sonar/scattering_field.h"
 
 namespace asdic {
@@ -34,44 +31,11 @@ struct Ground {
   std::uint64_t chance = 0;  ///< which path stands for each bundle
 };
 
-/// Who hears sounds of one place that come by different paths, and so how far they add up in phase:
-/// through a pulse, and as a mean over the phones.
-class PathInterference {
- public:
-  /// \param phones  relative to the array's reference point [m]   \param frequency  [Hz]
-  /// \param all_round  of the mean over bearings
-  PathInterference(std::span<const Vec3> phones, double frequency, const PulseCoherence& pulse,
-                   bool all_round);
-  [[nodiscard]] double frequency() const noexcept { return frequency_; }
-  [[nodiscard]] const PulseCoherence& pulse() const noexcept { return pulse_; }
-  /// Mean over phones of e^{−iω(s_a − s_b)·x}. \param apart  s_a − s_b [s/m]
-  [[nodiscard]] std::complex<double> over_phones(const Vec3& apart) const noexcept;
-
- private:
-  const PulseCoherence& pulse_;
-  double frequency_;
-  double reach_ = 0.0;                 // of the furthest
-  std::vector<Vec3> phones_;           // times the frequency
-  std::optional<BesselTable> bessel_;  // of the mean over bearings
-};
-
-/// One of a place's sounds, by one pair of paths.
-struct PlaceSound {
-  std::complex<double> amplitude = 0.0;  ///< with the phase of its delay
-  double delay = 0.0;                    ///< [s]
-  double along = 0.0, across = 0.0;  ///< ∂delay over the ground, outward and beside that [s/m]
-  double through = 0.0;              ///< the same over the depth [s/m]
-  double doppler = 1.0;
-  Vec3 slowness = Vec3::Zero();  ///< as the array meets it [s/m]
-  std::size_t heard = 0;         ///< of which Heard
-};
-
 /// Memory that hearing a place takes: used again from place to place.
 struct HearingMemory {
   PathPairs pairs;
-  std::vector<PlaceSound> sounds;
-  std::vector<double> power, between;  // of each Heard
-  std::vector<const PathPair*> by;     // which each is heard
+  PlaceSounds sounds;
+  std::vector<const PathPair*> by;  // by which each is heard
 };
 
 /// Adds what a piece of ground sends back. Sounds that come by several paths interfere, as under a

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sonar/path_interference.h"
 #include "sonar/reverberation.h"
 
 namespace asdic {
@@ -44,14 +45,30 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
   const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
   std::vector<Bin> bins(count * elevations);
   PathPairs pairs;
+  PlaceSounds sounds;
+  const PathInterference interference(context_.phones, field.sheet.ends().frequency,
+                                      *pulse_coherence(context_.pulse), false);
   const double speed = field.sheet.ends().receiver_speed;
   const bool one_fan = field.sheet.one_fan();
+  const auto with = [&](const PathPair& pair) {
+    return one_fan ? reciprocal(pairs.found, pair) : nullptr;
+  };
   const auto put = [&](const ScattererKey& key, std::uint64_t entity, const Met& met) {
+    sounds.clear();
     for (const PathPair& pair : pairs.found) {
-      const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
+      const PathPair* other = with(pair);
+      const PathPair* part = other && pair.out_index > pair.back_index ? other : &pair;
+      sounds.add(field.sheet, pair, {}, field.sheet.doppler(pair, met.velocity, met.bragg),
+                 field.sheet.arriving(pair), static_cast<std::size_t>(part - pairs.found.data()));
+    }
+    const std::span<const double> gains = sounds.gains(interference, {}, pairs.found.size());
+    for (const PathPair& pair : pairs.found) {
+      const PathPair* other = with(pair);
       if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
-      const double power = std::norm(met.strength) * (std::norm(pair.amplitude) +
+      const double alone = std::norm(met.strength) * (std::norm(pair.amplitude) +
                                                       (other ? std::norm(other->amplitude) : 0.0));
+      const double power =
+          alone * std::pow(gains[static_cast<std::size_t>(&pair - pairs.found.data())], 2);
       const double sine = -field.sheet.arriving(pair).z() * speed;
       const int elevation =
           std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
@@ -60,9 +77,10 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
           bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
       full.power += static_cast<float>(power);
       const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
-      if (uniform(entity, number) * static_cast<double>(full.power) >= power) continue;
+      if (uniform(mixed(entity, scenario_.seed), number) * static_cast<double>(full.power) >= power)
+        continue;
       full = {.power = full.power,
-              .chosen = static_cast<float>(power),
+              .chosen = static_cast<float>(alone),
               .ring = key.ring,
               .copies = key.copies,
               .copy = key.copy,
