@@ -81,7 +81,7 @@ void fix_fan(PropagationCase& run_case) {
 
 PropagationResult search(const bellhop::Input& input, const BellhopOptions& options) {
   constexpr int steps = 100;
-  ProgressBar bar("hundredth", steps, !options.quiet);
+  ProgressBar bar("%", steps, !options.quiet);
   const Progress progress = [&](double share) {
     bar.done(static_cast<int>(std::clamp(share, 0.0, 1.0) * steps));
     return true;
@@ -157,6 +157,8 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
   if (!options.like_bellhop && input.run_case.task == Task::field && result.beams > 0)
     report.line("error      " + beam_error_text(result.beam_error_db, result.beam_error_bounded));
+  if (const double share = share_sure(result.beam_errors); !std::isnan(share))
+    report.line("certain    " + certainty_text(share));
   report.line("");
   write_results(input, result, options, root, std::move(files), report);
   const double write = watch.lap();

@@ -61,6 +61,7 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .beams = result.beams,
           .beam_error_db = result.beam_error_db,
           .beam_error_bounded = result.beam_error_bounded,
+          .beam_errors = std::move(result.beam_errors),
           .solver = std::string(name(result.waves ? FieldSolver::waves : FieldSolver::beams))};
 }
 
@@ -90,6 +91,8 @@ std::string field_text(const FieldResult& result, double wall) {
     text += "waves      no beams: the wave equation is solved\n";
   else
     text += "beams      none: the note tells why\n";
+  if (const double share = share_sure(data.beam_errors); !std::isnan(share))
+    text += "certain    " + certainty_text(share) + '\n';
   text += loss_text(data.pressure);
   for (const std::string& note : result.notes) text += "note: " + note + '\n';
   return text + fmt::format("{}: {}, {}\n", result.output.string(),
@@ -100,6 +103,7 @@ std::string field_text(const FieldResult& result, double wall) {
 std::string field_json(const FieldResult& result) {
   const FieldData& data = result.data;
   const std::vector<double> tl = losses(data.pressure);
+  const double sure = share_sure(data.beam_errors);
   ordered_json loss;
   if (!tl.empty())
     loss = {{"least", tl.front()}, {"median", compare::quantile(tl, 0.5)}, {"greatest", tl.back()}};
@@ -118,6 +122,8 @@ std::string field_json(const FieldResult& result) {
                             {"beams", data.beams},
                             {"beam_error_db", data.beam_error_db},
                             {"beam_error_bounded", data.beam_error_bounded},
+                            {"sure_pct", 100.0 * sure},
+                            {"sure_db", sure_db},
                             {"tl_db", loss},
                             {"silent_pct", silent_pct(data.pressure.size(), tl.size())},
                             {"warnings", result.origin.warnings},

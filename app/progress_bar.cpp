@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
+#include <utility>
 
 #include "app/console.h"
 
@@ -27,30 +26,8 @@ std::string progress_line(const std::string& thing, int done, int total, double 
 }
 
 ProgressBar::ProgressBar(std::string thing, int total, bool show)
-    : thing_(std::move(thing)), total_(total) {
-  if (!show || !stderr_is_terminal()) return;
-  painter_ = std::jthread([this](const std::stop_token& over) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    auto next = start + std::chrono::seconds(1);
-    bool shown = false;
-    while (!over.stop_requested()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const auto now = Clock::now();
-      if (now < next) continue;
-      draw(std::chrono::duration<double>(now - start).count());
-      shown = true;
-      next = now + std::chrono::milliseconds(250);
-    }
-    if (shown) std::fputs("\r\x1b[K", stderr);
-  });
-}
-
-ProgressBar::~ProgressBar() = default;  // the painter is asked to stop, and joined
-
-void ProgressBar::draw(double elapsed) const {
-  std::fputs(("\r\x1b[K" + progress_line(thing_, done_, total_, elapsed)).c_str(), stderr);
-  std::fflush(stderr);
-}
+    : painter_(show, [this, thing = std::move(thing), total](double elapsed) {
+        return progress_line(thing, done_, total, elapsed);
+      }) {}
 
 }  // namespace asdic::app

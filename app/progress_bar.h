@@ -1,29 +1,22 @@
 #pragma once
 #include <atomic>
 #include <string>
-#include <thread>
+
+#include "app/progress_painter.h"
 
 namespace asdic::app {
 
-/// A line on standard error that says how far a run is: on a terminal, and once a second has
-/// passed. Gone again when it ends.
+/// A line on standard error that says how far a run is (ProgressPainter).
 class ProgressBar {
  public:
   /// \param thing  what is counted: "ping", or "%" for a share   \param show  false: never
   ProgressBar(std::string thing, int total, bool show);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
 
   void done(int count) noexcept { done_ = count; }
 
  private:
-  void draw(double elapsed) const;
-
-  std::string thing_;
-  int total_;
   std::atomic<int> done_ = 0;
-  std::jthread painter_;
+  ProgressPainter painter_;
 };
 
 /// The line itself. \param elapsed  [s]

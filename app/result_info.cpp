@@ -12,6 +12,7 @@
 #include "app/field_output.h"
 #include "io/result_file.h"
 #include "io/wav.h"
+#include "raytrace/beam_error_text.h"
 
 namespace asdic::app {
 namespace {
@@ -114,6 +115,20 @@ std::string origin(const Hdf5File& file) {
   return text;
 }
 
+/// How sure a field is of its beams; nothing of a file that does not tell it.
+std::string certainty(const Hdf5File& file) {
+  const auto number = [&](const char* key) { return file.attribute_number("", key); };
+  std::string text;
+  if (file.has_attribute("", "beams") && file.has_attribute("", "beam_error_db"))
+    text += fmt::format(
+        "beams      {:g}; {}\n", number("beams"),
+        beam_error_text(number("beam_error_db"), file.has_attribute("", "beam_error_bounded") &&
+                                                     number("beam_error_bounded") != 0.0));
+  if (file.has_attribute("", "sure_pct"))
+    text += "certain    " + certainty_text(number("sure_pct") / 100.0) + '\n';
+  return text;
+}
+
 std::string file_line(const std::string& path, std::string_view kind) {
   return fmt::format("file       {}, {}, {}\n", path,
                      byte_count(static_cast<double>(std::filesystem::file_size(path))), kind);
@@ -136,7 +151,7 @@ int propagation_info(const std::string& path) {
   if (is_hdf5(path)) {
     const Hdf5File file = Hdf5File::open(path);
     title = file.attribute_or("", "title", title);
-    about = origin(file);
+    about = certainty(file) + origin(file);
   }
   print(emphasised(title.empty() ? path : title) + '\n');
   print(file_line(path, kind_of(result)));

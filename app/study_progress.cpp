@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "app/console.h"
-#include "app/progress_bar.h"
 
 namespace asdic::app {
 
@@ -39,42 +36,15 @@ std::string progress_line(const study::Progress& p, double elapsed) {
   return line;
 }
 
-StudyProgress::StudyProgress(bool show) {
-  if (!show) return;
-  const bool terminal = stderr_is_terminal();
-  painter_ = std::jthread([this, terminal](const std::stop_token& over) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto every = terminal ? std::chrono::milliseconds(250) : std::chrono::minutes(1);
-    auto next = start + (terminal ? std::chrono::seconds(1) : std::chrono::minutes(1));
-    bool shown = false;
-    while (!over.stop_requested()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      const auto now = Clock::now();
-      if (now < next) continue;
-      draw(std::chrono::duration<double>(now - start).count(), terminal);
-      shown = true;
-      next = now + every;
-    }
-    if (shown && terminal) std::fputs("\r\x1b[K", stderr);
-  });
-}
-
-StudyProgress::~StudyProgress() = default;  // the painter is asked to stop, and joined
+StudyProgress::StudyProgress(bool show)
+    : painter_(show, [this](double elapsed) {
+        const std::lock_guard lock(mutex_);
+        return progress_line(progress_, elapsed);
+      }) {}
 
 void StudyProgress::update(const study::Progress& progress) {
   const std::lock_guard lock(mutex_);
   progress_ = progress;
-}
-
-void StudyProgress::draw(double elapsed, bool terminal) {
-  std::string line;
-  {
-    const std::lock_guard lock(mutex_);
-    line = progress_line(progress_, elapsed);
-  }
-  std::fputs((terminal ? "\r\x1b[K" + line : line + '\n').c_str(), stderr);
-  std::fflush(stderr);
 }
 
 }  // namespace asdic::app

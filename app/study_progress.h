@@ -1,29 +1,23 @@
 #pragma once
 #include <mutex>
 #include <string>
-#include <thread>
 
+#include "app/progress_painter.h"
 #include "study/run_study.h"
 
 namespace asdic::app {
 
-/// How far a study is, on standard error: on a terminal a line that is drawn anew four times a
-/// second, elsewhere (a batch job's log) a line a minute.
+/// How far a study is, on standard error (ProgressPainter).
 class StudyProgress {
  public:
   explicit StudyProgress(bool show);
-  ~StudyProgress();
-  StudyProgress(const StudyProgress&) = delete;
-  StudyProgress& operator=(const StudyProgress&) = delete;
 
   void update(const study::Progress& progress);
 
  private:
-  void draw(double elapsed, bool terminal);
-
   std::mutex mutex_;
   study::Progress progress_;
-  std::jthread painter_;
+  ProgressPainter painter_;
 };
 
 /// Bar, count, rate, remaining time, running estimate. \param elapsed  since the run began [s]

@@ -1,11 +1,13 @@
 #include "io/field_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/error.h"
 #include "io/finite_field.h"
 #include "io/hdf5/scale.h"
+#include "raytrace/beam_error_text.h"
 
 namespace asdic {
 namespace {
@@ -31,6 +33,29 @@ std::vector<double> axis(const Hdf5File& file, const std::string& name) {
 }
 
 constexpr std::string_view field_kinds[] = {"coherent", "incoherent", "semi-coherent"};
+
+}  // namespace
+
+namespace {
+
+/// What each receiver is sure to, and how many of them are. \param shape, scales  of the receivers
+void write_beam_errors(Hdf5File& file, const FieldData& field, const Shape& shape,
+                       const std::vector<std::string>& scales) {
+  if (field.beam_errors.empty()) return;
+  file.write<float>("beam_error", field.beam_errors, shape);
+  describe(file, "beam_error",
+           "what more beams would change of the transmission loss, no more than this where "
+           "beam_error_bounded is 1; infinite: no number bounds it; NaN: too faint to count, "
+           "outside of the water, or a column that was not looked at",
+           "dB");
+  file.attach_scales("beam_error", scales);
+  if (field.receivers.irregular)
+    file.set_attribute("beam_error", "coordinates", "receiver_depth receiver_range");
+  if (const double share = share_sure(field.beam_errors); !std::isnan(share)) {
+    file.set_attribute("", "sure_pct", 100.0 * share);
+    file.set_attribute("", "sure_db", sure_db);
+  }
+}
 
 }  // namespace
 
@@ -79,6 +104,8 @@ void write_field(Hdf5File& file, const FieldData& field) {
   file.attach_scales("pressure", scales);
   if (grid.irregular)
     file.set_attribute("pressure", "coordinates", "receiver_depth receiver_range");
+  shape.pop_back(), scales.pop_back();
+  write_beam_errors(file, field, shape, scales);
 }
 
 FieldData read_field(const Hdf5File& file) {
@@ -118,6 +145,13 @@ FieldData read_field(const Hdf5File& file) {
   const std::vector<float> parts = file.read<float>("pressure");
   for (std::size_t i = 0; i + 1 < parts.size(); i += 2)
     field.pressure.emplace_back(parts[i], parts[i + 1]);
+  if (file.has("beam_error")) {
+    const Shape receivers(shape.begin(), shape.end() - 1);
+    if (file.info("beam_error").shape != receivers)
+      throw wrong(file, "beam_error", "a shape that does not fit its axes",
+                  "that of the pressure without re_im");
+    field.beam_errors = file.read<float>("beam_error");
+  }
   return field;
 }
 

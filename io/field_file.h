@@ -24,7 +24,10 @@ struct FieldData {
   std::size_t beams = 0;                      ///< rays traced per source; 0: not known
   double beam_error_db = 0.0;       ///< what more beams would change, at 95 % of receivers
   bool beam_error_bounded = false;  ///< that is a bound, else an estimate
-  std::string solver;               ///< "beams" or "waves"; empty: not known
+  std::vector<float> beam_errors;  ///< [sources × rows × ranges] the same of each receiver [dB], ∞
+                                   ///< where no number bounds it, NaN where it is not known;
+                                   ///< empty: not known of any (PropagationResult::beam_errors)
+  std::string solver;  ///< "beams" or "waves"; empty: not known
 };
 
 /// Writes the datasets and attributes of docs/formats/field.md, but for the root's (filetype,

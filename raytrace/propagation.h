@@ -26,7 +26,10 @@ struct PropagationResult {
   double beam_error_db = 0.0;       ///< field: what more beams would change at 95 % of receivers
   bool beam_error_bounded = false;  ///< that is a bound (hat and Gaussian beams on a grid), else an
                                     ///< estimate
-  std::vector<std::string> notes;   ///< what the user should know
+  std::vector<float> beam_errors;  ///< [sources × rows × ranges] the same of each receiver [dB], ∞
+                                   ///< where no number bounds it, NaN where it is not known; empty
+                                   ///< where no beams were counted (ConvergedField::errors)
+  std::vector<std::string> notes;  ///< what the user should know
 };
 
 /// A run was stopped by its Progress.

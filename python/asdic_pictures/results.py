@@ -37,6 +37,23 @@ class Field:
     pressure: np.ndarray        # [sources, rows, columns] or [sources, receivers]
     how: str                    # "coherent", …; with the kind of beams
     sea: Sea = field(default_factory=Sea)
+    errors: np.ndarray | None = None    # [sources, …] of the number of beams [dB], NaN: not known
+    sure_db: float = 0.5                # a receiver with no more error than this is sure
+
+    def unsure(self, source: int) -> np.ndarray | None:
+        """Which receivers are not sure of their number of beams; None where that is not told. A
+        column that was not looked at is as its nearest that was.
+        """
+        if self.errors is None:
+            return None
+        errors = self.errors[source]
+        if not self.irregular:
+            known = np.flatnonzero(~np.isnan(errors).all(axis=0))
+            if known.size == 0:
+                return None
+            columns = np.arange(errors.shape[1])
+            errors = errors[:, known[np.abs(columns[:, None] - known[None, :]).argmin(axis=1)]]
+        return errors > self.sure_db    # NaN is not
 
     def tl(self, source: int) -> np.ndarray:
         """Transmission loss [dB]; NaN where there is no sound."""
@@ -159,9 +176,14 @@ def read_field(reader: Reader) -> Field:
         how.append("wave equation")
     elif beams := text(reader.file.attrs, "beam_kind"):
         how.append(f"{beams} beams")
+    errors = reader.array("beam_error") if reader.has("beam_error") else None
+    if errors is not None and errors.shape != parts.shape[:-1]:
+        raise InputError(reader.path, f"beam_error of shape {errors.shape}",
+                         f"that of the receivers, {parts.shape[:-1]}")
     return Field(reader.title(), reader.number("frequency_hz"), reader.array("source_depth"),
                  reader.array(prefix + "depth"), reader.array(prefix + "range"), irregular,
-                 parts[..., 0] + 1j * parts[..., 1], ", ".join(how), reader.sea())
+                 parts[..., 0] + 1j * parts[..., 1], ", ".join(how), reader.sea(), errors,
+                 reader.number("sure_db", 0.5))
 
 
 LEGS = {0: "source to target", 1: "target to array", 2: "source to array", 3: "source to receiver"}

@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.patches import Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
 
 from . import sea, style
 
 TITLE = "Transmission loss"
 MAP = "viridis_r"       # loud is light
+HATCH = (0.15, 0.15, 0.15, 0.55)
 
 
 def nothing_to_show(field) -> str | None:
@@ -37,6 +39,25 @@ def draw_map(axes, field, values, colours, cmap):
                             vmax=high, lw=0)
     return axes.pcolormesh(edges(field.range) / 1e3, edges(field.depth), values, cmap=cmap,
                            vmin=low, vmax=high, rasterized=True)
+
+
+def draw_unsure(axes, field, source: int) -> bool:
+    """Hatches what is not sure of its number of beams. → whether there is any"""
+    unsure = field.unsure(source)
+    if unsure is None or not unsure.any():
+        return False
+    if field.irregular:
+        axes.scatter(field.range[unsure] / 1e3, field.depth[unsure], marker="x", s=30, lw=0.8,
+                     color=HATCH)
+        return True
+    # Cells are doubled, so that a contour of what is in and what is out follows their edges.
+    across, down = edges(field.range) / 1e3, edges(field.depth)
+    beside = np.repeat(across, 2)[1:-1], np.repeat(down, 2)[1:-1]
+    hatching = axes.contourf(*beside, np.kron(unsure, np.ones((2, 2))), levels=[0.5, 1.5],
+                             colors="none", hatches=["////"])
+    for part in getattr(hatching, "collections", [hatching]):   # before matplotlib 3.8, and since
+        part.set(edgecolor=HATCH, linewidth=0.0)
+    return True
 
 
 def loss_bar(fig, mesh, axes, label="transmission loss / dB"):
@@ -69,22 +90,45 @@ def describe(field, source: int) -> str:
             f"{field.source_depths[source]:g} m, {field.how}")
 
 
+def unsure_key(field, source: int, curves: bool = False):
+    """What the hatching (of curves: the dots) means, and how many receivers it is, of those of which it is known. → for a
+    legend
+    """
+    errors = field.errors[source]
+    known = ~np.isnan(errors)
+    unsure = 100.0 * np.mean(errors[known] > field.sure_db)
+    label = (f"more beams may change it by over {field.sure_db:g} dB: "
+             f"{unsure:.0f} % of the receivers")
+    if curves:
+        return Line2D([], [], color=style.INK, lw=0.9, ls=":", label=label)
+    if field.irregular:
+        return Line2D([], [], color=HATCH, marker="x", ms=5, ls="none", label=label)
+    return Patch(fc="none", ec=HATCH, hatch="////", lw=0, label=label)
+
+
 MOST_CURVES = 4
 
 
 def draw_curves(field, source: int):
     """Receivers at a few depths: a curve over range for each."""
     fig, axes = style.figure(TITLE, 4.2)
+    unsure = field.unsure(source)
+    dotted = unsure is not None and unsure.any()
     for k, loss in enumerate(field.tl(source)):
-        axes.plot(field.range / 1e3, loss, lw=1.1, label=f"{field.depth[k]:g} m",
-                  color=(style.BLUE, style.VERMILION, style.GREEN, style.PURPLE)[k])
+        colour = (style.BLUE, style.VERMILION, style.GREEN, style.PURPLE)[k]
+        sure = np.where(unsure[k], np.nan, loss) if dotted else loss
+        axes.plot(field.range / 1e3, sure, lw=1.1, label=f"{field.depth[k]:g} m", color=colour)
+        if dotted:
+            axes.plot(field.range / 1e3, loss, lw=0.9, ls=":", color=colour)
     low, high = limits(field.tl(source), span=100.0)
     axes.set_ylim(high + 2, low - 2)
     axes.set_xlim(min(field.range.min(), 0.0) / 1e3, field.range.max() / 1e3)
     axes.set_ylabel("transmission loss / dB")
     axes.set_xlabel("range from the source / km")
     axes.grid(True)
-    axes.legend(title="receivers at", loc="upper right")
+    axes.add_artist(axes.legend(title="receivers at", loc="upper right"))
+    if dotted:
+        style.legend_below(axes, [unsure_key(field, source, curves=True)])
     style.subtitle(axes, describe(field, source))
     return fig
 
@@ -95,9 +139,12 @@ def draw(field, source: int = 0):
     fig, axes = sea.figure(TITLE, field.sea)
     values = field.tl(source)
     mesh = draw_map(axes, field, values, limits(values), MAP)
+    unsure = draw_unsure(axes, field, source)
     frame(axes, field, source)
     sea.label_depth(fig, axes)
     axes.set_xlabel("range from the source / km")
     loss_bar(fig, mesh, axes)
     style.subtitle(axes, describe(field, source))
+    if unsure:
+        style.legend_below(axes, [unsure_key(field, source)])
     return fig

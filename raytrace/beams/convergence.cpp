@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace asdic {
 
@@ -42,18 +44,16 @@ double share_of_sample(std::size_t size, bool whole) noexcept {
   return std::min(1.0, of_all + 2.0 * std::sqrt(of_all * (1.0 - of_all) / double(size)));
 }
 
+constexpr double not_counted = std::numeric_limits<double>::quiet_NaN();
+
 /// Rows of receivers that have no limit, [first, last).
 struct RowsLeftOut {
-  std::size_t first = 0, last = 0, columns = 1;
-  [[nodiscard]] bool hold(std::size_t receiver) const noexcept {
-    const std::size_t row = receiver / columns;
-    return row >= first && row < last;
-  }
+  std::size_t first = 0, last = 0;
 };
 
 RowsLeftOut rows_without_limit(const ReceiverGrid& grid, const LevelRays& level,
                                double source_depth) {
-  RowsLeftOut rows{.columns = std::max<std::size_t>(grid.ranges.size(), 1)};
+  RowsLeftOut rows;
   if (level.angle == 0.0 || grid.irregular) return rows;
   const auto row = [&](auto at) { return static_cast<std::size_t>(at - grid.depths.begin()); };
   rows.first =
@@ -64,24 +64,68 @@ RowsLeftOut rows_without_limit(const ReceiverGrid& grid, const LevelRays& level,
   return rows;
 }
 
-/// A bound over the pressure (intensity if not coherent) that it is of, ∞ where there is none; of
-/// the cells of `columns` looked at where field or bound is above the floor.
+/// Which receivers there is a field at: those in the water, but for rows left out. [rows × ranges]
+std::vector<bool> receivers_with_field(const PropagationCase& run_case,
+                                       const RowsLeftOut& left_out = {}) {
+  constexpr double on_boundary = 1e-3;  // [m]
+  const Environment& ocean = run_case.environment;
+  const ReceiverGrid& grid = run_case.receivers;
+  const std::size_t columns = grid.ranges.size();
+  std::vector<bool> with_field(grid.size());
+  for (std::size_t j = 0; j < columns; ++j) {
+    const double surface = ocean.surface.depth_at(grid.ranges[j]) - on_boundary;
+    const double floor = ocean.bottom.depth_at(grid.ranges[j]) + on_boundary;
+    for (std::size_t k = 0; k < grid.rows(); ++k) {
+      const double depth = grid.depths[grid.irregular ? j : k];
+      with_field[k * columns + j] =
+          depth >= surface && depth <= floor && (k < left_out.first || k >= left_out.last);
+    }
+  }
+  return with_field;
+}
+
+/// A bound over the pressure (intensity if not coherent) that it is of, ∞ where there is none; NaN
+/// of cells that do not count: where field and bound are below the floor, or that are not in
+/// `with_field`. Of the columns looked at, as the bound. \param with_field  empty: all
 std::vector<double> shares_of_bound(const std::vector<std::complex<double>>& field,
                                     std::size_t columns, const std::vector<double>& bound,
                                     const ColumnSample& looked_at, bool coherent,
-                                    const RowsLeftOut& rows = {}) {
+                                    const std::vector<bool>& with_field = {}) {
   const double faintest = faintest_of(field);
   const std::size_t count = looked_at.count(columns);
-  std::vector<double> shares;
-  shares.reserve(bound.size());
+  std::vector<double> shares(bound.size(), not_counted);
   for (std::size_t i = 0; i < bound.size(); ++i) {
     const std::size_t receiver = i / count * columns + looked_at.column(i % count);
     const double p = std::abs(field[receiver]), x = coherent ? p : p * p;
-    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest || rows.hold(receiver))
+    if (std::max(p, coherent ? bound[i] : std::sqrt(bound[i])) <= faintest ||
+        (!with_field.empty() && !with_field[receiver]))
       continue;
-    shares.push_back(x > 0.0 ? bound[i] / x : infinity);
+    shares[i] = x > 0.0 ? bound[i] / x : infinity;
   }
   return shares;
+}
+
+/// Those that count.
+std::vector<double> counted(const std::vector<double>& values) {
+  std::vector<double> those;
+  those.reserve(values.size());
+  std::copy_if(values.begin(), values.end(), std::back_inserter(those),
+               [](double x) { return !std::isnan(x); });
+  return those;
+}
+
+/// |ΔTL| of two fields [dB]; NaN where both are below the floor of level_difference_db.
+std::vector<double> level_differences(const std::vector<std::complex<double>>& a,
+                                      const std::vector<std::complex<double>>& b) {
+  const double floor = faintest_of(b);
+  std::vector<double> differences(a.size(), not_counted);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double x = std::abs(a[i]), y = std::abs(b[i]);
+    if (std::max(x, y) <= floor) continue;
+    differences[i] =
+        20.0 * std::abs(std::log10(std::max(x, 0.1 * floor) / std::max(y, 0.1 * floor)));
+  }
+  return differences;
 }
 
 /// |ΔTL| that a bound of this share of the field allows [dB], ∞ where it is as large.
@@ -92,6 +136,19 @@ double db_of_share(double share, bool coherent) noexcept {
 /// The share that allows so much.
 double share_of_db(double db, bool coherent) noexcept {
   return 1.0 - std::pow(10.0, -db / (coherent ? 20.0 : 10.0));
+}
+
+/// What a receiver of each column looked at is sure to, as ConvergedField::errors.
+std::vector<float> receiver_errors(const std::vector<double>& shares, std::size_t columns,
+                                   const ColumnSample& looked_at, std::size_t receivers,
+                                   bool coherent) {
+  std::vector<float> errors(receivers, std::numeric_limits<float>::quiet_NaN());
+  const std::size_t count = looked_at.count(columns);
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (!std::isnan(shares[i]))
+      errors[i / count * columns + looked_at.column(i % count)] =
+          static_cast<float>(db_of_share(shares[i], coherent));
+  return errors;
 }
 
 /// The bound is looked at in no fewer columns than these.
@@ -112,10 +169,6 @@ std::vector<double> column_levels(const std::vector<std::complex<double>>& field
   const double rows = static_cast<double>(field.size()) / static_cast<double>(columns);
   for (double& l : level) l = coherent ? std::sqrt(l / rows) : l / rows;
   return level;
-}
-
-std::string percent(double share) {
-  return std::to_string(static_cast<int>(std::floor(100.0 * share))) + " %";
 }
 
 std::string decimals(double value, std::size_t places = 2) {
@@ -149,10 +202,26 @@ double growth(double excess, bool graded, std::size_t count, std::size_t most) n
   return std::clamp(1.05 * excess, 1.25, !graded && excess > 8.0 ? 4.0 : 2.0);
 }
 
+constexpr const char* in_vain_text =
+    "; the last two doublings of their number made it no surer, and no more were traced";
+
+std::string unsure_note(const ConvergedField& answer, bool in_vain) {
+  const std::string count = std::to_string(answer.beams);
+  const std::string why = in_vain ? in_vain_text : "";
+  if (!answer.bounded)
+    return "the field is not sure of its number of beams: " + count + " leave an error of about " +
+           decimals(answer.error_db) + " dB at 95 % of the receivers" + why;
+  return count + " beams leave the field sure " + certainty_text(share_sure(answer.errors)) +
+         (std::isfinite(answer.error_db)
+              ? ", to " + decimals(answer.error_db) + " dB at 95 %"
+              : std::string(", and less than 95 % of them to any number")) +
+         why;
+}
+
 /// Until the bound is what is wanted.
 ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& field_of,
                              const LevelRays& level_rays, double source_depth, bool circle,
-                             std::size_t first, std::size_t most) {
+                             std::size_t first, std::size_t most, FanProgress* progress) {
   const BeamSettings& beams = run_case.beams;
   const bool coherent = run_case.field == FieldKind::coherent;
   BeamFan fan = even_fan(beams.lowest, beams.highest, static_cast<int>(first));
@@ -162,9 +231,13 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
   const double reach = std::max({std::abs(grid.ranges.front()), std::abs(grid.ranges.back()), 1.0});
   const FinestTubes finest{.width = finest_tube / reach, .level = level_rays.angle};
   const ColumnSample looked_at = columns_looked_at(run_case);
+  const std::vector<bool> with_field = receivers_with_field(run_case, left_out);
   std::vector<double> level;
+  DoublingsInVain doublings;
+  std::size_t enough = most;  // as far as the last fan tells
   while (true) {
     const std::size_t count = fan.elevation.size();
+    if (progress != nullptr) progress->begin(count, enough);
     // Displaced rays have other slopes than their q tells.
     FanField pass = field_of(fan, {.bound = true,
                                    .between = !run_case.beams.displacement,
@@ -172,29 +245,26 @@ ConvergedField bounded_field(const PropagationCase& run_case, const FieldOfFan& 
                                    .level = level,
                                    .first_left_out = left_out.first,
                                    .last_left_out = left_out.last});
-    std::vector<double> shares =
-        shares_of_bound(pass.field, grid.ranges.size(), pass.bound, looked_at, coherent, left_out);
-    const double share = quantile(shares, share_of_sample(shares.size(), looked_at.every == 1));
+    const std::vector<double> shares = shares_of_bound(pass.field, grid.ranges.size(), pass.bound,
+                                                       looked_at, coherent, with_field);
+    std::vector<double> that_count = counted(shares);
+    const double share =
+        quantile(that_count, share_of_sample(that_count.size(), looked_at.every == 1));
     ConvergedField answer{.field = std::move(pass.field),
                           .beams = count,
                           .error_db = db_of_share(share, coherent),
                           .bounded = true};
-    if (answer.error_db <= wanted_bound_db) return answer;
-    if (count >= most) {
-      const auto sure = std::count_if(shares.begin(), shares.end(),
-                                      [&](double of_cell) { return of_cell <= wanted_share; });
-      answer.note = std::to_string(count) + " beams leave the field sure to " +
-                    decimals(wanted_bound_db) + " dB at " +
-                    percent(static_cast<double>(sure) / static_cast<double>(shares.size())) +
-                    " of the receivers" +
-                    (std::isfinite(answer.error_db)
-                         ? ", to " + decimals(answer.error_db) + " dB at 95 %"
-                         : std::string(", and less than 95 % of them to any number"));
+    const bool in_vain = doublings.add(count, shares, wanted_share);
+    if (answer.error_db <= wanted_bound_db || count >= most || in_vain) {
+      answer.errors = receiver_errors(shares, grid.ranges.size(), looked_at, grid.size(), coherent);
+      if (answer.error_db > wanted_bound_db) answer.note = unsure_note(answer, in_vain);
       return answer;
     }
     level = column_levels(answer.field, run_case.receivers.ranges.size(), coherent);
     const bool graded = beams.kind == BeamKind::hat && !circle;
     const double factor = growth(share / wanted_share, graded, count, most);
+    enough = static_cast<std::size_t>(
+        std::min(share / wanted_share * static_cast<double>(count), static_cast<double>(most)));
     auto next = static_cast<std::size_t>(factor * static_cast<double>(count));
     if (1.1 * static_cast<double>(next) > static_cast<double>(most)) next = most;
     if (graded) fan = graded_fan(fan, pass.tube_share, next, finest);
@@ -211,7 +281,9 @@ class ChangeOfFans {
   /// ray families decide. \param count  beams of the denser fan
   void add(const std::vector<std::complex<double>>& coarse,
            const std::vector<std::complex<double>>& dense, std::size_t count) {
-    const double change = level_difference_db(coarse, dense, 0.95);
+    differences_ = level_differences(coarse, dense);
+    std::vector<double> that_count = counted(differences_);
+    const double change = quantile(that_count, 0.95);
     if (count_ > 0 && change > 0.0)
       order_ = std::clamp(
           std::log(change_ / change) / std::log(double(count) / static_cast<double>(count_)), 0.5,
@@ -219,25 +291,37 @@ class ChangeOfFans {
     change_ = change;
     count_ = count;
   }
-  [[nodiscard]] double error_db() const noexcept { return change_ / (std::exp2(order_) - 1.0); }
+  [[nodiscard]] double error_db() const noexcept { return change_ * left(); }
   [[nodiscard]] double order() const noexcept { return order_; }
+  /// Of each receiver: ConvergedField::errors. \param with_field  [receivers]
+  [[nodiscard]] std::vector<float> errors(const std::vector<bool>& with_field) const {
+    std::vector<float> errors(differences_.size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      if (with_field[i]) errors[i] = static_cast<float>(differences_[i] * left());
+    return errors;
+  }
+  /// Whether more beams are in vain: the changes themselves shrink no more.
+  [[nodiscard]] bool in_vain() { return doublings_.add(count_, differences_, wanted_error_db); }
 
  private:
+  /// What all further halvings leave of the last change.
+  [[nodiscard]] double left() const noexcept { return 1.0 / (std::exp2(order_) - 1.0); }
+
+  std::vector<double> differences_;
+  DoublingsInVain doublings_;
   double change_ = 0.0, order_ = 1.0;
   std::size_t count_ = 0;
 };
 
-std::string unsure_note(const ConvergedField& answer) {
-  return "the field is not sure of its number of beams: " + std::to_string(answer.beams) +
-         " leave an error of about " + decimals(answer.error_db) + " dB at 95 % of the receivers";
-}
-
 /// Until a fan is as good as every second beam of it.
 ConvergedField field_of_even_fans(const PropagationCase& run_case, const FieldOfFan& field_of,
-                                  bool circle, int count, int most) {
+                                  bool circle, int count, int most, FanProgress* progress) {
   const BeamSettings& beams = run_case.beams;
   ChangeOfFans change;
+  double enough = most;
   while (true) {
+    if (progress != nullptr)
+      progress->begin(static_cast<std::size_t>(count), static_cast<std::size_t>(enough));
     // Every second of an odd number of beams has both ends; around a circle it takes an even
     // number.
     FanField fan =
@@ -246,14 +330,15 @@ ConvergedField field_of_even_fans(const PropagationCase& run_case, const FieldOf
     ConvergedField answer{.field = std::move(fan.field),
                           .beams = static_cast<std::size_t>(count),
                           .error_db = change.error_db()};
-    if (answer.error_db <= wanted_error_db) return answer;
-    if (count >= most) {
-      answer.note = unsure_note(answer);
+    const bool in_vain = change.in_vain();
+    if (answer.error_db <= wanted_error_db || count >= most || in_vain) {
+      answer.errors = change.errors(receivers_with_field(run_case));
+      if (answer.error_db > wanted_error_db) answer.note = unsure_note(answer, in_vain);
       return answer;
     }
-    const double factor =
-        std::clamp(std::pow(answer.error_db / wanted_error_db, 1.0 / change.order()), 2.0, 4.0);
-    count = std::min(static_cast<int>(factor * count) | 1, most);
+    const double factor = std::pow(answer.error_db / wanted_error_db, 1.0 / change.order());
+    enough = std::min<double>(factor * count, most);
+    count = std::min(static_cast<int>(std::clamp(factor, 2.0, 4.0) * count) | 1, most);
   }
 }
 
@@ -269,13 +354,20 @@ bool nested(const PropagationCase& run_case) noexcept {
 
 /// The same of such beams: the angles between are added, and no ray is traced twice.
 ConvergedField field_of_nested_fans(const PropagationCase& run_case, const FieldOfFan& field_of,
-                                    int count, int most) {
+                                    int count, int most, FanProgress* progress) {
   const BeamSettings& beams = run_case.beams;
   BeamFan fan = even_fan(beams.lowest, beams.highest, count);
+  const auto begin = [&](const BeamFan& next, double enough) {
+    if (progress != nullptr)
+      progress->begin(next.elevation.size(), static_cast<std::size_t>(enough));
+  };
+  begin(fan, 0.5 * most);  // the last beams traced are half of all
   ConvergedField answer{.field = field_of(fan, {}).field};
   ChangeOfFans change;
+  double enough = most;
   while (true) {
     const BeamFan between = fan_between(fan);
+    begin(between, 0.5 * enough);
     std::vector<std::complex<double>> denser = field_of(between, {}).field;
     for (std::size_t i = 0; i < denser.size(); ++i) denser[i] += 0.5 * answer.field[i];
     fan = even_fan(beams.lowest, beams.highest,
@@ -284,11 +376,16 @@ ConvergedField field_of_nested_fans(const PropagationCase& run_case, const Field
     change.add(answer.field, denser, answer.beams);
     answer.field = std::move(denser);
     answer.error_db = change.error_db();
-    if (answer.error_db <= wanted_error_db) return answer;
-    if (2 * answer.beams > static_cast<std::size_t>(most) + 1) {
-      answer.note = unsure_note(answer);
+    const bool last = 2 * answer.beams > static_cast<std::size_t>(most) + 1;
+    const bool in_vain = change.in_vain();
+    if (answer.error_db <= wanted_error_db || last || in_vain) {
+      answer.errors = change.errors(receivers_with_field(run_case));
+      if (answer.error_db > wanted_error_db) answer.note = unsure_note(answer, in_vain);
       return answer;
     }
+    enough = std::min<double>(std::pow(answer.error_db / wanted_error_db, 1.0 / change.order()) *
+                                  static_cast<double>(answer.beams),
+                              most);
   }
 }
 
@@ -296,26 +393,37 @@ ConvergedField field_of_nested_fans(const PropagationCase& run_case, const Field
 
 double bound_db(const std::vector<std::complex<double>>& field, const std::vector<double>& bound,
                 bool coherent, double share) {
-  std::vector<double> shares = shares_of_bound(field, field.size(), bound, {}, coherent);
+  std::vector<double> shares = counted(shares_of_bound(field, field.size(), bound, {}, coherent));
   return db_of_share(quantile(shares, share), coherent);
 }
 
 double level_difference_db(const std::vector<std::complex<double>>& a,
                            const std::vector<std::complex<double>>& b, double share) {
-  const double floor = faintest_of(b);
-  std::vector<double> difference;
-  difference.reserve(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double x = std::abs(a[i]), y = std::abs(b[i]);
-    if (std::max(x, y) <= floor) continue;
-    difference.push_back(20.0 *
-                         std::abs(std::log10(std::max(x, 0.1 * floor) / std::max(y, 0.1 * floor))));
-  }
-  return quantile(difference, share);
+  std::vector<double> differences = counted(level_differences(a, b));
+  return quantile(differences, share);
+}
+
+bool DoublingsInVain::add(std::size_t beams, const std::vector<double>& errors, double sure) {
+  if (beams < 2 * beams_) return false;
+  std::vector<double> that_count = counted(errors);
+  const auto share_of = [&](auto&& which) {
+    return static_cast<double>(std::count_if(that_count.begin(), that_count.end(), which)) /
+           std::max(1.0, static_cast<double>(that_count.size()));
+  };
+  const Certainty now{.sure = share_of([&](double error) { return error <= sure; }),
+                      .unbounded = share_of([](double error) { return error >= 1.0; }),
+                      .median = quantile(that_count, 0.5)};
+  const bool helped = now.sure >= before_.sure + 0.005 ||
+                      now.unbounded < 0.98 * before_.unbounded ||
+                      now.median < 0.95 * before_.median;
+  in_vain_ = helped || beams_ == 0 ? 0 : in_vain_ + 1;
+  before_ = now;
+  beams_ = beams;
+  return in_vain_ >= 2;
 }
 
 ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of,
-                               const LevelRays& level, double source_depth) {
+                               const LevelRays& level, double source_depth, FanProgress* progress) {
   const BeamSettings& beams = run_case.beams;
   const bool circle = std::abs(beams.highest - beams.lowest - 2.0 * pi) < 1e-9;
   const int most = std::max(most_beams, beams.count | 1);
@@ -323,14 +431,14 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
   if (has_error_bound(run_case)) {
     ConvergedField answer =
         bounded_field(run_case, field_of, level, source_depth, circle,
-                      static_cast<std::size_t>(count), static_cast<std::size_t>(most));
+                      static_cast<std::size_t>(count), static_cast<std::size_t>(most), progress);
     const std::string note = note_of(level, source_depth);
     if (!note.empty()) answer.note = answer.note.empty() ? note : note + "; " + answer.note;
     return answer;
   }
   return nested(run_case)
-             ? field_of_nested_fans(run_case, field_of, circle ? count + 1 : count, most)
-             : field_of_even_fans(run_case, field_of, circle, count, most);
+             ? field_of_nested_fans(run_case, field_of, circle ? count + 1 : count, most, progress)
+             : field_of_even_fans(run_case, field_of, circle, count, most, progress);
 }
 
 }  // namespace asdic

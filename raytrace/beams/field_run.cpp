@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -254,8 +255,13 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
   const std::optional<SingleBeam> single = single_beam(run_case);
   PropagationResult result;
   result.field.reserve(run_case.source_depths.size() * run_case.receivers.size());
-  for (std::size_t i = 0; i < run_case.source_depths.size(); ++i) {
+  const std::size_t sources = run_case.source_depths.size(), cells = run_case.receivers.size();
+  constexpr float not_known = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < sources; ++i) {
     const double depth = run_case.source_depths[i];
+    const Progress of_source = !progress ? Progress{} : [&](double share) {
+      return progress((static_cast<double>(i) + share) / static_cast<double>(sources));
+    };
     ConvergedField answer;
     std::string rays_alone;
     if (on_vacuum(run_case.environment, depth)) {
@@ -266,30 +272,37 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
                         "opposite sign: there is no field, and no beam was traced"};
     } else if (single) {
       const BeamFan fan{.elevation = {single->elevation}, .spacing = single->spacing};
-      answer = {.field = field_of_fan(run_case, tracer, depth, fan, progress).field,
+      answer = {.field = field_of_fan(run_case, tracer, depth, fan, of_source).field,
                 .beams = 1,
                 .note =
                     "one beam is wanted: the field is that beam's alone, as wide as its fan "
                     "makes it"};
-    } else if (auto images = summed_images(run_case, depth, progress)) {
+    } else if (auto images = summed_images(run_case, depth, of_source)) {
       answer = std::move(*images);
-    } else if (auto waves = wave_field(run_case, depth, progress, rays_alone)) {
+    } else if (auto waves = wave_field(run_case, depth, of_source, rays_alone)) {
       answer = std::move(*waves);
-    } else if (auto paths = path_field(run_case, depth, progress)) {
+    } else if (auto paths = path_field(run_case, depth, of_source)) {
       answer = std::move(*paths);
     } else if (run_case.beams.elevations.empty()) {
+      FanProgress fans(of_source);
       answer = converged_field(
           run_case,
           [&](const BeamFan& fan, const FieldCheck& also) {
-            return field_of_fan(run_case, tracer, depth, fan, progress, FieldMethod::fast, also);
+            return field_of_fan(run_case, tracer, depth, fan, fans.of_fan(), FieldMethod::fast,
+                                also);
           },
-          level_rays(run_case.environment, run_case.frequency, 0.0, depth), depth);
+          level_rays(run_case.environment, run_case.frequency, 0.0, depth), depth, &fans);
     } else {
       const BeamFan fan = given_fan(run_case.beams.elevations);
-      answer = {.field = field_of_fan(run_case, tracer, depth, fan, progress).field,
+      answer = {.field = field_of_fan(run_case, tracer, depth, fan, of_source).field,
                 .beams = fan.elevation.size()};
     }
     for (const std::complex<double>& p : answer.field) result.field.emplace_back(p);
+    if (!answer.errors.empty()) {
+      result.beam_errors.resize(i * cells, not_known);
+      result.beam_errors.insert(result.beam_errors.end(), answer.errors.begin(),
+                                answer.errors.end());
+    }
     result.beams = std::max(result.beams, answer.beams);
     result.beam_error_db = std::max(result.beam_error_db, answer.error_db);
     result.beam_error_bounded = answer.bounded;
@@ -297,6 +310,7 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
     for (const std::string& note : {answer.note, rays_alone})
       if (!note.empty()) result.notes.push_back(note);
   }
+  if (!result.beam_errors.empty()) result.beam_errors.resize(sources * cells, not_known);
   return result;
 }
 

@@ -9,8 +9,8 @@
 
 namespace asdic {
 
-/// The field of a case (Task::field), for each of its sources. The number of beams is doubled until
-/// the field stays what it is (docs/theory/fields.md), unless the case lists its elevations: then
+/// The field of a case (Task::field), for each of its sources. The number of beams grows until the
+/// field is sure (docs/theory/fields.md), unless the case lists its elevations: then
 /// these are the fan; in isovelocity water between flat boundaries images are summed instead of
 /// beams (runs/image_field.h), and in other stratified water, if the case's `solver` lets it, the
 /// wave equation is solved (waves/wave_field.h). The same bits for any number of threads. \throws

@@ -5,6 +5,7 @@
 
 #include "io/field_file.h"
 #include "io/result_file.h"
+#include "raytrace/beam_error_text.h"
 #include "support/left_of.h"
 #include "support/program.h"
 
@@ -89,6 +90,61 @@ TEST_F(FieldCommand, TheFileTellsOfItself) {
   for (const DatasetInfo& dataset : file.datasets())
     EXPECT_TRUE(file.has_attribute(dataset.path, "long_name")) << dataset.path;
   EXPECT_EQ(file.read<double>("environment/bottom_depth").front(), 4000.0);
+}
+
+/// A run over a slope, where beams are needed and few can be sure.
+constexpr const char* slope = R"([environment.sound_speed]
+kind = "table"
+depth = [0.0, 300.0]
+speed = [1500.0, 1490.0]
+[environment.bottom]
+kind = "fluid"
+speed = 1700.0
+density = 1800.0
+[environment.bottom.shape]
+range = [0.0, 5000.0]
+depth = [200.0, 50.0]
+[run]
+frequency = 200.0
+[run.source]
+depth = 50.0
+[run.receivers]
+depth = { first = 10.0, last = 190.0, count = 19 }
+range = { first = 100.0, last = 4000.0, count = 40 }
+[run.fan]
+lowest_deg = -40.0
+highest_deg = 40.0
+)";
+
+// How many receivers are sure of the number of beams is the same in what is printed, in the file,
+// in what is told of the file and in its dataset; a file without beams says nothing of it.
+TEST_F(FieldCommand, TellsHowSureItIs) {
+  static_cast<void>(folder.write("slope.toml", slope));
+  const auto run = asdic(folder, "field slope.toml -o slope.h5");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const FieldData field = read_field(folder / "slope.h5");
+  ASSERT_EQ(field.beam_errors.size(), 19U * 40U);
+  const double share = share_sure(field.beam_errors);
+  EXPECT_GT(share, 0.1);
+  const std::string line = "certain    " + certainty_text(share) + '\n';
+  EXPECT_NE(run.out.find(line), std::string::npos) << run.out;
+  const std::string told = asdic(folder, "info slope.h5").out;
+  EXPECT_NE(told.find(line), std::string::npos) << told;
+  EXPECT_NE(told.find("\nbeams      "), std::string::npos) << told;
+  const Hdf5File file = Hdf5File::open(folder / "slope.h5");
+  EXPECT_NEAR(file.attribute_number("", "sure_pct"), 100.0 * share, 1e-9);
+  EXPECT_EQ(file.attribute_text("beam_error", "units"), "dB");
+  EXPECT_EQ(file.info("beam_error").shape, (Shape{1, 19, 40}));
+  EXPECT_TRUE(std::isnan(field.beam_errors[18 * 40 + 39])) << "190 m is below 80 m of water";
+  const json summary = json::parse(asdic(folder, "field slope.toml --force --json").out);
+  EXPECT_NEAR(summary["sure_pct"].get<double>(), 100.0 * share, 1e-9);
+
+  ASSERT_EQ(asdic(folder, "field mirror.toml -q").status, 0);
+  const Hdf5File images = Hdf5File::open(folder / "mirror.h5");
+  EXPECT_FALSE(images.has("beam_error"));
+  EXPECT_FALSE(images.has_attribute("", "sure_pct"));
+  EXPECT_TRUE(
+      json::parse(asdic(folder, "field mirror.toml --force --json").out)["sure_pct"].is_null());
 }
 
 TEST_F(FieldCommand, AShadeFileHoldsTheSameField) {

@@ -45,8 +45,9 @@ def write_sea(f):
     f["environment/sound_speed"] = np.linspace(1520.0, 1490.0, 31)
 
 
-def write_field(path, level_db=0.0, depths=40, irregular=False, sea=True, sources=1, silent=False):
-    """Spherical spreading from the source, with a shadow of silence."""
+def write_field(path, level_db=0.0, depths=40, irregular=False, sea=True, sources=1, silent=False,
+                unsure=None):
+    """Spherical spreading from the source, with a shadow of silence. `unsure`: [receivers] bool"""
     with h5py.File(path, "w") as f:
         f.attrs.update(filetype="asdic field", version="1.0", title="a slope", frequency_hz=100.0,
                        field="coherent", beam_kind="hat")
@@ -63,6 +64,9 @@ def write_field(path, level_db=0.0, depths=40, irregular=False, sea=True, source
         p[..., -5:] = 0.0
         p = np.repeat(p[None] * (not silent), sources, axis=0)
         f["pressure"] = np.stack([p.real, p.imag], axis=-1).astype("f4")
+        if unsure is not None:
+            f["beam_error"] = np.where(np.broadcast_to(unsure, p.shape), np.inf, 0.1).astype("f4")
+            f.attrs["sure_db"] = 0.5
         if sea:
             write_sea(f)
 
@@ -149,6 +153,53 @@ class EveryPictureIsDrawn(Case):
     def test_scattered_receivers(self):
         write_field(self.file, irregular=True)
         self.check_plot("transmission_loss.png")
+
+    def test_what_is_not_sure_is_hatched(self):
+        """Darker by the hatching where it is, the same where it is not; told in words below."""
+        half = np.arange(60) >= 30
+        for options in (dict(), dict(depths=2), dict(irregular=True)):
+            with self.subTest(**options):
+                write_field(self.file, sea=False, unsure=half, **options)
+                fig = transmission_loss.draw(results.read(self.file))
+                words = [t.get_text() for legend in fig.findobj(matplotlib.legend.Legend)
+                         for t in legend.get_texts()]
+                self.assertIn("more beams may change it by over 0.5 dB: 50 % of the receivers", words)
+                style.plt.close(fig)
+        pictures = []
+        for unsure in (half, None):
+            write_field(self.file, sea=False, unsure=unsure)
+            fig = transmission_loss.draw(results.read(self.file))
+            axes = fig.axes[0]
+            for legend in fig.findobj(matplotlib.legend.Legend):
+                legend.set(in_layout=False, visible=False)
+            fig.canvas.draw()
+            box = axes.get_window_extent()
+            image = np.asarray(fig.canvas.buffer_rgba())[::-1, :, :3].astype(float).mean(axis=2)
+            columns = np.linspace(box.x0, box.x1, 11).astype(int)
+            middle = image[int(box.y0) + 8:int(box.y1) - 8]
+            pictures.append([middle[:, a + 4:b - 4].mean() for a, b in zip(columns, columns[1:])])
+            style.plt.close(fig)
+        change = np.subtract(*pictures)
+        self.assertTrue(np.all(np.abs(change[1:4]) < 1e-9), change)
+        self.assertTrue(np.all(change[6:9] < -2.0), change)
+
+    def test_columns_not_looked_at_are_as_their_neighbours(self):
+        errors = np.full((1, 3, 7), np.nan)
+        errors[0, :, 1], errors[0, :, 5] = 0.1, [0.1, np.inf, 2.0]
+        field = results.Field("", 1.0, np.zeros(1), np.arange(3.0), np.arange(7.0), False,
+                              np.ones((1, 3, 7)), "", errors=errors)
+        self.assertFalse(field.unsure(0)[:, :3].any())
+        self.assertTrue((field.unsure(0)[:, 4:] == [[False], [True], [True]]).all())
+        field.errors = np.full((1, 3, 7), np.nan)
+        self.assertIsNone(field.unsure(0))
+        field.errors = None
+        self.assertIsNone(field.unsure(0))
+
+    def test_errors_of_another_shape(self):
+        write_field(self.file)
+        with h5py.File(self.file, "a") as f:
+            f["beam_error"] = np.zeros(3)
+        self.assertNotEqual(plot(self.file, "-o", self.file.parent / "out")[0], 0)
 
     def test_several_sources(self):
         write_field(self.file, sources=2)
