@@ -6,6 +6,8 @@
 #include <new>
 #include <span>
 
+#include "core/huge_pages.h"
+
 namespace asdic {
 
 /// Zeroed, 64-byte aligned memory: what every transform below reads and writes. It is cut out of a
@@ -22,6 +24,7 @@ class FftBuffer {
     if (begin == nullptr || std::align(alignment, size * sizeof(T), begin, room) == nullptr)
       throw std::bad_alloc();
     data_ = static_cast<T*>(begin);
+    prefer_huge_pages(data_, size * sizeof(T));
     clear();
   }
 

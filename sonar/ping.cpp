@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/huge_pages.h"
 #include "sonar/direct_blast.h"
 #include "sonar/echo.h"
 #include "sonar/levels.h"
@@ -319,8 +320,11 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
   budget.take(synthesis_need(coloured ? *coloured : synthesizer));
-  record.pressure.assign(
-      record.phones.size() * record.recording.samples * record.recording.components(), 0.0F);
+  const std::size_t samples =
+      record.phones.size() * record.recording.samples * record.recording.components();
+  record.pressure.reserve(samples);
+  prefer_huge_pages(record.pressure.data(), samples * sizeof(float));
+  record.pressure.assign(samples, 0.0F);
   record.timings.synthesis = watch.lap();
 
   // The reverberation's samples of the last ping of this thread, if few: memory that the system

@@ -3,9 +3,11 @@
 
 #include <fstream>
 #include <numeric>
+#include <random>
 
 #include "core/error.h"
 #include "io/file_check.h"
+#include "io/hdf5/fletcher.h"
 #include "io/hdf5_file.h"
 #include "io/output/output_file.h"
 #include "io/ping/recovery.h"
@@ -45,6 +47,32 @@ void flip(const std::filesystem::path& path, float number) {
   ASSERT_NE(at, std::string::npos);
   bytes[at] = static_cast<char>(bytes[at] ^ 4);
   std::ofstream(path, std::ios::binary) << bytes;
+}
+
+// As the format says it: words of two bytes, the higher first, both sums modulo 65535. Lengths
+// around lanes and stretches; bytes at random, all set (sums that are 0 modulo 65535), mostly not.
+TEST(Checksums, AreThoseOfTheFormat) {
+  std::mt19937 random(1);
+  for (std::size_t size = 0; size < 9000; size += size < 600 ? 2 : 34)
+    for (const int kind : {0, 1, 2, 3}) {
+      std::vector<std::byte> bytes(size);
+      for (std::byte& b : bytes)
+        b = static_cast<std::byte>(kind == 0   ? random()
+                                   : kind == 1 ? 0xffU
+                                   : kind == 2 ? (random() % 50 == 0 ? 0xffU : 0U)
+                                               : 0U);
+      std::uint32_t first = 0, second = 0;
+      const auto folded = [](std::uint32_t sum) {
+        return sum > 0xffffU ? (sum & 0xffffU) + (sum >> 16U) : sum;
+      };
+      for (std::size_t i = 0; i < size; i += 2) {
+        const auto word = std::to_integer<std::uint32_t>(bytes[i]) << 8U |
+                          std::to_integer<std::uint32_t>(bytes[i + 1]);
+        first = folded(first + word);
+        second = folded(second + first);
+      }
+      ASSERT_EQ(hdf5::fletcher32(bytes), second << 16U | first) << size << ' ' << kind;
+    }
 }
 
 // HDF5 verifies what it reads: our own sums must be those of its filter. Lines of a chunk each (our
