@@ -72,6 +72,7 @@ PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedProp
   };
   reverberation_ = std::make_unique<ReverberationModel>(
       scenario_, *paths_, *std::max_element(pulses_.begin(), pulses_.end(), wider));
+  latest_ = end_of(recording_of(scenario_));
   set_sea(scenario_.reverberation.surface, scenario_.wind_speed,
           speed_at_surface(scenario_, *paths_));
 }
@@ -201,12 +202,13 @@ ReverberationContext PingSimulator::reverberation_context(const Emission& emissi
           .array = array,
           .time = emission.sent.time,
           .ping = static_cast<std::uint32_t>(record.ping),
-          .latest = end_of(record.recording),
+          .latest = latest_,  // whatever part of the record is made
           .reuse = &record.reuse,
           .phones = phones,
           .band = band,
           .budget = budget,
-          .drifts = true};
+          .drifts = true,
+          .heard_once = one_ping_ && scenario_.arrays.size() == 1};
 }
 
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
@@ -298,13 +300,22 @@ PingRecord PingSimulator::levels(int ping) const {
   return record;
 }
 
-PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
+PingRecord PingSimulator::sound(int ping, const Transmission& sent, const ChoosePart& part) const {
   Stopwatch watch;
   paths_->memory().next_ping();
   const Emission emission = emit(sent);
   PingRecord record = blank_record(ping, sent);
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
+  std::vector<std::vector<EchoPath>> sparse;  // [arrays]
+  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a)
+    sparse.push_back(sparse_returns(echo_context(emission, static_cast<int>(a), record), record));
+  if (part) {
+    const SampleRange wanted = part(record);
+    record.recording.start += static_cast<double>(wanted.first) / record.recording.sample_rate;
+    record.recording.samples = wanted.count;
+  }
+  record.timings.eigenrays = watch.lap();
   const double peak_pressure = std::numbers::sqrt2 *
                                amplitude_from_db(emission.projector.source_level_db) *
                                micropascal;  // at 1 m [Pa]
@@ -338,12 +349,10 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
     const int array = static_cast<int>(a);
     const std::vector<Vec3> phones = phones_at(scenario_, array, ping, sent.time);
     const EchoContext context = echo_context(emission, array, record);
-    const std::vector<EchoPath> sparse = sparse_returns(context, record);
-    record.timings.eigenrays += watch.lap();
     Baseband of_array = scenario_.propagation.wide_band
-                            ? wide_band_sound(context, emission.projector, sparse, record.legs,
+                            ? wide_band_sound(context, emission.projector, sparse[a], record.legs,
                                               phones, record.recording, max_doppler_)
-                            : narrow_band_sound(synthesizer, sparse, phones);
+                            : narrow_band_sound(synthesizer, sparse[a], phones);
     for (const ManyEchoes& many : record.many_echoes)
       if (many.array == array) budget.take(two_step_need(many, of_array));
     add_many_echoes(context, emission, phones, record, of_array);
@@ -417,6 +426,14 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent) const {
 }
 
 PingRecord PingSimulator::simulate(int ping) const { return simulate(ping, transmission(ping)); }
+
+PingRecord PingSimulator::simulate(int ping, const ChoosePart& part) const {
+  const bool alike = receivers_.is_flat() && !scenario_.pings.continuous &&
+                     !scenario_.pings.blanking && scenario_.noise.any();
+  PingRecord record = sound(ping, transmission(ping), alike ? part : ChoosePart());
+  complete(record);
+  return record;
+}
 
 PingRecord PingSimulator::simulate(int ping, const Transmission& sent) const {
   PingRecord record = sound(ping, sent);

@@ -20,11 +20,20 @@
 
 namespace asdic {
 
+/// Some of the samples of a record.
+struct SampleRange {
+  std::ptrdiff_t first = 0;
+  std::size_t count = 0;
+};
+
 /// Simulates the pings of one scenario. Built once (the ocean, the pulse); simulate() is const in
 /// effect and may be called from many threads at once, for any ping in any order: the same bits
 /// come out.
 class PingSimulator {
  public:
+  /// Says which part of a ping's record is wanted, once its echoes and legs are in it.
+  using ChoosePart = std::function<SampleRange(const PingRecord&)>;
+
   /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
   /// what comes out \param budget  of a ping \throws InputError naming the key at fault
   /// ("pings.sample_rate", "pulse.duration", …)
@@ -38,10 +47,18 @@ class PingSimulator {
   /// The same for a ping that is sent when and how the schedule does not say (serve/session.h).
   /// \param ping  its number from 1, by which random numbers are drawn
   [[nodiscard]] PingRecord simulate(int ping, const Transmission& sent) const;
+  /// The same of which only a part is made: samples of the record as it would be, of another draw
+  /// of noise and scatterers. The whole where the part would not be alike: of receivers that ring,
+  /// of a stream, where the sender blanks it, and without noise. \param part  is asked once
+  [[nodiscard]] PingRecord simulate(int ping, const ChoosePart& part) const;
+  /// From now on nobody compares what is heard with another ping, or another array: a realisation
+  /// has one ping. Scatterers that keep their weights are then drawn as those that do not.
+  void hears_one_ping() noexcept { one_ping_ = true; }
   /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
   /// add these up (sonar/stream.h) and complete() the sum.
   [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
-  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent) const;
+  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent,
+                                 const ChoosePart& part = {}) const;
   /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
   /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
   void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
@@ -136,6 +153,8 @@ class PingSimulator {
   ReceiverElectronics receivers_;
   std::unique_ptr<ReverberationModel> reverberation_;
   double max_doppler_ = 0.0;
+  double latest_ = 0.0;  // end of a ping's record [s]
+  bool one_ping_ = false;
 };
 
 struct PingOptions {

@@ -38,6 +38,8 @@ struct ReverberationContext {
   bool plane_waves = true;               ///< fit all of the phones, whatever is heard
   /// Whether a sea that every ping draws anew may lie around the source, wherever that is.
   bool drifts = false;
+  /// Whether no other ping and no other array hears these scatterers: the world is this ping's.
+  bool heard_once = false;
   bool judged = false;  ///< what numbers of bounces leave out is estimated
 };
 
@@ -169,7 +171,7 @@ class ReverberationModel {
   struct Part {
     GroundLevel level;
     ScatteringSheet::Law law;
-    const ScattererField& field;
+    ScattererField field;
     Draw weights;
     std::uint64_t id;
     double thickness = 0.0;

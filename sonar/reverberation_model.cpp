@@ -159,6 +159,10 @@ bool ReverberationModel::seas_compared(const ScattererField& field) const {
 void ReverberationModel::meet(Part part, const ReverberationContext& context,
                               std::vector<ScatteringField>& fields) const {
   const ReverberationSettings& settings = scenario_.reverberation;
+  // Who hears one ping cannot tell weights that last from those that do not.
+  if (context.heard_once && settings.synthesis != ScattererSynthesis::scatterers &&
+      !part.field.statistics.k_shape)
+    part.field.statistics.coherence_time = 0.0;
   const ScattererField& field = part.field;
   SheetEnds ends = ends_of(scenario_, context);
 

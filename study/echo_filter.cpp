@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 #include "core/error.h"
 #include "sonar/fft.h"
 #include "sonar/geometry.h"
 #include "sonar/noise_spectrum.h"
 #include "sonar/processing/normaliser.h"
+#include "sonar/sampling.h"
 #include "sonar/scenario.h"
 #include "study/no_value.h"
 
@@ -71,11 +73,12 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
 }
 
 /// The stretched pulse as each phone would record it, conjugate: what samples are multiplied with.
+/// Samples count from the start of the whole record, of which some may be made.
 class Template {
  public:
-  Template(const PingRecord& record, const Pulse& pulse, const Listened& echo)
-      : record_(record), echo_(echo) {
-    const Recording& r = record.recording;
+  Template(const Recording& whole, const Pulse& pulse, const Listened& echo)
+      : whole_(whole), echo_(echo) {
+    const Recording& r = whole;
     length_ =
         static_cast<std::ptrdiff_t>(std::ceil(pulse.duration() / echo.doppler * r.sample_rate)) + 1;
     weights_.resize(echo.phones.size() * static_cast<std::size_t>(length_));
@@ -96,21 +99,32 @@ class Template {
 
   /// The record has all that the filter needs so many samples after the echo.
   [[nodiscard]] bool inside(std::ptrdiff_t shift) const {
-    const auto samples = static_cast<std::ptrdiff_t>(record_.recording.samples);
+    return within({.first = 0, .count = whole_.samples}, shift);
+  }
+  /// So has this part of it.
+  [[nodiscard]] bool within(const SampleRange& part, std::ptrdiff_t shift) const {
+    const auto end = part.first + static_cast<std::ptrdiff_t>(part.count);
     return std::all_of(first_.begin(), first_.end(), [&](std::ptrdiff_t first) {
-      return first + shift >= 0 && first + shift + length_ <= samples;
+      return first + shift >= part.first && first + shift + length_ <= end;
     });
   }
+  /// What the filter needs so many samples after the echo.
+  [[nodiscard]] SampleRange needed(std::ptrdiff_t shift) const {
+    const auto [least, most] = std::minmax_element(first_.begin(), first_.end());
+    return {.first = *least + shift, .count = static_cast<std::size_t>(*most - *least + length_)};
+  }
 
-  /// |y|² so many samples after the echo. \param shift  inside
-  [[nodiscard]] double answer(std::ptrdiff_t shift) const {
-    const Recording& r = record_.recording;
+  /// |y|² so many samples after the echo. \param part  that the record holds   \param shift  within
+  /// it
+  [[nodiscard]] double answer(const PingRecord& record, const SampleRange& part,
+                              std::ptrdiff_t shift) const {
+    const Recording& r = record.recording;
     std::complex<double> sum = 0.0;
     for (std::size_t n = 0; n < first_.size(); ++n) {
-      const std::ptrdiff_t begin = first_[n] + shift;
+      const std::ptrdiff_t begin = first_[n] + shift - part.first;
       const std::complex<double>* w = weights_.data() + n * static_cast<std::size_t>(length_);
       const float* p =
-          record_.pressure.data() +
+          record.pressure.data() +
           (echo_.phones[n].channel * r.samples + static_cast<std::size_t>(begin)) * r.components();
       for (std::ptrdiff_t k = 0; k < length_; ++k)
         sum += r.is_complex()
@@ -123,11 +137,11 @@ class Template {
 
   /// E|y|² of white noise that is independent from phone to phone. \param density [Pa²/Hz]
   [[nodiscard]] double noise(double density) const {
-    return 2.0 * density * record_.recording.sample_rate / energy_;
+    return 2.0 * density * whole_.sample_rate / energy_;
   }
 
  private:
-  const PingRecord& record_;
+  const Recording whole_;
   const Listened& echo_;
   std::ptrdiff_t length_ = 0;
   std::vector<std::ptrdiff_t> first_;          // [phones]
@@ -208,6 +222,73 @@ std::vector<std::ptrdiff_t> reference_cells(const MatchedFilterPlan& plan, const
   return before;
 }
 
+/// One target's filter, and where in the whole record it listens.
+class TargetFilter {
+ public:
+  TargetFilter(const PingSimulator& simulator, const PingRecord& record,
+               const MatchedFilterPlan& plan, int array, int target)
+      : plan_(plan),
+        whole_(recording_of(simulator.scenario())),
+        pulse_(simulator.pulse(record.transmitter)),
+        echo_(listened(simulator, record, plan, array, target)),
+        filter_({.sample_rate = whole_.sample_rate,
+                 .start = whole_.start,
+                 .samples = whole_.samples,
+                 .carrier = whole_.carrier,
+                 .epoch = record.recording.epoch},
+                pulse_, echo_),
+        duration_(pulse_.duration() / echo_.doppler),
+        busy_(simulator, record, echo_, array, duration_),
+        cell_(
+            static_cast<std::ptrdiff_t>(std::ceil(whole_.sample_rate / noise_bandwidth(pulse_)))) {}
+  TargetFilter(const TargetFilter&) = delete;
+  TargetFilter& operator=(const TargetFilter&) = delete;
+
+  [[nodiscard]] const Template& filter() const noexcept { return filter_; }
+
+  /// A time and the cells that it is compared with [samples after the echo].
+  struct Place {
+    std::ptrdiff_t at = 0;
+    std::vector<std::ptrdiff_t> around;
+  };
+  /// Not known: outside the record or with too few free cells.
+  [[nodiscard]] std::optional<Place> place(std::ptrdiff_t at) const {
+    if (!filter_.inside(at)) return std::nullopt;
+    Place found{.at = at, .around = {}};
+    if (plan_.background == MatchedFilterPlan::Background::noise) return found;
+    found.around = reference_cells(plan_, filter_, busy_, at, cell_);
+    return found.around.empty() ? std::nullopt : std::optional(found);
+  }
+  /// Tries the places without an echo, the nearest first and of two the earlier, until one will do.
+  template <class Try>
+  void where_free(Try&& will_do) const {
+    const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration_ * whole_.sample_rate));
+    const auto most = static_cast<std::ptrdiff_t>(whole_.samples) / step + 1;
+    for (std::ptrdiff_t k = 2; k <= most; ++k)
+      for (const std::ptrdiff_t shift : {-k * step, k * step})
+        if (busy_.free(shift))
+          if (const auto found = place(shift); found && will_do(*found)) return;
+  }
+
+ private:
+  const MatchedFilterPlan& plan_;
+  Recording whole_;
+  const Pulse& pulse_;
+  Listened echo_;
+  Template filter_;
+  double duration_;  // of the pulse as it is heard [s]
+  Busy busy_;
+  std::ptrdiff_t cell_;  // [samples]
+};
+
+/// Which part of the whole record a record holds.
+SampleRange part_of(const PingSimulator& simulator, const PingRecord& record) {
+  const double before =
+      record.recording.start - recording_of(simulator.scenario()).start;  // whole samples
+  return {.first = std::llround(before * record.recording.sample_rate),
+          .count = record.recording.samples};
+}
+
 }  // namespace
 
 double noise_bandwidth(const Pulse& pulse) {
@@ -231,45 +312,73 @@ double noise_bandwidth(const Pulse& pulse) {
   return second * second / fourth / (step * static_cast<double>(transform.length()));
 }
 
+SampleRange samples_for_filter(const PingSimulator& simulator, const PingRecord& record,
+                               const MatchedFilterPlan& plan, int array) {
+  // So few that nothing is gained by fewer; lengths in steps, so that what belongs to a length is
+  // found again.
+  constexpr std::ptrdiff_t few = 256, steps = 8;
+  const auto whole = static_cast<std::ptrdiff_t>(recording_of(simulator.scenario()).samples);
+  std::ptrdiff_t first = whole, end = 0;
+  for (std::size_t target = 0; target < record.targets.size(); ++target) {
+    const TargetFilter one(simulator, record, plan, array, static_cast<int>(target));
+    const auto include = [&](const TargetFilter::Place& place) {
+      const auto add = [&](std::ptrdiff_t shift) {
+        const SampleRange needed = one.filter().needed(shift);
+        first = std::min(first, needed.first);
+        end = std::max(end, needed.first + static_cast<std::ptrdiff_t>(needed.count));
+      };
+      add(place.at);
+      for (const std::ptrdiff_t shift : place.around) add(shift);
+      return true;
+    };
+    if (const auto present = one.place(0)) include(*present);
+    one.where_free(include);
+  }
+  if (end <= first) first = end = 0;
+  std::ptrdiff_t step = few / steps;
+  while ((end - first) > 2 * steps * step) step *= 2;
+  const std::ptrdiff_t count =
+      std::min(whole, std::max(few, (end - first + step - 1) / step * step));
+  first = std::min(first, whole - count);
+  return {.first = first, .count = static_cast<std::size_t>(count)};
+}
+
 FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                            const MatchedFilterPlan& plan, int array, int target,
                            double false_alarm_probability) {
-  const Pulse& pulse = simulator.pulse(record.transmitter);
   const Scenario& scenario = simulator.scenario();
-  const Listened echo = listened(simulator, record, plan, array, target);
-  const Template filter(record, pulse, echo);
-  const double duration = pulse.duration() / echo.doppler;
-  const Busy busy(simulator, record, echo, array, duration);
-  const double rate = record.recording.sample_rate;
-  const auto cell = static_cast<std::ptrdiff_t>(std::ceil(rate / noise_bandwidth(pulse)));
+  const TargetFilter one(simulator, record, plan, array, target);
+  const Template& filter = one.filter();
+  const SampleRange part = part_of(simulator, record);
+  const double density =
+      noise_density(scenario.noise, simulator.pulse(record.transmitter).centre_frequency());
 
-  const auto compare = [&](std::ptrdiff_t at, double& statistic, double& threshold) {
+  const auto compare = [&](const TargetFilter::Place& place, double& statistic, double& threshold) {
     statistic = threshold = no_value;
-    if (!filter.inside(at)) return false;
+    if (!filter.within(part, place.at)) return false;
     if (plan.background == MatchedFilterPlan::Background::noise) {
-      statistic =
-          filter.answer(at) / filter.noise(noise_density(scenario.noise, pulse.centre_frequency()));
+      statistic = filter.answer(record, part, place.at) / filter.noise(density);
       threshold = -std::log(false_alarm_probability);
       return true;
     }
     double sum = 0.0;
-    const std::vector<std::ptrdiff_t> around = reference_cells(plan, filter, busy, at, cell);
-    for (const std::ptrdiff_t shift : around) sum += filter.answer(shift);
+    for (const std::ptrdiff_t shift : place.around) {
+      if (!filter.within(part, shift)) return false;
+      sum += filter.answer(record, part, shift);
+    }
     if (!(sum > 0.0)) return false;
-    const auto cells = static_cast<double>(around.size());
-    statistic = filter.answer(at) * cells / sum;
+    const auto cells = static_cast<double>(place.around.size());
+    statistic = filter.answer(record, part, place.at) * cells / sum;
     threshold = cfar_multiplier(false_alarm_probability, cells);
     return true;
   };
 
   FilterAnswer answer;
-  compare(0, answer.present, answer.threshold);
-  answer.absent = answer.absent_threshold = no_value;
-  const auto step = static_cast<std::ptrdiff_t>(std::ceil(duration * rate));
-  const auto most = static_cast<std::ptrdiff_t>(record.recording.samples) / step + 1;
-  for (std::ptrdiff_t k = 2; k <= most; ++k)  // the nearest free time, earlier ones first
-    for (const std::ptrdiff_t shift : {-k * step, k * step})
-      if (busy.free(shift) && compare(shift, answer.absent, answer.absent_threshold)) return answer;
+  answer.present = answer.threshold = answer.absent = answer.absent_threshold = no_value;
+  if (const auto present = one.place(0)) compare(*present, answer.present, answer.threshold);
+  one.where_free([&](const TargetFilter::Place& place) {
+    return compare(place, answer.absent, answer.absent_threshold);
+  });
   return answer;
 }
 

@@ -22,10 +22,16 @@ struct FilterAnswer {
 /// slowness of the target's strongest path; over E|y|² = 2N₀/(n∫|s₊|²dt) of n phones' white noise,
 /// or over the mean of |y|² in the nearest cells that are free of echoes. A target that no path
 /// reaches is listened for when the sound would come along a straight line. Source:
-/// docs/theory/studies.md, eq. (1)–(3) \param false_alarm_probability  of one cell, for the
-/// thresholds
+/// docs/theory/studies.md, eq. (1)–(3) \param record  the whole, or the part of it that
+/// samples_for_filter() names   \param false_alarm_probability  of one cell, for the thresholds
 [[nodiscard]] FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& record,
                                          const MatchedFilterPlan& plan, int array, int target,
                                          double false_alarm_probability);
+
+/// The samples of the whole record that filter_answer() looks at, of all targets, rounded up to a
+/// length that others have. \param record  with its echoes and legs; without samples
+[[nodiscard]] SampleRange samples_for_filter(const PingSimulator& simulator,
+                                             const PingRecord& record,
+                                             const MatchedFilterPlan& plan, int array);
 
 }  // namespace asdic::study

@@ -56,6 +56,10 @@ struct MeasurePlan {
   [[nodiscard]] bool uses_matched_filter() const noexcept {
     return matched || (detection && detection->by == DetectionPlan::By::matched_filter);
   }
+  /// Whether of the samples only those count that a matched filter looks at.
+  [[nodiscard]] bool filter_alone() const noexcept {
+    return uses_matched_filter() && !uses_receiver() && !series_level && series_every == 0;
+  }
 };
 
 }  // namespace asdic::study

@@ -162,9 +162,14 @@ ListeningReceiver receiver_of(const MeasurePlan& plan) {
   return receiver;
 }
 
-/// The ping with its samples, or without where nothing needs them.
+/// The ping with its samples, or with those alone that a matched filter looks at, or without where
+/// nothing needs them.
 PingRecord heard(const PingSimulator& simulator, const MeasurePlan& plan) {
-  return plan.needs_samples() ? simulator.simulate(plan.ping) : simulator.levels(plan.ping);
+  if (!plan.needs_samples()) return simulator.levels(plan.ping);
+  if (!plan.filter_alone()) return simulator.simulate(plan.ping);
+  return simulator.simulate(plan.ping, [&](const PingRecord& record) {
+    return samples_for_filter(simulator, record, plan.matched_filter, plan.array);
+  });
 }
 
 /// One pass over the measures. \param simulator, record  null where columns alone are wanted

@@ -134,8 +134,8 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     sampler.apply(draw, tree);
     Scenario scenario = scenario_of(tree, study.scenario_path);
     scenario.seed = seed_of(study, index);
-    const PingSimulator simulator(std::move(scenario), shared,
-                                  budget.share(bytes, "a row's share"));
+    PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
+    simulator.hears_one_ping();
     Measured measured = measure(study, simulator);
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());

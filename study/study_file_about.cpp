@@ -43,6 +43,9 @@ void StudyFileWriter::write_root() {
   if (!imprint.warnings.empty()) file_.set_attribute("", "warnings", imprint.warnings);
   if (std::isfinite(imprint.left_out_db))
     file_.set_attribute("", "left_out_db", imprint.left_out_db);
+  file_.set_attribute("", "lasting_scatterers",
+                      "as those of one ping (but with a texture, several arrays or "
+                      "reverberation.synthesis = \"scatterers\")");
   const auto& sessions = results_.sessions;
   const auto version = [](const Session& s) { return s.made.program_version; };
   const auto build = [](const Session& s) { return s.made.build; };

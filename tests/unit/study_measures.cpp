@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "io/scenario_reader.h"
+#include "study/echo_filter.h"
 #include "study/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
@@ -50,6 +52,79 @@ TEST_F(Measures, MatchedFilterReachesTheEnergysSnr) {
       EXPECT_NEAR(value(study, row, "snr_matched_db"), snr, 0.03) << baseband << beam;
       EXPECT_LT(value(study, row, "snr_absent_db"), 15.0);  // exponential: e^−31 beyond
     }
+}
+
+/// The part of a whole record that a study would have made.
+PingRecord cut(const PingRecord& whole, const SampleRange& part) {
+  PingRecord record = whole;
+  const Recording& r = whole.recording;
+  record.recording.start += static_cast<double>(part.first) / r.sample_rate;
+  record.recording.samples = part.count;
+  record.pressure.clear();
+  for (std::size_t n = 0; n < whole.phones.size(); ++n) {
+    const auto first = whole.pressure.begin() +
+                       static_cast<std::ptrdiff_t>(n * r.samples * r.components()) +
+                       part.first * static_cast<std::ptrdiff_t>(r.components());
+    record.pressure.insert(record.pressure.end(), first,
+                           first + static_cast<std::ptrdiff_t>(part.count * r.components()));
+  }
+  return record;
+}
+
+// What is made of a record is all that its matched filters look at: in the same samples without the
+// rest they say the same, near the record's ends as well, for a narrow and for a wide pulse.
+TEST_F(Measures, FiltersLookAtNoMoreThanIsMade) {
+  const std::string lfm =
+      "pulse={kind=\"lfm\", start_frequency=950.0, end_frequency=1050.0, duration=0.3}";
+  for (const std::string pulse : {"pulse.duration=0.1", lfm.c_str()})
+    for (const std::string range : {"target.0.range=200.0", "target.0.range=3000.0",
+                                    "target.0.range=5700.0", "target.0.range=6100.0"})
+      for (const std::string samples : {"baseband", "pressure"}) {
+        std::vector<std::string> overrides{pulse, "pings.samples=" + samples, range,
+                                           "target.0.bearing_deg=30.0"};
+        std::string sea = support::plain_sea;
+        sea.replace(sea.find("position = [3000.0, 0.0, 100.0]"), 31,
+                    "range = 3000.0\nbearing_deg = 0.0\ndepth = 100.0");
+        if (samples == "pressure") overrides.emplace_back("pings.sample_rate=4000.0");
+        const PingSimulator simulator(read_scenario(folder_.write("sea.toml", sea), overrides));
+        const PingRecord whole = simulator.simulate(1);
+        for (const auto background :
+             {MatchedFilterPlan::Background::around, MatchedFilterPlan::Background::noise}) {
+          const MatchedFilterPlan plan{.background = background};
+          const SampleRange part = samples_for_filter(simulator, whole, plan, 0);
+          ASSERT_GE(part.first, 0);
+          ASSERT_LE(static_cast<std::size_t>(part.first) + part.count, whole.recording.samples);
+          EXPECT_LT(part.count, whole.recording.samples);
+          const FilterAnswer all = filter_answer(simulator, whole, plan, 0, 0, 1e-3),
+                             some = filter_answer(simulator, cut(whole, part), plan, 0, 0, 1e-3);
+          const auto same = [](double a, double b) {
+            return a == b || (std::isnan(a) && std::isnan(b));
+          };
+          EXPECT_TRUE(same(all.present, some.present)) << pulse << range << samples;
+          EXPECT_TRUE(same(all.absent, some.absent)) << pulse << range << samples;
+          EXPECT_FALSE(std::isnan(all.absent)) << pulse << range << samples;
+        }
+      }
+}
+
+// A part that is made by itself holds the echo that the whole record has there: noise of −60 dB is
+// 10⁻⁷ of it, and samples are right to −80 dB.
+TEST_F(Measures, APartOfARecordHoldsItsEcho) {
+  const PingSimulator simulator(
+      read_scenario(folder_.write("sea.toml", support::plain_sea),
+                    std::vector<std::string>{"noise.spectral_level_db=-60.0"}));
+  const PingRecord whole = simulator.simulate(1);
+  const SampleRange part{.first = std::ptrdiff_t(whole.recording.samples) / 2 - 7, .count = 300};
+  const PingRecord made = simulator.simulate(1, [&](const PingRecord&) { return part; });
+  const PingRecord expected = cut(whole, part);
+  ASSERT_EQ(made.pressure.size(), expected.pressure.size());
+  double loudest = 0.0, difference = 0.0;
+  for (std::size_t i = 0; i < made.pressure.size(); ++i) {
+    loudest = std::max(loudest, std::abs(double(expected.pressure[i])));
+    difference = std::max(difference, std::abs(double(made.pressure[i] - expected.pressure[i])));
+  }
+  EXPECT_GT(loudest, 0.0);
+  EXPECT_LT(difference, 2e-4 * loudest);
 }
 
 TEST_F(Measures, BothBackgroundsKeepTheFalseAlarmProbability) {

@@ -268,6 +268,29 @@ TEST(ReverberationStreams, ServeSeasThatForget) {
       with([](Scenario& s) { s.reverberation.synthesis = ScattererSynthesis::scatterers; }));
 }
 
+// Whoever hears one ping of a sea cannot tell whether it will change: it is drawn as one that does,
+// to the last bit. Where several pings or arrays hear it, or it has a texture, it stays what it is.
+TEST(ReverberationStreams, AFrozenSeaThatIsHeardOnceIsAFreshOne) {
+  Scenario fresh = under_way();
+  fresh.pings.recording_duration = 3.0;
+  Scenario frozen = fresh;
+  frozen.reverberation.surface_field.statistics.coherence_time = infinity;
+  const auto heard = [](const Scenario& s, bool once) {
+    PingSimulator simulator(s);
+    if (once) simulator.hears_one_ping();
+    return simulator.simulate(1).pressure;
+  };
+  const std::vector<float> expected = heard(fresh, false);
+  EXPECT_EQ(heard(frozen, true), expected);
+  EXPECT_EQ(heard(fresh, true), expected);
+  EXPECT_NE(heard(frozen, false), expected);
+  frozen.reverberation.synthesis = ScattererSynthesis::scatterers;
+  EXPECT_EQ(heard(frozen, true), heard(frozen, false));
+  frozen.reverberation.synthesis = ScattererSynthesis::streams;
+  frozen.arrays.push_back(frozen.arrays[0]);
+  EXPECT_EQ(heard(frozen, true), heard(frozen, false));
+}
+
 // One thread or several, propagation known or not: the same bits. Another ping, another seed:
 // others.
 TEST(ReverberationStreams, BitsDoNotDependOnThreadsOrOnWhatIsKept) {
