@@ -52,11 +52,13 @@ bool is_monotone(const HermiteNode& a, const HermiteNode& b) {
 class BranchFollower {
  public:
   BranchFollower(const Environment& environment, const BranchTable& fan, const GroundLevel& level,
-                 double spacing, double max_range, double frequency, std::vector<CellPath>& out)
+                 const GroundGrid& grid, double max_range, double frequency,
+                 std::vector<CellPath>& out)
       : fan_(fan),
         builder_(environment, fan.column(), frequency),
         level_(level),
-        spacing_(spacing),
+        grid_(grid),
+        spacing_(grid.spacing()),
         max_range_(max_range),
         frequency_(frequency),
         max_delay_(fan.limits().max_delay),
@@ -128,6 +130,7 @@ class BranchFollower {
     // Where the next ray meets a knot or a boundary r goes like a square root: its slope at that
     // end tells nothing of a piece that is wider than the end's own surroundings.
     const bool tame = is_monotone(a.range, b.range) && is_monotone(a.delay, b.delay);
+    if (tame && grid_.wide() > spacing_ && !holds_cell(low, high)) return;
     const double middle = 0.5 * (a.range.x + b.range.x);
     const bool apart = middle > a.range.x && middle < b.range.x;
     if (depth < 12 && apart && (high - low > 0.5 * spacing_ || (!tame && holds_cell(low, high)))) {
@@ -159,7 +162,7 @@ class BranchFollower {
 
   /// Whether the centre of a cell lies between two ranges.
   [[nodiscard]] bool holds_cell(double low, double high) const {
-    return (std::max(0.0, std::ceil(low / spacing_ - 0.5)) + 0.5) * spacing_ < high;
+    return grid_.range(grid_.count(low)) < high;
   }
 
   /// Every cell centre between the ranges of two points.
@@ -167,12 +170,12 @@ class BranchFollower {
     const bool rising = b.range.value > a.range.value;
     const BranchPoint& near = rising ? a : b;
     const BranchPoint& far = rising ? b : a;
-    const double first = std::max(0.0, std::ceil(near.range.value / spacing_ - 0.5));
+    const std::size_t first = grid_.count(near.range.value);
     const double limit = std::min(far.range.value, max_range_);
     const double lo = std::min(near.range.x, far.range.x), hi = std::max(near.range.x, far.range.x);
     double theta = near.range.x;
     for (auto cell = static_cast<std::uint32_t>(first);; ++cell) {
-      const double r = (cell + 0.5) * spacing_;
+      const double r = grid_.range(cell);
       if (r >= limit) return;
       theta = monotone_root(range, r, lo, hi, rising, theta,
                             1e-6 * spacing_);  // from the neighbour's
@@ -216,6 +219,7 @@ class BranchFollower {
   const BranchTable& fan_;
   PathBuilder builder_;
   GroundLevel level_;
+  GroundGrid grid_;
   double spacing_, max_range_, frequency_, max_delay_, home_slowness_;
   std::vector<CellPath>& out_;
   struct Reached {
@@ -233,8 +237,8 @@ class BranchFollower {
 
 /// Of a layered ocean: along the branches of its fan.
 std::vector<CellPath> follow_branches(const EigenraySolver& solver, double source_depth,
-                                      const GroundLevel& level, double spacing, double max_range,
-                                      double frequency, const PathLimits& limits,
+                                      const GroundLevel& level, const GroundGrid& grid,
+                                      double max_range, double frequency, const PathLimits& limits,
                                       const StopPoint& stop) {
   const Environment& ocean = solver.environment();
   const double depth = !level.boundary                            ? level.depth
@@ -242,7 +246,7 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
                                                                   : ocean.bottom.depth;
   const BranchTable fan = solver.table(source_depth, depth, limits);
   std::vector<CellPath> found;
-  BranchFollower follower(ocean, fan, level, spacing, max_range, frequency, found);
+  BranchFollower follower(ocean, fan, level, grid, max_range, frequency, found);
   fan.for_each_stretch(0.0, max_range, [&](const MonotoneStretch& stretch) {
     stop();
     follower.follow(stretch);
@@ -252,9 +256,10 @@ std::vector<CellPath> follow_branches(const EigenraySolver& solver, double sourc
 
 /// Of any other: between neighbours of a fan of marched rays.
 std::vector<CellPath> march_fan(const EigenraySolver& solver, double source_depth,
-                                const GroundLevel& level, double spacing, double max_range,
+                                const GroundLevel& level, const GroundGrid& grid, double max_range,
                                 double frequency, const PathLimits& limits, const StopPoint& stop) {
   stop();
+  const double spacing = grid.spacing();
   const FanLimits fan{.lowest = -limits.max_launch_angle,
                       .highest = limits.max_launch_angle,
                       .max_surface_bounces = limits.max_surface_bounces,
@@ -415,14 +420,15 @@ void GroundPaths::bundle(double frequency, const StopPoint& stop) {
 }
 
 GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
-                         const GroundLevel& level, double spacing, double max_range,
+                         const GroundLevel& level, const GroundGrid& grid, double max_range,
                          double frequency, const PathLimits& limits, const StopPoint& stop) {
+  const GroundGrid own = solver.layered() ? grid : GroundGrid(grid.spacing());
   const std::vector<CellPath> found = (solver.layered() ? follow_branches : march_fan)(
-      solver, source_depth, level, spacing, max_range, frequency, limits, stop);
+      solver, source_depth, level, own, max_range, frequency, limits, stop);
   check_finite(found, source_depth);
   GroundPaths ground;
-  ground.spacing_ = spacing;
-  const auto cells = static_cast<std::size_t>(std::max(0.0, std::ceil(max_range / spacing - 0.5)));
+  ground.grid_ = own;
+  const std::size_t cells = own.count(max_range);
   ground.first_.assign(cells + 1, 0);
   for (const CellPath& p : found)
     ++ground.first_[p.cell +

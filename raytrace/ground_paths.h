@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <cstdint>
 #include <optional>
@@ -55,17 +57,50 @@ struct DrawnPath {
 [[nodiscard]] DrawnPath draw(const PathBundle& bundle, std::span<const GroundPath> paths,
                              double uniform) noexcept;
 
-/// Every path of a fan to every cell of one ground grid: cell i is the ring around the source from
-/// i·spacing to (i + 1)·spacing. Paths of one cell add coherently; the cells are the same whatever
-/// the fan.
+/// The cells of a ground: rings around the source, `spacing` wide and, beyond the first of them,
+/// wider.
+class GroundGrid {
+ public:
+  GroundGrid() = default;
+  GroundGrid(double spacing) : spacing_(spacing), wide_(spacing) {}  // NOLINT: all alike
+  /// \param wide  at least the spacing   \param near  up to which cells are no wider [m]
+  GroundGrid(double spacing, double wide, double near)
+      : spacing_(spacing),
+        wide_(wide),
+        near_cells_(wide > spacing ? std::ceil(near / spacing) : 0.0) {}
+
+  [[nodiscard]] double spacing() const noexcept { return spacing_; }  ///< [m]
+  [[nodiscard]] double wide() const noexcept { return wide_; }        ///< [m]
+  /// The centre of a cell [m].
+  [[nodiscard]] double range(std::size_t cell) const noexcept {
+    const double i = double(cell);
+    return i < near_cells_ ? (i + 0.5) * spacing_
+                           : near_cells_ * spacing_ + (i - near_cells_ + 0.5) * wide_;
+  }
+  /// The cell that a range lies in, with what it lies beyond the cell's inner edge as a fraction.
+  [[nodiscard]] double at(double range) const noexcept {
+    const double cells = range / spacing_;
+    return cells < near_cells_ ? cells : near_cells_ + (range - near_cells_ * spacing_) / wide_;
+  }
+  /// How many cells have their centres before a range: the first of the others.
+  [[nodiscard]] std::size_t count(double range) const noexcept {
+    return std::size_t(std::max(0.0, std::ceil(at(range) - 0.5)));
+  }
+
+ private:
+  double spacing_ = 1.0, wide_ = 1.0, near_cells_ = 0.0;
+};
+
+/// Every path of a fan to every cell of one ground grid. Paths of one cell add coherently; the
+/// cells are the same whatever the fan.
 class GroundPaths {
  public:
-  [[nodiscard]] double spacing() const noexcept { return spacing_; }
+  [[nodiscard]] const GroundGrid& grid() const noexcept { return grid_; }
   [[nodiscard]] std::size_t cells() const noexcept {
     return first_.empty() ? 0 : first_.size() - 1;
   }
   [[nodiscard]] double range(std::size_t cell) const noexcept {
-    return (double(cell) + 0.5) * spacing_;
+    return grid_.range(cell);
   }  ///< of its centre [m]
   [[nodiscard]] std::span<const GroundPath> paths(std::size_t cell) const noexcept {
     return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
@@ -87,11 +122,12 @@ class GroundPaths {
   static constexpr std::size_t most_bundles = 8;    ///< of a cell
 
  private:
-  friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&, double, double,
-                                  double, const PathLimits&, const StopPoint&);
+  friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&,
+                                  const GroundGrid&, double, double, const PathLimits&,
+                                  const StopPoint&);
   void bundle(double frequency, const StopPoint& stop);
 
-  double spacing_ = 0.0;
+  GroundGrid grid_;
   std::vector<std::uint32_t> first_;  // [cells + 1]
   std::vector<GroundPath> paths_;
   std::vector<std::uint32_t> first_bundle_;  // [cells + 1], or none
@@ -114,11 +150,12 @@ inline constexpr int all_cycles = 63;
 /// a caustic |dr/dξ| is held at the value where two coalescing rays have their greatest (Airy)
 /// amplitude, for the integral of intensity² over range diverges in ray theory. Over slopes, swell
 /// and fronts the fan is marched and `grazing` is the angle to the local tangent. A depth in
-/// the water lies where the water reaches so deep. \param spacing of the grid [m]   \param
-/// max_range [m]   \param frequency  [Hz]
+/// the water lies where the water reaches so deep. \param grid  wide cells in layered oceans alone;
+/// paths are as right as the spacing asks for in all of them   \param max_range [m]
+/// \param frequency  [Hz]
 [[nodiscard]] GroundPaths ground_paths(const EigenraySolver& solver, double source_depth,
-                                       const GroundLevel& level, double spacing, double max_range,
-                                       double frequency, const PathLimits& limits,
+                                       const GroundLevel& level, const GroundGrid& grid,
+                                       double max_range, double frequency, const PathLimits& limits,
                                        const StopPoint& stop = {});
 
 }  // namespace asdic

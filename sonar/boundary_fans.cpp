@@ -49,6 +49,11 @@ std::size_t bytes_of(const BoundaryFan& fan) {
   return bytes;
 }
 
+GroundGrid grid_of(const BoundaryFans::Settings& settings) {
+  return {settings.spacing, std::max(settings.wide, settings.spacing),
+          settings.wide / BoundaryFans::widest_of_range};
+}
+
 std::uint64_t next_identity() {
   static std::atomic<std::uint64_t> next{0};
   return next++;
@@ -76,7 +81,10 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   ExactKey key = paths_.key(Kept::boundary_fan);
   key.add(level.boundary ? static_cast<int>(*level.boundary) : -1).add(level.depth);
   key.add(layered ? 0.0 : paths_.plane(place, 0.0).origin).add(place.z()).add(settings.frequency);
-  key.add(settings.spacing).add(settings.max_range).add(layered ? 0 : settings.sectors);
+  key.add(settings.spacing)
+      .add(settings.wide)
+      .add(settings.max_range)
+      .add(layered ? 0 : settings.sectors);
   key.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
   key.add(limits.max_vertices).add(limits.faintest);
   key.add(limits.max_delay).add(limits.home_slowness);
@@ -99,7 +107,7 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
   const PathLimits& limits = settings.limits;
   const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
   const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
-               cells = planes * std::ceil(settings.max_range / settings.spacing),
+               cells = planes * static_cast<double>(grid_of(settings).count(settings.max_range)),
                paths = 2.0 * (paths_.layered() ? followed_cycles(bounces) : bounces + 1.0) * cells;
   return {.where = "reverberation.ground_spacing",
           .what = "paths of up to " + std::to_string(bounces) + " bounces to " +
@@ -114,7 +122,7 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                                 const Settings& settings, const StopPoint& stop) const {
   const auto ground = [&](const EigenraySolver& solver) {
     return std::make_shared<const GroundPaths>(
-        ground_paths(solver, place.z(), level, settings.spacing, settings.max_range,
+        ground_paths(solver, place.z(), level, grid_of(settings), settings.max_range,
                      settings.frequency, settings.limits, stop));
   };
   const double speed = paths_.speed_at(place);

@@ -53,12 +53,16 @@ struct BoundaryFan {
 class BoundaryFans {
  public:
   struct Settings {
-    int sectors = 36;           ///< planes all round, over a transect
-    double spacing = 50.0;      ///< of the grid along a plane [m]
-    double max_range = 1e5;     ///< [m]
+    int sectors = 36;        ///< planes all round, over a transect
+    double spacing = 50.0;   ///< of the grid along a plane [m]
+    double wide = 0.0;       ///< of its cells further out, in layered water; at least the spacing
+    double max_range = 1e5;  ///< [m]
     double frequency = 1000.0;  ///< [Hz]
     PathLimits limits;
   };
+
+  /// Of cells as wide as that, none is wider than this share of its range.
+  static constexpr double widest_of_range = 1.0 / 16.0;
 
   /// What around() takes of memory for a place whose paths are not known yet: two of each bounce in
   /// every cell, at most.

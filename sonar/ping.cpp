@@ -291,8 +291,13 @@ PingRecord PingSimulator::levels(int ping) const {
   std::map<int, PingReverberation> heard;  // by array, where an echo is strongest
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
     auto at = heard.find(array);
-    if (at == heard.end())
-      at = heard.emplace(array, reverberation(emission, array, record, {}, {}, budget_)).first;
+    if (at == heard.end()) {
+      MemoryBudget budget = budget_;
+      ReverberationContext context =
+          reverberation_context(emission, array, record, {}, {}, &budget);
+      context.level_alone = true;
+      at = heard.emplace(array, reverberation_->ping(context)).first;
+    }
     record.bounces.include(at->second.bounces());
     return at->second.expected_db(time);
   });

@@ -40,7 +40,8 @@ struct ReverberationContext {
   bool drifts = false;
   /// Whether no other ping and no other array hears these scatterers: the world is this ping's.
   bool heard_once = false;
-  bool judged = false;  ///< what numbers of bounces leave out is estimated
+  bool level_alone = false;  ///< nothing but the expected level is asked for
+  bool judged = false;       ///< what numbers of bounces leave out is estimated
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -176,8 +177,17 @@ class ReverberationModel {
     std::uint64_t id;
     double thickness = 0.0;
   };
+  /// How finely the paths to a boundary are known.
+  enum class Ground {
+    scatterers,  ///< for each scatterer by itself: cells of the grid
+    means        ///< for means over many: wider cells where they are far away
+  };
   /// All that a ping hears.
-  [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context) const;
+  [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context,
+                                                    Ground ground) const;
+  /// Those fields with the paths to each scatterer, as far as they are heard one by one.
+  [[nodiscard]] std::vector<ScatteringField> in_detail(std::vector<ScatteringField> fields,
+                                                       const ReverberationContext& context) const;
   /// Whether nothing tells where in the world a part of the sea lies: each ping has weights of its
   /// own, there is one array, and the ocean is the same everywhere.
   [[nodiscard]] bool forgets_places(const Part& part, const ReverberationContext& context) const;
@@ -185,8 +195,11 @@ class ReverberationModel {
   [[nodiscard]] Bounces enough(const Part& part, const SheetEnds& ends, BoundaryFans::Settings fan,
                                const ReverberationContext& context) const;
   [[nodiscard]] double inaudible(const ReverberationContext& context) const;
+  /// Cells for means over many scatterers: places that a level, a covariance or streams look at lie
+  /// further apart [m].
+  [[nodiscard]] static double wide_cells(const Pulse& pulse) noexcept;
   /// Adds the fields of a part that a ping hears, one for every anchor.
-  void meet(Part part, const ReverberationContext& context,
+  void meet(Part part, const ReverberationContext& context, Ground ground,
             std::vector<ScatteringField>& fields) const;
   /// Whether it can be heard that pairs of ends with other anchors hear other seas: of weights that
   /// outlast a ping, or if one ping is heard from several platforms.

@@ -156,7 +156,13 @@ bool ReverberationModel::seas_compared(const ScattererField& field) const {
                      });
 }
 
-void ReverberationModel::meet(Part part, const ReverberationContext& context,
+double ReverberationModel::wide_cells(const Pulse& pulse) noexcept {
+  // A quarter of what sound runs in a sixteenth of a pulse: as far apart as circles of places are.
+  constexpr double slowest_sea = 1400.0, longest = 0.1;  // [m/s], [s]
+  return 0.25 * slowest_sea * std::min(pulse.duration() / 16.0, longest);
+}
+
+void ReverberationModel::meet(Part part, const ReverberationContext& context, Ground ground,
                               std::vector<ScatteringField>& fields) const {
   const ReverberationSettings& settings = scenario_.reverberation;
   // Who hears one ping cannot tell weights that last from those that do not.
@@ -190,12 +196,14 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context,
   const double moved = way_of_receiver(ends);
   const double apart = (source - receiver).norm() + moved;
 
-  BoundaryFans::Settings fan = {.sectors = settings.azimuths,
-                                .spacing = spacing_,
-                                // in steps, so that a slow drift finds what is kept
-                                .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
-                                .frequency = ends.frequency,
-                                .limits = {}};
+  BoundaryFans::Settings fan = {
+      .sectors = settings.azimuths,
+      .spacing = spacing_,
+      .wide = ground == Ground::means && paths_.layered() ? wide_cells(context.pulse) : 0.0,
+      // in steps, so that a slow drift finds what is kept
+      .max_range = reach + spacing_ + 500.0 * std::ceil(apart / 1000.0),
+      .frequency = ends.frequency,
+      .limits = {}};
   ends.source_speed = paths_.speed_at(ends.source.position);
   ends.receiver_speed = paths_.speed_at(ends.receiver.position);
   part.level = off(off(part.level, part.thickness, ends.source.position.z()), part.thickness,
@@ -384,32 +392,51 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
   return key ? memory.keep(*key, std::move(made), bytes) : made;
 }
 
-std::vector<ScatteringField> ReverberationModel::fields(const ReverberationContext& context) const {
+std::vector<ScatteringField> ReverberationModel::fields(const ReverberationContext& context,
+                                                        Ground ground) const {
   std::vector<ScatteringField> found;
-  for (Part& part : parts()) meet(std::move(part), context, found);
+  for (Part& part : parts()) meet(std::move(part), context, ground, found);
   return found;
+}
+
+std::vector<ScatteringField> ReverberationModel::in_detail(
+    std::vector<ScatteringField> heard, const ReverberationContext& context) const {
+  const auto one_by_one = [](const ScatteringField& field) {
+    return field.heard_by == HeardBy::scatterers;
+  };
+  if (context.level_alone || std::none_of(heard.begin(), heard.end(), one_by_one) ||
+      !paths_.layered() || !(wide_cells(context.pulse) > spacing_))
+    return heard;
+  std::vector<ScatteringField> fine = fields(context, Ground::scatterers), all;
+  for (std::size_t i = 0; i < heard.size(); ++i)
+    all.push_back(std::move(one_by_one(heard[i]) ? fine[i] : heard[i]));
+  return all;
 }
 
 Bounces ReverberationModel::bounces(const ReverberationContext& context) const {
   Bounces all;
-  for (const ScatteringField& field : fields(context)) all.include(field.bounces);
+  for (const ScatteringField& field : fields(context, Ground::means)) all.include(field.bounces);
   return all;
 }
 
 void ReverberationModel::take_memory(const ReverberationContext& context) const {
-  const std::vector<ScatteringField> heard = fields(context);
+  const std::vector<ScatteringField> heard = fields(context, Ground::means);
   if (!heard.empty())
     context.budget->take(ExpectedReverberation::need(heard, context.pulse.duration()));
+  const bool forgets = std::all_of(heard.begin(), heard.end(), [](const ScatteringField& field) {
+    return ReverberationStreams::serves(field);
+  });
+  if (!forgets) static_cast<void>(in_detail(heard, context));
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
-  std::vector<ScatteringField> heard = fields(context);
+  std::vector<ScatteringField> heard = fields(context, Ground::means);
   auto known = expected(heard, context);
   auto by_covariance = covariance(heard, *known, context);
   auto as_streams = streams(heard, *known, context);
   return {scenario_,
           context,
-          std::move(heard),
+          in_detail(std::move(heard), context),
           std::move(known),
           std::move(by_covariance),
           std::move(as_streams)};

@@ -124,7 +124,7 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
     found.bearing = std::atan2(found.direction.x(), found.direction.y());
   const FanPlane& plane = fan.towards(found.bearing);
   const GroundPaths& paths = *plane.paths;
-  const double cells = range / paths.spacing();
+  const double cells = paths.grid().at(range);
   if (!(cells < static_cast<double>(paths.cells()))) return found;
   const auto cell = static_cast<std::size_t>(cells);
   found.paths = paths.paths(cell);

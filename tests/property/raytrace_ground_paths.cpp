@@ -113,6 +113,42 @@ TEST_P(EveryCastAndRule, TheMarchingSolverFindsAsMuchSound) {
   }
 }
 
+// Cells that are wide further out hold the paths that narrow ones hold at their centres, and near
+// by they are narrow: the same delays (to a hundredth of the spacing each), the same sound. Cells
+// that fall on the border of a family of rays have one path more or less.
+TEST_P(EveryCastAndRule, WideCellsHoldThePathsOfNarrowOnes) {
+  const auto& [cast, rule] = GetParam();
+  const Environment ocean = ocean_of(cast, rule);
+  const EigenraySolver solver(ocean);
+  constexpr double narrow = 20.0, near = 2000.0;
+  constexpr std::size_t times = 5;  // as wide: every fifth centre is one of both
+  for (const GroundLevel& level : levels()) {
+    const auto on = [&](const GroundGrid& grid) {
+      return ground_paths(solver, 7.0, level, grid, max_range, frequency, limits);
+    };
+    const GroundPaths all = on(narrow), wide = on({narrow, times * narrow, near});
+    const std::size_t border = std::size_t(near / narrow);
+    ASSERT_EQ(wide.cells(), border + (all.cells() - border) / times);
+    double sum = 0.0, of_wide = 0.0;
+    std::size_t same = 0;
+    for (std::size_t cell = 0; cell < wide.cells(); ++cell) {
+      const std::size_t twin = cell < border ? cell : border + (cell - border) * times + times / 2;
+      ASSERT_NEAR(wide.range(cell), all.range(twin), 1e-9);
+      ASSERT_EQ(std::size_t(wide.grid().at(wide.range(cell))), cell);
+      const auto paths = wide.paths(cell), twins = all.paths(twin);
+      for (const GroundPath& p : paths) of_wide += std::norm(p.amplitude);
+      for (const GroundPath& p : twins) sum += std::norm(p.amplitude);
+      if (paths.size() != twins.size()) continue;
+      bool alike = true;
+      for (std::size_t i = 0; i < paths.size(); ++i)
+        alike = alike && std::abs(paths[i].delay - twins[i].delay) < 0.02 * narrow / 1500.0;
+      same += alike ? 1 : 0;
+    }
+    EXPECT_GT(double(same), 0.995 * double(wide.cells()));
+    EXPECT_NEAR(db_from_power(of_wide / sum), 0.0, 0.02);
+  }
+}
+
 // A source a millimetre deeper hears the same: before the differences of speeds next to the maximum
 // were exact, a depth had up to ten times the paths of its neighbour.
 TEST_P(EveryCastAndRule, AMillimetreChangesLittle) {

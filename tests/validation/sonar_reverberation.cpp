@@ -128,6 +128,35 @@ TEST(Reverberation, EnvelopeIsRayleigh) {
   EXPECT_GT(support::kolmogorov_distance(rice, support::exponential_law), limit);
 }
 
+// The level of a long sweep, whose scatterers are metres apart: its paths are traced to cells as
+// far apart as a sixteenth of the pulse, and the level is the annulus integral still.
+TEST(Reverberation, ALongSweepHasTheLevelOfTheAnnulus) {
+  for (const double duration : {0.5, 1.0, 4.0}) {
+    Scenario s = reference();
+    s.reverberation.ground_spacing = std::nullopt;
+    s.pulse = {.kind = PulseKind::lfm,
+               .start_frequency = 3900.0,
+               .end_frequency = 4100.0,
+               .duration = duration,
+               .window = PulseWindow::none};
+    const Sea sea(s);
+    ASSERT_LT(sea.spacing(), 5.0);
+    const PingReverberation ping = sea.ping(1);
+    for (const double since : {6.3, 8.3, 12.7, 20.0, 31.0, 40.0}) {
+      const double t = duration + since;  // beyond the first return
+      // Places are a 32nd of the pulse apart, or less: over a quarter of it, many enter and leave.
+      double closed = 0.0, found = 0.0;
+      constexpr int n = 64;
+      for (int i = 0; i < n; ++i) {
+        const double u = t + 0.25 * duration * i / n;
+        closed += mean_intensity(sea.scenario().reverberation.surface, u, duration) / n;
+        found += power_from_db(ping.expected_db(u) - 220.0) / n;
+      }
+      EXPECT_NEAR(db_from_power(found / closed), 0.0, 0.05) << duration << " s, at " << t << " s";
+    }
+  }
+}
+
 /// How much of the grid is left in the matched filter's output: |⟨(I/Ī) e^{i2πr(t)/Δr}⟩|²·n, an
 /// exponential of mean 1 (more or less) for a sea without a grid.
 /// \param snap  every return to the delay of the middle of its ring: a sea that is a grid
