@@ -132,6 +132,11 @@ Branch branch_of(const Arrival& ray) {
           .vertices = ray.surface_bounces + ray.bottom_bounces + ray.upper_turns + ray.lower_turns};
 }
 
+/// The history of the same ray from its other end.
+Branch reversed(const Branch& branch) {
+  return {.starts_up = !branch.arrives_upward(), .vertices = branch.vertices};
+}
+
 /// Of a ray, at the receiver.
 Complex pressure(const Arrival& ray, double frequency) {
   return ray.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(frequency * ray.delay, 1.0));
@@ -213,16 +218,17 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   }
   if (!(wrong > tolerable_error * tolerable_error * energy)) return;
 
-  // Of oceans whose boundaries return nothing where rays must not touch them so often.
+  // Of oceans whose boundaries return nothing where rays must not touch them so often; heard at the
+  // lower end, so that the way there and the way back have the same.
   const double furthest = furthest_of(range);
+  const double upper = std::min(source_depth, receiver_depth),
+               lower = std::max(source_depth, receiver_depth);
   const auto cycles = [&](bool surface, bool bottom) -> std::shared_ptr<const CycleWaves> {
     const auto make = [&] {
-      return std::make_shared<CycleWaves>(without(ocean, surface, bottom), frequency, source_depth,
-                                          receiver_depth, furthest);
+      return std::make_shared<CycleWaves>(without(ocean, surface, bottom), frequency, upper, lower,
+                                          furthest);
     };
-    return keeper
-               ? keeper({source_depth, receiver_depth, frequency, furthest, surface, bottom}, make)
-               : make();
+    return keeper ? keeper({upper, lower, frequency, furthest, surface, bottom}, make) : make();
   };
   const bool no_surface = limits.max_surface_bounces == 0,
              no_bottom = limits.max_bottom_bounces == 0;
@@ -232,13 +238,17 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
       omega * std::cos(limits.max_launch_angle) / ocean.water.at(source_depth).c;
   if (!plain->affordable() || steepest > plain->window().begin) return;
 
+  const auto term_of = [&](const Arrival& ray) {
+    const Branch branch = branch_of(ray);
+    return plain->term_of(source_depth <= receiver_depth ? branch : reversed(branch));
+  };
   int first = 0, last = -1;
   bool waterborne = false;
   for (const Arrival& ray : found) {
     waterborne = waterborne || ray.bottom_bounces == 0;
     judged.weights.push_back(plain->window().weight(omega * ray.horizontal_slowness));
     if (judged.weights.back() < least_weight) continue;
-    const int term = plain->term_of(branch_of(ray));
+    const int term = term_of(ray);
     first = last < 0 ? term : std::min(first, term);
     last = std::max(last, term);
   }
@@ -262,7 +272,7 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Arrival& ray = found[i];
       if (judged.weights[i] < least_weight || !(std::norm(ray.amplitude) > 0.0) ||
-          plain->term_of(branch_of(ray)) != term || (surface && ray.surface_bounces > 0) ||
+          term_of(ray) != term || (surface && ray.surface_bounces > 0) ||
           (bottom && ray.bottom_bounces > 0))
         continue;
       here.rays.push_back(i);

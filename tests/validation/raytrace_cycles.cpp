@@ -201,6 +201,32 @@ TEST(Cycles, BouncesBeyondTheLimitAreLeftOut) {
         0.01 * std::abs(truth[i]));
 }
 
+// Source and receiver exchanged: the same sound, out of the waves that are known. A ray whose
+// amplitude changes by less than 0.1 % of the whole stays one, the way there or the way back.
+TEST(Cycles, TheWayBackHasTheSameWaves) {
+  for (const auto& [water, at] : {std::pair{channel(), Places{100.0, 1000.0, 1500.0, 48010.0, 0.0}},
+                                  {summer(), {1000.0, 30.0, 60.0, 10000.0, 0.0}},
+                                  {summer(), {1000.0, 60.0, 70.0, 10000.0, 0.0}}}) {
+    const EigenraySolver solver(water.ocean);
+    const CyclesKeeper keep = keeper();
+    int made = 0;
+    const CyclesKeeper counted = [&](const CycleNeed& need, const CyclesMaker& make) {
+      return keep(need, [&] {
+        ++made;
+        return make();
+      });
+    };
+    Places back = at;
+    std::swap(back.source, back.receiver);
+    const Complex there = sum_of(found(solver, water, at, at.first, true, counted), at.frequency);
+    const int before = made;
+    EXPECT_GT(before, 0);
+    const Complex home = sum_of(found(solver, water, back, at.first, true, counted), at.frequency);
+    EXPECT_EQ(made, before);
+    EXPECT_LT(std::abs(home - there), 2e-3 * std::abs(there));
+  }
+}
+
 // A target that moves by millimetres hears no jump, and has the paths it had.
 TEST(Cycles, PassWithoutAJump) {
   for (const auto& [water, at] : {std::pair{channel(), Places{100.0, 1000.0, 1000.0, 47000.0, 0.0}},
