@@ -42,7 +42,10 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
   least_slope_ = flattest_zones * widest * widest * widest;
   const double upper = (source_is_upper_ ? column.at_source() : column.at_receiver()).slope,
                lower = (source_is_upper_ ? column.at_receiver() : column.at_source()).slope;
-  turns_ = upper > 0.0 && lower > 0.0   ? Turns::above
+  // Across the slowest depth a ray that is horizontal at one end turns before the other, whatever
+  // the slopes: in a surface duct above a thermocline, say.
+  turns_ = column.slowest_is_between()  ? Turns::between
+           : upper > 0.0 && lower > 0.0 ? Turns::above
            : upper < 0.0 && lower < 0.0 ? Turns::below
                                         : Turns::between;
   affordable_ = double(column.layers()) * double(window_.count) <= most_cycle_steps;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <complex>
 #include <span>
 #include <vector>
@@ -50,6 +51,11 @@ class WaveColumn {
   /// Of the first.
   [[nodiscard]] Squared at_receiver() const noexcept { return squared(edge_of_.front()); }
   [[nodiscard]] Squared at_slowest() const noexcept { return squared(slowest_edge_); }
+  /// Whether the slowest depth lies between the source and the first receiver.
+  [[nodiscard]] bool slowest_is_between() const noexcept {
+    const auto [upper, lower] = std::minmax(source_edge_, edge_of_.front());
+    return upper < slowest_edge_ && slowest_edge_ < lower;
+  }
 
   [[nodiscard]] std::size_t layers() const noexcept { return layers_.size(); }
   /// ω over the lowest and the highest speed [1/m].

@@ -187,6 +187,22 @@ TEST(Cycles, TurnsBesideCornersAreTheWaves) {
   EXPECT_LT(off(smooth_summer(), {3500.0, 60.0, 50.0, 9950.0, 10050.0}).waves, 0.015);
 }
 
+// A source in a surface duct and a receiver below the axis: the speed rises downwards at both, but
+// between them lies the slowest depth. Waves that cannot leave the duct are next to nothing below,
+// not the e¹⁰⁰ that they would be if they turned below both ends.
+TEST(Cycles, ADuctAboveTheAxisIsHeardBelowIt) {
+  const std::vector<double> depth = {0.0, 35.0, 50.0, 75.0, 100.0, 300.0},
+                            speed = {1522.8, 1523.3, 1522.8, 1513.0, 1506.8, 1510.2};
+  Water water = channel();
+  water.ocean.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  water.ocean.bottom.depth = 300.0;
+  for (const auto& [source, receiver] : {std::pair{7.0, 160.0}, {160.0, 7.0}, {20.0, 130.0}})
+    for (const double frequency : {500.0, 1500.0}) {
+      const Places at{frequency, source, receiver, 3000.0, 3500.0};
+      EXPECT_LT(off(water, at).waves, 0.02) << frequency << " Hz, " << source << " m";
+    }
+}
+
 // Boundaries that rays must not touch return nothing to waves.
 TEST(Cycles, BouncesBeyondTheLimitAreLeftOut) {
   Water reflecting = channel();
