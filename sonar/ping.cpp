@@ -396,7 +396,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
       const ReverberationCovariance* dense = scattered.back().covariance();
       const ReverberationStreams* streams = scattered.back().streams();
       Baseband sea = scattered.back().blocks() > 0 ? voice.baseband(scattered.back(), around)
-                     : streams != nullptr ? synthesizer.silence(*streams, std::move(used_before))
+                     : streams != nullptr
+                         ? synthesizer.silence(*streams, phones.size(), std::move(used_before))
                      : dense != nullptr
                          ? synthesizer.silence(*dense, std::move(used_before))
                          : synthesizer.silence(phones.size(), std::move(used_before));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/carried.h"
 #include "sonar/ping.h"
 #include "sonar/sampling.h"
 #include "sonar/stream.h"
@@ -65,8 +66,13 @@ MemoryBudget PingSimulator::memory(int ping) const {
   MemoryBudget largest = budget;  // of the arrays, which are heard one after the other
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     MemoryBudget of_array = budget;
+    const int array = static_cast<int>(a);
+    const std::vector<Vec3> phones =
+        phones_from(reverberation_point(scenario_, sent.transmitter, array, sent.time,
+                                        emission.pulse.centre_frequency()),
+                    scenario_, array, ping, sent.time);
     reverberation_->take_memory(
-        reverberation_context(emission, static_cast<int>(a), record, {}, {}, &of_array));
+        reverberation_context(emission, array, record, phones, {}, &of_array));
     if (of_array.taken() > largest.taken()) largest = std::move(of_array);
   }
   return largest;

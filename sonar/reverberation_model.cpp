@@ -299,6 +299,42 @@ namespace {
 
 constexpr double many = 20'000.0;  // returns: fewer are laid down as soon
 
+/// Whether a ping may be heard as streams where they serve.
+bool may_stream(const Scenario& scenario, const ReverberationContext& context) noexcept {
+  const ScattererSynthesis how = scenario.reverberation.synthesis;
+  return how != ScattererSynthesis::scatterers && how != ScattererSynthesis::covariance &&
+         !context.phones.empty() && scenario.arrays.size() == 1;
+}
+
+/// Where phones are, of all shapes that an array has: some of them, evenly.
+std::vector<Vec3> places_of(std::span<const std::vector<Vec3>> shapes,
+                            std::span<const Vec3> phones) {
+  if (shapes.empty()) return {phones.begin(), phones.end()};
+  constexpr std::size_t most = 64;
+  std::vector<Vec3> all, some;
+  for (const std::vector<Vec3>& shape : shapes) all.insert(all.end(), shape.begin(), shape.end());
+  const std::size_t count = std::min(all.size(), std::max(most, shapes.front().size()));
+  for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
+  return some;
+}
+
+/// Who hears them.
+ReverberationStreams::Listener stream_listener(const Scenario& scenario,
+                                               const ReverberationContext& context) {
+  // What an array of many shapes hears is sorted for all of them once.
+  const std::vector<std::vector<Vec3>> now{{context.phones.begin(), context.phones.end()}};
+  const auto& shapes = scenario.arrays[static_cast<std::size_t>(context.array)].shapes;
+  const double highest = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99();
+  return {.extents = ReverberationStreams::extents_of(shapes.empty() ? now : shapes, highest),
+          .phones = context.phones.size(),
+          .frequency = highest,
+          .bandwidth = context.pulse.bandwidth_99(),
+          .pulse_duration = context.pulse.duration(),
+          .coherence = pulse_coherence(context.pulse),
+          .places = places_of(shapes, context.phones),
+          .latest = context.latest};
+}
+
 }  // namespace
 
 /// Marks the fields that are heard by their covariance: those that it serves, if they have many
@@ -352,23 +388,14 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
 std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
     std::span<ScatteringField> fields, const ExpectedReverberation& expected,
     const ReverberationContext& context) const {
-  const ScattererSynthesis how = scenario_.reverberation.synthesis;
-  if (how == ScattererSynthesis::scatterers || how == ScattererSynthesis::covariance ||
-      context.phones.empty() || scenario_.arrays.size() > 1)
-    return nullptr;
-  const ReverberationStreams::Listener listener = {
-      .phones = context.phones,
-      .frequency = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99(),
-      .bandwidth = context.pulse.bandwidth_99(),
-      .pulse_duration = context.pulse.duration(),
-      .coherence = pulse_coherence(context.pulse),
-      .latest = context.latest};
+  if (!may_stream(scenario_, context)) return nullptr;
+  const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
+  const ReverberationStreams::Listener listener = stream_listener(scenario_, context);
   std::vector<const ScatteringField*> served;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (fields[i].heard_by == HeardBy::scatterers && ReverberationStreams::serves(fields[i]) &&
-        (how == ScattererSynthesis::streams ||
-         expected.returns_of(i) >
-             std::max(many, ReverberationStreams::worth(listener, fields[i])))) {
+        (wherever || expected.returns_of(i) >
+                         std::max(many, ReverberationStreams::worth(listener, fields[i])))) {
       fields[i].heard_by = HeardBy::streams;
       served.push_back(&fields[i]);
     }
@@ -384,9 +411,11 @@ std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
       key->add_all(static_cast<int>(field.heard_by), field.thickness, field.boundary,
                    static_cast<int>(motion.kind), motion.receding_share, motion.current);
     }
-    for (const Vec3& phone : context.phones) key->add(phone);
+    for (const Vec3& axis : listener.extents) key->add(axis);
+    for (const Vec3& place : listener.places) key->add(place);
     if (auto known = memory.find<ReverberationStreams>(*key)) return known;
   }
+  if (context.budget != nullptr) context.budget->take(ReverberationStreams::need(served, listener));
   auto made = std::make_shared<ReverberationStreams>(served, expected.limits, listener);
   const std::size_t bytes = made->bytes();
   return key ? memory.keep(*key, std::move(made), bytes) : made;
@@ -421,12 +450,19 @@ Bounces ReverberationModel::bounces(const ReverberationContext& context) const {
 
 void ReverberationModel::take_memory(const ReverberationContext& context) const {
   const std::vector<ScatteringField> heard = fields(context, Ground::means);
-  if (!heard.empty())
-    context.budget->take(ExpectedReverberation::need(heard, context.pulse.duration()));
+  if (heard.empty()) return;
+  context.budget->take(ExpectedReverberation::need(heard, context.pulse.duration()));
   const bool forgets = std::all_of(heard.begin(), heard.end(), [](const ScatteringField& field) {
     return ReverberationStreams::serves(field);
   });
   if (!forgets) static_cast<void>(in_detail(heard, context));
+  // How many returns there are, and so whether they are heard as streams, is not known yet.
+  if (!may_stream(scenario_, context)) return;
+  std::vector<const ScatteringField*> served;
+  for (const ScatteringField& field : heard)
+    if (ReverberationStreams::serves(field)) served.push_back(&field);
+  if (!served.empty())
+    context.budget->take(ReverberationStreams::need(served, stream_listener(scenario_, context)));
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {

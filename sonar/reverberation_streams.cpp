@@ -16,6 +16,35 @@ namespace {
 using StreamBlock = ReverberationStreams::Block;
 using Listener = ReverberationStreams::Listener;
 
+/// The longest axis of points about their middles, up to its sign: x, y or z, whichever it is most
+/// along, is positive.
+Vec3 long_axis(std::span<const std::vector<Vec3>> shapes) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const std::vector<Vec3>& shape : shapes) {
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : shape) middle += x / static_cast<double>(shape.size());
+    for (const Vec3& x : shape) spread += (x - middle) * (x - middle).transpose();
+  }
+  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  Eigen::Index most = 0;
+  axis.cwiseAbs().maxCoeff(&most);
+  return axis[most] < 0.0 ? Vec3(-axis) : axis;
+}
+
+/// How far a shape reaches along an axis, the longest of all.
+double length_along(const Vec3& axis, std::span<const std::vector<Vec3>> shapes) {
+  double longest = 0.0;
+  for (const std::vector<Vec3>& shape : shapes) {
+    double least = infinity, most = -infinity;
+    for (const Vec3& x : shape) {
+      least = std::min(least, axis.dot(x));
+      most = std::max(most, axis.dot(x));
+    }
+    longest = std::max(longest, most - least);
+  }
+  return longest;
+}
+
 /// Blocks of a quarter of a pulse and, later, of an eighth of the delay: no direction depends on
 /// them, but each asks for transforms that are a pulse longer.
 std::vector<StreamBlock> blocks_of(std::size_t bins, double pulse_bins) {
@@ -49,25 +78,10 @@ class Resolution {
  public:
   explicit Resolution(const Listener& to)
       : frequency_(to.frequency), pulse_(to.frequency * to.pulse_duration) {
-    Vec3 middle = Vec3::Zero();
-    for (const Vec3& x : to.phones) middle += x / static_cast<double>(to.phones.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Vec3& x : to.phones) spread += (x - middle) * (x - middle).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 axis = solver.eigenvectors().col(i);
-      double least = infinity, most = -infinity;
-      for (const Vec3& x : to.phones) {
-        least = std::min(least, axis.dot(x));
-        most = std::max(most, axis.dot(x));
-      }
-      constexpr double step = 2.0;  // [rad]
-      const double phase = pi * to.frequency * (most - least);
-      // An array so short hears one direction.
-      constexpr double alike = 0.1;  // [rad]
-      half_ = std::max(half_, 0.5 * (most - least));
-      scale_[static_cast<std::size_t>(i)] =
-          phase / slowest_sea < alike ? Vec3::Zero() : Vec3(axis * (phase / step));
+    constexpr double step = 2.0;  // [rad]
+    for (std::size_t i = 0; i < 3; ++i) {
+      scale_[i] = pi * to.frequency / step * to.extents[i];
+      half_ = std::max(half_, 0.5 * to.extents[i].norm());
     }
   }
 
@@ -355,7 +369,70 @@ double bearings_of(const Resolution& resolution, const Listener& listener,
          2.0 * pi * fastest * listener.frequency * listener.pulse_duration / slowest_sea;
 }
 
+/// Cells of a block, roughly: there are some three directions to a bearing.
+double streams_of_block(const Listener& listener, const ScatteringField& field) {
+  constexpr double directions = 3.0, fewest = 8.0;
+  return directions * std::max(fewest, bearings_of(Resolution(listener), listener, field));
+}
+
 }  // namespace
+
+MemoryNeed ReverberationStreams::need(std::span<const ScatteringField* const> fields,
+                                      const Listener& listener) {
+  constexpr double parts = 4.0;  // of a cell, in the mean
+  const double bin = delay_bin(listener.pulse_duration, listener.latest);
+  const std::vector<StreamBlock> blocks = blocks_of(
+      static_cast<std::size_t>(std::ceil(listener.latest / bin)), listener.pulse_duration / bin);
+  double streams = 0.0, fastest = 0.0;
+  for (const ScatteringField* field : fields) {
+    streams += streams_of_block(listener, *field);
+    fastest = std::max(fastest, field->sheet.fastest_ends());
+  }
+  // Kept, and while they are sorted as cells and as those of the tasks, too.
+  const double a_stream =
+      static_cast<double>(blocks.size()) *
+      (sizeof(Stream) + sizeof(CellSum) + parts * (sizeof(Part) + sizeof(PartSum)));
+  const double intensities = listener.latest / bin * sizeof(float);
+  // A block's sound is a pulse longer than the block.
+  constexpr double wider = 2.0;  // than the 99 % band
+  const double samples =
+      (listener.latest + 2.0 * static_cast<double>(blocks.size()) * listener.pulse_duration) *
+      (wider * listener.bandwidth + 2.0 * fastest / slowest_sea * listener.frequency);
+  const double sound = samples * static_cast<double>(listener.phones) * sizeof(std::complex<float>);
+  return {.where = "array",
+          .what = std::to_string(std::llround(streams * static_cast<double>(blocks.size()))) +
+                  " streams of reverberation",
+          .bytes = streams * (a_stream + 3.0 * intensities) + sound,
+          .remedy =
+              "a shorter array, a slower platform, a shorter record (pings.recording_duration) or "
+              "reverberation.synthesis = \"scatterers\""};
+}
+
+std::array<Vec3, 3> ReverberationStreams::extents_of(std::span<const std::vector<Vec3>> shapes,
+                                                     double frequency) {
+  // Phases of sound along the array, between its ends and the middle [rad].
+  constexpr double alike = 0.1;                       // an array so short hears one direction
+  constexpr double least = 0.9;                       // else at least: yet one cell
+  constexpr double askew = 0.5;                       // of an end beside a rounded axis
+  constexpr double finest = 8.0;                      // lengths to an octave
+  const double phase = pi * frequency / slowest_sea;  // of a metre
+  Vec3 along = long_axis(shapes);
+  const double all = phase * length_along(along, shapes);
+  if (all > alike) {
+    const double step = std::exp2(std::floor(std::log2(std::min(1.0, askew / all))));
+    for (double& x : along) x = step * std::round(x / step);
+    along.normalize();
+  }
+  const Vec3 aside = std::abs(along.z()) > 0.9 ? Vec3::UnitX() : Vec3::UnitZ();
+  const Vec3 second = aside.cross(along).normalized();
+  std::array<Vec3, 3> extents = {along, second, along.cross(second)};
+  for (Vec3& axis : extents) {
+    const double rad = phase * length_along(axis, shapes);
+    const double octaves = std::ceil(finest * std::log2(rad / least) - 1e-9) / finest;
+    axis *= rad < alike ? 0.0 : least / phase * std::exp2(std::max(0.0, octaves));
+  }
+  return extents;
+}
 
 bool ReverberationStreams::serves(const ScatteringField& field) noexcept {
   const ScattererField& f = field.field;
@@ -366,16 +443,14 @@ bool ReverberationStreams::serves(const ScatteringField& field) noexcept {
 double ReverberationStreams::worth(const Listener& listener, const ScatteringField& field) {
   // Samples of streams against those of pulses' impulses, each at every phone; a stream has its
   // noise and transforms, and there are some three directions to a bearing.
-  constexpr double directions = 3.0, a_sample = 2.0, a_return = 25.0;
-  const double phones = static_cast<double>(listener.phones.size());
-  const double bearings = std::max(8.0, bearings_of(Resolution(listener), listener, field));
-  return directions * bearings * listener.latest * (listener.bandwidth + 10.0) *
+  constexpr double a_sample = 2.0, a_return = 25.0;
+  const double phones = static_cast<double>(listener.phones);
+  return streams_of_block(listener, field) * listener.latest * (listener.bandwidth + 10.0) *
          (a_sample + 0.1 * phones) / (a_return * (1.0 + 0.2 * phones));
 }
 
 ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* const> fields,
-                                           const AudibleLimits& limits, const Listener& listener)
-    : phones(listener.phones.size()) {
+                                           const AudibleLimits& limits, const Listener& listener) {
   bin = delay_bin(listener.pulse_duration, listener.latest);
   const auto bins = static_cast<std::size_t>(std::ceil(listener.latest / bin));
   if (bins == 0) return;
@@ -392,7 +467,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
   CellSums sums(blocks);
   for (const ScatteringField* field : fields) {
     const GroundAround ground(*field, bin, 1.5 * bearings_of(resolution, listener, *field));
-    const PathInterference interference(listener.phones, field->sheet.ends().frequency,
+    const PathInterference interference(listener.places, field->sheet.ends().frequency,
                                         *listener.coherence, false);
     const std::size_t circles = ground.edges.size() - 1;
     std::vector<CellSums> parts((circles + together - 1) / together, CellSums(blocks));

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "sonar/propagation_memory.h"
 #include "sonar/pulse_coherence.h"
 #include "sonar/scattering_field.h"
@@ -26,12 +27,16 @@ namespace asdic {
 struct ReverberationStreams {
   /// Who hears, and how finely.
   struct Listener {
-    std::span<const Vec3> phones;  ///< relative to the array's reference point [m]
-    double frequency = 1000.0;     ///< the highest that matters [Hz]
-    double bandwidth = 10.0;       ///< of the pulse [Hz]
-    double pulse_duration = 1.0;   ///< [s]
+    std::array<Vec3, 3> extents = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< extents_of()
+    std::size_t phones = 1;
+    double frequency = 1000.0;    ///< the highest that matters [Hz]
+    double bandwidth = 10.0;      ///< of the pulse [Hz]
+    double pulse_duration = 1.0;  ///< [s]
     /// Of the pulse with itself; none: a tone that never ends.
     std::shared_ptr<const PulseCoherence> coherence = std::make_shared<const PulseCoherence>();
+    /// Of phones, over which sounds of one place interfere in the mean, relative to the array's
+    /// reference point [m]; none: one there.
+    std::vector<Vec3> places = {};
     double latest = 60.0;  ///< end of the record [s]
   };
   /// A part of a cell: where its sound comes from. Fronts are spheres about a point so far back as
@@ -61,18 +66,27 @@ struct ReverberationStreams {
   ReverberationStreams(std::span<const ScatteringField* const> fields, const AudibleLimits& limits,
                        const Listener& listener);
 
+  /// A box that holds each of an array's shapes: vectors at right angles to each other, as long as
+  /// it is that way [m]. Rounded, so that shapes that are much alike have one: directions to a
+  /// phase of ½ rad at the ends, lengths up to the next of a geometric row.
+  /// \param shapes  [m], at least one; where they lie does not matter
+  [[nodiscard]] static std::array<Vec3, 3> extents_of(std::span<const std::vector<Vec3>> shapes,
+                                                      double frequency);
   /// Whether a field may be heard so: scatterers without velocities of their own and without
   /// texture, weights of every ping's own, amplitudes of the centre frequency.
   [[nodiscard]] static bool serves(const ScatteringField& field) noexcept;
   /// Returns that take as long to lay down one by one as a ping of the field's streams, roughly: a
   /// sparse array tells very many directions apart.
   [[nodiscard]] static double worth(const Listener& listener, const ScatteringField& field);
+  /// What making them and a ping out of them takes beside the ping's samples, at most: a guess from
+  /// the number of cells.
+  [[nodiscard]] static MemoryNeed need(std::span<const ScatteringField* const> fields,
+                                       const Listener& listener);
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// Out of which a stream sounds in a ping.
   [[nodiscard]] const Part& part_of(const Stream& stream, std::uint64_t seed,
                                     std::uint32_t ping) const noexcept;
 
-  std::size_t phones = 0;
   double bin = 1.0;  ///< width of a bin of delay [s]
   std::vector<Block> blocks;
   std::vector<Stream> streams;

@@ -109,12 +109,12 @@ class Synthesizer {
                     Baseband& baseband) const;
 
   /// The same for streams.
-  [[nodiscard]] Baseband silence(const ReverberationStreams& sea,
+  [[nodiscard]] Baseband silence(const ReverberationStreams& sea, std::size_t phones,
                                  std::vector<std::complex<float>> memory = {}) const;
 
   /// Adds reverberation that is known as streams of noise, through the pulse. \param phones  [n]
-  /// that the streams were made for [m]   \param baseband  of as many phones, one of this
-  /// synthesizer's silences, at least
+  /// relative to where the streams are heard, no further apart than they were made for [m]
+  /// \param baseband  of as many phones, one of this synthesizer's silences, at least
   void add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
                    const CovarianceDraw& draw, Baseband& baseband) const;
 
@@ -136,8 +136,12 @@ class Synthesizer {
                                     std::vector<std::complex<float>> memory) const;
   [[nodiscard]] Baseband silence_of_band(std::size_t phones, double bins,
                                          std::vector<std::complex<float>> memory) const;
-  /// On either side of the carrier [bins of the period].
-  [[nodiscard]] double half_band_of(const ReverberationStreams& sea) const;
+  /// Half the band of streams [bins of the period]: of any one about the pulse's frequency as it
+  /// hears it, of all about the carrier.
+  struct StreamBand {
+    double one = 0.0, all = 0.0;
+  };
+  [[nodiscard]] StreamBand band_of(const ReverberationStreams& sea) const;
   [[nodiscard]] std::shared_ptr<const std::vector<std::complex<float>>> covariance_spectra(
       const BandNodes& band) const;
 

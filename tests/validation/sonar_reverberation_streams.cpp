@@ -2,6 +2,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -126,6 +127,153 @@ TEST(ReverberationStreams, AreABesselFunctionOfPlacesAndTheAnnulusIntegral) {
     EXPECT_NEAR(all.doppler / (2.0 * speed / c), 0.0, 0.01) << t;
     const double widest = 2.0 * speed * cosine / c;
     EXPECT_NEAR(all.doppler2 / (0.5 * widest * widest), 1.0, 0.03) << t;
+  }
+}
+
+/// J₀(kd cos θ) of the level distance times the phase of depth, from the surface at a delay.
+std::complex<double> all_round(const Vec3& apart, double delay) {
+  const double sine = depth / (0.5 * c * delay), cosine = std::sqrt(1.0 - sine * sine);
+  return std::cyl_bessel_j(0.0, 2.0 * pi * 1000.0 * apart.head<2>().norm() * cosine / c) *
+         std::polar(1.0, -2.0 * pi * 1000.0 * apart.z() * sine / c);
+}
+
+// An array with a shape for each ping: one set of streams holds the covariance of all of them,
+// whichever of them asks for it, within the 0.04 of above. Made for one phone it must fail.
+TEST(ReverberationStreams, ServeEveryShapeOfAnArray) {
+  Scenario s = under_way();
+  const std::vector<Vec3> straight = {Vec3(-1.2, 0.0, 0.0), Vec3(0.0, 0.0, 0.0),
+                                      Vec3(1.2, 0.0, 0.0)};
+  const std::vector<Vec3> bent = {Vec3(-1.0, -0.6, 0.2), Vec3(0.0, 0.0, 0.0),
+                                  Vec3(1.0, -0.6, -0.2)};
+  s.arrays[0].phones = straight;
+  s.arrays[0].shapes = {straight, bent};
+  Scenario point = s;
+  point.arrays[0].phones = {Vec3::Zero()};
+  point.arrays[0].shapes.clear();
+  const Sea sea(s), other(point);
+  const auto streams = sea.ping(1), of_point = other.ping(1);
+  ASSERT_NE(streams.streams(), nullptr);
+  ASSERT_NE(of_point.streams(), nullptr);
+  for (const double t : {3.0, 5.5, 9.0})
+    for (const std::vector<Vec3>& shape : s.arrays[0].shapes) {
+      const Said all = said(*streams.streams(), t, shape, 1000.0);
+      const Said wrong = said(*of_point.streams(), t, shape, 1000.0);
+      double off = 0.0, wrong_by = 0.0;
+      for (std::size_t m = 0; m < shape.size(); ++m)
+        for (std::size_t n = 0; n < shape.size(); ++n) {
+          const std::complex<double> expected = all_round(shape[m] - shape[n], t);
+          const auto i = Eigen::Index(m), j = Eigen::Index(n);
+          off = std::max(off, std::abs(all.covariance(i, j) - expected));
+          wrong_by = std::max(wrong_by, std::abs(wrong.covariance(i, j) - expected));
+        }
+      EXPECT_LT(off, 0.04) << t;
+      EXPECT_GT(wrong_by, 0.1) << t;
+    }
+}
+
+// Whatever the shape: vectors at right angles that hold it, no more than a tenth longer than a line
+// is (2^(1/8)); lines that differ by a hundredth of a wavelength have one box.
+TEST(ReverberationStreams, BoxesHoldTheirArrays) {
+  constexpr double frequency = 1000.0;
+  for (int turn = 0; turn < 24; ++turn) {
+    const double heading = 0.05 + 0.26 * turn;
+    const Vec3 along(std::sin(heading), std::cos(heading), 0.3 * std::sin(2.0 * heading));
+    std::vector<Vec3> line, bent;
+    for (int i = 0; i < 16; ++i) {
+      line.push_back(0.75 * i * along);
+      bent.push_back(line.back() +
+                     Vec3(0.8 * std::sin(0.4 * i), 0.5 * std::cos(0.7 * i), 0.4 * std::cos(i)));
+    }
+    const std::array<std::vector<Vec3>, 2> shapes{line, bent};
+    const auto box = ReverberationStreams::extents_of(shapes, frequency);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(box[i].dot(box[(i + 1) % 3]), 0.0, 1e-12);
+      const double length = box[i].norm();
+      ASSERT_GT(length, 0.0);
+      for (const auto& shape : shapes)
+        for (const Vec3& a : shape)
+          for (const Vec3& b : shape) EXPECT_LE((a - b).dot(box[i]) / length, length * (1 + 1e-9));
+    }
+    const double length = (line.back() - line.front()).norm();
+    const auto of_line = ReverberationStreams::extents_of({&shapes[0], 1}, frequency);
+    EXPECT_GT(of_line[0].norm(), length * std::cos(0.05));
+    EXPECT_LT(of_line[0].norm(), length * std::exp2(0.125) * (1 + 1e-9));
+    // Askew by ½ rad at most: one cell of directions beside the line.
+    for (std::size_t i = 1; i < 3; ++i)
+      EXPECT_LT(pi * frequency / 1400.0 * of_line[i].norm(), 0.95);
+  }
+  std::vector<Vec3> line, shaken;
+  for (int i = 0; i < 16; ++i) {
+    line.emplace_back(0.75 * i, 0.3 * i, 0.0);
+    shaken.push_back(line.back() + 0.015 * Vec3(std::sin(9.0 * i), std::cos(7.0 * i), 0.0));
+  }
+  const std::array<std::vector<Vec3>, 2> both{line, shaken};
+  EXPECT_EQ(ReverberationStreams::extents_of({&both[0], 1}, frequency)[0],
+            ReverberationStreams::extents_of({&both[1], 1}, frequency)[0]);
+}
+
+// One stream of known intensity, 1/s from 2 s to 3 s, a Doppler factor that is no whole number of
+// bins and a slowness: ⟨|p|²⟩ = ∫I(τ)|s₊(t − τ)|²dτ, 3/8·T = 0.1875 within, half of it half a pulse
+// from either edge, nothing before; its carrier is 2.3 Hz up, and a phone hears it s·x late. 2000
+// pings: 4.9/√2000 = 0.11 of power.
+TEST(ReverberationStreams, AreTheirIntensityThroughThePulse) {
+  Scenario s = under_way();
+  s.pulse = {.frequency = 1000.0, .duration = 0.5, .window = PulseWindow::hann};
+  const Recording recording{.sample_rate = 4000.0, .start = 0.0, .samples = 16'800};
+  const Pulse pulse(s.pulse);
+  const Synthesizer synthesizer(pulse, recording, 0.01);
+  ReverberationStreams sea({}, {}, {.latest = 0.0});
+  sea.bin = 0.05;
+  sea.blocks = {{.begin = 37, .end = 65, .first = 0, .last = 1}};  // 1.85 s to 3.25 s
+  sea.streams = {{.entity = 7, .first = 0, .first_part = 0, .parts = 1}};
+  ReverberationStreams::Part part{.slowness = {Vec3(1.0 / 1500.0, 0.0, 0.0), Vec3::Zero()},
+                                  .doppler = 1.0023};
+  part.weight[0][0] = 1.0;
+  sea.parts = {part};
+  for (int bin = 37; bin < 65; ++bin) sea.intensity.push_back(bin >= 40 && bin < 60 ? 1.0F : 0.0F);
+  const std::vector<Vec3> phones = {Vec3::Zero(), Vec3(0.3, 0.0, 0.0)};
+  const std::array<double, 5> times{1.9, 2.25, 2.8, 3.25, 3.6};
+  constexpr double on = 0.05;  // [s]
+  std::array<double, 5> power{};
+  std::complex<double> turned = 0.0, late = 0.0;
+  constexpr int pings = 2000;
+  for (std::uint32_t ping = 1; ping <= pings; ++ping) {
+    Baseband heard = synthesizer.silence(phones.size());
+    synthesizer.add_streams(sea, phones, {.seed = 5, .ping = ping}, heard);
+    for (std::size_t i = 0; i < times.size(); ++i)
+      power[i] += std::norm(support::at(heard, 0, times[i])) / pings;
+    const std::complex<double> now = support::at(heard, 0, 2.8);
+    turned += std::conj(now) * support::at(heard, 0, 2.8 + on);
+    late += std::conj(now) * support::at(heard, 1, 2.8);
+  }
+  const std::array<double, 5> expected{0.0, 0.09375, 0.1875, 0.09375, 0.0};
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(power[i], expected[i], 0.11 * expected[i] + 1e-5) << times[i];
+  // Phases of a mean over 2000 with a coherence above 0.9: 4.9·√(1/ρ² − 1)/√(2·2000) = 0.04.
+  EXPECT_NEAR(std::arg(turned), 2.0 * pi * 2.3 * on, 0.04 + 2.0 * pi * 0.06 * on);
+  EXPECT_NEAR(std::arg(late), -2.0 * pi * 1002.3 * 0.3 / 1500.0, 0.02);
+}
+
+// What is asked of the memory beforehand holds what is kept, and not more than twenty times as
+// much: they are sorted from cells that take more.
+TEST(ReverberationStreams, TakeNoMoreMemoryThanWasAskedFor) {
+  Scenario s = under_way();
+  s.pulse.duration = 0.5;
+  s.platforms[0].name = "ship";
+  for (const double length : {0.5, 4.0, 16.0}) {
+    s.arrays[0].phones.clear();
+    for (int i = 0; i < 8; ++i) s.arrays[0].phones.emplace_back(length / 7.0 * i, 0.0, 0.0);
+    const PingSimulator simulator(s);
+    double asked = 0.0;
+    const MemoryBudget memory = simulator.memory(1);
+    for (const MemoryNeed& need : memory.needs())
+      if (need.what.find("streams") != std::string::npos) asked += need.bytes;
+    const Sea sea(s);
+    const PingReverberation ping = sea.ping(1);
+    ASSERT_NE(ping.streams(), nullptr);
+    const auto taken = double(ping.streams()->bytes());
+    EXPECT_GT(asked, taken) << length;
+    EXPECT_LT(asked, 20.0 * taken) << length;
   }
 }
 
