@@ -147,9 +147,8 @@ Kernel noise(NoiseCoherence coherence) {
   };
 }
 
-/// 60 s of 16 phones in complex baseband: a moving target, reverberation by its covariance.
-/// Nothing is known before.
-Kernel new_ping() {
+/// 60 s of 16 phones in complex baseband: a moving target, reverberation.
+Scenario one_minute() {
   Scenario s = support::thesis(support::deep_ocean("pchip").water);
   s.environment.absorption = Thorp{};
   s.transmitters[0].taper = Taper::hann;
@@ -159,7 +158,20 @@ Kernel new_ping() {
   s.pings.samples = Samples::baseband;
   s.pings.carrier = 4000.0;
   s.pings.baseband_rate = 400.0;
-  return [s] { keep(PingSimulator(s).simulate(1)); };
+  return s;
+}
+
+/// Reverberation by its covariance. Nothing is known before.
+Kernel new_ping() {
+  return [s = one_minute()] { keep(PingSimulator(s).simulate(1)); };
+}
+
+/// At 1.7 m/s: reverberation as streams, which are known.
+Kernel ping_under_way() {
+  Scenario s = one_minute();
+  s.pings.count = 2;
+  s.platforms[0].track.start.velocity = {1.7, 0.0, 0.0};
+  return [simulator = std::make_shared<const PingSimulator>(s)] { keep(simulator->simulate(2)); };
 }
 
 struct Named {
@@ -185,6 +197,7 @@ const std::vector<Named> kernels = {
     {"scatterers-at-rest", [] { return scatterers(0.0); }},
     {"scatterers-doppler", [] { return scatterers(5e-4); }},
     {"new-ping", new_ping},
+    {"ping-under-way", ping_under_way},
     {"noise-independent", [] { return noise(NoiseCoherence::independent); }},
     {"noise-isotropic", [] { return noise(NoiseCoherence::isotropic); }},
 };

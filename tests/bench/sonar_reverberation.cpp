@@ -1,8 +1,14 @@
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <cmath>
+#include <vector>
+
+#include "sonar/array.h"
+#include "sonar/ping.h"
 #include "sonar/reverberation.h"
 #include "sonar/synthesis.h"
+#include "support/deep_ocean.h"
 #include "support/thesis.h"
 
 namespace asdic {
@@ -80,6 +86,64 @@ BENCHMARK(scatter)
     ->Args({1, 2})
     ->MeasureProcessCPUTime()
     ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// A ping of 60 s after the first: 16 phones in complex baseband, reverberation of the surface and
+/// noise in deep water. \param sweep  of an LFM of 1 s [Hz]; 0: a tone
+Scenario one_minute(double sweep, PulseWindow window) {
+  Scenario s = support::thesis(support::deep_ocean("pchip").water);
+  s.environment.absorption = Thorp{};
+  s.transmitters[0].taper = Taper::hann;
+  s.pulse.duration = 1.0;
+  s.pulse.window = window;
+  if (sweep > 0.0) {
+    s.pulse.kind = PulseKind::lfm;
+    s.pulse.start_frequency = 4000.0 - 0.5 * sweep;
+    s.pulse.end_frequency = 4000.0 + 0.5 * sweep;
+  }
+  s.arrays[0] = line_array(16, 0.1875, 0.0, 0.0);
+  s.noise.spectral_level_db = 40.0;
+  s.reverberation.enabled = true;
+  s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
+  s.pings.count = 1000;
+  s.pings.recording_duration = s.pings.interval = 60.0;
+  s.pings.samples = Samples::baseband;
+  return s;
+}
+
+/// Where the array is and how the vehicle goes.
+enum class Way { rest, crawl, astern, under_way, snake, snake_at_rest };
+
+/// Arguments: Way, sweep [Hz] (0: a tone), whether there is a window.
+void ping_sequence(benchmark::State& state) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  const auto way = static_cast<Way>(state.range(0));
+  Scenario s = one_minute(double(state.range(1)),
+                          state.range(2) != 0 ? PulseWindow::hann : PulseWindow::none);
+  const bool snake = way == Way::snake || way == Way::snake_at_rest;
+  if (way == Way::crawl) s.platforms[0].track.start.velocity = {1e-6, 0.0, 0.0};
+  if (way == Way::under_way || way == Way::snake)
+    s.platforms[0].track.start.velocity = {0.0, 1.7, 0.0};
+  if (way == Way::astern || way == Way::snake) s.arrays[0].offset = {0.0, -30.0, 0.0};
+  for (int ping = 0; snake && ping < 16; ++ping) {
+    std::vector<Vec3> shape = s.arrays[0].phones;
+    for (Vec3& x : shape)
+      x += Vec3(0.1 * ping * std::sin(1.6 * x.y() + ping), 0.0, 0.1 * std::cos(2.0 * x.y() * ping));
+    s.arrays[0].shapes.push_back(shape);
+  }
+  const PingSimulator simulator(s);
+  static_cast<void>(simulator.simulate(1));
+  int ping = 1;
+  for (auto _ : state) benchmark::DoNotOptimize(simulator.simulate(++ping));
+}
+BENCHMARK(ping_sequence)
+    ->ArgNames({"way", "sweep", "window"})
+    ->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 100}, {1}})
+    ->Args({4, 20, 1})
+    ->Args({4, 200, 1})
+    ->Args({4, 100, 0})
+    ->Iterations(12)
+    ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
