@@ -158,7 +158,7 @@ bool ReverberationModel::seas_compared(const ScattererField& field) const {
 
 double ReverberationModel::wide_cells(const Pulse& pulse) noexcept {
   // A quarter of what sound runs in a sixteenth of a pulse: as far apart as circles of places are.
-  constexpr double slowest_sea = 1400.0, longest = 0.1;  // [m/s], [s]
+  constexpr double longest = 0.1;  // [s]
   return 0.25 * slowest_sea * std::min(pulse.duration() / 16.0, longest);
 }
 
@@ -456,11 +456,15 @@ void ReverberationModel::take_memory(const ReverberationContext& context) const 
     return ReverberationStreams::serves(field);
   });
   if (!forgets) static_cast<void>(in_detail(heard, context));
-  // How many returns there are, and so whether they are heard as streams, is not known yet.
+  // How many returns there are, and so whether they are heard as streams, is not known yet; those
+  // that a covariance serves seldom are.
   if (!may_stream(scenario_, context)) return;
+  const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
   std::vector<const ScatteringField*> served;
   for (const ScatteringField& field : heard)
-    if (ReverberationStreams::serves(field)) served.push_back(&field);
+    if (ReverberationStreams::serves(field) &&
+        (wherever || !ReverberationCovariance::serves(field)))
+      served.push_back(&field);
   if (!served.empty())
     context.budget->take(ReverberationStreams::need(served, stream_listener(scenario_, context)));
 }
