@@ -102,9 +102,10 @@ void follow_near(DepthWave& wave, Complex q, Complex slope, double step) {
 
 /// Keeps the numbers of a size that can be calculated with.
 void normalise(DepthWave& wave, Complex q) {
-  const double size = std::abs(wave.u) + std::abs(wave.du) / std::sqrt(std::abs(q) + 1e-300);
-  if (size > 1e-30 && size < 1e30) return;
-  if (!(size > 0.0)) return;
+  const double square = std::norm(wave.u) + std::norm(wave.du) / (std::sqrt(std::norm(q)) + 1e-300);
+  if (square > 1e-60 && square < 1e60) return;
+  if (!(square > 0.0)) return;
+  const double size = std::sqrt(square);
   wave.u /= size;
   wave.du /= size;
   wave.growth += std::log(size);
@@ -133,13 +134,15 @@ TravellingWaves travelling_waves(Complex q, double slope) noexcept {
 
 void follow(DepthWave& wave, Complex q_from, Complex q_to, double thickness) noexcept {
   const Complex slope = (q_to - q_from) / thickness;
-  const double steep = std::abs(slope);
-  const double far = std::cbrt(std::pow(1.5 * least_eta * steep, 2));
+  const double steep2 = std::norm(slope);
   // |q_from + slope·t|² = |slope|²·(t − middle)² + nearest²
-  const double middle = steep > 0.0 ? -(std::conj(slope) * q_from).real() / (steep * steep) : 0.0;
-  const double nearest = std::abs(q_from + slope * middle);
-  const double reach =
-      steep > 0.0 && nearest < far ? std::sqrt(far * far - nearest * nearest) / steep : -1.0;
+  const double middle = steep2 > 0.0 ? -(std::conj(slope) * q_from).real() / steep2 : 0.0;
+  const double nearest2 = std::norm(q_from + slope * middle);
+  // Far from zero is |q|³ ≥ (1.5·least_eta·|slope|)²: mostly all the way.
+  constexpr double eta2 = 2.25 * least_eta * least_eta;
+  const bool near = nearest2 * nearest2 * nearest2 < eta2 * eta2 * steep2 * steep2;
+  const double far2 = near ? std::cbrt(eta2 * eta2 * steep2 * steep2) : 0.0;
+  const double reach = near ? std::sqrt((far2 - nearest2) / steep2) : -1.0;
   const double begin = std::clamp(middle - reach, 0.0, thickness);
   const double end = std::clamp(middle + reach, 0.0, thickness);
   const auto at = [&](double t) { return q_from + slope * t; };
