@@ -305,7 +305,9 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   const std::ptrdiff_t begin = grid.before(block_begin),
                        end = std::min(grid.end, grid.before(block_end) + 1);
   Piece piece;
-  if (begin >= end || block.first == block.last) return piece;
+  const double until = std::min(block_end, grid.delay_of(end));
+  // Blocks that were heard before the record begins have no impulse on its grid.
+  if (begin >= end || block.first == block.last || !(until > grid.delay_of(begin))) return piece;
   const auto n = static_cast<std::size_t>(end - begin);
   const std::size_t length = grid_length(static_cast<double>(n + 2 * grid.guard));
   const double spacing = grid.rate / static_cast<double>(length);  // of bins [Hz]
@@ -317,7 +319,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   const std::size_t own_length = grid_length(static_cast<double>(own));
   const double step = 1.0 / (spacing * static_cast<double>(own_length));  // between impulses [s]
   const double origin = grid.delay_of(begin);
-  PowerOfSteps power_of(block, sea.bin, origin, std::min(block_end, grid.delay_of(end)), step);
+  PowerOfSteps power_of(block, sea.bin, origin, until, step);
   const ComplexFft<float> own_fft(own_length);
   Scratch noise_of(own_length);
   std::vector<float> power(power_of.steps()), normals(2 * power_of.steps());
