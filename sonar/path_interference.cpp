@@ -76,7 +76,7 @@ class PlaceSounds::Between {
   }
 
  private:
-  static constexpr double faint = 1e-4;  // product of two sounds over the strongest's power
+  static constexpr double faint = 1e-3;  // product of two sounds over the strongest's power
   const PathInterference& interference_;
   double least_;
   double along2_, across2_, through2_, doppler2_;
@@ -104,7 +104,7 @@ std::span<const double> PlaceSounds::gains(const PathInterference& interference,
                                            const GroundPiece& piece, std::size_t parts) {
   gains_.assign(parts, 1.0);
   if (sounds_.size() < 2) return gains_;
-  constexpr std::size_t most = 64;
+  constexpr std::size_t most = 32;
   const auto strength = [](const Sound& s) { return std::norm(s.amplitude); };
   if (sounds_.size() > most) {
     std::nth_element(sounds_.begin(), sounds_.begin() + most, sounds_.end(),
