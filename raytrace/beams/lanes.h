@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -22,9 +23,12 @@
 namespace asdic {
 inline namespace ASDIC_LEVEL {
 
-/// As many single-precision numbers as the machine adds at once.
-using Lanes = std::experimental::native_simd<float>;
-inline constexpr std::size_t lanes = Lanes::size();
+/// As many single-precision numbers as the machine adds at once, but eight at most. A beam reaches
+/// some tens of rows: of sixteen lanes more are left empty at its end, and a square of sixteen rows
+/// takes four times the shuffles (fields of Gaussians were a fifth dearer, of hats a fifteenth).
+inline constexpr std::size_t lanes =
+    std::min<std::size_t>(8, std::experimental::native_simd<float>::size());
+using Lanes = std::experimental::simd<float, std::experimental::simd_abi::deduce_t<float, lanes>>;
 
 inline Lanes load(const float* from) noexcept {
   return Lanes(from, std::experimental::element_aligned);
@@ -33,7 +37,7 @@ inline void store(const Lanes& value, float* to) noexcept {
   value.copy_to(to, std::experimental::element_aligned);
 }
 
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX2__) && !defined(__AVX512VL__)
 /// For each set of eight lanes, its members in order.
 inline constexpr auto packing_orders = [] {
   std::array<std::array<std::uint8_t, 8>, 256> orders{};
@@ -61,8 +65,8 @@ class Packing {
     std::uint32_t bits = 0;
     for (std::size_t l = 0; l < lanes; ++l) bits |= (wanted[l] ? 1U : 0U) << l;
     count_ = static_cast<std::size_t>(std::popcount(bits));
-#if defined(__AVX512F__)
-    wanted_ = static_cast<__mmask16>(bits);
+#if defined(__AVX512VL__)
+    wanted_ = static_cast<__mmask8>(bits);
 #elif defined(__AVX2__)
     order_ = _mm256_cvtepu8_epi32(
         _mm_loadl_epi64(reinterpret_cast<const __m128i*>(packing_orders[bits].data())));
@@ -75,8 +79,8 @@ class Packing {
 
   /// The wanted ones of [lanes] numbers; what `to` gets behind them is without meaning.
   void pack(const float* from, float* to) const noexcept {
-#if defined(__AVX512F__)
-    _mm512_storeu_ps(to, _mm512_maskz_compress_ps(wanted_, _mm512_loadu_ps(from)));
+#if defined(__AVX512VL__)
+    _mm256_storeu_ps(to, _mm256_maskz_compress_ps(wanted_, _mm256_loadu_ps(from)));
 #elif defined(__AVX2__)
     _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), order_));
 #else
@@ -84,12 +88,14 @@ class Packing {
 #endif
   }
   void pack(const std::int32_t* from, std::int32_t* to) const noexcept {
-#if defined(__AVX512F__)
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(wanted_, _mm512_loadu_si512(from)));
-#elif defined(__AVX2__)
+#if defined(__AVX2__)
     const auto* source = reinterpret_cast<const __m256i*>(from);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
-                        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(source), order_));
+    auto* target = reinterpret_cast<__m256i*>(to);
+#endif
+#if defined(__AVX512VL__)
+    _mm256_storeu_si256(target, _mm256_maskz_compress_epi32(wanted_, _mm256_loadu_si256(source)));
+#elif defined(__AVX2__)
+    _mm256_storeu_si256(target, _mm256_permutevar8x32_epi32(_mm256_loadu_si256(source), order_));
 #else
     for (std::size_t n = 0; n < count_; ++n) to[n] = from[order_[n]];
 #endif
@@ -97,8 +103,8 @@ class Packing {
 
  private:
   std::size_t count_ = 0;
-#if defined(__AVX512F__)
-  __mmask16 wanted_;
+#if defined(__AVX512VL__)
+  __mmask8 wanted_;
 #elif defined(__AVX2__)
   __m256i order_;
 #else
@@ -106,45 +112,27 @@ class Packing {
 #endif
 };
 
-/// A square of [8 × 8] numbers, turned over its diagonal. \param row  from row to row
-template <std::size_t row>
-[[gnu::always_inline]] inline void transpose_eight(const float* from, float* to) noexcept {
-  using Eight [[gnu::vector_size(32)]] = float;
-  Eight r[8], t[8];
-  if constexpr (row == 8)  // in one piece: GCC 12 keeps the rows in registers then
-    std::memcpy(r, from, sizeof r);
-  else
-    for (std::size_t i = 0; i < 8; ++i) std::memcpy(&r[i], from + i * row, sizeof r[i]);
-  for (int i = 0; i < 8; i += 2) {  // half by half, each shuffle one instruction
-    t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  for (int i = 0; i < 8; i += 4)
-    for (int j = 0; j < 2; ++j) {
-      const int at = i + 2 * j;
-      r[at] = __builtin_shufflevector(t[i + j], t[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      r[at + 1] = __builtin_shufflevector(t[i + j], t[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  for (int i = 0; i < 4; ++i) {
-    t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-  if constexpr (row == 8)
-    std::memcpy(to, t, sizeof t);
-  else
-    for (std::size_t i = 0; i < 8; ++i) std::memcpy(to + i * row, &t[i], sizeof t[i]);
-}
-
-/// A square of [lanes × lanes] numbers, in place.
-inline void transpose(float* square) noexcept {
+/// A square of [lanes × lanes] numbers, turned over its diagonal in place.
+[[gnu::always_inline]] inline void transpose(float* square) noexcept {
   if constexpr (lanes == 8) {
-    transpose_eight<lanes>(square, square);
-  } else if constexpr (lanes == 16) {
-    std::array<float, 16 * 16> turned;
-    for (std::size_t i = 0; i < 16; i += 8)
-      for (std::size_t j = 0; j < 16; j += 8)
-        transpose_eight<16>(square + i * 16 + j, &turned[j * 16 + i]);
-    std::memcpy(square, turned.data(), sizeof turned);
+    using Eight [[gnu::vector_size(32)]] = float;
+    Eight r[8], t[8];
+    std::memcpy(r, square, sizeof r);  // in one piece: GCC 12 keeps the rows in registers then
+    for (int i = 0; i < 8; i += 2) {   // half by half, each shuffle one instruction
+      t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+      t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4)
+      for (int j = 0; j < 2; ++j) {
+        const int at = i + 2 * j;
+        r[at] = __builtin_shufflevector(t[i + j], t[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+        r[at + 1] = __builtin_shufflevector(t[i + j], t[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+      }
+    for (int i = 0; i < 4; ++i) {
+      t[i] = __builtin_shufflevector(r[i], r[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+      t[i + 4] = __builtin_shufflevector(r[i], r[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    std::memcpy(square, t, sizeof t);
   } else {
     for (std::size_t i = 0; i < lanes; ++i)
       for (std::size_t j = 0; j < i; ++j) std::swap(square[i * lanes + j], square[j * lanes + i]);
