@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/huge_pages.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/field_parts.h"
 #include "raytrace/parallel.h"
@@ -87,6 +88,30 @@ TraceLimits field_limits(const PropagationCase& run_case) {
 
 namespace {
 
+/// Memory without values for partial sums, all of which is written to: in huge pages where it fills
+/// more than one. They are cut out of a little more, for what FftBuffer says of aligned_alloc.
+class SumMemory {
+ public:
+  explicit SumMemory(std::size_t numbers) {
+    constexpr std::size_t page = std::size_t{1} << 21U;
+    const std::size_t pages = (numbers * sizeof(float) + page - 1) / page;
+    std::size_t room = numbers * sizeof(float);
+    if (pages > 1) room = (pages + 1) * page;
+    memory_ = std::make_unique_for_overwrite<float[]>(room / sizeof(float));
+    void* begin = memory_.get();
+    if (pages > 1) prefer_huge_pages(std::align(page, pages * page, begin, room), pages * page);
+    begin_ = static_cast<float*>(begin);
+  }
+  /// Numbers [first, first + count).
+  [[nodiscard]] std::span<float> part(std::size_t first, std::size_t count) const noexcept {
+    return {begin_ + first, count};
+  }
+
+ private:
+  std::unique_ptr<float[]> memory_;
+  float* begin_ = nullptr;
+};
+
 /// Sums the fan in `count` parts, which take turns at packets of neighbouring rays. Each is made
 /// from `work`, room(work) numbers of memory and `more` by the thread that fills it, and has
 /// add(first, last) for rays [first, last) and at(column, row, half).
@@ -97,12 +122,12 @@ FanField sum_parts(const FieldWork& work, std::size_t count, const More&... more
   // In one block: what a C library gives back to the system after each field, and gets again page
   // by page, goes by the largest block.
   const std::size_t room = Part::room(work);
-  const auto memory = std::make_unique_for_overwrite<float[]>(count * room);
+  const SumMemory memory(count * room);
   const std::size_t beams = work.fan.elevation.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<bool> stopped = false;
   in_parallel(parts.size(), [&](std::size_t p) {
-    parts[p].emplace(work, std::span<float>(memory.get() + p * room, room), more...);
+    parts[p].emplace(work, memory.part(p * room, room), more...);
     for (std::size_t first = p * packet; first < beams && !stopped;
          first += parts.size() * packet) {
       const std::size_t last = std::min(first + packet, beams);
