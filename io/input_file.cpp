@@ -73,7 +73,8 @@ InputFile::~InputFile() { close(descriptor_); }
 
 std::string InputFile::read(std::size_t most) {
   std::string bytes;
-  constexpr std::size_t piece = std::size_t{1} << 20;  // of what has grown since it was opened
+  constexpr std::size_t piece = 4096;  // of what has grown since it was opened: rarely anything
+  bytes.reserve(std::min(most, size_ + piece));
   while (bytes.size() < most) {
     const std::size_t have = bytes.size();
     const std::size_t next = std::min(most - have, have < size_ ? size_ - have + 1 : piece);

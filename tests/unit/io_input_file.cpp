@@ -43,6 +43,14 @@ TEST(InputFile, IsReadToItsEnd) {
   EXPECT_THAT(read_input("/proc/self/status", "a file"), HasSubstr("Pid:"));  // its size is 0
 }
 
+TEST(InputFile, TakesLittleMoreMemoryThanItHasBytes) {
+  const TemporaryDirectory folder;
+  for (const std::size_t size : {0U, 100U, 5000U, 3'000'000U}) {
+    const auto path = folder.write("a", std::string(size, 'x'));
+    EXPECT_LE(read_input(path, "a file").capacity(), size + 8192) << size;
+  }
+}
+
 TEST(InputFile, SaysWhatIsThereInstead) {
   const TemporaryDirectory folder;
   const auto said = [&](const std::filesystem::path& path) {
