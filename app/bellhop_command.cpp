@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -116,16 +117,17 @@ struct ResultFiles {
   }
 };
 
-void write_results(const bellhop::Input& input, const PropagationResult& result,
+void write_results(const bellhop::Input& input, PropagationResult&& result,
                    const BellhopOptions& options, const std::filesystem::path& root,
                    ResultFiles&& files, Report& report) {
   const PropagationCase& run_case = input.run_case;
   const bellhop::Dialect dialect =
       options.dialect == "wide" ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
-  if (files.field) {
+  if (files.field) {  // the only file of its task
     bellhop::write_shade_file(std::move(*files.field),
-                              bellhop::shade_file(run_case, result, dialect));
+                              bellhop::shade_file(run_case, std::move(result), dialect));
     report.file(with(root, ".shd"));
+    return;
   }
   if (files.arrivals) {
     bellhop::write_arrivals_file(
@@ -151,7 +153,7 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
                                    : "traced     by asdic's own tracer");
 
   ResultFiles files(input.run_case.task, root, options.force);
-  const PropagationResult result = search(input, options);
+  PropagationResult result = search(input, options);
   const double search_time = watch.lap();
   report.notes(result.notes);
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
@@ -160,7 +162,7 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   if (const double share = share_sure(result.beam_errors); !std::isnan(share))
     report.line("certain    " + certainty_text(share));
   report.line("");
-  write_results(input, result, options, root, std::move(files), report);
+  write_results(input, std::move(result), options, root, std::move(files), report);
   const double write = watch.lap();
   report.line(fmt::format("time       parse {:.6f} s, search {:.6f} s, write {:.6f} s", parse,
                           search_time, write));

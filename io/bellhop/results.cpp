@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -46,8 +47,7 @@ ArrivalRow row_of(const Arrival& arrival, double frequency) {
 
 }  // namespace
 
-ShadeFile shade_file(const PropagationCase& run_case, const PropagationResult& result,
-                     Dialect dialect) {
+ShadeFile shade_file(const PropagationCase& run_case, PropagationResult result, Dialect dialect) {
   check_size(result.field.size(), run_case, "field");
   ShadeFile file{.title = title_of(run_case),
                  .irregular = run_case.receivers.irregular,
@@ -55,7 +55,7 @@ ShadeFile shade_file(const PropagationCase& run_case, const PropagationResult& r
                  .source_depths = run_case.source_depths,
                  .receiver_depths = run_case.receivers.depths,
                  .receiver_ranges = run_case.receivers.ranges,
-                 .pressure = result.field,
+                 .pressure = std::move(result.field),
                  .dialect = dialect};
   if (run_case.beams.source == SourceKind::point)
     for (std::complex<float>& p : file.pressure) p = -p;

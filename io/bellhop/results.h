@@ -8,7 +8,7 @@ namespace asdic::bellhop {
 /// The field. A point source's coherent pressure has the other sign there than here (−1/√r against
 /// the sum of the arrivals), and so have the roots of its intensities.
 /// \throws InputError if the run made no field
-[[nodiscard]] ShadeFile shade_file(const PropagationCase& run_case, const PropagationResult& result,
+[[nodiscard]] ShadeFile shade_file(const PropagationCase& run_case, PropagationResult result,
                                    Dialect dialect = Dialect::fortran);
 
 /// The arrivals: |amplitude| without absorption, which goes into the imaginary delay, and the phase
