@@ -83,6 +83,7 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
     nrl_.push_back(nrl->at(ends_.frequency));
     for (const BandPoint& point : ends_.band) nrl_.push_back(nrl->at(point.frequency));
   }
+  if (const auto* const lambert = std::get_if<Lambert>(&law_)) lambert_ = lambert->at();
   if (!all_round_pattern_) return;
   const auto ask = [&](const TransmitPattern& at) {
     for (const GroundPath& path : out_->planes.front().paths->all())
@@ -104,6 +105,7 @@ std::complex<double> ScatteringSheet::beam(const Leg& out, std::size_t path,
 double ScatteringSheet::cross_section(const ScatterGeometry& geometry, const ScatterSines& sines,
                                       std::size_t point) const noexcept {
   if (!nrl_.empty()) return nrl_[point](sines);
+  if (lambert_) return (*lambert_)(sines);
   const double frequency = point == 0 ? ends_.frequency : ends_.band[point - 1].frequency;
   return std::visit([&](const auto& law) { return law.cross_section(geometry, frequency); }, law_);
 }

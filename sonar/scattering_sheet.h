@@ -42,7 +42,7 @@ struct PathPair {
   Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
   Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
   const Kinematics* receiver = nullptr;  ///< the straight way on which it hears: of the sheet
-  bool of_many = false;  ///< it stands for the pairs of two bundles, whose sounds add by energy
+  bool of_many = false;  ///< it stands for the pairs of a bundle, whose sounds add by energy
   /// Of such a pair: power of what is heard over its own, 2 where the same way back is taken in the
   /// opposite direction with the same phase.
   double reciprocal = 1.0;
@@ -54,6 +54,8 @@ struct TakenPath {
   std::uint32_t path = 0;            ///< among the paths of the cell
   std::uint32_t bundle = no_bundle;  ///< that it stands for
   double gain = 1.0;                 ///< of its amplitude, to stand for all
+
+  [[nodiscard]] bool of_many() const noexcept { return bundle != no_bundle; }
 };
 
 class ScatteringSheet;
@@ -182,6 +184,7 @@ class ScatteringSheet {
   Law law_;
   SheetEnds ends_;
   std::vector<NrlSurface::At> nrl_;  // at the centre and each point of the band; of that law alone
+  std::optional<Lambert::At> lambert_;  // of that law alone
   const TransmitPattern& pattern_;
   bool all_round_pattern_, receiver_moves_, moving_, one_place_;
   bool in_phase_;  // so close together and at rest that a pair and its reciprocal are heard as one

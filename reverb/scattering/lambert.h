@@ -20,9 +20,21 @@ struct Lambert {
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g,
                                      double /*frequency*/) const noexcept {
-    return power_from_db(mu_db) * std::max(0.0, std::sin(g.grazing_in)) *
-           std::max(0.0, std::sin(g.grazing_out));
+    return at()({.sin_in = std::sin(g.grazing_in), .sin_out = std::sin(g.grazing_out)});
   }
+
+  /// The law for many directions: μ is found once.
+  class At {
+   public:
+    explicit At(const Lambert& law) noexcept : mu_(power_from_db(law.mu_db)) {}
+    [[nodiscard]] double operator()(const ScatterSines& s) const noexcept {
+      return mu_ * std::max(0.0, s.sin_in) * std::max(0.0, s.sin_out);
+    }
+
+   private:
+    double mu_;
+  };
+  [[nodiscard]] At at() const noexcept { return At(*this); }
 };
 static_assert(ScatteringModel<Lambert>);
 
