@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -361,6 +362,30 @@ PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
   return bundle;
 }
 
+/// Puts those first that have a 16th of the power of all, eight at most, and with one the other of
+/// two that come together. \return  how many
+std::size_t strong_first(std::span<GroundPath> paths, const std::vector<bool>& second,
+                         double frequency) {
+  constexpr double strong = 1.0 / 16.0;
+  constexpr std::size_t most = 8;
+  const std::vector<double> power = powers(paths, second, frequency);
+  double least = 0.0;
+  for (const double p : power) least += strong * p;
+  std::vector<double> largest = power;
+  std::nth_element(largest.begin(), largest.begin() + most, largest.end(), std::greater<>());
+  least = std::max(least, largest[most]);
+  const auto is_strong = [&](std::size_t i) { return power[i] > least; };
+  std::vector<GroundPath> strong_ones, others;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const bool with_next = i + 1 < paths.size() && second[i + 1] && is_strong(i + 1);
+    const bool with_last = second[i] && is_strong(i - 1);
+    (is_strong(i) || with_next || with_last ? strong_ones : others).push_back(paths[i]);
+  }
+  std::copy(others.begin(), others.end(),
+            std::copy(strong_ones.begin(), strong_ones.end(), paths.begin()));
+  return strong_ones.size();
+}
+
 }  // namespace
 
 DrawnPath draw(const PathBundle& bundle, std::span<const GroundPath> paths,
@@ -388,7 +413,8 @@ int followed_cycles(int most) noexcept {
   return followed;
 }
 
-/// Cells of very many paths get bundles of equal numbers of paths that follow each other in delay.
+/// Cells of very many paths get bundles: of one path those that are strong, whose sounds interfere
+/// as paths' do; behind them, of equal numbers that follow each other in delay, all others.
 void GroundPaths::bundle(double frequency, const StopPoint& stop) {
   std::size_t fullest = 0;
   for (std::size_t cell = 0; cell < cells(); ++cell)
@@ -399,23 +425,34 @@ void GroundPaths::bundle(double frequency, const StopPoint& stop) {
     const std::span<GroundPath> here(paths_.data() + first_[cell], first_[cell + 1] - first_[cell]);
     if (here.size() > bundled_above) {
       stop();
-      std::stable_sort(here.begin(), here.end(),
-                       [](const GroundPath& a, const GroundPath& b) { return a.delay < b.delay; });
-      const std::vector<bool> second = second_of_two(here, frequency);
-      const std::vector<double> power = powers(here, second, frequency);
-      // One of two that come together stands for both: out of two bundles, both would be heard.
-      const auto border = [&](std::size_t i) {
-        const std::size_t even = i * here.size() / most_bundles;
-        return even < here.size() && second[even] ? even + 1 : even;
-      };
-      for (std::size_t i = 0; i < most_bundles; ++i) {
-        const std::size_t begin = border(i), count = border(i + 1) - begin;
-        bundles_.push_back(bundle_of(here.subspan(begin, count),
-                                     std::span(power).subspan(begin, count),
-                                     static_cast<std::uint32_t>(begin)));
-      }
+      bundle_cell(here, frequency);
     }
     first_bundle_[cell + 1] = static_cast<std::uint32_t>(bundles_.size());
+  }
+}
+
+void GroundPaths::bundle_cell(std::span<GroundPath> here, double frequency) {
+  std::stable_sort(here.begin(), here.end(),
+                   [](const GroundPath& a, const GroundPath& b) { return a.delay < b.delay; });
+  const auto alone = strong_first(here, second_of_two(here, frequency), frequency);
+  for (std::uint32_t i = 0; i < alone; ++i) {
+    here[i].share = 1.0F;
+    bundles_.push_back({.first = i, .count = 1, .power = std::norm(here[i].amplitude)});
+  }
+  const std::span<GroundPath> others = here.subspan(alone);
+  const std::vector<bool> second = second_of_two(others, frequency);
+  const std::vector<double> power = powers(others, second, frequency);
+  const std::size_t most = most_bundles - std::min(most_bundles / 2, alone);
+  // One of two that come together stands for both: out of two bundles, both would be heard.
+  const auto border = [&](std::size_t i) {
+    const std::size_t even = i * others.size() / most;
+    return even < others.size() && second[even] ? even + 1 : even;
+  };
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t begin = border(i), count = border(i + 1) - begin;
+    bundles_.push_back(bundle_of(others.subspan(begin, count),
+                                 std::span(power).subspan(begin, count),
+                                 static_cast<std::uint32_t>(alone + begin)));
   }
 }
 

@@ -39,9 +39,9 @@ struct GroundPath {
   float share = 1.0F;  ///< of the power of its PathBundle
 };
 
-/// Paths of a cell that follow each other in delay, of which one stands for all: drawn with a
-/// known chance, and as much stronger as it is rarely drawn, it has the mean of whatever the paths
-/// do, by any law. docs/theory/reverberation.md, "Many paths"
+/// A path of a cell that is strong, or others that follow each other in delay, of which one stands
+/// for all: drawn with a known chance, and as much stronger as it is rarely drawn, it has the mean
+/// of whatever the paths do, by any law. docs/theory/reverberation.md, "Many paths"
 struct PathBundle {
   std::uint32_t first = 0, count = 0;  ///< among the paths of the cell
   double power = 0.0;                  ///< of all: Σ|A|², a path and its image coherent
@@ -118,14 +118,16 @@ class GroundPaths {
            (first_.size() + first_bundle_.size()) * sizeof(std::uint32_t);
   }
 
-  static constexpr std::size_t bundled_above = 24;  ///< paths of a cell
-  static constexpr std::size_t most_bundles = 8;    ///< of a cell
+  static constexpr std::size_t bundled_above = 12;  ///< paths of a cell
+  static constexpr std::size_t most_bundles =
+      8;  ///< of a cell, but for strong paths: with 8 of those, 4
 
  private:
   friend GroundPaths ground_paths(const EigenraySolver&, double, const GroundLevel&,
                                   const GroundGrid&, double, double, const PathLimits&,
                                   const StopPoint&);
   void bundle(double frequency, const StopPoint& stop);
+  void bundle_cell(std::span<GroundPath> here, double frequency);
 
   GroundGrid grid_;
   std::vector<std::uint32_t> first_;  // [cells + 1]

@@ -248,10 +248,14 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
   std::complex<double> sum = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double since = t - samples[i].delay;
-    if (since >= 0.0 && since <= pulse.duration())
-      sum += samples[i].amplitude * pulse.analytic(since);
-    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place ||
-        samples[i].by_itself) {
+    if (since >= 0.0 && since <= pulse.duration()) {
+      const std::complex<double> heard = samples[i].amplitude * pulse.analytic(since);
+      if (samples[i].by_itself)
+        power += std::norm(heard);
+      else
+        sum += heard;
+    }
+    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
       power += std::norm(sum);
       sum = 0.0;
     }

@@ -48,7 +48,9 @@ void take(std::span<const GroundPath> paths, std::span<const PathBundle> bundles
     return;
   }
   for (std::uint32_t b = 0; b < bundles.size(); ++b) {
-    if (bundles[b].power > 0.0)
+    if (bundles[b].count == 1)
+      taken.push_back({.path = bundles[b].first});
+    else if (bundles[b].power > 0.0)
       taken.push_back(drawn_of(paths, bundles[b], b, bundle_draw(chance, b)));
   }
 }
@@ -168,12 +170,12 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   const double half_turn = one_place_ ? 1.0 : std::sin(0.5 * turn);
   constexpr double same_turn = 1e-6;  // [rad]
   const bool one_cell = one_fan() && out.first == back.first;
-  const bool of_many = !out.bundles.empty() || !back.bundles.empty();
+  const bool drawn = !out.bundles.empty() || !back.bundles.empty();
   take(out.paths, out.bundles, chance, pairs.out_taken_);
   // In one cell the same paths stand for the bundles of both ways: reciprocal pairs meet.
   take(back.paths, back.bundles, one_cell ? chance : ~chance, pairs.back_taken_);
   const std::size_t outs = pairs.out_taken_.size(), backs = pairs.back_taken_.size();
-  if (of_many || out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
+  if (drawn || out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
       pairs.sigma_.size() != outs * backs * (1 + points)) {
     pairs.sheet_ = this;
@@ -193,11 +195,13 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t n = 0; n < backs; ++n) {
       // Pairs within a bundle are those of two draws: that of a path with itself is one of many.
-      const bool one_bundle = of_many && one_cell && first.bundle == pairs.back_taken_[n].bundle;
+      const TakenPath& other = pairs.back_taken_[n];
+      const bool of_many = first.of_many() || other.of_many();
+      const bool one_bundle = of_many && one_cell && first.bundle == other.bundle;
       const TakenPath second = one_bundle
                                    ? drawn_of(back.paths, back.bundles[first.bundle], first.bundle,
                                               bundle_draw(~chance, first.bundle))
-                                   : pairs.back_taken_[n];
+                                   : other;
       const std::size_t j = second.path;
       const GroundPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
