@@ -22,6 +22,28 @@ double cost_of_grid(std::size_t length) {
   return 0.25 * n * std::log2(n);
 }
 
+/// Bands cut as is cheapest for so many returns. Errors of very many add up as energies do: their
+/// impulses may be moved along the pulse's ridge, to an error that is meant so.
+/// \param pulses  [colours]   \param length  of a grid
+std::vector<DopplerBand> cut_for(const DopplerExpansion& expansion,
+                                 std::span<const BandLimitedPulse> pulses, std::size_t length,
+                                 std::vector<DopplerBand> bands, double returns) {
+  constexpr double many = 20'000.0;
+  const double grid_cost = cost_of_grid(length);
+  if (returns < many || pulses.size() > 1)
+    return expansion.cut(std::move(bands), returns, grid_cost);
+  const DopplerRidge ridge(pulses.front());
+  return expansion.cut(std::move(bands), returns, grid_cost, &ridge);
+}
+
+/// Room on either side of a grid for impulses that are moved by so much: whole cache lines, so that
+/// the period begins on one. \param most  [samples]
+std::size_t samples_beside(double most) {
+  constexpr std::size_t line = 8;
+  if (most == 0.0) return 0;
+  return (static_cast<std::size_t>(most) + 1 + DelayKernel::taps) / line * line + line;
+}
+
 }  // namespace
 
 SynthesisBytes synthesis_bytes(const Synthesizer& synthesizer, std::size_t phones) {
@@ -60,8 +82,9 @@ Baseband BlockSynthesis::of_list(const Synthesizer::Plan& plan, std::span<const 
                         .expected = "within the max_doppler that the synthesizer was built for"});
     dopplers.push_back(r.doppler);
   }
-  auto bands = plan.expansion.cut(plan.expansion.bands(std::move(dopplers)),
-                                  static_cast<double>(returns.size()), cost_of_grid(plan.length));
+  auto bands =
+      cut_for(plan.expansion, plan.pulses, plan.length, plan.expansion.bands(std::move(dopplers)),
+              static_cast<double>(returns.size()));
   return BlockSynthesis(plan, std::move(bands), ReturnList(returns), phones).run();
 }
 
@@ -75,8 +98,8 @@ Baseband Synthesizer::baseband(const ReturnSource& source, std::span<const Vec3>
   double returns = 0.0;
   for (std::size_t b = 0; b < source.blocks(); ++b)
     returns += static_cast<double>(source.expected(b));
-  auto bands = plan.expansion.cut(plan.expansion.bands_over(std::move(spans)), returns,
-                                  cost_of_grid(plan.length));
+  auto bands = cut_for(plan.expansion, plan.pulses, plan.length,
+                       plan.expansion.bands_over(std::move(spans)), returns);
   return BlockSynthesis(plan, std::move(bands), source, phones).run();
 }
 
@@ -115,19 +138,23 @@ BlockSynthesis::BlockSynthesis(const Synthesizer::Plan& plan, std::vector<Dopple
       source_(source),
       phones_(phones),
       colours_(plan.pulses.size()),
-      stride_(grid_stride(plan.length)),
       bins_(2 * static_cast<std::size_t>(plan.highest_bin) + 1),
       returns_(std::move(bands),
                {.first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
                 .rate = plan.rate,
+                .carrier = plan.carrier,
                 .samples = plan.length},
                plan.pulse_duration, phones.size(), colours_),
+      beside_(samples_beside(returns_.latest() * plan.rate)),
+      stride_(grid_stride(plan.length + 2 * beside_)),
       grid_{.kernel = plan.kernel,
             .rate = plan.rate,
-            .first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
+            .first = plan.recording.start - static_cast<double>(plan.lead + beside_) / plan.rate,
             .carrier = plan.carrier,
-            .last_position = plan.last_position,
-            .stride = stride_} {}
+            .last_position = plan.last_position + static_cast<double>(beside_),
+            .stride = stride_,
+            .length = plan.length + 2 * beside_,
+            .first_position = static_cast<double>(DelayKernel::taps + beside_)} {}
 
 std::vector<BlockSynthesis::Batch> BlockSynthesis::batches(bool kept) const {
   // Grids that are kept are transformed once, and batches may be small: what stays in cache is
@@ -231,7 +258,7 @@ std::vector<std::size_t> BlockSynthesis::cuts(const OrderedReturns::Band& band) 
   const std::size_t each = std::max(fewest, (end - begin) / most + 1);
   std::vector<std::size_t> found = {begin};
   for (std::size_t i = begin + each; i + each <= end; i += each)
-    if ((returns_.middle[i] - returns_.middle[found.back()]) * plan_.rate > reach)
+    if ((returns_.impulse[i] - returns_.impulse[found.back()]) * plan_.rate > reach)
       found.push_back(i);
   // The last one has a neighbour on one side only.
   found.push_back(end);
@@ -261,6 +288,17 @@ void BlockSynthesis::lay_into_kept() {
     });
 }
 
+std::complex<float>* BlockSynthesis::transformed(const ComplexFft<float>& fft, std::size_t beside,
+                                                 std::complex<float>* grid) {
+  const std::size_t length = fft.length();
+  for (std::size_t i = 0; i < beside; ++i) {
+    grid[length + i] += grid[i];
+    grid[beside + i] += grid[beside + length + i];
+  }
+  fft.forward(grid + beside);
+  return grid + beside;
+}
+
 void BlockSynthesis::lay_and_transform(Baseband& result) {
   const ComplexFft<float> fft(plan_.length);
   tbb::enumerable_thread_specific<Scratch> workspaces;
@@ -284,8 +322,9 @@ void BlockSynthesis::lay_and_transform(Baseband& result) {
                        .nodes = count},
                       phones_[channel], grids.data());
           for (std::size_t i = 0; i < count; ++i) {
-            fft.forward(grids.data() + i * stride_);
-            add_product(grids.data() + i * stride_, colour, band.first_node + m + i, sum);
+            const std::complex<float>* const bins =
+                transformed(fft, beside_, grids.data() + i * stride_);
+            add_product(bins, colour, band.first_node + m + i, sum);
           }
         }
       }
@@ -299,7 +338,7 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
   const std::size_t nodes = returns_.nodes.size();
   if (keep)
     in_parallel(phones_.size() * colours_ * nodes,
-                [&](std::size_t i) { fft.forward(kept_.data() + i * stride_); });
+                [&](std::size_t i) { transformed(fft, beside_, kept_.data() + i * stride_); });
   tbb::enumerable_thread_specific<Scratch> workspaces;
   in_parallel(phones_.size(), [&](std::size_t channel) {
     Scratch& row = workspaces.local();
@@ -308,7 +347,7 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
     std::copy_n(values, plan_.length, row.data());
     for (std::size_t colour = 0; keep && colour < colours_; ++colour)
       for (std::size_t node = 0; node < nodes; ++node)
-        add_product(kept(channel, colour, node), colour, node, row.data());
+        add_product(kept(channel, colour, node) + beside_, colour, node, row.data());
     fft.inverse(row.data());
     std::copy_n(row.data(), plan_.length, values);
   });

@@ -50,6 +50,9 @@ class BlockSynthesis {
   [[nodiscard]] static std::size_t grid_stride(std::size_t length);
   /// How far a phone's delays are from those at the array's reference point [samples].
   [[nodiscard]] double array_reach() const;
+  /// Impulses beside the period come round, and the grid is transformed. \return its bins
+  static std::complex<float>* transformed(const ComplexFft<float>& fft, std::size_t beside,
+                                          std::complex<float>* grid);
   void lay_into_kept();
   [[nodiscard]] std::vector<std::size_t> cuts(const OrderedReturns::Band& band) const;
   void lay_and_transform(Baseband& result);
@@ -70,8 +73,9 @@ class BlockSynthesis {
   const Synthesizer::Plan& plan_;
   const ReturnSource& source_;
   std::span<const Vec3> phones_;
-  std::size_t colours_, stride_, bins_;
+  std::size_t colours_, bins_;
   OrderedReturns returns_;
+  std::size_t beside_, stride_;  // samples of a grid on either side of the period; from one to next
   ImpulseGrid grid_;
   std::vector<ReturnBlock> blocks_;           // of the batch in hand
   std::vector<std::complex<float>> spectra_;  // [colours × nodes × bins], of windows if used

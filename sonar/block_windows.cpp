@@ -17,13 +17,14 @@ using Scratch = FftBuffer<std::complex<float>>;
 
 bool BlockSynthesis::find_windows() {
   std::vector<bool> taken(plan_.length + 1, false);
-  for (const double middle : returns_.middle) taken[returns_.sample_at(middle)] = true;
+  for (const double impulse : returns_.impulse) taken[returns_.sample_at(impulse)] = true;
   std::vector<std::size_t> samples;
   for (std::size_t i = 0; i < taken.size(); ++i)
     if (taken[i]) samples.push_back(i);
 
   // The lead is a pulse and its taps.
-  const std::size_t margin = plan_.lead + static_cast<std::size_t>(std::ceil(array_reach())) + 2;
+  const std::size_t margin =
+      plan_.lead + beside_ + static_cast<std::size_t>(std::ceil(array_reach())) + 2;
   const std::size_t before = windows_.length;
   if (!windows_.fit(samples, margin, plan_.length)) return false;
   if (windows_.length == before) return true;
@@ -45,7 +46,7 @@ void BlockSynthesis::lay_in_windows(Baseband& result) {
   const auto first_of = [&](std::size_t begin, std::size_t end, std::size_t sample) {
     while (begin < end) {  // of the returns, in order of their samples, the first at or after it
       const std::size_t middle = begin + (end - begin) / 2;
-      if (returns_.sample_at(returns_.middle[middle]) < sample)
+      if (returns_.sample_at(returns_.impulse[middle]) < sample)
         begin = middle + 1;
       else
         end = middle;
@@ -64,12 +65,13 @@ void BlockSynthesis::lay_in_windows(Baseband& result) {
     for (const std::size_t begin : windows_.begins) {
       // Sample 0 of the window is this one of the whole grid.
       const double origin = static_cast<double>(begin) - 0.5 * static_cast<double>(windows_.beside);
+      const double from_grids = origin + static_cast<double>(beside_);
       ImpulseGrid here = grid_;
       here.stride = stride;
-      here.first += origin / plan_.rate;
-      here.first_position = std::max(grid_.first_position, grid_.first_position - origin);
-      here.last_position =
-          std::min(grid_.last_position - origin, static_cast<double>(length - DelayKernel::taps));
+      here.length = length;
+      here.first += from_grids / plan_.rate;
+      here.first_position -= from_grids;
+      here.last_position -= from_grids;
       std::fill_n(sum.data(), length, 0.0F);
       for (const OrderedReturns::Band& band : returns_.bands) {
         std::array<ImpulseGrid::Part, 2> parts;  // of all phones, of this one

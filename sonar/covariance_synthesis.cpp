@@ -124,7 +124,7 @@ std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_
     if (auto known = memory_->find<std::vector<std::complex<float>>>(key)) return known;
   std::vector<std::complex<float>> pulse(2 * static_cast<std::size_t>(plan.highest_bin) + 1);
   Scratch scratch(plan.length);
-  plan.stretched_spectrum(plan.pulses.front(), 1.0, plan.whole(), scratch.data(), pulse);
+  plan.stretched_spectrum(plan.pulses.front(), {}, plan.whole(), scratch.data(), pulse);
   // An impulse on a sample needs no spreading, nor what undoes it.
   for (std::size_t i = 0; i < pulse.size(); ++i)
     pulse[i] /= plan.deconvolution[i] * static_cast<float>(plan.length);

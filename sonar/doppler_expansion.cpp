@@ -33,7 +33,8 @@ std::vector<double> bessel_tails(double z) {
 }
 
 DopplerBand chebyshev_band(double lowest, double highest, std::size_t count) {
-  DopplerBand band{.lowest = lowest, .highest = highest, .nodes = {}, .barycentric = {}};
+  DopplerBand band{
+      .lowest = lowest, .highest = highest, .nodes = {}, .barycentric = {}, .ridge = 0.0};
   for (std::size_t i = 0; i < count; ++i) {
     const double theta = pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     band.nodes.push_back(0.5 * (lowest + highest) - 0.5 * (highest - lowest) * std::cos(theta));
@@ -159,32 +160,46 @@ std::vector<DopplerBand> DopplerExpansion::bands_over(std::vector<DopplerSpan> s
 }
 
 std::vector<DopplerBand> DopplerExpansion::cut(std::vector<DopplerBand> bands, double returns,
-                                               double grid_cost) const {
+                                               double grid_cost, const DopplerRidge* ridge) const {
+  struct Way {
+    std::size_t parts, each;  // nodes of each
+    double ridge;             // along which impulses are moved [s]
+  };
   std::vector<DopplerBand> narrower;
   for (DopplerBand& band : bands) {
+    constexpr std::size_t few = 4;  // nodes
     const double span = band.highest - band.lowest;
-    std::size_t best = 1, nodes = band.nodes.size();
-    double least = static_cast<double>(nodes) * (returns + grid_cost);
-    for (const std::size_t parts : {2U, 3U, 4U, 6U, 8U, 12U, 16U}) {
-      if (nodes <= 4) break;
-      const std::size_t each = nodes_needed(span / static_cast<double>(parts));
+    Way best = {.parts = 1, .each = band.nodes.size(), .ridge = 0.0};
+    double least = static_cast<double>(best.each) * (returns + grid_cost);
+    const auto attempt = [&](const Way& way) {
       const double cost =
-          static_cast<double>(each) * (returns + static_cast<double>(parts) * grid_cost);
-      if (cost >= least) continue;
+          static_cast<double>(way.each) * (returns + static_cast<double>(way.parts) * grid_cost);
+      if (cost >= least) return;
       least = cost;
-      best = parts;
+      best = way;
+    };
+    for (const std::size_t parts : {1U, 2U, 3U, 4U, 6U, 8U, 12U, 16U}) {
+      if (band.nodes.size() <= few) break;
+      const double width = span / static_cast<double>(parts);
+      if (parts > 1) attempt({.parts = parts, .each = nodes_needed(width), .ridge = 0.0});
+      if (ridge == nullptr) continue;
+      const std::size_t each = ridge->nodes_needed(width);
+      if (each < DopplerRidge::too_many)
+        attempt({.parts = parts, .each = each, .ridge = ridge->slope()});
     }
-    if (best == 1) {
+    if (best.parts == 1 && best.ridge == 0.0) {
       narrower.push_back(std::move(band));
       continue;
     }
-    const std::size_t each = nodes_needed(span / static_cast<double>(best));
     const auto edge = [&](std::size_t i) {
-      return i == best ? band.highest
-                       : band.lowest + span * static_cast<double>(i) / static_cast<double>(best);
+      return i == best.parts
+                 ? band.highest
+                 : band.lowest + span * static_cast<double>(i) / static_cast<double>(best.parts);
     };
-    for (std::size_t i = 0; i < best; ++i)
-      narrower.push_back(chebyshev_band(edge(i), edge(i + 1), each));
+    for (std::size_t i = 0; i < best.parts; ++i) {
+      narrower.push_back(chebyshev_band(edge(i), edge(i + 1), best.each));
+      narrower.back().ridge = best.ridge;
+    }
   }
   return narrower;
 }

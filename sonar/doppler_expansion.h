@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sonar/band_limited_pulse.h"
+#include "sonar/doppler_ridge.h"
 #include "sonar/return_source.h"
 
 namespace asdic {
@@ -13,9 +14,26 @@ struct DopplerBand {
   double lowest = 1.0, highest = 1.0;
   std::vector<double> nodes;        ///< η_m, Chebyshev points of [lowest, highest]
   std::vector<double> barycentric;  ///< their weights, (−1)^m sin θ_m
+  double ridge = 0.0;               ///< κ, along which impulses are moved [s]
+
+  [[nodiscard]] double middle() const noexcept { return 0.5 * (lowest + highest); }
+  /// How much later than its pulse's middle a return's impulse is laid down: κ·(η − η_c) [s].
+  [[nodiscard]] double late(double doppler) const noexcept { return ridge * (doppler - middle()); }
+  /// By how much the impulse is turned then, and its pulse back [cycles]: with the tone of the
+  /// band's middle the moved pulses differ the least.
+  [[nodiscard]] double turn(double doppler, double carrier) const noexcept {
+    return carrier * (middle() - 1.0) * late(doppler);
+  }
 
   /// ℓ_m(η): Lagrange's polynomials in barycentric form. \param weights [nodes.size()]
   void weights(double doppler, std::span<float> weights) const noexcept;
+};
+
+/// A stretched pulse, and where it stands to its impulse.
+struct DopplerNode {
+  double doppler = 1.0;
+  double late = 0.0;  ///< by which the impulse is later than the pulse's middle [s]
+  double turn = 0.0;  ///< by which the pulse is turned back [cycles]
 };
 
 /// How many Chebyshev nodes a span of factors needs.
@@ -38,9 +56,11 @@ class DopplerExpansion {
 
   /// Cuts bands into narrower ones, with more nodes in all but fewer for each return, as long as
   /// that is cheaper. \param returns  how many there are   \param grid_cost  what one more node
-  /// costs, counted in returns laid down for one node
+  /// costs, counted in returns laid down for one node   \param ridge  along which impulses may be
+  /// moved, to its error; none: not
   [[nodiscard]] std::vector<DopplerBand> cut(std::vector<DopplerBand> bands, double returns,
-                                             double grid_cost) const;
+                                             double grid_cost,
+                                             const DopplerRidge* ridge = nullptr) const;
 
  private:
   struct EnvelopePoint {

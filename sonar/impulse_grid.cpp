@@ -40,13 +40,17 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
   Block at;
   std::array<Lanes, block> taps;
   std::array<std::size_t, block> below;  // the sample at or below the impulse
+  constexpr double first_on_grid = DelayKernel::taps;
+  const auto last_on_grid = static_cast<double>(length - DelayKernel::taps);
 
   for (std::size_t start = part.begin; start < part.end; start += block) {
     const std::size_t n = std::min(block, part.end - start);
     locate(returns, start, n, part.colour, phone, at);
     for (std::size_t i = 0; i < n; ++i) {
       const double position = at.position[i];
-      const bool heard = position >= first_position && position <= last_position;
+      const double middle = position - rate * returns.late[start + i];
+      const bool heard = middle >= first_position && middle <= last_position &&
+                         position >= first_on_grid && position <= last_on_grid;
       below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
       if (!heard) continue;
       const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
@@ -65,7 +69,8 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
       std::size_t m = 0;
       for (; m + 8 <= part.nodes; m += 8) run.add<8>(m, grid, 2 * stride);
       if (m + 4 <= part.nodes) run.add<4>(m, grid, 2 * stride), m += 4;
-      for (; m < part.nodes; ++m) run.add<1>(m, grid, 2 * stride);
+      if (m + 2 <= part.nodes) run.add<2>(m, grid, 2 * stride), m += 2;
+      if (m < part.nodes) run.add<1>(m, grid, 2 * stride);
     }
   }
 }
@@ -73,16 +78,17 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
 void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,
                          std::size_t colour, const Vec3& phone, Block& at) const noexcept {
   const double x = phone.x(), y = phone.y(), z = phone.z();
-  const double* __restrict middle = returns.middle.data() + start;
+  const double* __restrict impulse = returns.impulse.data() + start;
+  const double* __restrict late = returns.late.data() + start;
   const double* __restrict sx = returns.slowness_x.data() + start;
   const double* __restrict sy = returns.slowness_y.data() + start;
   const double* __restrict sz = returns.slowness_z.data() + start;
   const float* __restrict re = returns.real.data() + colour * returns.size() + start;
   const float* __restrict im = returns.imag.data() + colour * returns.size() + start;
   for (std::size_t i = 0; i < n; ++i) {
-    const double delay = middle[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
+    const double delay = impulse[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
     double a = re[i], b = im[i];
-    turn_back(carrier * delay, a, b);  // e^{−i2π f_c τ}
+    turn_back(carrier * (delay - late[i]), a, b);  // e^{−i2π f_c τ}
     at.position[i] = (delay - first) * rate;
     at.real[i] = static_cast<float>(a);
     at.imag[i] = static_cast<float>(b);

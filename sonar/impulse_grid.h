@@ -14,8 +14,9 @@ struct ImpulseGrid {
   double rate;           ///< [Hz]
   double first;          ///< time of grid sample 0 [s]
   double carrier;        ///< [Hz]
-  double last_position;  ///< impulses beyond are not heard in the record [samples]
+  double last_position;  ///< pulses whose middle is beyond are not heard in the record [samples]
   std::size_t stride;    ///< from the grid of one node to the next
+  std::size_t length;    ///< of each: impulses that do not lie on it with their taps are left out
   double first_position = DelayKernel::taps;  ///< nor are those before [samples]
 
   static constexpr std::size_t most_nodes = 32;  ///< grids laid at one time: they stay in cache

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "raytrace/parallel.h"
+#include "sonar/phase_turn.h"
 
 namespace asdic {
 namespace {
@@ -29,15 +30,24 @@ OrderedReturns::OrderedReturns(std::vector<DopplerBand> found, const Grid& grid,
       colours_(colours) {
   for (const DopplerBand& band : expansion_) {
     bands.push_back({.first_node = nodes.size(), .nodes = band.nodes.size(), .ends = {}});
-    nodes.insert(nodes.end(), band.nodes.begin(), band.nodes.end());
+    for (const double node : band.nodes)
+      nodes.push_back(
+          {.doppler = node, .late = band.late(node), .turn = band.turn(node, grid_.carrier)});
   }
 }
 
 std::size_t OrderedReturns::bytes_each() const noexcept {
   std::size_t most = 0;
   for (const Band& band : bands) most = std::max(most, band.nodes);
-  return sizeof(Return) + 5 * sizeof(double) + 6 * sizeof(std::uint32_t) +
+  return sizeof(Return) + 6 * sizeof(double) + 6 * sizeof(std::uint32_t) +
          colours_ * 2 * sizeof(std::complex<float>) + (most > 1 ? most * sizeof(float) : 0);
+}
+
+double OrderedReturns::latest() const noexcept {
+  double most = 0.0;
+  for (const DopplerBand& band : expansion_)
+    most = std::max(most, std::abs(band.late(band.highest)));
+  return most;
 }
 
 void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
@@ -47,7 +57,8 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   const std::size_t n = first.back();
   source_.resize(n);
   for (auto* keys : {&sample_, &group_, &by_sample_, &order_}) keys->resize(n);
-  for (auto* array : {&middle, &slowness_x, &slowness_y, &slowness_z, &doppler_}) array->resize(n);
+  for (auto* array : {&impulse, &late, &slowness_x, &slowness_y, &slowness_z, &doppler_})
+    array->resize(n);
   for (auto* array : {&real, &imag}) array->resize(colours_ * n);
 
   const auto middle_of = [&](const Return& r) {
@@ -63,7 +74,8 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       const auto band = static_cast<std::size_t>(above - expansion_.begin()) - 1;
       const auto listener = static_cast<std::size_t>(r.channel - Return::all_channels);
       source_[first[b] + i] = std::uint64_t{b} << 32 | i;
-      sample_[first[b] + i] = static_cast<std::uint32_t>(sample_at(middle_of(r)));
+      sample_[first[b] + i] =
+          static_cast<std::uint32_t>(sample_at(middle_of(r) + expansion_[band].late(r.doppler)));
       group_[first[b] + i] = static_cast<std::uint32_t>(band * (channels_ + 1) + listener);
     }
   });
@@ -74,7 +86,8 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       const std::uint64_t source = source_[order_[i]], in_block = source & 0xFFFFFFFFU;
       const ReturnBlock& block = blocks[source >> 32];
       const Return& r = block.returns[in_block];
-      middle[i] = middle_of(r);
+      late[i] = 0.0;
+      impulse[i] = middle_of(r);
       doppler_[i] = r.doppler;
       slowness_x[i] = r.slowness.x();
       slowness_y[i] = r.slowness.y();
@@ -107,14 +120,32 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   weights.resize(weight_count);
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const Band& band = bands[b];
-    if (band.nodes == 1) continue;
     const std::size_t from = band.ends.front();
     in_parallel_stretches(band.ends.back() - from, 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
+      if (expansion_[b].ridge != 0.0) move(expansion_[b], from + begin, from + end);
+      for (std::size_t i = begin; band.nodes > 1 && i < end; ++i) {
         const std::size_t row = band.first_weight + i * band.nodes;
         expansion_[b].weights(doppler_[from + i], std::span(weights).subspan(row, band.nodes));
       }
     });
+  }
+}
+
+void OrderedReturns::move(const DopplerBand& band, std::size_t begin, std::size_t end) noexcept {
+  const std::size_t n = size();
+  for (std::size_t i = begin; i < end; ++i) {
+    late[i] = band.late(doppler_[i]);
+    impulse[i] += late[i];
+  }
+  for (std::size_t k = 0; k < colours_; ++k) {
+    float* const re = real.data() + k * n;
+    float* const im = imag.data() + k * n;
+    for (std::size_t i = begin; i < end; ++i) {
+      double a = re[i], b = im[i];
+      turn_back(-band.turn(doppler_[i], grid_.carrier), a, b);
+      re[i] = static_cast<float>(a);
+      im[i] = static_cast<float>(b);
+    }
   }
 }
 

@@ -25,6 +25,7 @@ class OrderedReturns {
   /// Where the grid lies in time.
   struct Grid {
     double first = 0.0, rate = 1.0;  ///< time of sample 0 [s]; [Hz]
+    double carrier = 0.0;            ///< [Hz]
     std::size_t samples = 0;
   };
 
@@ -36,8 +37,10 @@ class OrderedReturns {
   /// Takes the returns of a batch in place of what is there.
   void take(std::span<const ReturnBlock> blocks);
 
-  [[nodiscard]] std::size_t size() const noexcept { return middle.size(); }
-  /// Of the grid, in which a pulse's middle falls: 0 and `Grid::samples` also for all beyond.
+  [[nodiscard]] std::size_t size() const noexcept { return impulse.size(); }
+  /// The largest that `late` may be, either way [s].
+  [[nodiscard]] double latest() const noexcept;
+  /// Of the grid, in which an impulse falls: 0 and `Grid::samples` also for all beyond.
   [[nodiscard]] std::size_t sample_at(double delay) const noexcept {
     return static_cast<std::size_t>(
         std::clamp((delay - grid_.first) * grid_.rate, 0.0, static_cast<double>(grid_.samples)));
@@ -46,8 +49,9 @@ class OrderedReturns {
   [[nodiscard]] std::size_t bytes_each() const noexcept;
 
   std::vector<Band> bands;
-  std::vector<double> nodes;   ///< Doppler factors of all bands' nodes
-  std::vector<double> middle;  ///< delay of the pulse's middle at the reference point [s]
+  std::vector<DopplerNode> nodes;  ///< of all bands
+  std::vector<double> impulse;     ///< its delay at the reference point [s]
+  std::vector<double> late;        ///< by which it is later than the pulse's middle [s]
   std::vector<double> slowness_x, slowness_y, slowness_z;  ///< [s/m]
   std::vector<float> real, imag;                           ///< [colours × returns] amplitude
   std::vector<float> weights;  ///< ℓ_m(η) of every return; none for a band of one node
@@ -55,6 +59,8 @@ class OrderedReturns {
 
  private:
   void sort(std::size_t count);
+  /// Moves impulses of a band along its ridge. \param begin, end  of the returns, in order
+  void move(const DopplerBand& band, std::size_t begin, std::size_t end) noexcept;
 
   std::vector<DopplerBand> expansion_;
   Grid grid_;

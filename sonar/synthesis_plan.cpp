@@ -168,19 +168,21 @@ std::vector<float> Synthesizer::Plan::deconvolution_of(std::size_t samples,
   return found;
 }
 
-void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, double doppler,
+void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, const DopplerNode& node,
                                            const Period& on, std::complex<float>* scratch,
                                            std::span<std::complex<float>> spectrum) const {
   std::fill(scratch, scratch + on.length, 0.0F);
   // An impulse at grid sample i belongs to the time of output sample i − lead: the response stands
   // `lead` samples early.
   const auto n = static_cast<std::ptrdiff_t>(on.length);
-  const auto reach = static_cast<std::ptrdiff_t>(pulse.half_duration() / doppler * rate);
-  for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
-    const double t = static_cast<double>(j) / rate;
+  const double reach = pulse.half_duration() / node.doppler;
+  const auto first = static_cast<std::ptrdiff_t>(std::ceil(-(reach + node.late) * rate)),
+             last = static_cast<std::ptrdiff_t>(std::floor((reach - node.late) * rate));
+  for (std::ptrdiff_t j = first; j <= last; ++j) {
+    const double t = static_cast<double>(j) / rate + node.late;
     // g(t) = s₊(ηt + T/2)·e^{−i2π f_c t}
-    const double cycles = (pulse.centre_frequency() * doppler - carrier) * t;
-    const std::complex<double> g = pulse.at(doppler * t) * std::polar(1.0, 2.0 * pi * cycles);
+    const double cycles = (pulse.centre_frequency() * node.doppler - carrier) * t - node.turn;
+    const std::complex<double> g = pulse.at(node.doppler * t) * std::polar(1.0, 2.0 * pi * cycles);
     const std::ptrdiff_t place = (j - static_cast<std::ptrdiff_t>(on.lead)) % n;
     scratch[place < 0 ? place + n : place] = std::complex<float>(g);
   }

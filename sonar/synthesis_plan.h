@@ -61,9 +61,9 @@ struct Synthesizer::Plan {
   [[nodiscard]] std::vector<float> deconvolution_of(std::size_t length,
                                                     std::ptrdiff_t highest_bin) const;
 
-  /// Spectrum of a pulse stretched by `doppler`, over the kernel's spectrum and the FFT's length.
-  /// \param scratch [on.length] \param spectrum [2·highest_bin + 1] from −highest_bin up
-  void stretched_spectrum(const BandLimitedPulse& pulse, double doppler, const Period& on,
+  /// Spectrum of a node's pulse over the kernel's spectrum and the FFT's length. \param scratch
+  /// [on.length] \param spectrum [2·highest_bin + 1] from −highest_bin up
+  void stretched_spectrum(const BandLimitedPulse& pulse, const DopplerNode& node, const Period& on,
                           std::complex<float>* scratch,
                           std::span<std::complex<float>> spectrum) const;
 
