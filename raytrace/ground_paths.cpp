@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -363,24 +364,27 @@ PathBundle bundle_of(std::span<GroundPath> paths, std::span<const double> power,
 }
 
 /// Puts those first that have a 16th of the power of all, eight at most, and with one the other of
-/// two that come together. \return  how many
+/// two that come together; none if they hold less than three quarters of it. \return  how many
 std::size_t strong_first(std::span<GroundPath> paths, const std::vector<bool>& second,
                          double frequency) {
-  constexpr double strong = 1.0 / 16.0;
+  constexpr double strong = 1.0 / 16.0, enough = 0.75;
   constexpr std::size_t most = 8;
   const std::vector<double> power = powers(paths, second, frequency);
-  double least = 0.0;
-  for (const double p : power) least += strong * p;
+  const double all = std::accumulate(power.begin(), power.end(), 0.0);
   std::vector<double> largest = power;
   std::nth_element(largest.begin(), largest.begin() + most, largest.end(), std::greater<>());
-  least = std::max(least, largest[most]);
+  const double least = std::max(strong * all, largest[most]);
   const auto is_strong = [&](std::size_t i) { return power[i] > least; };
   std::vector<GroundPath> strong_ones, others;
+  double held = 0.0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const bool with_next = i + 1 < paths.size() && second[i + 1] && is_strong(i + 1);
     const bool with_last = second[i] && is_strong(i - 1);
-    (is_strong(i) || with_next || with_last ? strong_ones : others).push_back(paths[i]);
+    const bool first = is_strong(i) || with_next || with_last;
+    (first ? strong_ones : others).push_back(paths[i]);
+    held += first ? power[i] : 0.0;
   }
+  if (held < enough * all) return 0;
   std::copy(others.begin(), others.end(),
             std::copy(strong_ones.begin(), strong_ones.end(), paths.begin()));
   return strong_ones.size();

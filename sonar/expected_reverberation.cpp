@@ -6,6 +6,7 @@
 
 #include "core/grouped.h"
 #include "raytrace/parallel.h"
+#include "sonar/path_interference.h"
 
 namespace asdic {
 namespace {
@@ -47,6 +48,59 @@ struct Found {
   double scatterers;         // of that ring
 };
 
+/// The ground, or the layer, for which a place stands: how far the phases of sounds turn over it.
+class PiecePhases {
+ public:
+  /// \param rings, sectors  for which it stands; how many sectors stand for all
+  PiecePhases(const ScatteringField& field, std::uint32_t ring, int sector, std::uint32_t rings,
+              std::uint32_t sectors)
+      : outward_(std::sin(field.bearing(sector)), std::cos(field.bearing(sector))) {
+    // of what is even over a width
+    const double omega = 2.0 * pi * field.sheet.ends().frequency / std::sqrt(12.0);
+    const double range = (ring + 0.5) * field.grid.spacing;
+    along_ = omega * rings * field.grid.spacing;
+    across_ = omega * 2.0 * pi * range / sectors;
+    through_ = omega * field.thickness;
+  }
+  [[nodiscard]] std::array<float, 3> of(const PathPair& pair) const noexcept {
+    const Vec2 beside(-outward_.y(), outward_.x());
+    return {static_cast<float>(along_ * steepness(pair, outward_)),
+            static_cast<float>(across_ * steepness(pair, beside)),
+            static_cast<float>(through_ * (pair.out_ends->down + pair.back_ends->down))};
+  }
+
+ private:
+  Vec2 outward_;
+  double along_, across_, through_;
+};
+
+/// A sound of a place at a time.
+struct SoundNow {
+  std::complex<double> pressure;
+  std::array<float, 3> turns;
+};
+
+/// Mean over the place's piece of |Σp|².
+double power_of(std::span<const SoundNow> sounds) noexcept {
+  constexpr float nothing = 18.0F;  // e⁻⁹
+  double power = 0.0;
+  for (std::size_t i = 0; i < sounds.size(); ++i) {
+    const SoundNow& a = sounds[i];
+    power += std::norm(a.pressure);
+    for (const SoundNow& b : sounds.subspan(i + 1)) {
+      float turns = 0.0F;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float apart = a.turns[k] - b.turns[k];
+        turns += apart * apart;
+      }
+      if (!(turns < nothing)) continue;
+      power += 2.0 * double(std::exp(-0.5F * turns)) *
+               (a.pressure.real() * b.pressure.real() + a.pressure.imag() * b.pressure.imag());
+    }
+  }
+  return std::max(0.0, power);
+}
+
 /// The places of a field at which pairs are looked at: the middles of cells of a few sectors.
 struct Middles {
   const ScatteringField& field;
@@ -68,15 +122,17 @@ struct Middles {
       field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs, nullptr, 0.0, 0.0,
                            mixed(ring, i));
       const double share = double(stands_for) / count(), area = field.heard_area(ring);
+      const PiecePhases phases(field, ring, sectors[i], stands_for, count());
       double loudest = 0.0;
       for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
       for (const PathPair& pair : pairs.found) {
         if (pair.power < faintest * loudest) continue;
         out.push_back(
             {{.place = first_place + ring * count() + i,
+              .by_itself = pair.of_many,
               .delay = pair.delay,
               .amplitude = pair.amplitude * std::sqrt(pair.area * area * share * pair.reciprocal),
-              .by_itself = pair.of_many},
+              .turns = phases.of(pair)},
              pair.power * area,
              share,
              double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
@@ -245,7 +301,7 @@ double ExpectedReverberation::returns_of(std::size_t field) const noexcept {
 
 double ExpectedReverberation::power(const Pulse& pulse, double t) const {
   double power = 0.0;
-  std::complex<double> sum = 0.0;
+  std::vector<SoundNow> here;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double since = t - samples[i].delay;
     if (since >= 0.0 && since <= pulse.duration()) {
@@ -253,11 +309,11 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
       if (samples[i].by_itself)
         power += std::norm(heard);
       else
-        sum += heard;
+        here.push_back({heard, samples[i].turns});
     }
     if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
-      power += std::norm(sum);
-      sum = 0.0;
+      power += power_of(here);
+      here.clear();
     }
   }
   return power;

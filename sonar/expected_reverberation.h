@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <complex>
 #include <cstdint>
 #include <optional>
@@ -18,10 +19,12 @@ namespace asdic {
 struct ExpectedReverberation {
   /// A pair through the middle of a cell of a few sectors, for the level.
   struct Sample {
-    std::uint32_t place = 0;  // pairs of one place add coherently
+    std::uint32_t place = 0;  // pairs of one place interfere
+    bool by_itself = false;   // it adds by energy: one of so many that their phases say nothing
     double delay = 0.0;
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
-    bool by_itself = false;  // it adds by energy: one of so many that their phases say nothing
+    /// Standard deviation of its phase over that area: outward, beside that and in depth [rad].
+    std::array<float, 3> turns{};
   };
   /// Rings or sectors begin…end of a field.
   struct Block {
@@ -51,7 +54,8 @@ struct ExpectedReverberation {
   [[nodiscard]] double returns_of(std::size_t field) const noexcept;
 
   /// Mean over weights of the peak envelope's square over that of the source at 1 m, at a time
-  /// since the ping [s]: Σ_cells |Σ_pairs A·D·s(t − τ)|².
+  /// since the ping [s]: Σ_cells Σ_ab p_a·p_b*·exp(−½|Δ_a − Δ_b|²), p = A·D·s(t − τ) of the pairs a
+  /// and b through the middle of a cell, Δ their phases' standard deviations over it.
   [[nodiscard]] double power(const Pulse& pulse, double t) const;
 
  private:

@@ -148,6 +148,18 @@ TEST_P(PathInterference, MeanOverAVerticalArrayIsThatOfItsPhones) {
                1.0);
 }
 
+// The level that is expected, of which no weight is drawn, in nulls 37 dB deep, too.
+TEST(PathInterferenceOfLevels, ExpectedLevelIsThatOfLloydsMirror) {
+  const Sea sea(mirror({Vec3::Zero()}));
+  const PingReverberation ping = sea.ping(1);
+  const auto right = truth(source_depth, true);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double level =
+        ping.expected_db(times[i]) - sea.scenario().transmitters[0].source_level_db;
+    EXPECT_NEAR(level, db_from_power(right[i]), 1.0) << times[i];
+  }
+}
+
 // Where very many paths are followed, the strong ones still interfere: 5 m deep in 20 m of water,
 // where energies alone are up to 6 dB off. Of 5 bounces every pair is looked at.
 TEST(PathInterferenceInAGuide, MoreBouncesThanAreHeardChangeNothing) {
