@@ -11,18 +11,18 @@
 namespace asdic {
 namespace {
 
-constexpr std::size_t together = 64;  // rings that one task works through
+constexpr std::size_t rings_together = 64;  // rings that one task works through
 
 /// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \param all  gets what they put
 /// out, in their order, behind what is there
 template <class Item, class F>
 void over_rings(std::uint32_t rings, std::uint32_t step, std::vector<Item>& all, F&& f) {
   const std::size_t visited = (rings + step - 1) / step;
-  const std::size_t tasks = (visited + together - 1) / together;
+  const std::size_t tasks = (visited + rings_together - 1) / rings_together;
   std::vector<std::vector<Item>> parts(tasks);
   in_parallel(tasks, [&](std::size_t b) {
     PathPairs scratch;
-    for (std::size_t i = b * together; i < std::min(visited, (b + 1) * together); ++i)
+    for (std::size_t i = b * rings_together; i < std::min(visited, (b + 1) * rings_together); ++i)
       f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
   });
   std::size_t total = all.size();
