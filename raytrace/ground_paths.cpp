@@ -13,6 +13,7 @@
 #include "raytrace/layered/monotone_root.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/cell_hits.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -29,16 +30,6 @@ struct BranchPoint {
   HermiteNode range, delay;  // dτ/dθ = ξ·dr/dθ
   double length = 0.0;       // of the path so far [m]
 };
-
-/// |dr/dξ| below which a caustic's rays are no longer told apart: with r = r_c + ½r″(ξ − ξ_c)² two
-/// rays differ in time by (4√2/3)δ^{3/2}/√|r″|, Airy's argument is ζ = (3ωΔτ/4)^{2/3}, and the
-/// largest Airy amplitude 2√π·Ai(−1.019) ζ^{1/4} A, shared by two rays adding at random, is reached
-/// by each at ζ = 0.307.
-double airy_floor(double curvature, double frequency) {
-  constexpr double zeta = 0.307;
-  return std::cbrt(2.0) * std::sqrt(zeta) * std::pow(curvature, 2.0 / 3.0) /
-         std::cbrt(2.0 * pi * frequency);
-}
 
 /// Whether a cubic rises, or falls, all the way between two points of it, by the sufficient
 /// condition of Fritsch & Carlson: no slope there is against the rise (but for a caustic's, which
@@ -201,11 +192,12 @@ class BranchFollower {
     per_slowness = std::max(std::abs(per_slowness), floor_);
     const int tops = stretch_->interval->turns_above ? 0 : branch.top_vertices();
     const int bottoms = stretch_->interval->turns_below ? 0 : branch.bottom_vertices();
-    const double size = strength_ * builder_.spreading(r, range, per_slowness) *
-                        amplitude_from_db(-builder_.absorption_db_per_metre() * length);
+    const double spreading = strength_ * builder_.spreading(r, range, per_slowness);
+    const double absorbed = amplitude_from_db(-builder_.absorption_db_per_metre() * length);
     return {
         .delay = delay,
-        .amplitude = size * caustic_phase(caustics) * builder_.all_reflected(r, tops, bottoms),
+        .amplitude =
+            path_amplitude(spreading, absorbed, builder_.all_reflected(r, tops, bottoms), caustics),
         .launch_elevation =
             (branch.starts_up ? 1.0 : -1.0) *
             std::atan2(builder_.sine_at_source(r), r.slowness * column.source_speed()),

@@ -26,16 +26,15 @@ Arrival described(const RayTrajectory& ray, Spreading spreading, const Arrival& 
   path.horizontal_slowness = end.xi;
   path.absorption_db = db_from_amplitude(std::exp(end.nepers));
   path.reflection = last.history.reflection;
-  path.spreading = tube_amplitude(spreading, {.speed = last.c_end,
-                                              .q = end.q,
-                                              .range = end.range,
-                                              .launch_elevation = ray.launch_elevation,
-                                              .source_speed = ray.source_speed,
-                                              .speed_integral = end.speed_integral});
-  path.amplitude = path.spreading * std::exp(-end.nepers) * path.reflection *
-                   std::polar(1.0, 0.5 * pi * path.caustics);
-  path.scattered =
-      path.spreading * path.spreading * std::exp(-2.0 * end.nepers) * last.history.scattered;
+  path.spreading = tube_amplitude(
+      spreading, {.speed = last.c_end,
+                  .q = end.q,
+                  .range = end.range,
+                  .launch_slowness = launch_slowness(ray.launch_elevation, ray.source_speed),
+                  .speed_integral = end.speed_integral});
+  const double absorbed = std::exp(-end.nepers);
+  path.amplitude = path_amplitude(path.spreading, absorbed, path.reflection, path.caustics);
+  path.scattered = scattered_power(path.spreading, absorbed, last.history.scattered);
   path.bounces = ray.bounces;
   return path;
 }

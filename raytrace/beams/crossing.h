@@ -7,6 +7,7 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/tracing/ray_trajectory.h"
 #include "raytrace/tracing/reflected.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 
@@ -26,12 +27,6 @@ struct Crossing {
   /// +1 where rays launched a little higher are deeper here, −1 where they are shallower.
   [[nodiscard]] double toward_higher() const noexcept { return q * cosine * mirror > 0.0 ? -1 : 1; }
 };
-
-/// i^n.
-inline std::complex<double> power_of_i(int n) noexcept {
-  constexpr std::complex<double> powers[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  return powers[n & 3];
-}
 
 /// Caustics passed at a state inside a segment.
 inline int caustics_at(const RaySegment& segment, const RayState& state) noexcept {
@@ -58,7 +53,7 @@ inline Crossing crossing_of(const BeamSetting& setting, const RaySegment& segmen
           .dq_ds = c * state.p,
           .loss = reflected(segment.history, setting.coherent) *
                   (std::exp(-state.nepers) * spread_across(setting, state)) *
-                  power_of_i(caustics_at(segment, state)),
+                  caustic_phase(caustics_at(segment, state)),
           .mirror = (segment.history.surface_bounces + segment.history.bottom_bounces) % 2 == 0
                         ? 1.0
                         : -1.0};

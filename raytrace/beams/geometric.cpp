@@ -63,7 +63,7 @@ void add_crossing(const BeamSetting& setting, const BeamLaunch& launch, double l
                            : gaussian(n, q, spacing, least, setting.coherent);
     if (!cut.inside) return false;
     if (setting.coherent) {
-      const std::complex<double> loss = beyond ? x.loss * power_of_i(s > 0.0 ? 1 : -1) : x.loss;
+      const std::complex<double> loss = beyond ? x.loss * caustic_phase(s > 0.0 ? 1 : -1) : x.loss;
       add_to(k, loss * std::polar(root * cut.amplitude, -omega * (x.time + s / x.speed)));
     } else {
       add_to(k, std::norm(x.loss) * root * root * cut.amplitude);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/level_rays.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -22,16 +22,18 @@ Arrival horizontal_ray(const Environment& ocean, double depth, double range, dou
                ? range
                : (water.d2c_dz2 > 0.0 ? std::sin(k * range) : std::sinh(k * range)) / k;
   path.caustics = water.d2c_dz2 > 0.0 ? static_cast<int>(k * range / pi) : 0;
-  path.spreading = 1.0 / std::sqrt(range * std::abs(path.q));
   path.delay = range / water.c;
   path.path_length = range;
   path.horizontal_slowness = 1.0 / water.c;
+  path.spreading = tube_amplitude(
+      Spreading::cylindrical,
+      {.speed = water.c, .q = path.q, .range = range, .launch_slowness = path.horizontal_slowness});
   path.absorption_db =
       1e-3 *
       (absorption_db_per_km(ocean.absorption, frequency) + ocean.attenuation_db_per_km.at(0.0)) *
       range;
-  path.amplitude =
-      path.spreading * amplitude_from_db(-path.absorption_db) * caustic_phase(path.caustics);
+  path.amplitude = path_amplitude(path.spreading, amplitude_from_db(-path.absorption_db),
+                                  path.reflection, path.caustics);
   return path;
 }
 

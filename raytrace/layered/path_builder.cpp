@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/layered/reflection_lanes.h"
+#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {
@@ -66,7 +67,9 @@ double PathBuilder::spreading(const RayParameter& ray, double range,
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   const double q = std::abs(range_per_slowness) * sine_at_source(ray) / column_.source_speed() *
                    sine_at_receiver(ray);
-  return std::sqrt(column_.receiver_speed() * ray.slowness / (range * q));
+  return tube_amplitude(
+      Spreading::cylindrical,
+      {.speed = column_.receiver_speed(), .q = q, .range = range, .launch_slowness = ray.slowness});
 }
 
 PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, const TaskLanes& tasks,
@@ -132,6 +135,7 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   p.q = abs(p.range_per_slowness) * rays.sine(column_.source_speed()) / column_.source_speed() *
         rays.sine(column_.receiver_speed());
+  // tube_amplitude() of as many rays at once; held to it by tests/property/raytrace_layered.cpp
   p.spreading =
       sqrt(column_.receiver_speed() * rays.slowness / (max(tasks.range, Rays(1e-6)) * p.q));
 
@@ -161,7 +165,7 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
   }
   const PathLanes lanes = path_lanes(interval, tasks, roots);
   const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * lanes.length;
-  const Rays gain = lanes.spreading * exponential(max(-nepers, Rays(-700.0)));
+  const Rays absorbed = exponential(max(-nepers, Rays(-700.0)));
   for (std::size_t i = 0; i < tasks.count; ++i) {
     const Branch& branch = tasks.task[i]->stretch->branch;
     if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
@@ -184,9 +188,8 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     path.q = path.caustics % 2 == 0 ? lanes.q[i] : -lanes.q[i];
     path.path_length = lanes.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
-    path.amplitude = static_cast<double>(gain[i]) * reflection * caustic_phase(path.caustics);
-    path.scattered =
-        static_cast<double>(gain[i]) * static_cast<double>(gain[i]) * lanes.scattered[i];
+    path.amplitude = path_amplitude(path.spreading, absorbed[i], reflection, path.caustics);
+    path.scattered = scattered_power(path.spreading, absorbed[i], lanes.scattered[i]);
 
     // Vertices that are bounces are recorded.
     const double first = branch.starts_up ? lanes.first_up[i] : lanes.first_down[i];

@@ -20,7 +20,7 @@ class PathBuilder {
   void build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
              double faintest, std::span<Arrivals> found) const;
 
-  /// √(c_r ξ /(r·|dr/dξ|·(sin θ₀/c_s)·sin θ_r)): the amplitude of a ray tube [1/m × 1 m].
+  /// tube_amplitude() of a ray, with q = |dr/dξ|·(sin θ₀/c_s)·sin θ_r [1/m × 1 m].
   [[nodiscard]] double spreading(const RayParameter& ray, double range,
                                  double range_per_slowness) const noexcept;
 
@@ -70,12 +70,6 @@ class PathBuilder {
 /// once dr/dξ is positive again.
 [[nodiscard]] inline int caustics_passed(int turning_points, double range_per_slowness) noexcept {
   return range_per_slowness < 0.0 ? turning_points - 1 : turning_points;
-}
-
-/// e^{+iπ/2} for every caustic.
-[[nodiscard]] inline std::complex<double> caustic_phase(int caustics) noexcept {
-  constexpr std::complex<double> quarter_turns[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  return quarter_turns[caustics & 3];  // a displaced reflection may take one back
 }
 
 }  // namespace asdic

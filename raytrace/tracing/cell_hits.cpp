@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
 #include "raytrace/layered/hermite.h"
 #include "raytrace/layered/monotone_root.h"
-#include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/fan_splitting.h"
 #include "raytrace/tracing/tube_amplitude.h"
 
@@ -143,25 +141,23 @@ class CellSearch {
     const double u = (alpha - a.angle) / (b.angle - a.angle);
     const auto between = [u](double x, double y) { return x + u * (y - x); };
     const double slope = range.slope(alpha);
-    // Where two rays coalesce: |∂r/∂ξ| of ground_paths.cpp, with ξ the slowness along the boundary.
+    // Where two rays coalesce: the least |∂r/∂α| = |dr/dξ|·|dξ/dα|, ξ the slowness along the
+    // boundary.
     // The cubic's slope is a parabola; its bend where that is zero, if it is anywhere. At a
     // limiting ray, where dr/dα goes to infinity and no caustic is, it is nowhere.
     const double bend_a = range.bend(a.angle), width = b.angle - a.angle;
     const double third = (range.bend(b.angle) - bend_a) / width;
     const double bend = std::sqrt(std::max(0.0, bend_a * bend_a - 2.0 * third * ha.d_range));
     const double turn = (hb.slowness - ha.slowness) / width;
-    constexpr double zeta = 0.307;
-    const double floor = turn != 0.0 ? std::cbrt(2.0 / (2.0 * pi * frequency_)) * std::sqrt(zeta) *
-                                           std::pow(bend, 2.0 / 3.0) / std::cbrt(std::abs(turn))
-                                     : 0.0;
+    const double floor =
+        turn != 0.0 ? airy_floor(bend / (turn * turn), frequency_) * std::abs(turn) : 0.0;
     const double q = std::max(std::abs(slope), floor) * between(ha.q_per_d_range, hb.q_per_d_range);
     const double r = (cell + 0.5) * spacing_;
     const double spreading = tube_amplitude(
         spreading_, {.speed = between(ha.speed, hb.speed),
                      .q = q,
                      .range = r,
-                     .launch_elevation = alpha,
-                     .source_speed = a.source_speed,
+                     .launch_slowness = launch_slowness(alpha, a.source_speed),
                      .speed_integral = r / std::abs(between(ha.mean_slowness, hb.mean_slowness))});
     const bool like_a = (slope > 0.0) == (ha.d_range > 0.0);
     CellHit hit;
@@ -174,9 +170,9 @@ class CellSearch {
     hit.down = ha.down;
     hit.surface_bounces = ha.surface_bounces;
     hit.bottom_bounces = ha.bottom_bounces;
-    hit.amplitude = spreading * std::exp(-between(ha.nepers, hb.nepers)) *
-                    (ha.reflection + u * (hb.reflection - ha.reflection)) *
-                    caustic_phase(like_a ? ha.caustics : hb.caustics);
+    hit.amplitude = path_amplitude(spreading, std::exp(-between(ha.nepers, hb.nepers)),
+                                   ha.reflection + u * (hb.reflection - ha.reflection),
+                                   like_a ? ha.caustics : hb.caustics);
     return hit;
   }
 

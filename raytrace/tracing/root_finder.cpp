@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/layered/path_builder.h"
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/tube_amplitude.h"
 
@@ -253,17 +252,17 @@ Arrival RootFinder::arrival(const ExactCrossing& there, double depth) const {
   path.delay = y.time + y.zeta * (depth - y.depth);  // ∇τ is the slowness
   path.q = y.q;
   path.caustics = h.caustics;
-  path.spreading = tube_amplitude(spreading_, {.speed = there.c,
-                                               .q = y.q,
-                                               .range = std::abs(column_->range - source_range_),
-                                               .launch_elevation = path.launch_elevation,
-                                               .source_speed = ray_.source_speed,
-                                               .speed_integral = y.speed_integral});
+  path.spreading = tube_amplitude(
+      spreading_, {.speed = there.c,
+                   .q = y.q,
+                   .range = std::abs(column_->range - source_range_),
+                   .launch_slowness = launch_slowness(path.launch_elevation, ray_.source_speed),
+                   .speed_integral = y.speed_integral});
   path.reflection = h.reflection;
   path.absorption_db = y.nepers * db_from_amplitude(std::exp(1.0));
-  path.amplitude =
-      path.spreading * std::exp(-y.nepers) * path.reflection * caustic_phase(path.caustics);
-  path.scattered = path.spreading * path.spreading * std::exp(-2.0 * y.nepers) * h.scattered;
+  const double absorbed = std::exp(-y.nepers);
+  path.amplitude = path_amplitude(path.spreading, absorbed, path.reflection, path.caustics);
+  path.scattered = scattered_power(path.spreading, absorbed, h.scattered);
   path.path_length = y.length;
   path.horizontal_slowness = std::abs(y.xi);
   path.surface_bounces = h.surface_bounces;

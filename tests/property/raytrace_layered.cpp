@@ -9,6 +9,7 @@
 #include "raytrace/ground_paths.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/ray_path.h"
+#include "raytrace/tracing/tube_amplitude.h"
 #include "support/test_id.h"
 
 namespace asdic {
@@ -69,6 +70,32 @@ TEST_P(EveryProfile, RangeSlopeIsTheDerivative) {
         << "sigma " << sigma << " vertices " << s.branch.vertices;
     ++checked;
   });
+  EXPECT_GT(checked, 50);
+}
+
+// As many rays at once get the amplitudes of the plain formulae: the same products in the same
+// order, so that the spreading has the same bits. e^−x is right to 1e-15 (LaneMath), its argument
+// of less than 3 nepers to four roundings.
+TEST_P(EveryProfile, AmplitudesAreThoseOfTheirTubes) {
+  Environment environment = ocean();
+  environment.bottom.material = FluidHalfSpace{};
+  environment.absorption = Thorp{};
+  const EigenraySolver solver(environment);
+  int checked = 0;
+  for (const double receiver : {125.0, 800.0, 1300.0})
+    for (const double range : {300.0, 17e3, 41e3}) {
+      for (const Arrival& a : solver.find(1000.0, receiver, range, 5000.0)) {
+        const RayTube tube{.speed = environment.water.at(receiver).c,
+                           .q = a.q,
+                           .range = range,
+                           .launch_slowness = a.horizontal_slowness};
+        EXPECT_DOUBLE_EQ(a.spreading, tube_amplitude(Spreading::cylindrical, tube));
+        const std::complex<double> plain = path_amplitude(
+            a.spreading, amplitude_from_db(-a.absorption_db), a.reflection, a.caustics);
+        EXPECT_LT(std::abs(a.amplitude - plain), 4e-15 * std::abs(plain));
+        ++checked;
+      }
+    }
   EXPECT_GT(checked, 50);
 }
 
