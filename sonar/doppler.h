@@ -13,7 +13,11 @@ struct MovingEnd {
 /// Frequency heard over frequency sent on one leg, (1 − v_R·s_R)/(1 − v_S·s_S): exact for constant
 /// velocities, with the speed of sound where it happens. In a stratified sea the horizontal part of
 /// s is the ray's Snell invariant. Source: docs/theory/doppler.md, eq. (1)
-[[nodiscard]] double leg_doppler(const MovingEnd& sender, const MovingEnd& receiver) noexcept;
+[[nodiscard]] inline double leg_doppler(const MovingEnd& sender,
+                                        const MovingEnd& receiver) noexcept {
+  return (1.0 - receiver.velocity.dot(receiver.slowness)) /
+         (1.0 - sender.velocity.dot(sender.slowness));
+}
 
 /// The factor η of an echo: out to the target and back, s(η(t − τ)).
 /// \param target_in, target_out  the target where the outgoing ray ends and the returning one

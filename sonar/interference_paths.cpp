@@ -8,6 +8,7 @@
 
 #include "raytrace/parallel.h"
 #include "reverb/scatterer_field.h"
+#include "sonar/doppler.h"
 #include "sonar/enough_bounces.h"
 #include "sonar/geometry.h"
 #include "sonar/interference_stretch.h"
@@ -126,17 +127,18 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
     // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
     const double along = leaving.dot(source.velocity);
     const double delay = (path.delay - along * (time - left)) / (1.0 - along);
-    Heard one{.path = {.array = array,
-                       .delay = delay,
-                       .doppler = (1.0 - arriving.dot(receiver.velocity)) / (1.0 - along),
-                       .range = way.range,
-                       .bearing = way.bearing,
-                       .slowness = arriving,
-                       .moveout = arriving / (1.0 - along),
-                       .path = path},
-              .band = {},
-              .scattered_band = {},
-              .parts = {}};
+    Heard one{
+        .path = {.array = array,
+                 .delay = delay,
+                 .doppler = leg_doppler({source.velocity, leaving}, {receiver.velocity, arriving}),
+                 .range = way.range,
+                 .bearing = way.bearing,
+                 .slowness = arriving,
+                 .moveout = arriving / (1.0 - along),
+                 .path = path},
+        .band = {},
+        .scattered_band = {},
+        .parts = {}};
     for (const Arrivals& arrivals : at_frequencies) {
       const Arrival* same = same_path(arrivals, path, paths_.layered());
       one.band.push_back(same == nullptr ? 0.0 : same->amplitude);

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "reverb/scattering/motion.h"
+#include "sonar/doppler.h"
 #include "sonar/scattering_sheet.h"
 
 namespace asdic {
@@ -24,15 +25,15 @@ double ScatteringSheet::doppler(const PathPair& pair, const Vec3& velocity,
     const double level = pair.out_ends->launch_level;
     const Vec3 leaving(level * pair.leaving.x(), level * pair.leaving.y(),
                        pair.out_ends->launch_down);
-    factor = (1.0 - pair.receiver->velocity.dot(arriving(pair))) /
-             (1.0 - ends_.source.velocity.dot(leaving));
+    factor =
+        leg_doppler({ends_.source.velocity, leaving}, {pair.receiver->velocity, arriving(pair)});
   }
   const Vec2 in = pair.out->horizontal_slowness * pair.leaving;
   const Vec2 home = pair.back->horizontal_slowness * pair.coming;
   if (!velocity.isZero()) {  // slowness at the scatterer; what came down goes up again
     const Vec3 comes(in.x(), in.y(), pair.out_ends->down);
     const Vec3 goes(home.x(), home.y(), -pair.back_ends->down);
-    factor *= (1.0 - velocity.dot(comes)) / (1.0 - velocity.dot(goes));
+    factor *= leg_doppler({velocity, goes}, {velocity, comes});  // a receiver, and a sender again
   }
   if (bragg != 0.0)
     factor *= 1.0 + bragg * bragg_shift(scattering_wavenumber(in, home, ends_.frequency)) /
