@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raytrace/parallel.h"
+#include "reverb/uniform_of_bits.h"
 #include "sonar/delay_bins.h"
 #include "sonar/heard_places.h"
 
@@ -518,8 +519,7 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
 const ReverberationStreams::Part& ReverberationStreams::part_of(const Stream& stream,
                                                                 std::uint64_t seed,
                                                                 std::uint32_t ping) const noexcept {
-  const double drawn =
-      (static_cast<double>(mixed(mixed(stream.entity, seed), ping) >> 11) + 0.5) * 0x1p-53;
+  const double drawn = uniform_of_bits(mixed(mixed(stream.entity, seed), ping));
   std::size_t i = stream.first_part;
   while (i + 1 < stream.first_part + stream.parts && parts[i].chance < drawn) ++i;
   return parts[i];

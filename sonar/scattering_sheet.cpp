@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "raytrace/stop.h"
+#include "reverb/uniform_of_bits.h"
 
 namespace asdic {
 namespace {
@@ -26,9 +27,8 @@ Grazing grazing_of(const GroundPath& path, const PathEnds& ends, const CellTilt*
   return {std::asin(sine), sine, std::sqrt((1.0 - sine) * (1.0 + sine))};
 }
 
-/// Uniform in (0, 1).
 double bundle_draw(std::uint64_t chance, std::size_t bundle) noexcept {
-  return (static_cast<double>(mixed(chance, bundle) >> 11) + 0.5) * 0x1p-53;
+  return uniform_of_bits(mixed(chance, bundle));
 }
 
 TakenPath drawn_of(std::span<const GroundPath> paths, const PathBundle& bundle, std::uint32_t index,

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reverb/uniform_of_bits.h"
 #include "sonar/path_interference.h"
 #include "sonar/reverberation.h"
 
@@ -23,10 +24,6 @@ const PathPair* reciprocal(std::span<const PathPair> pairs, const PathPair& pair
     if (other.out_index == pair.back_index && other.back_index == pair.out_index && &other != &pair)
       return &other;
   return nullptr;
-}
-
-double uniform(std::uint64_t a, std::uint64_t b) noexcept {
-  return (static_cast<double>(mixed(a, b) >> 11) + 0.5) * 0x1p-53;
 }
 
 }  // namespace
@@ -77,8 +74,8 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
           bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
       full.power += static_cast<float>(power);
       const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
-      if (uniform(mixed(entity, scenario_.seed), number) * static_cast<double>(full.power) >= power)
-        continue;
+      const double drawn = uniform_of_bits(mixed(mixed(entity, scenario_.seed), number));
+      if (drawn * static_cast<double>(full.power) >= power) continue;
       full = {.power = full.power,
               .chosen = static_cast<float>(alone),
               .ring = key.ring,

@@ -7,6 +7,7 @@
 
 #include "reverb/scattering/models.h"
 #include "reverb/scattering/motion.h"
+#include "reverb/uniform_of_bits.h"
 
 namespace asdic {
 namespace {
@@ -141,6 +142,25 @@ TEST(ScattererAnchor, OneSeaGoesOverIntoTheNext) {
       }
   EXPECT_EQ(common_sea({40.0, 0.0}, {60.0, 0.0}), 0.0);
   EXPECT_EQ(around({50.0, 50.0}).size(), 4U);
+}
+
+// Mean ½ and variance 1/12, and a hundredth of all below 0.01: five standard deviations of 10⁵
+// draws. The bits that no draw leaves out end within (0, 1].
+TEST(UniformOfBits, IsUniform) {
+  constexpr int draws = 100'000;
+  double sum = 0.0, squares = 0.0;
+  int low = 0;
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    const double u = uniform_of_bits(mixed(42, i));
+    sum += u;
+    squares += (u - 0.5) * (u - 0.5);
+    low += u < 0.01 ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / draws, 0.5, 5.0 * std::sqrt(1.0 / 12.0 / draws));
+  EXPECT_NEAR(squares / draws, 1.0 / 12.0, 5.0 * std::sqrt(1.0 / 180.0 / draws));
+  EXPECT_NEAR(low / double(draws), 0.01, 5.0 * std::sqrt(0.01 * 0.99 / draws));
+  EXPECT_EQ(uniform_of_bits(0), 0x1p-54);
+  EXPECT_EQ(uniform_of_bits(~std::uint64_t{0}), 1.0);
 }
 
 TEST(BottomScattering, LawsAtKnownAngles) {
