@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sonar/beamform.h"
+#include "sonar/geometry.h"
 
 namespace asdic {
 namespace {
@@ -74,7 +74,7 @@ ArrayShape shape_of(std::span<const Vec3> phones, double wavelength) {
   shape.length = extent(phones, longest);
   shape.height = extent(phones, Vec3::UnitZ());
   for (int i = 0; i < 36; ++i)
-    shape.breadth = std::max(shape.breadth, extent(phones, look_direction(pi / 36.0 * i, 0.0)));
+    shape.breadth = std::max(shape.breadth, extent(phones, direction(pi / 36.0 * i, 0.0)));
   const double thin = 0.25 * wavelength;  // from side to side
   if (shape.length < thin) return shape;
   shape.axis = longest.dot(phones.back() - phones.front()) < 0.0 ? Vec3(-longest) : longest;
@@ -123,7 +123,7 @@ BeamGrid beam_grid(const ArrayShape& shape, double wavelength, double lowest, do
   if (shape.bent) {
     const int count = static_cast<int>(std::ceil(2.0 * pi / step));
     for (int i = 0; i < count; ++i)
-      grid.looks.push_back(look_direction(2.0 * pi / count * i, std::clamp(0.0, lowest, highest)));
+      grid.looks.push_back(direction(2.0 * pi / count * i, std::clamp(0.0, lowest, highest)));
     return grid;
   }
   const auto add = [&](const Vec3& look) {
@@ -135,14 +135,14 @@ BeamGrid beam_grid(const ArrayShape& shape, double wavelength, double lowest, do
     const double across_row = shape.breadth * std::cos(elevation);
     const int count =
         std::max(1, static_cast<int>(std::ceil(2.0 * pi * across_row / (0.5 * wavelength))));
-    for (int i = 0; i < count; ++i) add(look_direction(2.0 * pi / count * i, elevation));
+    for (int i = 0; i < count; ++i) add(direction(2.0 * pi / count * i, elevation));
     if (elevation >= highest) break;
     // Phases change with elevation by the height's cos and the breadth's sin of it.
     const double reach = shape.height * std::cos(elevation) +
                          shape.breadth * std::max(std::abs(std::sin(elevation)), 0.25);
     elevation = std::min(elevation + std::min(0.5 * wavelength / reach, 0.5), highest);
   }
-  if (grid.looks.empty()) grid.looks.push_back(look_direction(0.0, 0.5 * (lowest + highest)));
+  if (grid.looks.empty()) grid.looks.push_back(direction(0.0, 0.5 * (lowest + highest)));
   return grid;
 }
 
@@ -206,19 +206,19 @@ Vec3 refine_direction(std::span<const std::complex<double>> snapshot, std::span<
          elevation = std::asin(std::clamp(-look.z(), -1.0, 1.0));
   double h = 0.5 * step;
   while (h > 1e-6) {
-    const double here = power(look_direction(bearing, elevation));
+    const double here = power(direction(bearing, elevation));
     const double turn = h / std::max(std::cos(elevation), 0.1);
-    bearing += turn * top_of(power(look_direction(bearing - turn, elevation)), here,
-                             power(look_direction(bearing + turn, elevation)));
+    bearing += turn * top_of(power(direction(bearing - turn, elevation)), here,
+                             power(direction(bearing + turn, elevation)));
     if (!shape.bent) {
-      const double again = power(look_direction(bearing, elevation));
-      elevation += h * top_of(power(look_direction(bearing, elevation - h)), again,
-                              power(look_direction(bearing, elevation + h)));
+      const double again = power(direction(bearing, elevation));
+      elevation += h * top_of(power(direction(bearing, elevation - h)), again,
+                              power(direction(bearing, elevation + h)));
       elevation = std::clamp(elevation, -0.5 * pi, 0.5 * pi);
     }
     h *= 0.7;
   }
-  return look_direction(bearing, elevation);
+  return direction(bearing, elevation);
 }
 
 }  // namespace asdic

@@ -29,7 +29,7 @@ struct BeamSpectra {
 /// The power gain over white noise is 1/Σw², the number of phones for equal weights.
 /// \param channels  of channel_spectra(baseband)   \param phones  [channels] relative to the point
 /// that delays refer to [m]   \param looks  unit vectors towards the source   \param weights
-/// [channels], sum 1   \throws InputError as beamform()
+/// [channels], sum 1   \throws InputError if phones or weights do not match the channels
 [[nodiscard]] BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& baseband,
                                              std::span<const Vec3> phones,
                                              std::span<const Vec3> looks, double sound_speed,

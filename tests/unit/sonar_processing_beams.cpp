@@ -4,10 +4,11 @@
 #include <complex>
 #include <vector>
 
+#include "core/error.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "sonar/array.h"
-#include "sonar/beamform.h"
+#include "sonar/geometry.h"
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/beams.h"
 #include "sonar/processing/mvdr.h"
@@ -78,8 +79,8 @@ TEST(ArrayShapeTest, TellsLinesPlanesAndVolumes) {
 // frequency, summed. Float sums over 400 bins: 1e-5.
 TEST(ConventionalBeams, PassAPlaneWaveAndFollowThePattern) {
   for (const auto& phones : {line_array(16, 0.5, 0.4, 0.0).phones, ball()}) {
-    const Vec3 from = look_direction(radians(75.0), radians(20.0)),
-               other = look_direction(radians(60.0), radians(-5.0));
+    const Vec3 from = direction(radians(75.0), radians(20.0)),
+               other = direction(radians(60.0), radians(-5.0));
     const Baseband b = plane_wave(phones, from);
     const std::vector<double> weights = shading(phones, true);
     const std::vector<Vec3> looks{from, other};
@@ -90,6 +91,20 @@ TEST(ConventionalBeams, PassAPlaneWaveAndFollowThePattern) {
       expected += 0.04 * beam_pattern(phones, weights, other, from, 2.0 * pi * (frequency + f) / c);
     EXPECT_NEAR(energy(beams, 1), expected, 1e-5);
   }
+}
+
+TEST(ConventionalBeams, WantAPhoneAndAWeightForEveryChannel) {
+  const auto phones = line_array(4, 0.5, 0.0, 0.0).phones;
+  const std::vector<Vec3> looks{Vec3::UnitX()};
+  const Baseband b = plane_wave(phones, looks[0]);
+  const std::vector<double> weights(4, 0.25);
+  const auto beams = [&](std::size_t of_phones, std::size_t of_weights) {
+    return conventional_beams(channel_spectra(b), b, std::span(phones).first(of_phones), looks, c,
+                              std::span(weights).first(of_weights));
+  };
+  EXPECT_EQ(beams(4, 4).beams, 1U);
+  EXPECT_THROW((void)beams(3, 4), InputError);
+  EXPECT_THROW((void)beams(4, 3), InputError);
 }
 
 // n phones half a wavelength apart: |sin(nψ/2)/(n sin(ψ/2))|², ψ = π(cos − cos₀).
@@ -115,7 +130,7 @@ TEST(ConventionalBeams, GainOverWhiteNoiseIsTheNumberOfPhones) {
     RandomStream stream(1, Draw::ambient_noise, 1, ch);
     for (std::size_t i = 0; i < n; ++i) b.values.emplace_back(stream.complex_normal());
   }
-  const std::vector<Vec3> looks{look_direction(0.3, 0.0), look_direction(1.5, 0.0)};
+  const std::vector<Vec3> looks{direction(0.3, 0.0), direction(1.5, 0.0)};
   const BeamSpectra beams =
       conventional_beams(channel_spectra(b), b, phones, looks, c, shading(phones, false));
   // 40 000 independent exponentials: 0.5 % a standard deviation, 2.5 % are five.
@@ -132,8 +147,7 @@ TEST(BeamGridTest, NoDirectionIsFarFromABeam) {
     const BeamGrid grid = beam_grid(shape, wavelength);
     const std::vector<double> weights = shading(phones, false);
     for (int i = 0; i < 300; ++i) {
-      const Vec3 from =
-          look_direction(2.0 * pi * draw.uniform(), std::asin(2.0 * draw.uniform() - 1.0));
+      const Vec3 from = direction(2.0 * pi * draw.uniform(), std::asin(2.0 * draw.uniform() - 1.0));
       double best = 0.0;
       for (const Vec3& look : grid.looks)
         best = std::max(best, beam_pattern(phones, weights, look, from, wavenumber));
@@ -151,7 +165,7 @@ TEST(RefineDirection, FindsThePlaneWave) {
     const BeamGrid grid = beam_grid(shape, wavelength);
     const std::vector<double> weights = shading(phones, false);
     for (int i = 0; i < 100; ++i) {
-      const Vec3 from = look_direction(2.0 * pi * draw.uniform(), 1.2 * (draw.uniform() - 0.5));
+      const Vec3 from = direction(2.0 * pi * draw.uniform(), 1.2 * (draw.uniform() - 0.5));
       // Half a wavelength apart, a line hears its two ends alike.
       if (shape.kind == ArrayKind::line && std::abs(from.dot(shape.axis)) > 0.9) continue;
       const auto snapshot = steering_vector(phones, shape.centre, from, wavenumber);
@@ -176,10 +190,8 @@ TEST(RefineDirection, FindsThePlaneWave) {
 // through. The loading δ·tr(R)/N = δ(σ² + P) adds to σ².
 TEST(Mvdr, MatchesTheClosedFormForOneInterferer) {
   const auto phones = line_array(12, 0.5, 0.0, 0.0).phones;
-  const auto a =
-      steering_vector(phones, Vec3::Zero(), look_direction(radians(80.0), 0.0), wavenumber);
-  const auto b =
-      steering_vector(phones, Vec3::Zero(), look_direction(radians(63.0), 0.0), wavenumber);
+  const auto a = steering_vector(phones, Vec3::Zero(), direction(radians(80.0), 0.0), wavenumber);
+  const auto b = steering_vector(phones, Vec3::Zero(), direction(radians(63.0), 0.0), wavenumber);
   const double noise = 1.0, power = 300.0, loading = 0.01, n = 12.0;
   std::vector<Complex> covariance;
   for (std::size_t i = 0; i < 12; ++i)
@@ -208,7 +220,7 @@ TEST(Mvdr, MatchesTheClosedFormForOneInterferer) {
 // Without anything but noise the blocks add up to the record again and a plane wave passes whole.
 TEST(Mvdr, BeamPassesItsPlaneWaveAndRejectsAnother) {
   const auto phones = line_array(8, 0.5, 0.0, 0.0).phones;
-  const Vec3 from = look_direction(radians(90.0), 0.0), noisy = look_direction(radians(50.0), 0.0);
+  const Vec3 from = direction(radians(90.0), 0.0), noisy = direction(radians(50.0), 0.0);
   const std::size_t n = 4000;
   Baseband b{
       .carrier = frequency, .sample_rate = 400.0, .channels = 8, .samples = n, .recorded = n};

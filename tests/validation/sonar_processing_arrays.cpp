@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/beamform.h"
+#include "sonar/geometry.h"
 #include "support/processing.h"
 #include "support/thesis.h"
 
@@ -21,7 +21,7 @@ Scenario one_echo(double sag, double bearing, double depth = 100.0) {
   }
   s.transmitters[0].source_level_db = 205.0;
   s.pulse = {.kind = PulseKind::cw, .frequency = 1500.0, .duration = 0.5};
-  Vec3 place = 2500.0 * look_direction(bearing, 0.0);
+  Vec3 place = 2500.0 * direction(bearing, 0.0);
   place.z() = depth;
   s.targets = {support::target(place, 12.0)};
   s.noise.spectral_level_db = 60.0;

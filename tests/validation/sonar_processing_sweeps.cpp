@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/beamform.h"
+#include "sonar/geometry.h"
 #include "support/processing.h"
 #include "support/thesis.h"
 
@@ -23,7 +23,7 @@ Scenario sweeping(PulseKind kind, double from, double to) {
              .end_frequency = to,
              .duration = 0.25,
              .window = PulseWindow::hann};
-  const Vec3 towards = look_direction(radians(50.0), 0.0);
+  const Vec3 towards = direction(radians(50.0), 0.0);
   const Vec3 place = 3000.0 * towards + Vec3(0.0, 0.0, 1000.0);
   s.targets = {support::target(place, 10.0, -4.0 * towards)};
   s.noise.spectral_level_db = 60.0;

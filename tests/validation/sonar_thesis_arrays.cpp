@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "sonar/beamform.h"
+#include "sonar/geometry.h"
+#include "sonar/processing/beams.h"
 #include "support/csv.h"
 #include "support/listen.h"
 #include "support/thesis.h"
@@ -18,13 +19,17 @@ double loudest_sine(const Baseband& heard, std::span<const Vec3> phones, double 
   constexpr double step = 0.005;
   std::vector<Vec3> looks;
   for (int i = -199; i <= 199; ++i) looks.push_back(look(i * step));
-  const BeamPower beams = beamform(heard, phones, looks, c);
+  const std::vector<double> even(phones.size(), 1.0 / double(phones.size()));
+  BeamSpectra beams = conventional_beams(channel_spectra(heard), heard, phones, looks, c, even);
+  const ComplexFft<float> fft(beams.bins);
   std::vector<double> energy(beams.beams);
-  for (std::size_t b = 0; b < beams.beams; ++b)
-    for (std::size_t i = 0; i < beams.samples; ++i) {
-      const double t = beams.start + double(i) / beams.sample_rate;
-      if (t >= from && t <= to) energy[b] += static_cast<double>(beams.beam(b)[i]);
+  for (std::size_t b = 0; b < beams.beams; ++b) {
+    fft.inverse(beams.beam(b));
+    for (std::size_t i = 0; i < heard.recorded; ++i) {
+      const double t = heard.start + double(i) / heard.sample_rate;
+      if (t >= from && t <= to) energy[b] += static_cast<double>(std::norm(beams.beam(b)[i]));
     }
+  }
   const auto best = std::max_element(energy.begin(), energy.end()) - energy.begin();
   const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(best, 1, 397));
   const double a = energy[i - 1], b = energy[i], e = energy[i + 1];
@@ -59,7 +64,7 @@ TEST_P(ThesisHorizontalArray, PeakIsWhereSinAzTimesCosElSays) {
   const double c = s.environment.water.at(4500.0).c;
   const double sine =
       loudest_sine(support::demodulate(record, 4000.0, 60.0), s.arrays[0].phones, c, 33.5, 35.0,
-                   [](double u) { return look_direction(0.5 * pi - std::asin(u), 0.0); });
+                   [](double u) { return direction(0.5 * pi - std::asin(u), 0.0); });
   EXPECT_NEAR(sine, expected, 5e-4);
   RecordProperty("error_in_sine", std::to_string(sine - expected));
   if (GetParam() == 75.0) {
@@ -79,7 +84,7 @@ TEST_P(ThesisHorizontalArray, TheSurfaceMovesThePeakLittle) {
   const PingRecord record = PingSimulator(s).simulate(1);
   const double sine = loudest_sine(support::demodulate(record, 4000.0, 60.0), s.arrays[0].phones,
                                    s.environment.water.at(4500.0).c, 33.5, 35.0, [](double u) {
-                                     return look_direction(0.5 * pi - std::asin(u), 0.0);
+                                     return direction(0.5 * pi - std::asin(u), 0.0);
                                    });
   EXPECT_NEAR(sine, std::sin(bearing) * std::cos(radians(4.5)), 0.0114);
 }
@@ -160,7 +165,7 @@ TEST_P(ThesisVerticalArray, BeamsOfThePingPeakAtTheEigenrays) {
     const double moveout = 2.0 * 1.425 * std::abs(std::sin(back[i].arrival_elevation)) / c;
     if (gap < 0.0012 + moveout) continue;
     const double sine = loudest_sine(heard, s.arrays[0].phones, c, time + 0.0008, time + 0.0012,
-                                     [](double u) { return look_direction(0.0, std::asin(u)); });
+                                     [](double u) { return direction(0.0, std::asin(u)); });
     EXPECT_NEAR(sine, std::sin(-back[i].arrival_elevation), 0.057) << "path " << i;
     ++checked;
   }
