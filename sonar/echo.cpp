@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -128,31 +129,53 @@ class EchoFinder {
     return back;
   }
 
+  /// A path out that has met the target.
+  struct Strike {
+    Kinematics source, target;
+    MetPath there;
+    std::optional<Way> home;  ///< where the target has moved since the way back was found
+  };
+  /// \param path  number of one of the way out   \param known  paths home, for where it moved to
+  [[nodiscard]] Strike strike(const Kinematics& source, const Way& out, std::size_t path,
+                              std::span<const Arrival> known, const Carried& hearer) const {
+    Strike s{.source = source,
+             .target = {},
+             .there = moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out,
+                                   out.leg.arrivals[path]),
+             .home = {}};
+    s.target = target_.track.at(context_.ping_time + s.there.time);
+    if (s.target.position != out.end.position)
+      s.home = moving_.way(s.target.position, s.there.time, hearer.track, hearer.offset, known);
+    return s;
+  }
+
+  /// With one of the paths home; nothing if by then it is gone.
+  [[nodiscard]] std::optional<TwoWayPaths> with_home(const Strike& strike, const Way& back,
+                                                     std::size_t number,
+                                                     const Carried& hearer) const {
+    const Way& home = strike.home ? *strike.home : back;
+    const Arrival& known = back.leg.arrivals[number];
+    const Arrival* path = strike.home ? same_path(home.leg.arrivals, known, layered_) : &known;
+    if (path == nullptr) return {};
+    return TwoWayPaths{.source = strike.source,
+                       .target = strike.target,
+                       .there = strike.there,
+                       .home = moving_.meet(strike.target.position, strike.there.time, hearer.track,
+                                            hearer.offset, home, *path)};
+  }
+
   void pair_up(const Kinematics& source, const Way& out, const Way& back,
                TargetEchoes& result) const {
     const int channel = back.leg.channel;
     const Carried hearer = this->hearer(channel);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
-      const MetPath there =
-          moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
-      const Kinematics struck = target_.track.at(context_.ping_time + there.time);
-      const bool moved = struck.position != out.end.position;
-      const Way home = moved ? moving_.way(struck.position, there.time, hearer.track, hearer.offset,
-                                           back.leg.arrivals)
-                             : back;
+      const Strike strike = this->strike(source, out, i, back.leg.arrivals, hearer);
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
-        const Arrival* path = moved ? same_path(home.leg.arrivals, back.leg.arrivals[j], layered_)
-                                    : &back.leg.arrivals[j];
-        if (path == nullptr) continue;  // by then it is gone
-        const TwoWayPaths pair{.source = source,
-                               .target = struck,
-                               .there = there,
-                               .home = moving_.meet(struck.position, there.time, hearer.track,
-                                                    hearer.offset, home, *path)};
-        if (bounces_.surface > fewest_bounces && pair.home.time > latest_) continue;
+        const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+        if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
         const std::size_t first = result.scattered.size();
-        std::vector<EchoPath> echoes = answer(pair, hearer, channel);
-        scatter(pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
+        std::vector<EchoPath> echoes = answer(*pair, hearer, channel);
+        scatter(*pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
                 result.scattered);
         name(i, j, std::span(result.scattered).subspan(first));
         name(i, j, echoes);
@@ -200,24 +223,11 @@ class EchoFinder {
         back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
     const Carried hearer = this->hearer(back.leg.channel);
     for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
-      const MetPath there =
-          moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out, out.leg.arrivals[i]);
-      const Kinematics struck = target_.track.at(context_.ping_time + there.time);
-      const Arrival& known = back.leg.arrivals[j];
-      Way of_moved;
-      const bool moved = struck.position != out.end.position;
-      if (moved)
-        of_moved = moving_.way(struck.position, there.time, hearer.track, hearer.offset,
-                               std::span(&known, 1));
-      const Way& home = moved ? of_moved : back;
-      const Arrival* path = moved ? same_path(home.leg.arrivals, known, layered_) : &known;
-      if (path == nullptr) continue;  // by then it is gone
-      const TwoWayPaths pair{.source = source,
-                             .target = struck,
-                             .there = there,
-                             .home = moving_.meet(struck.position, there.time, hearer.track,
-                                                  hearer.offset, home, *path)};
-      std::vector<EchoPath> echoes = answer(pair, hearer, back.leg.channel);
+      const Strike strike =
+          this->strike(source, out, i, std::span(&back.leg.arrivals[j], 1), hearer);
+      const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+      if (!pair) continue;
+      std::vector<EchoPath> echoes = answer(*pair, hearer, back.leg.channel);
       name(i, j, echoes);
       for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
     }

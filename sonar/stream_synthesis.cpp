@@ -9,6 +9,7 @@
 #include "core/normal.h"
 #include "raytrace/parallel.h"
 #include "sonar/band_response.h"
+#include "sonar/complex_product.h"
 #include "sonar/own_grid.h"
 #include "sonar/phase_turn.h"
 #include "sonar/place_weights.h"
@@ -39,11 +40,6 @@ struct Rows {
   [[nodiscard]] float* im(std::size_t row) noexcept { return re(row) + stride; }
 };
 
-/// Without a look at infinities that never come.
-std::complex<double> times(std::complex<double> a, std::complex<double> b) noexcept {
-  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-
 /// to += at·turn^k·sound over the bins k, |turn| = 1. \param bins  a whole number of lanes
 void add_turned(const float* __restrict re, const float* __restrict im, std::size_t bins,
                 std::complex<double> at, std::complex<double> turn, float* __restrict to_re,
@@ -51,7 +47,7 @@ void add_turned(const float* __restrict re, const float* __restrict im, std::siz
   alignas(64) std::array<float, lanes> c, s;
   c[0] = 1.0F;
   s[0] = 0.0F;
-  for (std::size_t m = 1; m < lanes; m *= 2, turn = times(turn, turn)) {  // turn = turn^m
+  for (std::size_t m = 1; m < lanes; m *= 2, turn = finite_product(turn, turn)) {  // turn = turn^m
     const auto a = static_cast<float>(turn.real()), b = static_cast<float>(turn.imag());
     for (std::size_t l = 0; l < m; ++l) {
       c[m + l] = c[l] * a - s[l] * b;
@@ -65,7 +61,7 @@ void add_turned(const float* __restrict re, const float* __restrict im, std::siz
       to_re[k + l] += re[k + l] * x - im[k + l] * y;
       to_im[k + l] += re[k + l] * y + im[k + l] * x;
     }
-    at = times(at, turn);
+    at = finite_product(at, turn);
   }
 }
 
@@ -371,7 +367,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
         }
         for (std::size_t p = 0; p < phones.size(); ++p)
           add_turned(sound.re(0), sound.im(0), stride,
-                     times(part.weight[noise][wave], {first[p].re, first[p].im}),
+                     finite_product(part.weight[noise][wave], {first[p].re, first[p].im}),
                      {on[p].re, on[p].im}, heard.re(p) + place, heard.im(p) + place);
       }
     }

@@ -57,18 +57,21 @@ std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
   return text;
 }
 
-/// \param share  of the energy, of turned_at_corners()
-std::string line_of_corners(double share, const std::string& whose) {
+/// \param share  of the energy   \param how  it comes: what follows on "the sound to or from it"
+std::string line_of_share(double share, const std::string& whose, const char* how) {
   constexpr double tolerable_share = 0.25;
   if (!(share > tolerable_share)) return "";
   char text[320];
-  std::snprintf(text, sizeof text,
-                "propagation: %.0f %% of the sound to or from %.60s turns so often beside corners "
-                "of the sound-speed profile that rays have its phase wrong by a radian; how paths "
-                "interfere is open",
-                100.0 * share, whose.c_str());
+  std::snprintf(text, sizeof text, "propagation: %.0f %% of the sound to or from %.60s %s",
+                100.0 * share, whose.c_str(), how);
   return text;
 }
+constexpr char beside_corners[] =
+    "turns so often beside corners of the sound-speed profile that rays have its phase wrong by a "
+    "radian; how paths interfere is open";
+constexpr char at_caustics[] =
+    "comes by rays at a focus, at a caustic which is no simple fold or at the end of their family: "
+    "their level may be decibels off";
 
 /// Whether another ray meets this one, ζ < 1, where both have the amplitude of rays still: at what
 /// is no simple fold (raytrace/waves/caustics.h).
@@ -99,19 +102,6 @@ double unsure_amplitudes(const EigenraySolver& solver, double source_depth, doub
       unsure += energy;
   }
   return all > 0.0 ? unsure / all : 0.0;
-}
-
-/// \param share  of the energy, of unsure_amplitudes()
-std::string line_of_caustics(double share, const std::string& whose) {
-  constexpr double tolerable_share = 0.25;
-  if (!(share > tolerable_share)) return "";
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "propagation: %.0f %% of the sound to or from %.60s comes by rays at a focus, at a "
-                "caustic which is no simple fold or at the end of their family: their level may be "
-                "decibels off",
-                100.0 * share, whose.c_str());
-  return text;
 }
 
 /// Share of the energy that comes by rays which turn so often, so near a corner of the profile,
@@ -236,8 +226,8 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
     const std::string name = "target \"" + target.name + "\"";
     const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
     add_warnings({line_of(there, name), line_of(home, name),
-                  line_of_corners(std::max(there.corners, home.corners), name),
-                  line_of_caustics(std::max(there.caustics, home.caustics), name)},
+                  line_of_share(std::max(there.corners, home.corners), name, beside_corners),
+                  line_of_share(std::max(there.caustics, home.caustics), name, at_caustics)},
                  found);
   }
   const bool apart = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].platform !=

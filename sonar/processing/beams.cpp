@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
+#include "sonar/complex_product.h"
 
 namespace asdic {
 
@@ -55,11 +56,8 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
               std::polar(weights[c], std::remainder(-2.0 * pi * f * delay, 2.0 * pi)));
           const std::size_t end = std::min(begin + 64, last);
           for (std::size_t k = begin; k < end; ++k) {
-            const float re = row[k].real(), im = row[k].imag();
-            beam[k] += std::complex<float>(turn.real() * re - turn.imag() * im,
-                                           turn.real() * im + turn.imag() * re);
-            turn = {turn.real() * step.real() - turn.imag() * step.imag(),
-                    turn.real() * step.imag() + turn.imag() * step.real()};
+            beam[k] += finite_product(turn, row[k]);
+            turn = finite_product(turn, step);
           }
         }
       };

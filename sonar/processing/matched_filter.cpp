@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "raytrace/parallel.h"
+#include "sonar/complex_product.h"
 
 namespace asdic {
 namespace {
@@ -172,11 +173,8 @@ void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectru
   const auto n = static_cast<std::ptrdiff_t>(row_), count = static_cast<std::ptrdiff_t>(bins_);
   const std::complex<float>* weight = weights_.data() + k * bins_;
   const auto multiply = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t shift) {
-    for (std::ptrdiff_t i = begin; i < end; ++i) {
-      const std::complex<float> x = spectrum[first_[k] + i + shift], w = weight[i];
-      out[i] = {x.real() * w.real() - x.imag() * w.imag(),
-                x.real() * w.imag() + x.imag() * w.real()};
-    }
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      out[i] = finite_product(spectrum[first_[k] + i + shift], weight[i]);
   };
   const auto within = [&](std::ptrdiff_t i) { return std::clamp<std::ptrdiff_t>(i, 0, count); };
   const std::ptrdiff_t lowest = within(-n - first_[k]), zero = within(-first_[k]),

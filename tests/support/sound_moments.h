@@ -1,4 +1,6 @@
 #pragma once
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
@@ -29,6 +31,24 @@ inline Moments moments(const ReverberantSea& sea, int pings, double from, double
   }
   found.mean /= found.count;
   return found;
+}
+
+/// Reverberation has the covariances between phones of the plain sum over scatterers: 30 pings of
+/// 38 times 0.25 s apart (two pulse lengths), 1140 samples each; elements of a sample covariance
+/// have a standard deviation of the powers' geometric mean over √count (real and imaginary part
+/// 1/√2 of it, or all of it in one), the difference of two √2 of it: 4.9·√2/√1140 = 0.205. The
+/// wrong model, phones in another place, must fail.
+inline void expect_moments_of_the_plain_sum(const Scenario& s) {
+  Scenario plain = s, wrong = s;
+  plain.reverberation.synthesis = ScattererSynthesis::scatterers;
+  for (Vec3& phone : wrong.arrays[0].phones) phone = Vec3(0.7 * phone.y(), 0.5 * phone.x(), 0.0);
+  const auto of = [](const Scenario& sea) {
+    return moments(ReverberantSea(sea), 30, 2.5, 12.0, 0.25);
+  };
+  const Moments a = of(plain), b = of(s), w = of(wrong);
+  const double allowed = 4.9 * std::sqrt(2.0 / a.count);
+  EXPECT_LT((a.mean - b.mean).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_GT((a.mean - w.mean).cwiseAbs().maxCoeff(), allowed);
 }
 
 /// Mean of conj(B_m(ν))·B_n(ν) over pings and windows at a frequency off the carrier.

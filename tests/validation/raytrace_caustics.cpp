@@ -7,11 +7,13 @@
 #include "raytrace/propagation.h"
 #include "raytrace/waves/airy.h"
 #include "raytrace/waves/caustics.h"
+#include "support/sum_of.h"
 
 namespace asdic {
 namespace {
 
 using Complex = std::complex<double>;
+using support::sum_of;
 
 const ReflectionTable nothing_back{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}};
 constexpr PathLimits in_the_water{.max_surface_bounces = 0, .max_bottom_bounces = 0};
@@ -52,13 +54,6 @@ Arrivals with_caustics(const EigenraySolver& solver, const Places& at, double ra
   Arrivals found = rays_of(solver, at, range);
   put_caustics(solver, at.source, at.receiver, range, at.frequency, in_the_water, found);
   return found;
-}
-
-Complex sum_of(const Arrivals& arrivals, double frequency) {
-  Complex sum = 0.0;
-  for (const Arrival& a : arrivals)
-    sum += a.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(frequency * a.delay, 1.0));
-  return sum;
 }
 
 TEST(Airy, FunctionsOfTheirTables) {  // DLMF table 9.4, and the Wronskian 1/π

@@ -7,11 +7,13 @@
 #include "raytrace/propagation.h"
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
+#include "support/sum_of.h"
 
 namespace asdic {
 namespace {
 
 using Complex = std::complex<double>;
+using support::sum_of;
 
 const ReflectionTable nothing_back{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}};
 
@@ -96,13 +98,6 @@ Arrivals found(const EigenraySolver& solver, const Water& water, const Places& a
   if (waves)
     put_waves(solver, at.source, at.receiver, range, at.frequency, water.limits, rays, keep);
   return rays;
-}
-
-Complex sum_of(const Arrivals& arrivals, double frequency) {
-  Complex sum = 0.0;
-  for (const Arrival& a : arrivals)
-    sum += a.amplitude * std::polar(1.0, -2.0 * pi * std::fmod(frequency * a.delay, 1.0));
-  return sum;
 }
 
 /// Root mean squares over ranges, as shares of the waves' field: of what is left of an error with
