@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/error.h"
-#include "io/text/toml_value.h"
+#include "core/text.h"
 
 namespace asdic::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/climatology/grids.h"
-#include "io/text/toml_value.h"
 
 namespace asdic {
 namespace {

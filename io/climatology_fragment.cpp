@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text.h"
 #include "io/climatology.h"
-#include "io/text/toml_value.h"
 
 namespace asdic {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "io/climatology.h"
 #include "io/climatology/grids.h"
-#include "io/text/toml_value.h"
 #include "raytrace/ocean/seawater.h"
 #include "raytrace/ocean/sound_speed.h"
 

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/hdf5/gate.h"
 #include "io/hdf5/handles.h"
 #include "io/input_file.h"
 #include "io/isolated/child.h"
 #include "io/isolated/pack.h"
 #include "io/output/files_read.h"
-#include "io/text/quote.h"
 
 namespace asdic {
 namespace {

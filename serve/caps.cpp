@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "io/text/toml_value.h"
+#include "core/text.h"
 #include "serve/refusal.h"
 #include "sonar/ping_memory.h"
 #include "sonar/sampling.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "io/text/quote.h"
+#include "core/text.h"
 #include "serve/refusal.h"
 
 namespace asdic::serve {

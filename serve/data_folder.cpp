@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/text/quote.h"
+#include "core/text.h"
 #include "serve/refusal.h"
 
 namespace asdic::serve {

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/quantities.h"
 #include "io/scenario/sections.h"
 #include "io/text/toml_value.h"
 #include "serve/places.h"
 
 namespace asdic::serve {
 namespace {
-
-using scenario::coordinate;
-using scenario::velocity_component;
 
 constexpr Quantity moment{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
 
@@ -39,11 +37,11 @@ void forget_motion(TomlValue& table) {
 
 /// The horizontal velocity of a course and a speed; the vertical one stays.
 Vec3 on_course(TomlTable& wanted, const Vec3& velocity) {
-  constexpr Quantity heading{.noun = "heading", .unit = "degrees", .low = -360.0, .high = 360.0};
   constexpr Quantity speed{.noun = "speed", .unit = "m/s", .low = 0.0, .high = 100.0};
   const double knots = velocity.head<2>().norm();  // so far [m/s]
-  const double course = wanted.has("heading_deg") ? radians(wanted.number("heading_deg", heading))
-                                                  : std::atan2(velocity.x(), velocity.y());
+  const double course = wanted.has("heading_deg")
+                            ? radians(wanted.number("heading_deg", quantity::heading.in_degrees()))
+                            : std::atan2(velocity.x(), velocity.y());
   const double v = wanted.number("speed", speed, knots);
   return {v * std::sin(course), v * std::cos(course), velocity.z()};
 }
@@ -83,7 +81,7 @@ void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& tab
     TomlValue::Array points;
     for (TomlTable& point : wanted.tables("waypoints")) {
       points.push_back(
-          waypoint(point.number("time", moment), point.vector("position", coordinate)));
+          waypoint(point.number("time", moment), point.vector("position", quantity::coordinate)));
       point.finish();
     }
     forget_motion(table);
@@ -91,11 +89,11 @@ void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& tab
     return;
   }
   Kinematics state = now.at(time);
-  state.position = wanted.vector("position", coordinate, state.position);
+  state.position = wanted.vector("position", quantity::coordinate, state.position);
   if (wanted.has("velocity")) {
     for (const char* key : {"heading_deg", "speed"})
       if (wanted.has(key)) throw wanted.fault(key, "none of it beside velocity");
-    state.velocity = wanted.vector("velocity", velocity_component);
+    state.velocity = wanted.vector("velocity", quantity::velocity);
   } else if (wanted.has("heading_deg") || wanted.has("speed")) {
     state.velocity = on_course(wanted, state.velocity);
   }

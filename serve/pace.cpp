@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/text/quote.h"
-#include "io/text/toml_value.h"
+#include "core/text.h"
 
 namespace asdic::serve {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/quantities.h"
 #include "io/scenario/sections.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
@@ -27,9 +28,9 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
   if (reader.has("time"))
     ping.time = reader.number("time", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9});
   if (reader.has("elevation_deg"))
-    ping.elevation = radians(reader.number("elevation_deg", scenario::elevation_quantity));
+    ping.elevation = radians(reader.number("elevation_deg", quantity::elevation.in_degrees()));
   if (reader.has("source_level_db"))
-    ping.changes.source_level_db = reader.number("source_level_db", scenario::level_quantity);
+    ping.changes.source_level_db = reader.number("source_level_db", quantity::level);
   if (reader.has("beamwidth_deg"))
     ping.changes.beamwidth_deg = reader.number(
         "beamwidth_deg", {.noun = "beamwidth", .unit = "degrees", .low = 0.01, .high = 179.0});

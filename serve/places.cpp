@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/text/quote.h"
-#include "io/text/toml_value.h"
+#include "core/text.h"
 #include "serve/refusal.h"
 
 namespace asdic::serve {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <new>
 
+#include "core/text.h"
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "serve/answers.h"

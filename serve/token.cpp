@@ -3,8 +3,8 @@
 #include <random>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/input_file.h"
-#include "io/text/quote.h"
 
 namespace asdic::serve {
 

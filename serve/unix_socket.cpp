@@ -6,7 +6,7 @@
 #include <asio.hpp>
 
 #include "core/error.h"
-#include "io/text/quote.h"
+#include "core/text.h"
 
 namespace asdic::serve {
 

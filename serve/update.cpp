@@ -4,16 +4,15 @@
 #include <array>
 #include <limits>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
-#include "io/text/quote.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
 #include "serve/motion.h"
 
 namespace asdic::serve {
 namespace {
-
-using scenario::coordinate;
 
 /// The tables of a section that stands once, [x], or several times, [[x]].
 template <class Value>
@@ -91,7 +90,7 @@ void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlVa
     const TomlValue& values = *given[place++];
     TomlValue& table = *tables[index_of(wanted, context.scenario.arrays, "arrays")];
     if (wanted.has("positions")) {
-      static_cast<void>(wanted.vectors("positions", coordinate));
+      static_cast<void>(wanted.vectors("positions", quantity::coordinate));
       for (const char* key : {"phones", "spacing", "heading_deg", "pitch_deg", "shapes", "behind"})
         erase_key(table, key);
       set_key(table, "kind", {.data = std::string("positions"), .origin = ""});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/scenario_reader.h"
 
 namespace asdic::study {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "io/text/toml_value.h"
+#include "core/text.h"
 #include "study/intervals.h"
 #include "study/summary_parts.h"
 

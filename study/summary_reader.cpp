@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/text/quote.h"
+#include "core/text.h"
 
 namespace asdic::study {
 namespace {

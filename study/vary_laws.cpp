@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
-#include "io/text/quote.h"
 #include "study/vary_profiles.h"
 
 namespace asdic::study {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr Quantity any{};
 constexpr Quantity positive{.low = 0.0, .above = true};
-constexpr Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
 
 /// \throws InputError unless exactly one of the keys stands there
 void require_one(TomlTable& table, const std::string& a, const std::string& b) {
@@ -182,7 +182,7 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
   const Scenario scenario = scenario_of(study.scenario, study.scenario_path);
   law.centre = scenario.platforms[0].track.at(0.0).position.head<2>();
   if (table.has("centre")) {
-    const std::vector<double> centre = table.numbers("centre", coordinate);
+    const std::vector<double> centre = table.numbers("centre", quantity::coordinate);
     if (centre.size() != 2) throw table.fault("centre", "[east, north] in m");
     law.centre = {centre[0], centre[1]};
   }
@@ -194,14 +194,13 @@ TrackLaw read_track(TomlTable& table, const Variable& variable, const Study& stu
   const Quantity turn{.noun = "bearing", .unit = "degrees", .low = -360.0, .high = 720.0};
   const Span bearing = read_span(table, "bearing_deg", turn, {0.0, 360.0});
   law.bearing = {radians(bearing.low), radians(bearing.high)};
-  const Quantity depth{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
   std::optional<Span> start;  // as deep as the scenario has it
   for (std::size_t t = 0; t < scenario.targets.size(); ++t) {
     const double z = scenario.targets[t].track.at(0.0).position.z();
     if (variable.keys.front() == "target." + std::to_string(t)) start = Span{z, z};
   }
-  if (!start && !table.has("depth")) throw table.fault("depth", depth.expected());
-  law.depth = read_span(table, "depth", depth, start.value_or(Span{}));
+  if (!start && !table.has("depth")) throw table.fault("depth", quantity::depth.expected());
+  law.depth = read_span(table, "depth", quantity::depth, start.value_or(Span{}));
   if (table.has("speed"))
     law.speed =
         read_span(table, "speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 100.0}, {});

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
-#include "io/text/quote.h"
 
 namespace asdic::study {
 namespace {
-
-constexpr Quantity depth_quantity{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
 
 /// Modes out of the file itself or of a CSV file with columns depth, mode_1, mode_2, …
 struct GivenModes {
@@ -31,7 +30,7 @@ GivenModes read_given(TomlTable& table, const std::filesystem::path& folder) {
     if (given.modes.empty())
       throw table.fault("file", "columns depth, mode_1, mode_2, …", "no column mode_1");
   } else {
-    given.depth = table.numbers("depth", depth_quantity);
+    given.depth = table.numbers("depth", quantity::depth);
     given.modes = table.rows("modes", {.noun = "number"});
     if (given.modes.front().size() != given.depth.size())
       throw table.fault(

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/quantities.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 #include "io/input_file.h"
@@ -71,8 +72,8 @@ void read_section(CaseReading& reading, const std::vector<double>& depth,
     file.begin("speeds at " + shown(depth[j]) + " m");
     for (std::size_t i = 0; i < n; ++i) {
       const double c = file.need_real("speed");
-      if (!scenario::speed_of_sound.holds(c))
-        file.fail("speed", shown(c) + " m/s", scenario::speed_of_sound.expected());
+      if (!quantity::sound_speed.holds(c))
+        file.fail("speed", shown(c) + " m/s", quantity::sound_speed.expected());
       speed[i * depth.size() + j] = c;
     }
     file.end();

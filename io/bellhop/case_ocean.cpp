@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/quantities.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 #include "io/scenario/sections.h"
@@ -34,8 +35,8 @@ double attenuation_at_node(const CaseReading& reading) {
 void check_water(const CaseReading& reading) {
   const ListReader& env = reading.env;
   const MaterialRow& row = reading.row;
-  if (!scenario::speed_of_sound.holds(row.speed))
-    env.fail("speed", shown(row.speed) + " m/s", scenario::speed_of_sound.expected());
+  if (!quantity::sound_speed.holds(row.speed))
+    env.fail("speed", shown(row.speed) + " m/s", quantity::sound_speed.expected());
   if (!(row.density > 0.0))
     env.fail("density", shown(row.density) + " g/cm^3", "a density above 0 g/cm^3");
   if (row.attenuation < 0.0)

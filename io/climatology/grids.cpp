@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/text/toml_value.h"
+#include "core/text.h"
 
 namespace asdic::climatology {
 namespace {

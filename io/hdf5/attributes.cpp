@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/hdf5/elements.h"
 #include "io/hdf5/remote.h"
-#include "io/text/toml_value.h"
 
 namespace asdic {
 namespace {

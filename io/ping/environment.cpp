@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
 #include "io/text/material_text.h"
-#include "io/text/toml_value.h"
 #include "sonar/propagation_paths.h"
 #include "sonar/transmitter.h"
 

@@ -1,19 +1,10 @@
 #include "io/scenario/angles.h"
 
+#include "core/text.h"
 #include "core/units.h"
-#include "io/text/quote.h"
 
 namespace asdic::scenario {
 namespace {
-
-Quantity in_degrees(const AngleQuantity& q) {
-  return {.noun = q.noun, .unit = "degrees", .low = q.low_deg, .high = q.high_deg};
-}
-
-Quantity in_radians(const AngleQuantity& q) {
-  return {
-      .noun = q.noun, .unit = "radians", .low = radians(q.low_deg), .high = radians(q.high_deg)};
-}
 
 bool is_in_radians(const std::string& key) { return key.ends_with("_rad"); }
 
@@ -36,15 +27,15 @@ double read_angle(TomlTable& table, const std::string& name, const AngleQuantity
                   std::optional<double> fallback_rad) {
   const std::string key = angle_key(table, name);
   if (fallback_rad && !table.has(key)) return *fallback_rad;
-  if (is_in_radians(key)) return table.number(key, in_radians(quantity));
-  return radians(table.number(key, in_degrees(quantity)));
+  if (is_in_radians(key)) return table.number(key, quantity.in_radians());
+  return radians(table.number(key, quantity.in_degrees()));
 }
 
 std::vector<double> read_angles(TomlTable& table, const std::string& name,
                                 const AngleQuantity& quantity) {
   const std::string key = angle_key(table, name);
-  if (is_in_radians(key)) return table.numbers(key, in_radians(quantity));
-  std::vector<double> angles = table.numbers(key, in_degrees(quantity));
+  if (is_in_radians(key)) return table.numbers(key, quantity.in_radians());
+  std::vector<double> angles = table.numbers(key, quantity.in_degrees());
   for (double& angle : angles) angle = radians(angle);
   return angles;
 }

@@ -7,12 +7,8 @@
 
 namespace asdic::scenario {
 
-/// Angles of a scenario are degrees, "lowest_deg"; "lowest_rad" is taken as well, since not every
-/// angle of a program has a decimal number of degrees that reads back as the same bits.
-struct AngleQuantity {
-  std::string_view noun;
-  double low_deg, high_deg;
-};
+// Angles of a scenario are degrees, "lowest_deg"; "lowest_rad" is taken as well, since not every
+// angle of a program has a decimal number of degrees that reads back as the same bits.
 
 /// \return [rad]. \throws InputError if both keys stand there, or neither and there is no fallback
 [[nodiscard]] double read_angle(TomlTable& table, const std::string& name,

@@ -1,20 +1,20 @@
 #include <cmath>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 
 namespace asdic::scenario {
 namespace {
 
-constexpr Quantity heading_quantity{
-    .noun = "heading", .unit = "degrees", .low = -360.0, .high = 360.0};
 constexpr Quantity spacing_quantity{
     .noun = "spacing", .unit = "m", .low = 0.0, .high = 1e4, .above = true};
 
 /// The phones of every ping in turn: an array of { positions }.
 void read_shapes(TomlTable& table, ReceiverArray& array) {
   for (TomlTable& shape : table.tables("shapes")) {
-    array.shapes.push_back(shape.vectors("positions", coordinate));
+    array.shapes.push_back(shape.vectors("positions", quantity::coordinate));
     if (array.shapes.back().size() != array.shapes.front().size())
       throw shape.fault(
           "positions",
@@ -35,19 +35,21 @@ void read_phones(TomlTable& table, ReceiverArray& array) {
       exclude(table, "shapes", {"positions"});
       read_shapes(table, array);
     } else {
-      array.phones = table.vectors("positions", coordinate);
+      array.phones = table.vectors("positions", quantity::coordinate);
     }
   } else if (kind == "towed") {
     constexpr Quantity behind{.noun = "distance", .unit = "m", .low = 0.0, .high = 1e5};
-    array.towed = TowedLine{.behind = table.numbers("behind", behind),
-                            .heading = radians(table.number("heading_deg", heading_quantity, 0.0))};
+    array.towed = TowedLine{
+        .behind = table.numbers("behind", behind),
+        .heading = radians(table.number("heading_deg", quantity::heading.in_degrees(), 0.0))};
     array.phones.resize(array.towed->behind.size());  // placed when the platforms are known
   } else {
     const int phones = static_cast<int>(table.integer("phones", 1, 4096));
     const double spacing = phones == 1 ? table.number("spacing", spacing_quantity, 1.0)
                                        : table.number("spacing", spacing_quantity);
     double heading = 0.0, pitch = 0.0;
-    if (kind != "vertical") heading = radians(table.number("heading_deg", heading_quantity, 0.0));
+    if (kind != "vertical")
+      heading = radians(table.number("heading_deg", quantity::heading.in_degrees(), 0.0));
     if (kind == "vertical") pitch = pi / 2.0;
     if (kind == "line")
       pitch = radians(table.number(
@@ -91,8 +93,8 @@ Electronics read_electronics(TomlTable table, std::size_t phones) {
     TomlTable filter = table.table("band_pass");
     Electronics::BandPass band;
     band.order = static_cast<int>(filter.integer("order", 1, 32, band.order));
-    band.low = filter.number("low", frequency_quantity);
-    band.high = filter.number("high", frequency_quantity);
+    band.low = filter.number("low", quantity::frequency);
+    band.high = filter.number("high", quantity::frequency);
     if (band.high <= band.low)
       throw filter.fault("high", "a frequency above low, " + to_text(band.low) + " Hz");
     filter.finish();
@@ -120,7 +122,7 @@ void read_arrays(std::vector<TomlTable> tables, Scenario& scenario) {
     array.name = read_name(table, "array", scenario.arrays, tables.size());
     array.platform = read_reference(table, "platform", scenario.platforms);
     read_phones(table, array);
-    array.offset = table.vector("offset", coordinate, Vec3::Zero());
+    array.offset = table.vector("offset", quantity::coordinate, Vec3::Zero());
     if (table.has("electronics"))
       array.electronics = read_electronics(table.table("electronics"), array.phones.size());
     table.finish();

@@ -1,8 +1,9 @@
 #include <array>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
-#include "io/text/quote.h"
 
 namespace asdic::scenario {
 namespace {
@@ -29,8 +30,8 @@ ShapeInterpolation read_interpolation(TomlTable& table) {
 
 BoundaryShape read_shape(TomlTable& table, const OceanReading& reading) {
   const Columns columns = read_columns(
-      table, reading.folder, {{"range", range_quantity}, {"depth", water_depth_quantity}});
-  require_increasing(columns, "m");
+      table, reading.folder, {{"range", quantity::range}, {"depth", quantity::water_depth}});
+  require_increasing(columns);
   return {columns.values[0], columns.values[1], read_interpolation(table)};
 }
 
@@ -43,9 +44,9 @@ std::vector<BoundaryMaterial> materials_of_file(TomlTable& table, const OceanRea
   if (!read_csv_of(table, reading.folder).has("speed")) return {};
   const bool elastic = read_csv_of(table, reading.folder).has("shear_speed");
   const Quantity loss{.noun = "attenuation", .unit = "dB per wavelength", .low = 0.0, .high = 50.0};
-  std::vector<std::pair<std::string, Quantity>> wanted = {{"range", range_quantity},
-                                                          {"speed", material_speed},
-                                                          {"density", material_density},
+  std::vector<std::pair<std::string, Quantity>> wanted = {{"range", quantity::range},
+                                                          {"speed", quantity::sound_speed},
+                                                          {"density", quantity::density},
                                                           {"attenuation_db_per_wavelength", loss}};
   if (elastic) {
     wanted.push_back({"shear_speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5}});
@@ -92,7 +93,7 @@ std::vector<BoundaryMaterial> read_materials(TomlTable& table, const OceanReadin
 Boundary read_boundary_place(TomlTable& table, const OceanReading& reading, bool surface) {
   const std::string key = shape_key(table);
   if (!table.has(key)) {
-    if (surface) return {.depth = table.number("depth", water_depth_quantity, 0.0)};
+    if (surface) return {.depth = table.number("depth", quantity::water_depth, 0.0)};
     return {.depth = table.number("depth", bottom_depth)};
   }
   if (table.has("depth"))

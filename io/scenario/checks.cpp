@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/text.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
 #include "sonar/ping_bounds.h"

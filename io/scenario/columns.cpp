@@ -1,6 +1,6 @@
 #include "io/scenario/columns.h"
 
-#include "io/text/quote.h"
+#include "core/text.h"
 
 namespace asdic::scenario {
 
@@ -22,41 +22,63 @@ CsvTable read_csv_of(TomlTable& table, const std::filesystem::path& folder) {
   return read_csv(path);
 }
 
-Columns read_columns(TomlTable& table, const std::filesystem::path& folder,
-                     const std::vector<std::pair<std::string, Quantity>>& wanted) {
+namespace {
+
+Columns columns_of(TomlTable& table, const std::vector<std::pair<std::string, Quantity>>& wanted) {
   Columns columns;
   columns.table = &table;
-  for (const auto& [name, quantity] : wanted) columns.names.push_back(name);
-  if (table.has("file")) {
-    const CsvTable csv = read_csv_of(table, folder);
-    columns.csv_file = csv.file;
-    columns.csv_lines = csv.lines;
-    for (const std::string& name : columns.names) columns.values.push_back(csv.column(name));
-  } else {
-    for (const auto& [name, quantity] : wanted)
-      columns.values.push_back(table.numbers(name, quantity));
-  }
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto& [name, quantity] = wanted[i];
-    if (columns.values[i].size() != columns.rows())
-      throw table.fault(
-          name, "as many values as " + columns.names[0] + "s, " + std::to_string(columns.rows()));
-    for (std::size_t row = 0; row < columns.rows(); ++row)
-      if (!quantity.holds(columns.values[i][row]))
-        throw columns.fault(i, row, quantity.expected(), quantity.unit);
+  for (const auto& [name, quantity] : wanted) {
+    columns.names.push_back(name);
+    columns.quantities.push_back(quantity);
   }
   return columns;
 }
 
-void require_increasing(const Columns& columns, std::string_view unit) {
-  const std::string& name = columns.names[0];
-  const std::string side = name == "depth" ? "below" : "above";
+/// \throws InputError at a column longer or shorter than the first, or a number out of its range
+void check_columns(const Columns& columns) {
+  for (std::size_t i = 0; i < columns.names.size(); ++i) {
+    const Quantity& quantity = columns.quantities[i];
+    if (columns.values[i].size() != columns.rows())
+      throw columns.table->fault(columns.names[i], "as many values as " +
+                                                       std::string(columns.quantities[0].noun) +
+                                                       "s, " + std::to_string(columns.rows()));
+    for (std::size_t row = 0; row < columns.rows(); ++row)
+      if (!quantity.holds(columns.values[i][row]))
+        throw columns.fault(i, row, quantity.expected(), quantity.unit);
+  }
+}
+
+}  // namespace
+
+Columns read_lists(TomlTable& table, const std::vector<std::pair<std::string, Quantity>>& wanted) {
+  Columns columns = columns_of(table, wanted);
+  for (const auto& [name, quantity] : wanted)
+    columns.values.push_back(table.numbers(name, quantity));
+  check_columns(columns);
+  return columns;
+}
+
+Columns read_columns(TomlTable& table, const std::filesystem::path& folder,
+                     const std::vector<std::pair<std::string, Quantity>>& wanted) {
+  if (!table.has("file")) return read_lists(table, wanted);
+  Columns columns = columns_of(table, wanted);
+  const CsvTable csv = read_csv_of(table, folder);
+  columns.csv_file = csv.file;
+  columns.csv_lines = csv.lines;
+  for (const std::string& name : columns.names) columns.values.push_back(csv.column(name));
+  check_columns(columns);
+  return columns;
+}
+
+void require_increasing(const Columns& columns) {
+  const Quantity& first = columns.quantities[0];
+  const std::string side = first.noun == "depth" ? "below" : "above";
   for (std::size_t row = 1; row < columns.rows(); ++row)
     if (columns.values[0][row] <= columns.values[0][row - 1])
       throw columns.fault(0, row,
-                          "a " + name + " " + side + " the one before it, " +
-                              to_text(columns.values[0][row - 1]) + " " + std::string(unit),
-                          unit);
+                          with_article(first.noun) + " " + side + " the one before it, " +
+                              to_text(columns.values[0][row - 1]) + " " + std::string(first.unit),
+                          first.unit);
 }
 
 }  // namespace asdic::scenario

@@ -17,20 +17,25 @@ struct Columns {
   std::string csv_file;  ///< "" when they stand in the scenario itself
   std::vector<int> csv_lines;
   std::vector<std::string> names;
+  std::vector<Quantity> quantities;  ///< [names]
 
   [[nodiscard]] std::size_t rows() const { return values[0].size(); }
   [[nodiscard]] InputError fault(std::size_t column, std::size_t row, const std::string& expected,
                                  std::string_view unit) const;
 };
 
-/// The named arrays of a table, or the columns of the CSV file that its `file` names. All have as
-/// many rows as the first.
+/// The named arrays of a table. All have as many rows as the first.
+/// \throws InputError at the first number that is not of its quantity
+[[nodiscard]] Columns read_lists(TomlTable& table,
+                                 const std::vector<std::pair<std::string, Quantity>>& wanted);
+
+/// The same, or the columns of the CSV file that the table's `file` names.
 /// \throws InputError at the first number that is not of its quantity
 [[nodiscard]] Columns read_columns(TomlTable& table, const std::filesystem::path& folder,
                                    const std::vector<std::pair<std::string, Quantity>>& wanted);
 
 /// \throws InputError at the first value of the first column that is not beyond the one before it
-void require_increasing(const Columns& columns, std::string_view unit);
+void require_increasing(const Columns& columns);
 
 /// The CSV file that `file` names.
 [[nodiscard]] CsvTable read_csv_of(TomlTable& table, const std::filesystem::path& folder);

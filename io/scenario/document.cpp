@@ -1,8 +1,8 @@
 #include "io/scenario/document.h"
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/text/csv_table.h"
-#include "io/text/quote.h"
 #include "io/text/toml_table.h"
 
 namespace asdic::scenario {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "io/text/quote.h"
+#include "core/text.h"
 
 namespace asdic::scenario {
 namespace {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
@@ -49,8 +51,6 @@ void check_water(TomlTable& bottom, const Environment& ocean) {
                        "none");
 }
 
-constexpr Quantity wind_quantity{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
-
 /// `roughness` [m], or "wind": the wind's sea; its spectrum is known. `bubbles`: under it.
 void read_roughness(TomlTable& table, double wind_speed, bool surface, Boundary& boundary) {
   Roughness& rough = boundary.roughness;
@@ -62,19 +62,19 @@ void read_roughness(TomlTable& table, double wind_speed, bool surface, Boundary&
     rough.rms_height = table.number(
         "roughness", {.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0}, 0.0);
     if (table.has("roughness"))
-      rough.sea_wind = table.number("roughness_wind", wind_quantity, rough.sea_wind);
+      rough.sea_wind = table.number("roughness_wind", quantity::wind_speed, rough.sea_wind);
   }
   constexpr Quantity floor{.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0};
   if (table.has("roughness"))  // what leaves the mean field is not lost: no floor is wanted
     rough.floor_db = table.number("roughness_floor_db", floor, floor.low);
   if (surface && table.choice("bubbles", {"none", "apl-uw"}, "none") == "apl-uw")
-    rough.bubble_wind = table.number("bubbles_wind", wind_quantity, wind_speed);
+    rough.bubble_wind = table.number("bubbles_wind", quantity::wind_speed, wind_speed);
 }
 
 Transect read_transect(TomlTable table) {
   Transect transect;
   if (table.has("origin")) {
-    const auto origin = table.numbers("origin", coordinate);
+    const auto origin = table.numbers("origin", quantity::coordinate);
     if (origin.size() != 2) throw table.fault("origin", "[east, north] in m");
     transect.x = origin[0];
     transect.y = origin[1];
@@ -96,7 +96,7 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   read_water_losses(table, reading, ocean);
   read_sound_speed(table.table("sound_speed"), reading, ocean);
   read_boundary_materials(bottom, reading, ocean, std::nullopt, ocean.bottom);
-  const double wind = table.number("wind_speed", wind_quantity, default_wind_speed);
+  const double wind = table.number("wind_speed", quantity::wind_speed, default_wind_speed);
   read_roughness(bottom, wind, false, ocean.bottom);
   bottom.finish();
   read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
@@ -110,7 +110,7 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
 
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario) {
-  scenario.wind_speed = table.number("wind_speed", wind_quantity, scenario.wind_speed);
+  scenario.wind_speed = table.number("wind_speed", quantity::wind_speed, scenario.wind_speed);
   scenario.transect = read_transect(table.table("transect"));
   scenario.environment =
       read_ocean(table, {.folder = folder, .frequency = frequency, .notes = scenario.notes});

@@ -1,3 +1,4 @@
+#include "core/quantities.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
@@ -10,12 +11,12 @@ void read_broadband(TomlTable& table, const std::filesystem::path& folder, Inter
     exclude(table, "spectrum", {"level_db", "slope_db_per_decade"});
     TomlTable spectrum = table.table("spectrum");
     const Columns columns = read_columns(
-        spectrum, folder, {{"frequency", frequency_quantity}, {"level_db", level_quantity}});
-    require_increasing(columns, "Hz");
+        spectrum, folder, {{"frequency", quantity::frequency}, {"level_db", quantity::level}});
+    require_increasing(columns);
     spectrum.finish();
     ship.table = NoiseTable{columns.values[0], columns.values[1]};
   } else if (table.has("level_db")) {
-    ship.level_db = table.number("level_db", level_quantity);
+    ship.level_db = table.number("level_db", quantity::level);
     ship.slope_db_per_decade = table.number(
         "slope_db_per_decade", {.noun = "slope", .unit = "dB", .low = -60.0, .high = 20.0},
         ship.slope_db_per_decade);
@@ -34,13 +35,13 @@ void read_interferers(std::vector<TomlTable> tables, const std::filesystem::path
       ship.track.waypoints = read_waypoints(table);
       ship.track.start.position = ship.track.waypoints.front().position;
     } else {
-      ship.track.start.position = table.vector("position", coordinate);
-      ship.track.start.velocity = table.vector("velocity", velocity_component, Vec3::Zero());
+      ship.track.start.position = table.vector("position", quantity::coordinate);
+      ship.track.start.velocity = table.vector("velocity", quantity::velocity, Vec3::Zero());
     }
     read_broadband(table, folder, ship);
     for (TomlTable& tonal : table.tables("tonal")) {
-      ship.tonals.push_back({.frequency = tonal.number("frequency", frequency_quantity),
-                             .level_db = tonal.number("level_db", level_quantity)});
+      ship.tonals.push_back({.frequency = tonal.number("frequency", quantity::frequency),
+                             .level_db = tonal.number("level_db", quantity::level)});
       tonal.finish();
     }
     if (!ship.level_db && !ship.table && ship.tonals.empty())

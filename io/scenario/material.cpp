@@ -2,11 +2,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
-#include "io/text/quote.h"
 #include "raytrace/ocean/strongest_reflection.h"
 
 namespace asdic::scenario {
@@ -64,8 +65,8 @@ double read_loss(TomlTable& table, const std::string& prefix, double speed, doub
 
 FluidHalfSpace read_fluid(TomlTable& table, double frequency) {
   FluidHalfSpace fluid;
-  fluid.speed = table.number("speed", material_speed, fluid.speed);
-  Quantity density = material_density;
+  fluid.speed = table.number("speed", quantity::sound_speed, fluid.speed);
+  Quantity density = quantity::density;
   if (fluid.speed < fastest_gas) density.low = 0.1;
   fluid.density = table.number("density", density, fluid.density);
   fluid.attenuation_db_per_wavelength =
@@ -77,10 +78,10 @@ ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading,
                               const WaterAtBoundary& water) {
   ElasticHalfSpace solid;
   const double f = reading.frequency;
-  solid.speed = table.number("speed", material_speed, solid.speed);
+  solid.speed = table.number("speed", quantity::sound_speed, solid.speed);
   solid.shear_speed = table.number(
       "shear_speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5}, solid.shear_speed);
-  solid.density = table.number("density", material_density, solid.density);
+  solid.density = table.number("density", quantity::density, solid.density);
   solid.attenuation_db_per_wavelength =
       read_loss(table, "", solid.speed, f, solid.attenuation_db_per_wavelength);
   solid.shear_attenuation_db_per_wavelength =
@@ -106,13 +107,11 @@ ElasticHalfSpace read_elastic(TomlTable& table, const OceanReading& reading,
 FluidHalfSpace read_grain_size(TomlTable& table, const WaterAtBoundary& water) {
   const double size = table.number(
       "grain_size", {.noun = "mean grain size", .unit = "phi", .low = -1.0, .high = 9.0});
-  const double speed = table.number("water_speed", material_speed, water.speed);
-  const double density = table.number("water_density", material_density, water.density);
+  const double speed = table.number("water_speed", quantity::sound_speed, water.speed);
+  const double density = table.number("water_density", quantity::density, water.density);
   return sediment_of_grain_size(size, speed, density);
 }
 
-constexpr AngleQuantity reflection_grazing{
-    .noun = "grazing angle", .low_deg = 0.0, .high_deg = 90.0};
 constexpr AngleQuantity reflection_phase{.noun = "phase", .low_deg = -36000.0, .high_deg = 36000.0};
 constexpr Quantity reflection_magnitude{.noun = "magnitude", .low = 0.0, .high = 1.0};
 constexpr Quantity reflection_loss{.noun = "loss", .unit = "dB", .low = 0.0, .high = 300.0};
@@ -154,7 +153,7 @@ ReflectionTable rows_of_file(const CsvTable& csv, std::size_t first, std::size_t
 /// grazing_deg, magnitude or loss_db, phase_deg: arrays of one length.
 ReflectionTable read_rows(TomlTable& table) {
   ReflectionTable result;
-  result.grazing = read_angles(table, "grazing", reflection_grazing);
+  result.grazing = read_angles(table, "grazing", quantity::grazing);
   std::string strength = "magnitude";
   if (table.has("loss_db") && !table.has("magnitude")) {
     strength = "loss_db";
@@ -237,8 +236,8 @@ void check_passive(TomlTable& table, const FloorLayer& layer) {
 /// A layer's keys; with shear_speed above 0 it is a solid.
 FloorLayer read_layer_waves(TomlTable& table, const OceanReading& reading) {
   FloorLayer layer;
-  layer.speed = table.number("speed", material_speed, layer.speed);
-  layer.density = table.number("density", material_density, layer.density);
+  layer.speed = table.number("speed", quantity::sound_speed, layer.speed);
+  layer.density = table.number("density", quantity::density, layer.density);
   layer.shear_speed = table.number(
       "shear_speed", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 1e5}, layer.shear_speed);
   const double f = reading.frequency;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/quantities.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/sections.h"
@@ -10,12 +11,10 @@
 namespace asdic::scenario {
 namespace {
 
-constexpr Quantity wind{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
-
 NoiseTable read_table(TomlTable& table, const std::filesystem::path& folder) {
   const Columns columns = read_columns(
-      table, folder, {{"frequency", frequency_quantity}, {"level_db", level_quantity}});
-  require_increasing(columns, "Hz");
+      table, folder, {{"frequency", quantity::frequency}, {"level_db", quantity::level}});
+  require_increasing(columns);
   return {columns.values[0], columns.values[1]};
 }
 
@@ -35,14 +34,14 @@ void read_spectrum(TomlTable& table, const std::filesystem::path& folder, Scenar
   const std::string kind = table.choice("kind", kinds, kinds[0]);
   if (kind != "white") exclude(table, "kind = \"" + kind + "\"", {"spectral_level_db"});
   if (kind == "white" && (any || level))
-    noise.spectral_level_db = table.number("spectral_level_db", level_quantity);
+    noise.spectral_level_db = table.number("spectral_level_db", quantity::level);
   if (kind == "wenz")
     noise.law = WenzNoise{
         .shipping = table.number("shipping", {.noun = "shipping", .low = 0.0, .high = 1.0}, 0.5),
-        .wind_speed = table.number("wind_speed", wind, scenario.wind_speed)};
+        .wind_speed = table.number("wind_speed", quantity::wind_speed, scenario.wind_speed)};
   if (kind == "knudsen") {
     if (table.has("wind_speed")) exclude(table, "wind_speed", {"sea_state"});
-    const double wind_speed = table.number("wind_speed", wind, scenario.wind_speed);
+    const double wind_speed = table.number("wind_speed", quantity::wind_speed, scenario.wind_speed);
     const double by_wind = sea_state_of_wind(wind_speed);
     if (!table.has("sea_state")) note_wind(wind_speed, scenario);
     noise.law = KnudsenNoise{
@@ -56,7 +55,7 @@ void read_spectrum(TomlTable& table, const std::filesystem::path& folder, Scenar
 void read_profile(TomlTable table, NoiseDirections& directions) {
   directions.elevation =
       read_angles(table, "elevation", {.noun = "elevation", .low_deg = -90.0, .high_deg = 90.0});
-  directions.level_db = table.numbers("level_db", level_quantity);
+  directions.level_db = table.numbers("level_db", quantity::level);
   const std::string key = angle_key(table, "elevation");
   if (directions.elevation.size() < 2) throw table.fault(key, "at least two elevations", "one");
   if (directions.level_db.size() != directions.elevation.size())

@@ -47,14 +47,5 @@ void read_water_losses(TomlTable& table, const OceanReading& reading, Environmen
 /// those keys, and finishes the table.
 [[nodiscard]] Environment read_ocean(TomlTable& table, const OceanReading& reading);
 
-inline const Quantity water_depth_quantity{
-    .noun = "depth", .unit = "m", .low = -20000.0, .high = 20000.0};
-/// Of a half space: numbers in km/s or g/cm3 are outside.
-inline constexpr Quantity material_speed{
-    .noun = "speed", .unit = "m/s", .low = 200.0, .high = 10000.0};
-inline constexpr Quantity material_density{
-    .noun = "density", .unit = "kg/m3", .low = 100.0, .high = 20000.0};
-inline const Quantity range_quantity{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
-
 }  // namespace scenario
 }  // namespace asdic

@@ -1,3 +1,5 @@
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 #include "sonar/pulse.h"
@@ -47,7 +49,7 @@ void read_samples(TomlTable& table, PingSchedule& pings) {
     return;
   }
   exclude(table, "samples = \"baseband\"", {"sample_rate"});
-  if (table.has("carrier")) pings.carrier = table.number("carrier", frequency_quantity);
+  if (table.has("carrier")) pings.carrier = table.number("carrier", quantity::frequency);
   if (table.has("baseband_rate")) pings.baseband_rate = table.number("baseband_rate", rate);
 }
 
@@ -62,11 +64,11 @@ void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scena
   if (table.has("elevations_deg")) {
     if (transmitter_has_elevation)
       throw table.fault("elevations_deg", "no elevations_deg beside transmitter.elevation_deg");
-    for (const double elevation : table.numbers("elevations_deg", elevation_quantity))
+    for (const double elevation : table.numbers("elevations_deg", quantity::elevation.in_degrees()))
       pings.elevations.push_back(radians(elevation));
   }
   pings.recording_duration =
-      table.number("recording_duration", duration_quantity, pings.recording_duration);
+      table.number("recording_duration", quantity::duration, pings.recording_duration);
   pings.recording_start =
       table.number("recording_start", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e5}, 0.0);
   read_samples(table, pings);

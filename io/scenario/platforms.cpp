@@ -1,3 +1,4 @@
+#include "core/quantities.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 
@@ -11,8 +12,8 @@ Track read_track(TomlTable& table) {
     track.waypoints = read_waypoints(table);
     track.start.position = track.waypoints.front().position;
   } else {
-    track.start = {.position = table.vector("position", coordinate),
-                   .velocity = table.vector("velocity", velocity_component, Vec3::Zero())};
+    track.start = {.position = table.vector("position", quantity::coordinate),
+                   .velocity = table.vector("velocity", quantity::velocity, Vec3::Zero())};
   }
   return track;
 }

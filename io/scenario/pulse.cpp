@@ -1,5 +1,6 @@
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
-#include "io/text/quote.h"
 #include "io/wav.h"
 
 namespace asdic::scenario {
@@ -21,16 +22,16 @@ PulseSettings read_pulse(TomlTable table, const std::filesystem::path& folder) {
     pulse.window = PulseWindow::none;
   } else if (kind == "cw") {
     pulse.kind = PulseKind::cw;
-    pulse.frequency = table.number("frequency", frequency_quantity);
+    pulse.frequency = table.number("frequency", quantity::frequency);
   } else {
     pulse.kind = kind == "lfm" ? PulseKind::lfm : PulseKind::hfm;
-    pulse.start_frequency = table.number("start_frequency", frequency_quantity);
-    pulse.end_frequency = table.number("end_frequency", frequency_quantity);
+    pulse.start_frequency = table.number("start_frequency", quantity::frequency);
+    pulse.end_frequency = table.number("end_frequency", quantity::frequency);
     if (pulse.start_frequency == pulse.end_frequency)
       throw table.fault("end_frequency", "a frequency other than start_frequency (or kind \"cw\")");
   }
   if (kind != "file") {
-    pulse.duration = table.number("duration", duration_quantity);
+    pulse.duration = table.number("duration", quantity::duration);
     const std::string window = table.choice("window", {"none", "hann", "tukey"}, "none");
     pulse.window = window == "hann"    ? PulseWindow::hann
                    : window == "tukey" ? PulseWindow::tukey

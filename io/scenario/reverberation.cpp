@@ -2,17 +2,16 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
 
 namespace asdic::scenario {
 namespace {
 
-const Quantity strength{.noun = "strength", .unit = "dB", .low = -200.0, .high = 20.0};
-const Quantity grazing_angle{.noun = "grazing angle", .unit = "degrees", .low = 0.0, .high = 90.0};
-
 void read_parameters(TomlTable& table, ScatteringTable& law) {
-  const std::vector<double> angles = table.numbers("grazing_deg", grazing_angle);
-  law.strength_db = table.numbers("strength_db", strength);
+  const std::vector<double> angles = table.numbers("grazing_deg", quantity::grazing.in_degrees());
+  law.strength_db = table.numbers("strength_db", quantity::scattering_strength);
   if (law.strength_db.size() != angles.size())
     throw table.fault(
         "strength_db", "one strength for each angle of grazing_deg",
@@ -66,7 +65,7 @@ void read_field(TomlTable& table, bool moves, ScattererField& field) {
       field.motion.speed_rms =
           table.number("speed_rms", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 20.0});
     if (table.has("current")) {
-      const std::vector<double> current = table.numbers("current", velocity_component);
+      const std::vector<double> current = table.numbers("current", quantity::velocity);
       if (current.size() != 2)
         throw table.fault("current", "two numbers: towards east and north, in m/s");
       field.motion.current = {current[0], current[1]};
@@ -91,7 +90,7 @@ void read_field(TomlTable& table, bool moves, ScattererField& field) {
 
 VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {
   VolumeLayer layer;
-  const std::vector<double> depth = table.numbers("depth", depth_quantity);
+  const std::vector<double> depth = table.numbers("depth", quantity::depth);
   if (depth.size() != 2) throw table.fault("depth", "two depths, the deeper one last");
   if (depth[1] <= depth[0])
     throw table.fault("depth", "two depths, the deeper one last",
@@ -104,7 +103,7 @@ VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {
                                    " m) and the bottom (" + to_text(bottom) + " m)");
   layer.top = depth[0];
   layer.bottom = depth[1];
-  layer.strength_db = table.number("strength_db", strength);
+  layer.strength_db = table.number("strength_db", quantity::scattering_strength);
   if (table.has("sheets")) layer.sheets = static_cast<int>(table.integer("sheets", 1, 1000));
   read_field(table, true, layer.field);
   table.finish();

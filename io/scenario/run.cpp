@@ -3,9 +3,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/text.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/propagation.h"
-#include "io/text/quote.h"
 
 namespace asdic {
 

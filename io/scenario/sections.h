@@ -33,17 +33,4 @@ void check_intervals(TomlTable& root, const Scenario& scenario);
 /// a ping fits in memory. \param root  the document, for the places of faults
 void check_scenario(TomlTable& root, const Scenario& scenario);
 
-inline const Quantity level_quantity{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};
-inline const Quantity elevation_quantity{
-    .noun = "elevation", .unit = "degrees", .low = -90.0, .high = 90.0};
-inline const Quantity depth_quantity{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
-inline const Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
-inline const Quantity velocity_component{
-    .noun = "velocity", .unit = "m/s", .low = -100.0, .high = 100.0};
-inline const Quantity frequency_quantity{
-    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
-inline const Quantity duration_quantity{
-    .noun = "duration", .unit = "s", .low = 0.0, .high = 1e5, .above = true};
-inline const Quantity speed_of_sound{.noun = "speed", .unit = "m/s", .low = 200.0, .high = 1e4};
-
 }  // namespace asdic::scenario

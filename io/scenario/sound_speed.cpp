@@ -3,6 +3,8 @@
 #include <cmath>
 #include <span>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
@@ -21,10 +23,6 @@ SoundSpeedProfile profile_of(const TomlTable& table, const std::vector<double>& 
     throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
   }
 }
-
-constexpr Quantity temperature_quantity{
-    .noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0};
-constexpr Quantity salinity_quantity{.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0};
 
 /// A short table goes on by the law of its first or last interval, as far as that makes sense: its
 /// speed at both boundaries must be near what the samples hold.
@@ -50,8 +48,8 @@ void check_reach(const TomlTable& table, const std::string& key, std::span<const
 void read_table(TomlTable& table, const OceanReading& reading, Interpolation interpolation,
                 Environment& ocean) {
   const Columns columns = read_columns(
-      table, reading.folder, {{"depth", water_depth_quantity}, {"speed", speed_of_sound}});
-  require_increasing(columns, "m");
+      table, reading.folder, {{"depth", quantity::water_depth}, {"speed", quantity::sound_speed}});
+  require_increasing(columns);
   ocean.water = profile_of(table, columns.values[0], columns.values[1], interpolation);
   check_reach(table, table.has("file") ? "file" : "depth", columns.values[0], columns.values[1],
               ocean);
@@ -60,9 +58,9 @@ void read_table(TomlTable& table, const OceanReading& reading, Interpolation int
 /// `range`, `depth` and rows of `speed`; or a CSV file with a line for every point of the grid.
 SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
   if (!table.has("file")) {
-    const std::vector<double> range = table.numbers("range", range_quantity);
-    const std::vector<double> depth = table.numbers("depth", water_depth_quantity);
-    const auto rows = table.rows("speed", speed_of_sound);
+    const std::vector<double> range = table.numbers("range", quantity::range);
+    const std::vector<double> depth = table.numbers("depth", quantity::water_depth);
+    const auto rows = table.rows("speed", quantity::sound_speed);
     if (rows.size() != range.size())
       throw table.fault("speed",
                         "a row for each of the " + std::to_string(range.size()) + " ranges",
@@ -78,9 +76,10 @@ SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
       throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
     }
   }
-  const Columns columns = read_columns(
-      table, reading.folder,
-      {{"range", range_quantity}, {"depth", water_depth_quantity}, {"speed", speed_of_sound}});
+  const Columns columns = read_columns(table, reading.folder,
+                                       {{"range", quantity::range},
+                                        {"depth", quantity::water_depth},
+                                        {"speed", quantity::sound_speed}});
   const auto& r = columns.values[0];
   const auto& z = columns.values[1];
   const auto distinct = [](std::vector<double> values) {
@@ -162,10 +161,10 @@ SoundSpeedProfile read_temperature_salinity(TomlTable& table, const OceanReading
       table.number("latitude_deg",
                    {.noun = "latitude", .unit = "degrees north", .low = -90.0, .high = 90.0}, 45.0);
   const Columns columns = read_columns(table, reading.folder,
-                                       {{"depth", depth_quantity},
-                                        {"temperature", temperature_quantity},
-                                        {"salinity", salinity_quantity}});
-  require_increasing(columns, "m");
+                                       {{"depth", quantity::depth},
+                                        {"temperature", quantity::temperature},
+                                        {"salinity", quantity::salinity}});
+  require_increasing(columns);
   note_range(equation, columns.values[0], columns.values[1], columns.values[2], latitude,
              reading.notes);
   add_warnings({checks::profile_reach(columns.values[0].front(), columns.values[0].back(), ocean,
@@ -209,11 +208,11 @@ void read_sound_speed(TomlTable table, const OceanReading& reading, Environment&
   } else if (kind == "section") {
     read_section(table, reading, ocean);
   } else if (kind == "isovelocity") {
-    ocean.water = SoundSpeedProfile::isovelocity(table.number("speed", speed_of_sound));
+    ocean.water = SoundSpeedProfile::isovelocity(table.number("speed", quantity::sound_speed));
   } else {
     MunkParameters munk;
-    munk.axis_speed = table.number("axis_speed", speed_of_sound, munk.axis_speed);
-    munk.axis_depth = table.number("axis_depth", depth_quantity, munk.axis_depth);
+    munk.axis_speed = table.number("axis_speed", quantity::sound_speed, munk.axis_speed);
+    munk.axis_depth = table.number("axis_depth", quantity::depth, munk.axis_depth);
     munk.scale_depth = table.number(
         "scale_depth", {.noun = "depth", .unit = "m", .low = 10.0, .high = 1e5}, munk.scale_depth);
     munk.perturbation = table.number("perturbation", {.low = 0.0, .high = 0.1}, munk.perturbation);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 
@@ -64,7 +66,6 @@ Fluctuation read_fluctuation(TomlTable& table) {
 
 /// What sends sound back, and how much.
 void read_body(TomlTable& table, Target& target) {
-  constexpr Quantity heading{.noun = "heading", .unit = "degrees", .low = -360.0, .high = 360.0};
   constexpr Quantity axis{.noun = "length", .unit = "m", .low = 0.0, .high = 2000.0, .above = true};
   if (table.has("highlight")) {
     exclude(table, "highlight", {"strength_db", "aspect"});
@@ -84,9 +85,10 @@ void read_body(TomlTable& table, Target& target) {
       throw table.fault("hull", "no \"hull\" without highlights that it could hide");
   }
   if (table.has("heading_deg")) {
-    target.heading = radians(table.number("heading_deg", heading));
+    target.heading = radians(table.number("heading_deg", quantity::heading.in_degrees()));
   } else if (!(target.highlights.empty() && !target.aspect) && !target.track.course_at(0.0)) {
-    static_cast<void>(table.number("heading_deg", heading));  // required: it never moves
+    static_cast<void>(
+        table.number("heading_deg", quantity::heading.in_degrees()));  // required: it never moves
   }
   target.fluctuation = read_fluctuation(table);
   const bool by_scan = target.fluctuation == Fluctuation::swerling_1 ||
@@ -116,13 +118,13 @@ void read_targets(std::vector<TomlTable> tables, Scenario& scenario) {
       const Vec3 from = scenario.platforms[0].track.start.position;
       target.track.start.position = {from.x() + range * std::sin(bearing),
                                      from.y() + range * std::cos(bearing),
-                                     table.number("depth", depth_quantity)};
+                                     table.number("depth", quantity::depth)};
     } else {
       exclude(table, "position", {"bearing_deg", "depth"});
-      target.track.start.position = table.vector("position", coordinate);
+      target.track.start.position = table.vector("position", quantity::coordinate);
     }
     if (target.track.waypoints.empty())
-      target.track.start.velocity = table.vector("velocity", velocity_component, Vec3::Zero());
+      target.track.start.velocity = table.vector("velocity", quantity::velocity, Vec3::Zero());
     read_body(table, target);
     constexpr int most = std::numeric_limits<int>::max();
     target.first_ping = static_cast<int>(table.integer("first_ping", 1, most, 1));

@@ -1,6 +1,7 @@
 #include "io/scenario/tracks.h"
 
-#include "io/text/quote.h"
+#include "core/quantities.h"
+#include "core/text.h"
 
 namespace asdic::scenario {
 
@@ -11,14 +12,14 @@ std::vector<Waypoint> read_waypoints(TomlTable& table) {
     if (!waypoints.empty() && time <= waypoints.back().time)
       throw point.fault(
           "time", "a time after the waypoint before it, " + to_text(waypoints.back().time) + " s");
-    const Vec3 position = point.vector("position", coordinate);
+    const Vec3 position = point.vector("position", quantity::coordinate);
     if (!waypoints.empty()) {
       const double speed =
           (position - waypoints.back().position).norm() / (time - waypoints.back().time);
-      if (speed > velocity_component.high)
+      if (speed > quantity::velocity.high)
         throw point.fault(
             "position",
-            "at most " + to_text(velocity_component.high) + " m/s from the waypoint before it",
+            "at most " + to_text(quantity::velocity.high) + " m/s from the waypoint before it",
             to_text(speed) + " m/s");
     }
     waypoints.push_back({.time = time, .position = position});

@@ -1,11 +1,10 @@
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 
 namespace asdic::scenario {
 namespace {
-
-constexpr Quantity bearing_quantity{
-    .noun = "bearing", .unit = "degrees", .low = -360.0, .high = 360.0};
 
 /// A vertical line with a taper.
 void read_line(TomlTable& table, Transmitter& transmitter) {
@@ -28,7 +27,7 @@ void read_projectors(TomlTable& table, Transmitter& transmitter) {
   constexpr Quantity delay{.noun = "delay", .unit = "s", .low = -10.0, .high = 10.0};
   double sum = 0.0;
   for (TomlTable& one : table.tables("projector")) {
-    transmitter.projectors.push_back({.offset = one.vector("offset", coordinate),
+    transmitter.projectors.push_back({.offset = one.vector("offset", quantity::coordinate),
                                       .amplitude = one.number("amplitude", amplitude, 1.0),
                                       .phase = radians(one.number("phase_deg", phase, 0.0)),
                                       .delay = one.number("delay", delay, 0.0)});
@@ -51,11 +50,11 @@ BeamTable read_beam_table(TomlTable table) {
       into.push_back(radians(angle));
     }
   };
-  axis("bearing_deg", bearing_quantity, beam.bearings);
+  axis("bearing_deg", quantity::bearing.in_degrees(), beam.bearings);
   if (beam.bearings.back() - beam.bearings.front() > 2.0 * pi)
     throw table.fault("bearing_deg", "bearings within one turn");
-  axis("elevation_deg", elevation_quantity, beam.elevations);
-  const auto rows = table.rows("level_db", level_quantity);
+  axis("elevation_deg", quantity::elevation.in_degrees(), beam.elevations);
+  const auto rows = table.rows("level_db", quantity::level);
   if (rows.size() != beam.bearings.size() || rows.front().size() != beam.elevations.size())
     throw table.fault(
         "level_db",
@@ -69,8 +68,9 @@ BeamTable read_beam_table(TomlTable table) {
 
 /// Its beam, by `kind`: a vertical line, a list of projectors, a table.
 void read_beam(TomlTable& table, Transmitter& transmitter) {
-  transmitter.source_level_db = table.number("source_level_db", level_quantity);
-  transmitter.elevation = radians(table.number("elevation_deg", elevation_quantity, 0.0));
+  transmitter.source_level_db = table.number("source_level_db", quantity::level);
+  transmitter.elevation =
+      radians(table.number("elevation_deg", quantity::elevation.in_degrees(), 0.0));
   const std::string kind = table.choice("kind", {"line", "projectors", "table"}, "line");
   if (kind == "line") {
     read_line(table, transmitter);
@@ -78,7 +78,7 @@ void read_beam(TomlTable& table, Transmitter& transmitter) {
   }
   exclude(table, "kind = \"" + kind + "\"", {"taper", "beamwidth_deg"});
   transmitter.taper = Taper::omnidirectional;
-  transmitter.bearing = radians(table.number("bearing_deg", bearing_quantity, 0.0));
+  transmitter.bearing = radians(table.number("bearing_deg", quantity::bearing.in_degrees(), 0.0));
   transmitter.frame = table.choice("bearing_from", {"north", "heading"}, "north") == "north"
                           ? BearingFrame::north
                           : BearingFrame::heading;
@@ -100,7 +100,7 @@ void read_times(TomlTable& table, Transmitter& transmitter) {
         "interval", {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true});
   if (!table.has("elevations_deg")) return;
   exclude(table, "elevations_deg", {"elevation_deg"});
-  for (const double elevation : table.numbers("elevations_deg", elevation_quantity))
+  for (const double elevation : table.numbers("elevations_deg", quantity::elevation.in_degrees()))
     transmitter.elevations.push_back(radians(elevation));
 }
 
@@ -113,7 +113,7 @@ void read_transmitters(std::vector<TomlTable> tables, const std::filesystem::pat
     Transmitter transmitter;
     transmitter.name = read_name(table, "transmitter", scenario.transmitters, tables.size());
     transmitter.platform = read_reference(table, "platform", scenario.platforms);
-    transmitter.offset = table.vector("offset", coordinate, Vec3::Zero());
+    transmitter.offset = table.vector("offset", quantity::coordinate, Vec3::Zero());
     read_times(table, transmitter);
     read_beam(table, transmitter);
     if (table.has("pulse")) transmitter.pulse = read_pulse(table.table("pulse"), folder);

@@ -1,3 +1,5 @@
+#include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
@@ -9,13 +11,10 @@ namespace {
 template <class Law>
 Law read_law_of_water(TomlTable& table) {
   Law law;
-  law.temperature = table.number("temperature",
-                                 {.noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0},
-                                 law.temperature);
-  law.salinity = table.number(
-      "salinity", {.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0}, law.salinity);
+  law.temperature = table.number("temperature", quantity::temperature, law.temperature);
+  law.salinity = table.number("salinity", quantity::salinity, law.salinity);
   law.ph = table.number("ph", {.noun = "pH", .low = 6.0, .high = 9.0}, law.ph);
-  law.depth = table.number("depth", depth_quantity, law.depth);
+  law.depth = table.number("depth", quantity::depth, law.depth);
   return law;
 }
 
@@ -34,7 +33,7 @@ Absorption read_absorption(TomlTable table) {
 DepthFunction read_depth_function(TomlTable& table, const OceanReading& reading,
                                   const std::string& name, const Quantity& quantity) {
   const Columns columns =
-      read_columns(table, reading.folder, {{"depth", water_depth_quantity}, {name, quantity}});
+      read_columns(table, reading.folder, {{"depth", quantity::water_depth}, {name, quantity}});
   for (std::size_t i = 1; i < columns.rows(); ++i)
     if (columns.values[0][i] < columns.values[0][i - 1])
       throw columns.fault(
@@ -45,11 +44,11 @@ DepthFunction read_depth_function(TomlTable& table, const OceanReading& reading,
 
 BiologicalLayer read_layer(TomlTable& table) {
   BiologicalLayer layer;
-  layer.top = table.number("top", water_depth_quantity);
-  layer.bottom = table.number("bottom", water_depth_quantity);
+  layer.top = table.number("top", quantity::water_depth);
+  layer.bottom = table.number("bottom", quantity::water_depth);
   if (!(layer.bottom > layer.top))
     throw table.fault("bottom", "a depth below the layer's top, " + to_text(layer.top) + " m");
-  layer.resonance = table.number("resonance", frequency_quantity);
+  layer.resonance = table.number("resonance", quantity::frequency);
   layer.quality = table.number("quality_factor",
                                {.noun = "quality factor", .low = 0.0, .high = 1e4, .above = true});
   layer.strength = table.number("strength_db_per_km",
@@ -61,13 +60,13 @@ BiologicalLayer read_layer(TomlTable& table) {
 }  // namespace
 
 void read_water_losses(TomlTable& table, const OceanReading& reading, Environment& ocean) {
-  constexpr Quantity density{.noun = "density", .unit = "kg/m3", .low = 100.0, .high = 20000.0};
   if (table.is_table("water_density")) {
     TomlTable columns = table.table("water_density");
-    ocean.water_density = read_depth_function(columns, reading, "density", density);
+    ocean.water_density = read_depth_function(columns, reading, "density", quantity::density);
     columns.finish();
   } else {
-    ocean.water_density = table.number("water_density", density, ocean.water_density.at(0.0));
+    ocean.water_density =
+        table.number("water_density", quantity::density, ocean.water_density.at(0.0));
   }
   ocean.absorption = read_absorption(table.table("absorption"));
   for (TomlTable& layer : table.tables("biology")) ocean.biology.push_back(read_layer(layer));

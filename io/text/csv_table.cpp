@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/input_file.h"
-#include "io/text/quote.h"
 
 namespace asdic {
 namespace {

@@ -1,7 +1,7 @@
 #include "io/text/material_text.h"
 
+#include "core/text.h"
 #include "core/units.h"
-#include "io/text/toml_value.h"
 
 namespace asdic {
 namespace {

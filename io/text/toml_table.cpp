@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/text.h"
 #include "io/text/measured.h"
-#include "io/text/quote.h"
 
 namespace asdic {
 namespace {
@@ -53,6 +53,13 @@ bool holds_number(const TomlValue& value) {
   double number = 0.0;
   return std::from_chars(text->data(), text->data() + text->size(), number).ec == std::errc{};
 }
+constexpr std::string_view place = "[east, north, depth]";
+
+/// "[east, north, depth] in m"
+std::string in_unit(std::string_view axes, const Quantity& quantity) {
+  return std::string(axes) + " in " + std::string(quantity.unit);
+}
+
 constexpr const char* bare_number = ", as a number without quotes and unit";
 
 }  // namespace
@@ -99,6 +106,8 @@ const TomlValue* TomlTable::find(const std::string& key) {
 }
 
 bool TomlTable::has(const std::string& key) { return find(key) != nullptr; }
+
+bool TomlTable::has_quietly(const std::string& key) const { return table_->find(key) != nullptr; }
 
 bool TomlTable::is_table(const std::string& key) {
   const TomlValue* value = find(key);
@@ -235,20 +244,25 @@ std::vector<std::vector<double>> TomlTable::rows(const std::string& key, const Q
   return result;
 }
 
-Vec3 TomlTable::checked_vector(const TomlValue& value, const std::string& key,
-                               const Quantity& quantity) const {
+void TomlTable::checked_components(const TomlValue& value, const std::string& key,
+                                   const Quantity& quantity, std::string_view axes,
+                                   std::span<double> result) const {
   const auto* array = std::get_if<TomlValue::Array>(&value.data);
-  if (array == nullptr || array->size() != 3)
-    throw fault_at(value, key, "[east, north, depth] in " + std::string(quantity.unit));
-  Vec3 result;
-  for (std::size_t i = 0; i < 3; ++i)
-    result[static_cast<Eigen::Index>(i)] = checked((*array)[i], element(key, i), quantity);
-  return result;
+  if (array == nullptr || array->size() != result.size())
+    throw fault_at(value, key, in_unit(axes, quantity));
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = checked((*array)[i], element(key, i), quantity);
+}
+
+void TomlTable::components(const std::string& key, const Quantity& quantity, std::string_view axes,
+                           std::span<double> result) {
+  checked_components(require(key, in_unit(axes, quantity)), key, quantity, axes, result);
 }
 
 Vec3 TomlTable::vector(const std::string& key, const Quantity& quantity) {
-  return checked_vector(require(key, "[east, north, depth] in " + std::string(quantity.unit)), key,
-                        quantity);
+  Vec3 result;
+  components(key, quantity, place, {result.data(), 3});
+  return result;
 }
 
 Vec3 TomlTable::vector(const std::string& key, const Quantity& quantity, const Vec3& fallback) {
@@ -256,13 +270,13 @@ Vec3 TomlTable::vector(const std::string& key, const Quantity& quantity, const V
 }
 
 std::vector<Vec3> TomlTable::vectors(const std::string& key, const Quantity& quantity) {
-  const std::string expected = "an array of [east, north, depth] in " + std::string(quantity.unit);
+  const std::string expected = "an array of " + in_unit(place, quantity);
   const TomlValue& value = require(key, expected);
   const auto* array = std::get_if<TomlValue::Array>(&value.data);
   if (array == nullptr || array->empty()) throw fault_at(value, key, expected);
-  std::vector<Vec3> result;
+  std::vector<Vec3> result(array->size());
   for (std::size_t i = 0; i < array->size(); ++i)
-    result.push_back(checked_vector((*array)[i], element(key, i), quantity));
+    checked_components((*array)[i], element(key, i), quantity, place, {result[i].data(), 3});
   return result;
 }
 

@@ -1,27 +1,16 @@
 #pragma once
-#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "core/quantity.h"
 #include "core/units.h"
 #include "io/text/toml_value.h"
 
 namespace asdic {
-
-/// What a number of a scenario must be: "a speed above 0 m/s".
-struct Quantity {
-  std::string_view noun = "number";
-  std::string_view unit = "";
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool above = false;  ///< `low` itself is not allowed
-
-  [[nodiscard]] bool holds(double value) const;
-  [[nodiscard]] std::string expected() const;
-};
 
 /// A strict, typed reader of one table of a scenario. Every fault is an InputError that says
 /// "FILE:LINE: key.path: found X, expected Y". It remembers every key that was asked for; finish()
@@ -32,6 +21,8 @@ class TomlTable {
   explicit TomlTable(const TomlValue& table, std::string path = "");
 
   [[nodiscard]] bool has(const std::string& key);
+  /// The same of a key that is not among those which messages name, unless it is read.
+  [[nodiscard]] bool has_quietly(const std::string& key) const;
   [[nodiscard]] bool is_table(const std::string& key);  ///< there, and a table
   [[nodiscard]] bool is_text(const std::string& key);   ///< there, and a string
   [[nodiscard]] bool is_array(const std::string& key);  ///< there, and an array
@@ -54,6 +45,9 @@ class TomlTable {
   Vec3 vector(const std::string& key, const Quantity& quantity);
   Vec3 vector(const std::string& key, const Quantity& quantity, const Vec3& fallback);
   std::vector<Vec3> vectors(const std::string& key, const Quantity& quantity);
+  /// As many numbers as there are axes. \param axes  "[east, north]"
+  void components(const std::string& key, const Quantity& quantity, std::string_view axes,
+                  std::span<double> result);
 
   /// A table inside this one; an absent one reads as empty (its required keys are then missing).
   TomlTable table(const std::string& key);
@@ -79,7 +73,8 @@ class TomlTable {
   std::vector<double> checked_numbers(const TomlValue& value, const std::string& key,
                                       const Quantity& quantity, const std::string& expected) const;
   double checked(const TomlValue& value, const std::string& key, const Quantity& quantity) const;
-  Vec3 checked_vector(const TomlValue& value, const std::string& key, const Quantity&) const;
+  void checked_components(const TomlValue& value, const std::string& key, const Quantity& quantity,
+                          std::string_view axes, std::span<double> result) const;
   [[nodiscard]] InputError fault_at(const TomlValue& value, const std::string& key,
                                     const std::string& expected,
                                     std::optional<std::string> got = std::nullopt) const;

@@ -3,12 +3,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
-#include <numeric>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace asdic {
 namespace {
@@ -217,53 +215,6 @@ void set_key(TomlValue& table, const std::string& key, TomlValue value) {
 void erase_key(TomlValue& table, const std::string& key) {
   std::erase_if(std::get<TomlValue::Table>(table.data),
                 [&](const TomlEntry& entry) { return entry.key == key; });
-}
-
-std::string to_text(double number) {
-  if (std::isnan(number)) return "nan";
-  std::array<char, 32> buffer{};
-  const double size = std::abs(number);
-  const bool plain = size == 0.0 || (size >= 1e-4 && size < 1e9);
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
-                                 plain ? std::chars_format::fixed : std::chars_format::general)
-                       .ptr;
-  return {buffer.data(), end};
-}
-
-namespace {
-
-/// Letters to put in, take out, replace, or swap with the next one: Damerau's distance (Commun. ACM
-/// 7, 171, 1964), of which no letter is edited twice. Three rows at a time.
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before, above(b.size() + 1), row(b.size() + 1);
-  std::iota(above.begin(), above.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({replace, above[j] + 1, row[j - 1] + 1});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-    before = above;
-    above = row;
-  }
-  return above.back();
-}
-
-}  // namespace
-
-std::string nearest_name(std::string_view typed, std::span<const std::string> names) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
-  for (const std::string& name : names) {
-    const bool without_unit = name.starts_with(std::string(typed) + '_');  // heading of heading_deg
-    if (const std::size_t d = without_unit ? 1 : edits(typed, name); d < best_distance) {
-      best_distance = d;
-      best = name;
-    }
-  }
-  return best;
 }
 
 }  // namespace asdic

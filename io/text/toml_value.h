@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -58,11 +57,5 @@ void apply_override(TomlValue& root, const std::string& assignment);
 void set_key(TomlValue& table, const std::string& key, TomlValue value);
 /// Takes a key out of a table, if it is there.
 void erase_key(TomlValue& table, const std::string& key);
-
-/// The shortest decimal that reads back as the same number.
-[[nodiscard]] std::string to_text(double number);
-
-/// The nearest of `names` to a mistyped one, or "" when none is near.
-[[nodiscard]] std::string nearest_name(std::string_view typed, std::span<const std::string> names);
 
 }  // namespace asdic

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/text.h"
 #include "core/units.h"
 #include "io/text/toml_value.h"
 

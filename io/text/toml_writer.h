@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text.h"
 #include "io/text/toml_value.h"
 
 namespace asdic {

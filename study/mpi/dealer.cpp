@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "io/text/toml_value.h"
+#include "core/text.h"
 
 namespace asdic::study::mpi {
 namespace {

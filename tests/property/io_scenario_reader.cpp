@@ -2,9 +2,9 @@
 #include <rapidcheck/gtest.h>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
-#include "io/text/toml_value.h"
 
 namespace asdic {
 namespace {

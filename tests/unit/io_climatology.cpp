@@ -10,7 +10,6 @@
 #include "io/netcdf_grid.h"
 #include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
-#include "io/text/toml_value.h"
 #include "support/temporary_directory.h"
 
 namespace asdic {

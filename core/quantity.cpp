@@ -1,24 +1,17 @@
+#include "core/quantity.h"
+
 #include <cmath>
 
-#include "io/text/toml_table.h"
+#include "core/text.h"
 
 namespace asdic {
-namespace {
-
-std::string article(std::string_view noun) {
-  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + std::string(noun);
-}
-
-}  // namespace
-
 bool Quantity::holds(double value) const {
   return std::isfinite(value) && (above ? value > low : value >= low) && value <= high;
 }
 
 std::string Quantity::expected() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  std::string text = has_low || has_high ? article(noun) : "a finite " + std::string(noun);
+  std::string text = has_low || has_high ? with_article(noun) : "a finite " + std::string(noun);
   if (has_low && has_high) {
     text += above ? " above " : " from ";
     text += to_text(low) + (above ? " and at most " : " to ") + to_text(high);

@@ -1,0 +1,39 @@
+#pragma once
+#include "core/quantity.h"
+
+/// The quantities that more than one setting is of.
+namespace asdic::quantity {
+
+inline constexpr Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
+/// Of what swims, below the mean surface.
+inline constexpr Quantity depth{.noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0};
+/// Of water and of boundaries: beyond the bottom, and above a mean surface that is not at 0.
+inline constexpr Quantity water_depth{
+    .noun = "depth", .unit = "m", .low = -20000.0, .high = 20000.0};
+inline constexpr Quantity range{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
+inline constexpr Quantity velocity{.noun = "velocity", .unit = "m/s", .low = -100.0, .high = 100.0};
+inline constexpr Quantity duration{
+    .noun = "duration", .unit = "s", .low = 0.0, .high = 1e5, .above = true};
+inline constexpr Quantity frequency{
+    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
+inline constexpr Quantity level{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};
+/// 10·log₁₀ of a scattering cross-section per area or volume.
+inline constexpr Quantity scattering_strength{
+    .noun = "strength", .unit = "dB", .low = -200.0, .high = 20.0};
+
+/// Of sound in water and in half spaces: numbers in km/s are outside.
+inline constexpr Quantity sound_speed{.noun = "speed", .unit = "m/s", .low = 200.0, .high = 1e4};
+/// Of water and of half spaces: numbers in g/cm3 are outside.
+inline constexpr Quantity density{
+    .noun = "density", .unit = "kg/m3", .low = 100.0, .high = 20000.0};
+inline constexpr Quantity temperature{
+    .noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0};
+inline constexpr Quantity salinity{.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0};
+inline constexpr Quantity wind_speed{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
+
+inline constexpr AngleQuantity heading{.noun = "heading", .low_deg = -360.0, .high_deg = 360.0};
+inline constexpr AngleQuantity bearing{.noun = "bearing", .low_deg = -360.0, .high_deg = 360.0};
+inline constexpr AngleQuantity elevation{.noun = "elevation", .low_deg = -90.0, .high_deg = 90.0};
+inline constexpr AngleQuantity grazing{.noun = "grazing angle", .low_deg = 0.0, .high_deg = 90.0};
+
+}  // namespace asdic::quantity

@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "core/units.h"
+
+namespace asdic {
+
+/// What a number must be: "a speed above 0 m/s".
+struct Quantity {
+  std::string_view noun = "number";
+  std::string_view unit = "";
+  double low = -infinity;
+  double high = infinity;
+  bool above = false;  ///< `low` itself is not allowed
+
+  [[nodiscard]] bool holds(double value) const;
+  [[nodiscard]] std::string expected() const;
+};
+
+/// What an angle must be. The program has radians; people write degrees.
+struct AngleQuantity {
+  std::string_view noun;
+  double low_deg, high_deg;
+
+  [[nodiscard]] constexpr Quantity in_degrees() const {
+    return {.noun = noun, .unit = "degrees", .low = low_deg, .high = high_deg};
+  }
+  [[nodiscard]] constexpr Quantity in_radians() const {
+    return {.noun = noun, .unit = "radians", .low = radians(low_deg), .high = radians(high_deg)};
+  }
+};
+
+}  // namespace asdic

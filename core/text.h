@@ -1,0 +1,21 @@
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+/// How values and words are told in messages.
+namespace asdic {
+
+/// The shortest decimal that reads back as the same number.
+[[nodiscard]] std::string to_text(double number);
+
+/// "a depth", "an aspect".
+[[nodiscard]] std::string with_article(std::string_view noun);
+
+/// A word of the user's: "word", with its quotes.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
+/// The nearest of `names` to a mistyped one, or "" when none is near.
+[[nodiscard]] std::string nearest_name(std::string_view typed, std::span<const std::string> names);
+
+}  // namespace asdic
