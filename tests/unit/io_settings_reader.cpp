@@ -1,0 +1,293 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/quantities.h"
+#include "io/settings/reader.h"
+#include "support/temporary_directory.h"
+
+namespace asdic {
+namespace {
+
+enum class Paint { none, matt, gloss };
+constexpr std::string_view paint_words[] = {"none", "matt", "gloss"};
+constexpr std::span<const std::string_view> words(Paint) { return paint_words; }
+
+struct Mast {
+  std::string name;
+  double height = 10.0;
+  void describe(Fields& field) {
+    field.name(name, "of the mast");
+    field(live("height"), height, {.noun = "height", .unit = "m", .low = 0.0}, "above deck");
+  }
+};
+struct Sail {
+  static constexpr std::string_view name = "sail";
+  int mast = 0;
+  double area = 50.0;
+  void describe(Fields& field) {
+    field.reference("on", mast, "mast", "that it hangs on");
+    field("sailcloth", area, {.noun = "area", .unit = "m2", .low = 0.0, .high = 500.0}, "of cloth");
+  }
+};
+struct Engine {
+  static constexpr std::string_view name = "engine";
+  std::vector<double> speed = {1.0, 2.0}, angle = {0.0, 0.1};
+  void describe(Fields& field) {
+    field.columns({{"depth", speed, quantity::depth}, {"pitch", angle, quantity::elevation}},
+                  {.increasing = true, .file = true}, "of the screw");
+  }
+};
+struct Anchor {
+  int links = 3;
+  void describe(Fields& field) { field(required("links"), links, 1, 100, "of its chain"); }
+};
+struct Ship {
+  double length = 20.0;
+  double heading = radians(90.0);
+  double wind = 0.0;
+  double derived_mass = 7.0;
+  std::optional<double> draught, list;
+  std::optional<int> crew;
+  int decks = 1;
+  bool armed = false;
+  std::string flag = "white";
+  Paint paint = Paint::matt;
+  double shine = 0.5;
+  Vec3 place = Vec3::Zero();
+  Vec2 course = {1.0, 2.0};
+  std::vector<double> gauges, bearings;
+  std::vector<Vec3> lamps;
+  std::vector<Mast> masts;
+  std::variant<Sail, Engine> drive;
+  Anchor anchor;
+  std::optional<Anchor> spare;
+  double range = 0.0, east = 0.0;
+
+  void describe(Fields& field) {
+    field(required("length"), length, {.noun = "length", .unit = "m", .low = 0.0, .above = true},
+          "between perpendiculars");
+    field.know("twice", 2.0 * length);
+    field("heading", heading, quantity::heading, "of the bow");
+    field(inherited("wind", "environment.wind_speed"), wind, quantity::wind_speed, "over deck");
+    field.derived(derived_mass);
+    field("draught", draught, quantity::depth, "of the keel");
+    field("list", list, quantity::elevation, "to starboard");
+    field("crew", crew, 1, 9, "on board");
+    field("decks", decks, 1, 9, "in all");
+    field("armed", armed, "whether there are guns");
+    field("flag", flag, "that it flies");
+    field("paint", paint, "of the hull");
+    if (const auto only = field.only("paint", paint, Paint::gloss))
+      field(required("shine"), shine, {.noun = "share", .low = 0.0, .high = 1.0}, "of the light");
+    field("place", place, quantity::coordinate, "of the bow", "[fore, starboard, down]");
+    field("course", course, quantity::velocity, "through the water");
+    field("gauges", gauges, quantity::depth, "along the keel");
+    field("bearings", bearings, quantity::bearing, "of its lights");
+    field("lamps", lamps, quantity::coordinate, "around it");
+    field("mast", masts, "from the bow", {.one_or_more = true, .named = "mast"});
+    field.one_of("kind", drive, "what moves it");
+    field(required("anchor"), anchor, "at the bow");
+    field("spare", spare, "below deck");
+    Fields::Ways ways;
+    if (const auto way = field.way(ways, {"range", "east"}, range > 0.0)) {
+      field("range", range, quantity::range, "from the origin");
+      field("east", east, quantity::range, "of it");
+    }
+    if (const auto way = field.otherwise(ways, {"north", "east"}))
+      field("east", east, quantity::range, "of the origin");
+    if (field.checks() && field.known("twice") > 1000.0)
+      field.fault("length", "a ship that fits the harbour");
+  }
+};
+
+Ship read(const std::string& text, const std::filesystem::path& folder = {}) {
+  const TomlValue root = parse_toml(text, "s.toml");
+  KnownSettings known{.numbers = {{"environment.wind_speed", 6.0}}, .folder = folder};
+  Ship ship;
+  read_settings(TomlTable(root), ship, known);
+  return ship;
+}
+
+std::string fault(const std::string& text) {
+  try {
+    static_cast<void>(read(text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+constexpr const char* least = "length = 30\n[anchor]\nlinks = 5\n";
+
+TEST(SettingsReader, WhatIsNotThereKeepsItsDefault) {
+  const Ship ship = read(least);
+  EXPECT_EQ(ship.length, 30.0);
+  EXPECT_EQ(ship.heading, radians(90.0));
+  EXPECT_EQ(ship.wind, 6.0);  // inherited
+  EXPECT_EQ(ship.derived_mass, 7.0);
+  EXPECT_FALSE(ship.draught || ship.list || ship.crew || ship.spare);
+  EXPECT_EQ(ship.decks, 1);
+  EXPECT_EQ(ship.flag, "white");
+  EXPECT_EQ(ship.paint, Paint::matt);
+  EXPECT_EQ(ship.course, Vec2(1.0, 2.0));
+  ASSERT_EQ(ship.masts.size(), 1U);  // one or more
+  EXPECT_EQ(ship.masts[0].name, "mast");
+  EXPECT_TRUE(std::holds_alternative<Sail>(ship.drive));
+  EXPECT_EQ(ship.anchor.links, 5);
+}
+
+TEST(SettingsReader, ReadsEveryKindOfSetting) {
+  const Ship ship = read(R"(
+length = 30.5
+heading_deg = -45
+wind = 2
+draught = 3
+list_rad = 0.25
+crew = 4
+decks = 2
+armed = true
+flag = "blue"
+paint = "gloss"
+shine = 0.75
+place = [1, 2, 3]
+course = [4, 5]
+gauges = [6, 7]
+bearings_deg = [90, 180]
+lamps = [[1, 2, 3], [4, 5, 6]]
+kind = "sail"
+mast = [{ height = 11 }, { name = "mizzen" }]
+range = 8
+east = 9
+[anchor]
+links = 5
+[spare]
+links = 6
+)");
+  EXPECT_EQ(ship.length, 30.5);
+  EXPECT_EQ(ship.heading, radians(-45.0));
+  EXPECT_EQ(ship.wind, 2.0);
+  EXPECT_EQ(ship.draught, 3.0);
+  EXPECT_EQ(ship.list, 0.25);
+  EXPECT_EQ(ship.crew, 4);
+  EXPECT_EQ(ship.decks, 2);
+  EXPECT_TRUE(ship.armed);
+  EXPECT_EQ(ship.flag, "blue");
+  EXPECT_EQ(ship.paint, Paint::gloss);
+  EXPECT_EQ(ship.shine, 0.75);
+  EXPECT_EQ(ship.place, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(ship.course, Vec2(4.0, 5.0));
+  EXPECT_EQ(ship.gauges, (std::vector<double>{6.0, 7.0}));
+  EXPECT_EQ(ship.bearings, (std::vector<double>{radians(90.0), radians(180.0)}));
+  ASSERT_EQ(ship.lamps.size(), 2U);
+  EXPECT_EQ(ship.lamps[1], Vec3(4.0, 5.0, 6.0));
+  ASSERT_EQ(ship.masts.size(), 2U);
+  EXPECT_EQ(ship.masts[0].name, "mast 1");
+  EXPECT_EQ(ship.masts[0].height, 11.0);
+  EXPECT_EQ(ship.masts[1].name, "mizzen");
+  EXPECT_EQ(ship.masts[1].height, 10.0);
+  ASSERT_TRUE(ship.spare);
+  EXPECT_EQ(ship.spare->links, 6);
+  EXPECT_EQ(ship.range, 8.0);
+  EXPECT_EQ(ship.east, 9.0);
+}
+
+TEST(SettingsReader, AnotherAlternativeBeginsWithItsDefaults) {
+  const Ship ship =
+      read("kind = \"engine\"\ndepth = [3, 4]\npitch_deg = [10, 20]\n" + std::string(least));
+  const auto& engine = std::get<Engine>(ship.drive);
+  EXPECT_EQ(engine.speed, (std::vector<double>{3.0, 4.0}));
+  EXPECT_EQ(engine.angle, (std::vector<double>{radians(10.0), radians(20.0)}));
+}
+
+TEST(SettingsReader, ColumnsMayStandInAFile) {
+  const support::TemporaryDirectory folder;
+  std::ofstream(folder.path() / "screw.csv") << "depth,pitch_deg\n1,5\n2,6\n";
+  const Ship ship =
+      read("kind = \"engine\"\nfile = \"screw.csv\"\n" + std::string(least), folder.path());
+  EXPECT_EQ(std::get<Engine>(ship.drive).angle, (std::vector<double>{radians(5.0), radians(6.0)}));
+}
+
+// Each kind of setting, with what is wrong with it, at its line.
+TEST(SettingsReader, EveryFaultNamesItsPlace) {
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"", "s.toml:1: length: found nothing, expected a length above 0 m"},
+      {"length = -2\n", "s.toml:1: length: found -2 m, expected a length above 0 m"},
+      {"lenght = 30\n",
+       "s.toml:1: lenght: found an unknown key, expected a known key (did you mean \"length\"?)"},
+      {"length = 501\n[anchor]\nlinks = 5\n", "s.toml:1: length: found 501, expected a ship that fits the harbour"},
+      {"length = 30\nheading_deg = 400\n",
+       "s.toml:2: heading_deg: found 400 degrees, expected a heading from -360 to 360 degrees"},
+      {"length = 30\nheading_deg = 40\nheading_rad = 1\n",
+       "s.toml:3: heading_rad: found 1, expected no \"heading_rad\" beside heading_deg"},
+      {"length = 30\nheading = 40\n[anchor]\nlinks = 5\n",
+       "s.toml:2: heading: found an unknown key, expected a known key (did you mean "
+       "\"heading_deg\"?)"},
+      {"length = 30\ncrew = 10\n", "s.toml:2: crew: found 10, expected a whole number from 1 to 9"},
+      {"length = 30\ndecks = 1.5\n",
+       "s.toml:2: decks: found 1.5, expected a whole number from 1 to 9"},
+      {"length = 30\narmed = 1\n", "s.toml:2: armed: found 1, expected true or false"},
+      {"length = 30\nflag = 1\n", "s.toml:2: flag: found 1, expected a string"},
+      {"length = 30\npaint = \"glos\"\n",
+       "s.toml:2: paint: found \"glos\", expected \"none\", \"matt\" or \"gloss\" (did you mean "
+       "\"gloss\"?)"},
+      {"length = 30\npaint = \"gloss\"\n",
+       "s.toml:1: shine: found nothing, expected a share from 0 to 1"},
+      {"length = 30\nplace = [1, 2]\n",
+       "s.toml:2: place: found an array of 2, expected [fore, starboard, down] in m"},
+      {"length = 30\ncourse = [1, 200]\n",
+       "s.toml:2: course[1]: found 200 m/s, expected a velocity from -100 to 100 m/s"},
+      {"length = 30\ngauges = [1,\n-2]\n",
+       "s.toml:3: gauges[1]: found -2 m, expected a depth from 0 to 12000 m"},
+      {"length = 30\nbearings_deg = [1, 900]\n",
+       "s.toml:2: bearings_deg[1]: found 900 degrees, expected a bearing from -360 to 360 degrees"},
+      {"length = 30\nlamps = 5\n",
+       "s.toml:2: lamps: found 5, expected an array of [east, north, depth] in m"},
+      {"length = 30\n[[mast]]\n[[mast]]\nname = \"mast 1\"\n",
+       "s.toml:4: mast[1].name: found \"mast 1\", expected a name that no other mast has"},
+      {"length = 30\nmast = { height = -1 }\n",
+       "s.toml:2: mast.height: found -1 m, expected a height of at least 0 m"},
+      {"length = 30\nkind = \"oar\"\n",
+       "s.toml:2: kind: found \"oar\", expected \"sail\" or \"engine\""},
+      {"length = 30\nkind = \"engine\"\ndepth = [2, 2]\npitch_deg = [0, 0]\n",
+       "s.toml:3: depth[1]: found 2 m, expected a depth below the one before it, 2 m"},
+      {"length = 30\nkind = \"engine\"\ndepth = [2, 3]\npitch_deg = [0]\n",
+       "s.toml:4: pitch_deg: found an array of 1, expected as many values as depths, 2"},
+      {"length = 30\n[anchor]\nlinks = 0\n",
+       "s.toml:3: anchor.links: found 0, expected a whole number from 1 to 100"},
+      {"length = 30\n[anchor]\nlinks = 5\nlink = 3\n",
+       "s.toml:4: anchor.link: found an unknown key, expected a known key (did you mean "
+       "\"links\"?)"},
+      {"length = 30\nnorth = 1\nrange = 2\n[anchor]\nlinks = 5\n",
+       "s.toml:2: north: found 1, expected no \"north\" beside range"},
+      {"length = 30\nsailcloth = 10\nkind = \"engine\"\ndepth = [1]\npitch_deg = [1]\n[anchor]\nlinks = "
+       "5\n",
+       "s.toml:2: sailcloth: found an unknown key, expected one of "},
+  };
+  for (const auto& [text, expected] : faults)
+    EXPECT_THAT(fault(text), testing::StartsWith(expected)) << text;
+}
+
+TEST(SettingsReader, AReferenceNamesAnElementOfTheListBefore) {
+  const TomlValue root = parse_toml("on = \"mizzen\"\n", "s.toml");
+  KnownSettings known{.names = {{"mast", {"main", "mizzen"}}}};
+  Sail sail;
+  read_settings(TomlTable(root), sail, known);
+  EXPECT_EQ(sail.mast, 1);
+  known.names["mast"] = {"main"};
+  EXPECT_THROW(read_settings(TomlTable(root), sail, known), InputError);
+}
+
+// Not every angle has a decimal number of degrees: radians are taken, and are no key to offer.
+TEST(SettingsReader, RadiansAreTakenQuietly) {
+  EXPECT_EQ(read("heading_rad = 0.1\n" + std::string(least)).heading, 0.1);
+  EXPECT_THAT(fault("zzzzzzzzz = 1\n" + std::string(least)),
+              testing::AllOf(testing::HasSubstr("\"heading_deg\""),
+                             testing::Not(testing::HasSubstr("_rad"))));
+}
+
+}  // namespace
+}  // namespace asdic
