@@ -1,45 +1,9 @@
+#include "core/settings_words.h"
 #include "sonar/propagation_memory.h"
 #include "sonar/scattering_sheet.h"
 
 namespace asdic {
 namespace {
-
-// Every member of a law by name: one more does not compile until it is part of the key.
-
-void add(ExactKey& key, const NrlSurface& law) {
-  const auto& [strength, exponent, length, wind, speed] = law;
-  key.add_all(strength, exponent, length, wind, speed);
-}
-
-void add(ExactKey& key, const ChapmanHarris& law) {
-  const auto& [wind, speed] = law;
-  key.add_all(wind, speed);
-}
-
-void add(ExactKey& key, const OgdenErskine& law) {
-  const auto& [wind, speed] = law;
-  key.add_all(wind, speed);
-}
-
-void add(ExactKey& key, const ScatteringTable& law) {
-  const auto& [grazing, strength] = law;
-  key.add_all(grazing, strength);
-}
-
-void add(ExactKey& key, const Lambert& law) {
-  const auto& [mu] = law;
-  key.add(mu);
-}
-
-void add(ExactKey& key, const EllisCrowe& law) {
-  const auto& [mu, nu, slope] = law;
-  key.add_all(mu, nu, slope);
-}
-
-void add(ExactKey& key, const VolumeSheet& law) {
-  const auto& [strength, thickness] = law;
-  key.add_all(strength, thickness);
-}
 
 void add(ExactKey& key, const Kinematics& end) {
   const auto& [position, velocity] = end;
@@ -50,7 +14,11 @@ void add(ExactKey& key, const Kinematics& end) {
 
 bool ScatteringSheet::add_to(ExactKey& key) const {
   key.add_all(out_->identity, back_->identity, law_.index());
-  std::visit([&](const auto& law) { add(key, law); }, law_);
+  std::visit(
+      [&](const auto& law) {
+        for (const std::uint64_t word : settings_words(law)) key.add(word);
+      },
+      law_);
   const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
       ends_;
   add(key, source);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fields_viewer.h"
 #include "core/text.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
@@ -10,6 +11,21 @@
 
 namespace asdic::ping_file {
 namespace {
+
+/// Writes the numbers of described structs as attributes of a group, as they are in the structs.
+class NumberAttributes final : public FieldsViewer {
+ public:
+  NumberAttributes(Hdf5File& file, std::string group, std::string prefix)
+      : file_(file), group_(std::move(group)), prefix_(std::move(prefix)) {}
+
+ private:
+  void number(const Setting& s, const Quantity&, double& value, bool*) override {
+    file_.set_attribute(group_, prefix_ + std::string(s.key.name), value);
+  }
+
+  Hdf5File& file_;
+  std::string group_, prefix_;
+};
 
 std::string text_of(const Absorption& absorption) {
   std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
@@ -110,9 +126,8 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
   write_transect(file, scenario);
   const auto write_law = [&](const auto& law, const std::string& prefix) {
     file.set_attribute(group, prefix + "_model", std::string(name_of(law)));
-    for_each_parameter(law, [&](std::string_view key, double value, const Range&) {
-      file.set_attribute(group, prefix + "_" + std::string(key), value);
-    });
+    NumberAttributes attributes(file, group, prefix + "_");
+    std::visit([&](const auto& one) { look(one, attributes); }, law);
   };
   write_law(scenario.reverberation.surface, "scattering");
   if (scenario.reverberation.bottom) write_law(*scenario.reverberation.bottom, "bottom_scattering");

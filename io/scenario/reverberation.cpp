@@ -1,53 +1,20 @@
 #include <cmath>
-#include <type_traits>
-#include <utility>
 
 #include "core/quantities.h"
 #include "core/text.h"
 #include "io/scenario/sections.h"
+#include "io/settings/reader.h"
 
 namespace asdic::scenario {
 namespace {
 
-void read_parameters(TomlTable& table, ScatteringTable& law) {
-  const std::vector<double> angles = table.numbers("grazing_deg", quantity::grazing.in_degrees());
-  law.strength_db = table.numbers("strength_db", quantity::scattering_strength);
-  if (law.strength_db.size() != angles.size())
-    throw table.fault(
-        "strength_db", "one strength for each angle of grazing_deg",
-        std::to_string(law.strength_db.size()) + " for " + std::to_string(angles.size()));
-  law.grazing.clear();
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    if (i > 0 && angles[i] <= angles[i - 1])
-      throw table.fault("grazing_deg[" + std::to_string(i) + "]",
-                        "an angle above the one before it");
-    law.grazing.push_back(radians(angles[i]));
-  }
-}
-
-void read_parameters(TomlTable& table, auto& law) {
-  law.describe([&](const char* key, double& value, const Range& range) {
-    value = table.number(key, {.low = range.low, .high = range.high}, value);
-  });
-}
-
-/// The law of the list whose name was chosen, with its parameters as `describe` lists them.
-template <class Laws, std::size_t... I>
-Laws read_law(TomlTable& table, std::index_sequence<I...>) {
-  std::vector<std::string> names{std::string(std::variant_alternative_t<I, Laws>::name)...};
-  const std::string kind = table.choice("kind", names, names.front());
-  Laws law;
-  const auto read = [&]<class Model>(Model model) {
-    if (kind != Model::name) return;
-    read_parameters(table, model);
-    law = model;
-  };
-  (read(std::variant_alternative_t<I, Laws>{}), ...);
-  return law;
-}
+/// `kind` and the parameters of the law that it names, of which other keys may stand beside them.
 template <class Laws>
 Laws read_law(TomlTable& table) {
-  return read_law<Laws>(table, std::make_index_sequence<std::variant_size_v<Laws>>{});
+  KnownSettings nothing;
+  Laws law;
+  TomlReader(table, nothing).one_of("kind", law, "the law of scattering");
+  return law;
 }
 
 /// How the scatterers of a boundary or layer move, and how their weights are drawn.

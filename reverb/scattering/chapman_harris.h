@@ -21,7 +21,10 @@ struct ChapmanHarris {
   double wind_speed = 10.0;     ///< [m/s]
   double sound_speed = 1500.0;  ///< not used by this law [m/s]
 
-  void describe(auto&& /*field: no parameters*/) {}
+  void describe(Fields& field) {
+    field.derived(wind_speed);
+    field.derived(sound_speed);
+  }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
     const double theta = std::sqrt(std::max(0.0, g.grazing_in * g.grazing_out));

@@ -22,10 +22,13 @@ struct EllisCrowe {
   double nu_db = -15.0;     ///< 10·log₁₀ ν, facets [dB]
   double slope_deg = 10.0;  ///< rms slope angle of the facets, s = tan of it [degrees]
 
-  void describe(auto&& field) {
-    field("mu_db", mu_db, Range{-80.0, 0.0});
-    field("nu_db", nu_db, Range{-80.0, 10.0});
-    field("slope_deg", slope_deg, Range{0.5, 45.0});
+  void describe(Fields& field) {
+    field("mu_db", mu_db, {.noun = "strength", .unit = "dB", .low = -80.0, .high = 0.0},
+          "10·log₁₀ μ, diffuse");
+    field("nu_db", nu_db, {.noun = "strength", .unit = "dB", .low = -80.0, .high = 10.0},
+          "10·log₁₀ ν, of the facets");
+    field("slope_deg", slope_deg, {.noun = "slope", .unit = "degrees", .low = 0.5, .high = 45.0},
+          "rms slope angle of the facets");
   }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g,

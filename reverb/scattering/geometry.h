@@ -2,6 +2,7 @@
 #include <concepts>
 #include <string_view>
 
+#include "core/fields.h"
 #include "core/units.h"
 
 namespace asdic {
@@ -20,32 +21,20 @@ struct ScatterSines {
   double half_turn = 1.0;               ///< sin(azimuth/2)
 };
 
-/// The limits of a model's parameter, for checking and for the manual.
-struct Range {
-  double low;
-  double high;
-};
-
-/// Takes a parameter as `describe` presents it, and does nothing: what concepts are checked with.
-struct IgnoreParameter {
-  void operator()(std::string_view /*key*/, double& /*value*/, Range /*limits*/) const {}
-};
-
 /// A scattering model: parameters, name and σ, the scattering cross-section per unit area and
-/// steradian [1/sr] (10·log₁₀σ is the scattering strength in dB). `describe(field)` calls
-/// field("key", value, Range{…}) for every parameter, and so gives the scenario reader, the HDF5
-/// provenance, the manual's table and the property tests what they need. cross_section must be
-/// reciprocal (in ↔ out) and finite, and 0 (never log of 0) where the model says nothing scatters.
+/// steradian [1/sr] (10·log₁₀σ is the scattering strength in dB). `describe` shows every member to
+/// a walker, and so gives the scenario reader, the HDF5 provenance, the keys of what is remembered
+/// and the property tests what they need. cross_section must be reciprocal (in ↔ out) and finite,
+/// and 0 (never log of 0) where the model says nothing scatters.
 template <class Model>
-concept ScatteringModel = requires(Model& model, const Model& constant,
-                                   const ScatterGeometry& geometry, double frequency) {
+concept ScatteringModel = Described<Model> &&
+    requires(const Model& constant, const ScatterGeometry& geometry, double frequency) {
   { Model::name } -> std::convertible_to<std::string_view>;
   { constant.cross_section(geometry, frequency) } -> std::same_as<double>;
-  model.describe(IgnoreParameter{});
 };
 
-/// A model of the sea surface also knows the sea above it; `describe` leaves these two out, since
-/// the environment gives them. cross_section is 0 without wind.
+/// A model of the sea surface also knows the sea above it, which `describe` shows as derived: the
+/// environment gives it. cross_section is 0 without wind.
 template <class Model>
 concept SurfaceScatteringModel = ScatteringModel<Model> && requires(Model& model) {
   { model.wind_speed } -> std::same_as<double&>;   // at 10 m [m/s]

@@ -16,7 +16,10 @@ struct Lambert {
   static constexpr std::string_view name = "lambert";
   double mu_db = -27.0;  ///< 10·log₁₀ μ [dB]
 
-  void describe(auto&& field) { field("mu_db", mu_db, Range{-80.0, 0.0}); }
+  void describe(Fields& field) {
+    field("mu_db", mu_db, {.noun = "strength", .unit = "dB", .low = -80.0, .high = 0.0},
+          "10·log₁₀ μ");
+  }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g,
                                      double /*frequency*/) const noexcept {

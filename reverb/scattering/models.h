@@ -1,6 +1,5 @@
 #pragma once
 #include <string_view>
-#include <utility>
 #include <variant>
 
 #include "reverb/scattering/chapman_harris.h"
@@ -45,21 +44,6 @@ inline void set_sea(AnySurfaceScattering& scattering, double wind_speed,
         }
       },
       scattering);
-}
-
-/// Calls f(std::string_view key, double& value, Range limits) for every parameter.
-template <class... Model, class Function>
-void for_each_parameter(std::variant<Model...>& scattering, Function&& f) {
-  std::visit([&](auto& model) { model.describe(f); }, scattering);
-}
-
-/// Calls f(std::string_view key, double value, Range limits) for every parameter.
-template <class... Model, class Function>
-void for_each_parameter(const std::variant<Model...>& scattering, Function&& f) {
-  std::variant<Model...> copy = scattering;
-  for_each_parameter(copy, [&](std::string_view key, const double& value, Range limits) {
-    f(key, value, limits);
-  });
 }
 
 }  // namespace asdic

@@ -29,10 +29,15 @@ struct NrlSurface {
   double wind_speed = 10.0;     ///< U at 10 m [m/s]
   double sound_speed = 1500.0;  ///< at the surface [m/s]
 
-  void describe(auto&& field) {
-    field("A_s", A_s, Range{0.0, 1.0});
-    field("gamma2", gamma2, Range{2.0, 6.0});
-    field("h0", h0, Range{1e-3, 1e3});
+  void describe(Fields& field) {
+    field("A_s", A_s, {.noun = "strength", .unit = "m4/(m/s)", .low = 0.0, .high = 1.0},
+          "spectral strength of the roughness per wind speed");
+    field("gamma2", gamma2, {.noun = "exponent", .low = 2.0, .high = 6.0},
+          "of the roughness spectrum");
+    field("h0", h0, {.noun = "length", .unit = "m", .low = 1e-3, .high = 1e3},
+          "reference length of the roughness spectrum");
+    field.derived(wind_speed);
+    field.derived(sound_speed);
   }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {

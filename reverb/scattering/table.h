@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/quantities.h"
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
@@ -21,7 +22,11 @@ struct ScatteringTable {
   std::vector<double> grazing = {0.5 * pi};   ///< [n ≥ 1] strictly increasing, 0..π/2 [rad]
   std::vector<double> strength_db = {-30.0};  ///< [n] S [dB re 1 m² per m² and sr]
 
-  void describe(auto&& /*field: no scalar parameters*/) {}
+  void describe(Fields& field) {
+    field.columns({{"grazing", grazing, quantity::grazing},
+                   {"strength_db", strength_db, quantity::scattering_strength}},
+                  {}, "backscattering strength over grazing angle");
+  }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g,
                                      double /*frequency*/) const noexcept {

@@ -15,9 +15,12 @@ struct VolumeSheet {
   double strength_db = -80.0;  ///< S_v [dB re 1 m⁻¹]
   double thickness = 1.0;      ///< h [m]
 
-  void describe(auto&& field) {
-    field("strength_db", strength_db, Range{-200.0, 0.0});
-    field("thickness", thickness, Range{0.0, 1e4});
+  void describe(Fields& field) {
+    field("strength_db", strength_db,
+          {.noun = "strength", .unit = "dB", .low = -200.0, .high = 0.0},
+          "volume scattering strength");
+    field("thickness", thickness, {.noun = "thickness", .unit = "m", .low = 0.0, .high = 1e4},
+          "of the sheet");
   }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& /*any direction*/,

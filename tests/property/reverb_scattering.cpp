@@ -4,8 +4,11 @@
 #include <cmath>
 #include <variant>
 
+#include "core/fields_viewer.h"
+#include "core/settings_words.h"
 #include "core/units.h"
 #include "reverb/scattering/models.h"
+#include "support/member_count.h"
 
 namespace asdic {
 namespace {
@@ -22,26 +25,93 @@ struct AlternativesOf<std::variant<Model...>> {
   using Types = testing::Types<Model...>;
 };
 
-/// A model with parameters anywhere in their ranges, under any sea; a table of any rows.
+/// Draws every parameter from its range, of a table four rows; strengths that send back more than
+/// comes in are no law of nature, and are left out.
+class Drawn final : public FieldsViewer {
+ public:
+  [[nodiscard]] bool reads() const override { return true; }
+  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override {
+    constexpr int rows = 4;
+    for (const Column& column : all) {
+      const double low = std::max(column.quantity.low, -60.0);
+      const double high = column.angle ? column.quantity.high : 0.0;
+      column.values->clear();
+      for (int i = 0; i < rows; ++i) {
+        const double value = column.angle ? low + (high - low) * (i + between(0.01, 0.99)) / rows
+                                          : between(low, high);
+        column.values->push_back(column.angle ? radians(value) : value);
+      }
+    }
+  }
+
+ private:
+  void number(const Setting&, const Quantity& q, double& value, bool*) override {
+    value = between(q.low, q.high);
+  }
+};
+
+/// A model with parameters anywhere in their ranges, under any sea.
 template <class Model>
 Model any() {
   Model model;
-  model.describe([](std::string_view, double& value, Range limits) {
-    value = between(limits.low, limits.high);
-  });
+  Drawn drawn;
+  model.describe(drawn);
   if constexpr (SurfaceScatteringModel<Model>) {
     model.wind_speed = between(0.0, 40.0);
     model.sound_speed = between(1400.0, 1600.0);
   }
-  if constexpr (std::is_same_v<Model, ScatteringTable>) {
-    model.grazing.clear();
-    model.strength_db.clear();
-    for (int i = 0; i < 4; ++i) {
-      model.grazing.push_back((i + between(0.01, 0.99)) * pi / 8.0);
-      model.strength_db.push_back(between(-60.0, 0.0));
-    }
-  }
   return model;
+}
+
+/// Expects of every setting a value within its range, and a word of help.
+class Within final : public FieldsViewer {
+ public:
+  void columns(std::initializer_list<Column> all, const ColumnRules&,
+               std::string_view help) override {
+    EXPECT_FALSE(help.empty());
+    for (const Column& column : all)
+      for (const double value : *column.values)
+        EXPECT_TRUE(column.quantity.holds(column.angle ? degrees(value) : value)) << column.key;
+  }
+
+ private:
+  void number(const Setting& s, const Quantity& q, double& value, bool*) override {
+    EXPECT_TRUE(q.holds(value)) << s.key.name;
+    EXPECT_FALSE(s.help.empty()) << s.key.name;
+  }
+};
+
+/// Shows the members of a struct, and changes the one of a number.
+class Changed final : public FieldsViewer {
+ public:
+  explicit Changed(int which) : which_(which) {}
+  [[nodiscard]] bool reads() const override { return true; }
+  [[nodiscard]] int members() const { return members_; }
+  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override {
+    for (const Column& column : all) change(column.values->back());
+  }
+  void derived(double& value) override { change(value); }
+
+ private:
+  void number(const Setting&, const Quantity&, double& value, bool*) override { change(value); }
+  void change(double& value) {
+    if (members_++ == which_) value = std::nextafter(value, infinity);
+  }
+  int which_, members_ = 0;
+};
+
+// No member of a law is forgotten by what walks over it, and each tells two laws apart.
+template <class Model>
+void expect_described() {
+  const Model model;
+  for (int i = 0; i < support::member_count<Model>(); ++i) {
+    Model other = model;
+    Changed changed(i);
+    other.describe(changed);
+    EXPECT_EQ(changed.members(), support::member_count<Model>());
+    EXPECT_NE(settings_words(other), settings_words(model)) << i;
+  }
+  EXPECT_EQ(settings_words(Model(model)), settings_words(model));
 }
 
 ScatterGeometry any_geometry() {
@@ -108,12 +178,10 @@ TYPED_TEST(EveryBottomScattering, GrazingSoundScattersNothing) {
 }
 
 TYPED_TEST(EveryBottomScattering, DefaultsAreWithinTheirRanges) {
-  TypeParam model;
-  model.describe([](std::string_view key, const double& value, Range limits) {
-    EXPECT_GE(value, limits.low) << key;
-    EXPECT_LE(value, limits.high) << key;
-  });
+  Within within;
+  look(TypeParam{}, within);
 }
+TYPED_TEST(EveryBottomScattering, EveryMemberIsDescribed) { expect_described<TypeParam>(); }
 
 TYPED_TEST(EverySurfaceScattering, CalmSeaScattersNothing) {
   EXPECT_TRUE(rc::check([] {
@@ -146,6 +214,8 @@ TYPED_TEST(EverySurfaceScattering, RisesWithWind) {
   }));
 }
 
+TEST(VolumeSheet, EveryMemberIsDescribed) { expect_described<VolumeSheet>(); }
+
 // The law at one frequency out of sines and cosines. Those have errors of ε = 2⁻⁵³: sines of small
 // angles a relative one, and so has Q² but for cos θᵢ − cos θₛ, of which ε·cos is left where they
 // are alike and nothing else turns the sound; Q² has the power γ₂/2 ≤ 3.
@@ -171,12 +241,10 @@ TEST(NrlSurface, AtOneFrequencyIsTheLaw) {
 }
 
 TYPED_TEST(EverySurfaceScattering, DefaultsAreWithinTheirRanges) {
-  TypeParam model;
-  model.describe([](std::string_view key, const double& value, Range limits) {
-    EXPECT_GE(value, limits.low) << key;
-    EXPECT_LE(value, limits.high) << key;
-  });
+  Within within;
+  look(TypeParam{}, within);
 }
+TYPED_TEST(EverySurfaceScattering, EveryMemberIsDescribed) { expect_described<TypeParam>(); }
 
 }  // namespace
 }  // namespace asdic
