@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fields.h"
+#include "core/quantities.h"
+
 namespace asdic {
 namespace {
 
@@ -29,6 +32,38 @@ double gamma_of_mean_one(double shape, RandomStream& draw) {
 }
 
 }  // namespace
+
+void ScattererMotion::describe(Fields& field) {
+  field("motion", kind, "how the scatterers move, but for the current");
+  if (const auto only = field.only("motion", kind, Kind::bragg))
+    field("receding_share", receding_share, {.noun = "share", .low = 0.0, .high = 1.0},
+          "of the waves, those that lower the frequency");
+  if (const auto only = field.only("motion", kind, Kind::spread))
+    field(required("speed_rms"), speed_rms,
+          {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 20.0},
+          "of each component of a scatterer's velocity");
+  field("current", current, quantity::velocity, "with which all of them drift",
+        "two numbers: towards east and north,");
+}
+
+void ScattererStatistics::describe(Fields& field) {
+  bool frozen = std::isinf(coherence_time);
+  const double otherwise = frozen ? 0.0 : coherence_time;
+  std::optional<double> time = frozen ? std::nullopt : std::optional(coherence_time);
+  field("coherence_time", time, {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9},
+        "after which a scatterer's weight is another; 0: with every ping");
+  if (time) frozen = false;
+  field("frozen", frozen, "whether weights never change");
+  if (field.checks() && frozen && time)
+    field.fault("coherence_time", "none for scatterers that never change (frozen = true)");
+  if (field.reads()) coherence_time = frozen ? infinity : time.value_or(otherwise);
+  field("k_shape", k_shape, {.noun = "shape", .low = 0.05, .high = 1e4},
+        "of the gamma-distributed texture");
+  if (k_shape || field.exhaustive())
+    field("correlation_length", correlation_length,
+          {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true},
+          "of the texture");
+}
 
 std::uint64_t mixed(std::uint64_t a, std::uint64_t b) noexcept {
   std::uint64_t z = (a ^ (b * 0xD6E8FEB86659FD93ULL)) + 0x9E3779B97F4A7C15ULL;

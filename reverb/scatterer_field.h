@@ -4,12 +4,16 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/random.h"
 #include "core/units.h"
 
 namespace asdic {
+
+class Fields;
 
 /// How the scatterers of one boundary or layer move.
 struct ScattererMotion {
@@ -23,7 +27,13 @@ struct ScattererMotion {
   double receding_share = 0.5;  ///< of the Bragg waves, those that lower the frequency, 0..1
   double speed_rms = 0.0;       ///< of each component of a scatterer's velocity [m/s]
   Vec2 current = Vec2::Zero();  ///< east, north [m/s]; the whole field drifts with it
+
+  void describe(Fields& field);
 };
+inline constexpr std::string_view scatterer_motion_words[] = {"still", "bragg", "spread"};
+constexpr std::span<const std::string_view> words(ScattererMotion::Kind /*any*/) {
+  return scatterer_motion_words;
+}
 
 /// How the weights of the scatterers are drawn.
 struct ScattererStatistics {
@@ -32,6 +42,8 @@ struct ScattererStatistics {
   double coherence_time = 0.0;
   std::optional<double> k_shape;      ///< ν of the gamma-distributed texture; none: Rayleigh
   double correlation_length = 500.0;  ///< of the texture: constant in squares of that side [m]
+
+  void describe(Fields& field);
 };
 
 /// Scatterers of the sea: a polar grid around an anchor place, one or more scatterers a cell.

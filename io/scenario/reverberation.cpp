@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "core/quantities.h"
 #include "core/text.h"
 #include "io/scenario/sections.h"
@@ -20,39 +18,10 @@ Laws read_law(TomlTable& table) {
 /// How the scatterers of a boundary or layer move, and how their weights are drawn.
 /// \param moves  with the water: it has motion of its own and a current
 void read_field(TomlTable& table, bool moves, ScattererField& field) {
-  if (moves) {
-    const std::string kind = table.choice("motion", {"still", "bragg", "spread"}, "still");
-    field.motion.kind = kind == "bragg"    ? ScattererMotion::Kind::bragg
-                        : kind == "spread" ? ScattererMotion::Kind::spread
-                                           : ScattererMotion::Kind::still;
-    if (kind == "bragg")
-      field.motion.receding_share =
-          table.number("receding_share", {.noun = "share", .low = 0.0, .high = 1.0}, 0.5);
-    if (kind == "spread")
-      field.motion.speed_rms =
-          table.number("speed_rms", {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 20.0});
-    if (table.has("current")) {
-      const std::vector<double> current = table.numbers("current", quantity::velocity);
-      if (current.size() != 2)
-        throw table.fault("current", "two numbers: towards east and north, in m/s");
-      field.motion.current = {current[0], current[1]};
-    }
-  }
-  const bool timed = table.has("coherence_time");
-  if (table.flag("frozen", !timed && std::isinf(field.statistics.coherence_time))) {
-    if (timed)
-      throw table.fault("coherence_time", "none for scatterers that never change (frozen = true)");
-    field.statistics.coherence_time = infinity;
-  } else {
-    field.statistics.coherence_time =
-        table.number("coherence_time", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9}, 0.0);
-  }
-  if (table.has("k_shape")) {
-    field.statistics.k_shape = table.number("k_shape", {.noun = "shape", .low = 0.05, .high = 1e4});
-    field.statistics.correlation_length = table.number(
-        "correlation_length",
-        {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true}, 500.0);
-  }
+  KnownSettings nothing;
+  TomlReader reader(table, nothing);
+  if (moves) field.motion.describe(reader);
+  field.statistics.describe(reader);
 }
 
 VolumeLayer read_layer(TomlTable& table, const Environment& ocean) {

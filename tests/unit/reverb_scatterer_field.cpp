@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <complex>
+#include <set>
+#include <vector>
 
+#include "core/settings_words.h"
 #include "reverb/scattering/models.h"
 #include "reverb/scattering/motion.h"
 #include "reverb/uniform_of_bits.h"
@@ -194,6 +197,31 @@ TEST(SeaMotion, BraggShiftIsThatOfTheWave) {
   EXPECT_NEAR(q, 2.0 * 2.0 * pi * 4000.0 / 1500.0 * std::cos(radians(10.0)), 1e-9);
   EXPECT_NEAR(bragg_shift(q), 2.863, 0.001);
   EXPECT_EQ(scattering_wavenumber(Vec2(xi, 0.0), Vec2(xi, 0.0), 4000.0), 0.0);  // forward
+}
+
+// What a file could say otherwise, a walker sees otherwise.
+TEST(ScattererSettings, AreToldApartByWhatTheyDescribe) {
+  using Kind = ScattererMotion::Kind;
+  const std::vector<ScattererMotion> motions = {{},
+                                                {.current = {0.0, 1.0}},
+                                                {.kind = Kind::bragg},
+                                                {.kind = Kind::bragg, .receding_share = 0.4},
+                                                {.kind = Kind::spread},
+                                                {.kind = Kind::spread, .speed_rms = 0.1}};
+  const std::vector<ScattererStatistics> statistics = {
+      {},
+      {.coherence_time = 2.0},
+      {.coherence_time = infinity},
+      {.k_shape = 1.0},
+      {.k_shape = 1.0, .correlation_length = 400.0}};
+  std::set<std::vector<std::uint64_t>> of_motion, of_statistics;
+  for (const ScattererMotion& motion : motions) of_motion.insert(settings_words(motion));
+  for (const ScattererStatistics& one : statistics) of_statistics.insert(settings_words(one));
+  EXPECT_EQ(of_motion.size(), motions.size());
+  EXPECT_EQ(of_statistics.size(), statistics.size());
+  // A walker that only looks leaves them alone.
+  EXPECT_EQ(statistics[1].coherence_time, 2.0);
+  EXPECT_EQ(statistics[2].coherence_time, infinity);
 }
 
 }  // namespace
