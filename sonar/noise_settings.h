@@ -1,5 +1,7 @@
 #pragma once
 #include <optional>
+#include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -33,6 +35,11 @@ enum class NoiseCoherence {
   surface,      ///< from a sheet of sources under the surface
   profile       ///< a level over elevation, the same at all bearings
 };
+inline constexpr std::string_view noise_coherence_words[] = {"independent", "isotropic", "surface",
+                                                             "profile"};
+constexpr std::span<const std::string_view> words(NoiseCoherence /*any*/) {
+  return noise_coherence_words;
+}
 
 /// Where noise comes from, over elevation.
 struct NoiseDirections {

@@ -1,6 +1,8 @@
 #pragma once
 #include <complex>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sonar/sampled_signal.h"
@@ -9,6 +11,12 @@ namespace asdic {
 
 enum class PulseKind { cw, lfm, hfm, file };
 enum class PulseWindow { none, hann, tukey };
+inline constexpr std::string_view pulse_kind_words[] = {"cw", "lfm", "hfm", "file"};
+constexpr std::span<const std::string_view> words(PulseKind /*any*/) { return pulse_kind_words; }
+inline constexpr std::string_view pulse_window_words[] = {"none", "hann", "tukey"};
+constexpr std::span<const std::string_view> words(PulseWindow /*any*/) {
+  return pulse_window_words;
+}
 
 /// What a pulse is made of, as a scenario says it.
 struct PulseSettings {

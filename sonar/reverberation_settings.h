@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "reverb/scatterer_field.h"
@@ -30,6 +32,11 @@ enum class ScattererSynthesis {
   covariance,  ///< by their covariance wherever that serves, one by one elsewhere
   streams,     ///< as streams of noise wherever that serves, one by one elsewhere
 };
+inline constexpr std::string_view scatterer_synthesis_words[] = {"automatic", "scatterers",
+                                                                 "covariance", "streams"};
+constexpr std::span<const std::string_view> words(ScattererSynthesis /*any*/) {
+  return scatterer_synthesis_words;
+}
 
 /// Reverberation of surface, bottom and volume as scatterers on polar grids.
 struct ReverberationSettings {

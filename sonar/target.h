@@ -1,7 +1,9 @@
 #pragma once
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/units.h"
@@ -36,6 +38,9 @@ struct Hull {
 /// strength as mean (1, 2) or chi-square with four degrees of freedom (3, 4), its phase uniform;
 /// one draw lasts a scan (1, 3) or a ping (2, 4). Swerling, IRE Trans. IT-6, 269 (1960).
 enum class Fluctuation { none, swerling_1, swerling_2, swerling_3, swerling_4 };
+inline constexpr std::string_view fluctuation_words[] = {"none", "swerling-1", "swerling-2",
+                                                         "swerling-3", "swerling-4"};
+constexpr std::span<const std::string_view> words(Fluctuation /*any*/) { return fluctuation_words; }
 
 /// A point, or a rigid body with highlights that is level and heads where it goes.
 struct Target {

@@ -5,22 +5,13 @@
 #include <limits>
 #include <numeric>
 
+#include "core/fields.h"
 #include "io/digest.h"
 #include "io/ping/growing_table.h"
 #include "sonar/sampling.h"
 
 namespace asdic::ping_file {
 namespace {
-
-std::string_view text_of(PulseKind kind) {
-  constexpr std::string_view names[] = {"cw", "lfm", "hfm", "file"};
-  return names[static_cast<int>(kind)];
-}
-
-std::string_view text_of(PulseWindow window) {
-  constexpr std::string_view names[] = {"none", "hann", "tukey"};
-  return names[static_cast<int>(window)];
-}
 
 /// A boundary in the plane of the rays.
 void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& line) {
@@ -116,11 +107,11 @@ void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter, Sa
            "1");
   file.attach_scales(name, scales);
   write_times(file, name, axis);
-  file.set_attribute(name, "kind", text_of(settings.kind));
+  file.set_attribute(name, "kind", word_of(settings.kind));
   file.set_attribute(name, "centre_frequency_hz", pulse.centre_frequency());
   file.set_attribute(name, "bandwidth_hz", pulse.bandwidth_40db());
   file.set_attribute(name, "duration_s", pulse.duration());
-  file.set_attribute(name, "window", text_of(settings.window));
+  file.set_attribute(name, "window", word_of(settings.window));
   file.set_attribute(name, "source_level_db",
                      scenario.transmitters[static_cast<std::size_t>(transmitter)].source_level_db);
 }

@@ -1,11 +1,12 @@
-#include <algorithm>
 #include <array>
 
 #include "core/quantities.h"
+#include "core/text.h"
 #include "io/scenario/angles.h"
 #include "io/scenario/columns.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
+#include "io/settings/reader.h"
 #include "sonar/noise_spectrum.h"
 
 namespace asdic::scenario {
@@ -69,17 +70,14 @@ void read_profile(TomlTable table, NoiseDirections& directions) {
 }
 
 void read_coherence(TomlTable& table, const Scenario& scenario, NoiseSettings& noise) {
-  const std::vector<std::string> names{"independent", "isotropic", "surface", "profile"};
-  const std::string chosen = table.choice("coherence", names, names[0]);
-  noise.coherence =
-      static_cast<NoiseCoherence>(std::find(names.begin(), names.end(), chosen) - names.begin());
+  noise.coherence = read_word(table, "coherence", noise.coherence);
   constexpr std::size_t most_phones = 256;  // the factors of more are gigabytes
   for (const ReceiverArray& array : scenario.arrays)
     if (noise.coherence != NoiseCoherence::independent && array.phones.size() > most_phones)
       throw table.fault(
           "coherence",
           "\"independent\" for an array of more than " + std::to_string(most_phones) + " phones",
-          "\"" + chosen + "\" for " + std::to_string(array.phones.size()));
+          in_quotes(word_of(noise.coherence)) + " for " + std::to_string(array.phones.size()));
   if (noise.coherence == NoiseCoherence::surface)
     noise.directions.dipole_exponent =
         table.number("dipole_exponent", {.noun = "exponent", .low = 0.5, .high = 10.0}, 1.0);

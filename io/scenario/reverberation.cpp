@@ -55,12 +55,7 @@ void read_reverberation(TomlTable table, Scenario& scenario) {
   settings.resolve_azimuth = table.flag("resolve_azimuth", settings.resolve_azimuth);
   settings.scatterers_per_cell =
       static_cast<int>(table.integer("scatterers_per_cell", 1, 1000, settings.scatterers_per_cell));
-  const std::string synthesis =
-      table.choice("synthesis", {"automatic", "scatterers", "covariance", "streams"}, "automatic");
-  settings.synthesis = synthesis == "scatterers"   ? ScattererSynthesis::scatterers
-                       : synthesis == "covariance" ? ScattererSynthesis::covariance
-                       : synthesis == "streams"    ? ScattererSynthesis::streams
-                                                   : ScattererSynthesis::automatic;
+  settings.synthesis = read_word(table, "synthesis", settings.synthesis);
   settings.most_returns = static_cast<std::size_t>(table.integer(
       "most_returns", 1000, 1'000'000'000, static_cast<std::int64_t>(settings.most_returns)));
   if (table.has("ground_spacing"))

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -6,6 +5,7 @@
 #include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
+#include "io/settings/reader.h"
 
 namespace asdic::scenario {
 
@@ -57,13 +57,6 @@ Highlight read_highlight(TomlTable table) {
   return highlight;
 }
 
-Fluctuation read_fluctuation(TomlTable& table) {
-  const std::vector<std::string> names{"none", "swerling-1", "swerling-2", "swerling-3",
-                                       "swerling-4"};
-  const std::string name = table.choice("fluctuation", names, names.front());
-  return static_cast<Fluctuation>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 /// What sends sound back, and how much.
 void read_body(TomlTable& table, Target& target) {
   constexpr Quantity axis{.noun = "length", .unit = "m", .low = 0.0, .high = 2000.0, .above = true};
@@ -90,7 +83,7 @@ void read_body(TomlTable& table, Target& target) {
     static_cast<void>(
         table.number("heading_deg", quantity::heading.in_degrees()));  // required: it never moves
   }
-  target.fluctuation = read_fluctuation(table);
+  target.fluctuation = read_word(table, "fluctuation", target.fluctuation);
   const bool by_scan = target.fluctuation == Fluctuation::swerling_1 ||
                        target.fluctuation == Fluctuation::swerling_3;
   if (by_scan) target.scan_pings = static_cast<int>(table.integer("scan_pings", 1, 1'000'000));

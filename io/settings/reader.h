@@ -84,4 +84,12 @@ void read_settings(TomlTable table, T& settings, KnownSettings& known) {
   table.finish();
 }
 
+/// A word of an enumeration, for tables that are read by hand. \param value  without a word
+template <Worded E>
+[[nodiscard]] E read_word(TomlTable& table, SettingKey key, E value) {
+  KnownSettings nothing;
+  TomlReader(table, nothing)(key, value, "");
+  return value;
+}
+
 }  // namespace asdic

@@ -7,6 +7,7 @@
 
 #include "core/quantities.h"
 #include "io/settings/reader.h"
+#include "sonar/scenario.h"
 #include "support/temporary_directory.h"
 
 namespace asdic {
@@ -218,7 +219,8 @@ TEST(SettingsReader, EveryFaultNamesItsPlace) {
       {"length = -2\n", "s.toml:1: length: found -2 m, expected a length above 0 m"},
       {"lenght = 30\n",
        "s.toml:1: lenght: found an unknown key, expected a known key (did you mean \"length\"?)"},
-      {"length = 501\n[anchor]\nlinks = 5\n", "s.toml:1: length: found 501, expected a ship that fits the harbour"},
+      {"length = 501\n[anchor]\nlinks = 5\n",
+       "s.toml:1: length: found 501, expected a ship that fits the harbour"},
       {"length = 30\nheading_deg = 400\n",
        "s.toml:2: heading_deg: found 400 degrees, expected a heading from -360 to 360 degrees"},
       {"length = 30\nheading_deg = 40\nheading_rad = 1\n",
@@ -263,7 +265,8 @@ TEST(SettingsReader, EveryFaultNamesItsPlace) {
        "\"links\"?)"},
       {"length = 30\nnorth = 1\nrange = 2\n[anchor]\nlinks = 5\n",
        "s.toml:2: north: found 1, expected no \"north\" beside range"},
-      {"length = 30\nsailcloth = 10\nkind = \"engine\"\ndepth = [1]\npitch_deg = [1]\n[anchor]\nlinks = "
+      {"length = 30\nsailcloth = 10\nkind = \"engine\"\ndepth = [1]\npitch_deg = "
+       "[1]\n[anchor]\nlinks = "
        "5\n",
        "s.toml:2: sailcloth: found an unknown key, expected one of "},
   };
@@ -287,6 +290,29 @@ TEST(SettingsReader, RadiansAreTakenQuietly) {
   EXPECT_THAT(fault("zzzzzzzzz = 1\n" + std::string(least)),
               testing::AllOf(testing::HasSubstr("\"heading_deg\""),
                              testing::Not(testing::HasSubstr("_rad"))));
+}
+
+// The last value of an enumeration has the last of its words: none was left out.
+template <Worded E>
+void expect_words(E last, std::string_view word) {
+  EXPECT_EQ(word_of(last), word);
+  EXPECT_EQ(std::span<const std::string_view>(words(last)).back(), word);
+}
+TEST(SettingsReader, EnumerationsHaveAWordForEachValue) {
+  expect_words(PulseKind::file, "file");
+  expect_words(PulseWindow::tukey, "tukey");
+  expect_words(NoiseCoherence::profile, "profile");
+  expect_words(Fluctuation::swerling_4, "swerling-4");
+  expect_words(ScattererSynthesis::streams, "streams");
+  expect_words(ScattererMotion::Kind::spread, "spread");
+}
+
+TEST(SettingsReader, ReadsAWordOfATableThatIsReadByHand) {
+  const TomlValue root = parse_toml("window = \"hann\"\nkind = \"lfn\"\n", "s.toml");
+  TomlTable table(root);
+  EXPECT_EQ(read_word(table, "window", PulseWindow::none), PulseWindow::hann);
+  EXPECT_EQ(read_word(table, "edges", PulseWindow::tukey), PulseWindow::tukey);
+  EXPECT_THROW(static_cast<void>(read_word(table, required("kind"), PulseKind::cw)), InputError);
 }
 
 }  // namespace
