@@ -13,9 +13,9 @@
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
-#include "sonar/echo.h"
-#include "sonar/ping.h"
-#include "sonar/sampling.h"
+#include "sonar/echoes/echo.h"
+#include "sonar/ping/ping.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/output.h"
-#include "sonar/ping_record.h"
+#include "sonar/ping/ping_record.h"
 
 namespace asdic::app {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "raytrace/ray_path.h"
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic::app {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "io/ping_file.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic::app {
 

@@ -5,7 +5,7 @@
 
 #include "io/hdf5_file.h"
 #include "io/output/output_file.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::app {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "core/units.h"
-#include "sonar/phone_groups.h"
-#include "sonar/pulse.h"
-#include "sonar/reverberation_band.h"
-#include "sonar/sampling.h"
+#include "sonar/reverberation/phone_groups.h"
+#include "sonar/reverberation/reverberation_band.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/signal/pulse.h"
 
 namespace asdic::app {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "app/console.h"
-#include "sonar/ping_record.h"
-#include "sonar/scenario.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::app {
 

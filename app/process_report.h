@@ -2,7 +2,7 @@
 #include <string>
 
 #include "io/processing/results.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::app {
 

@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "raytrace/propagation.h"
-#include "sonar/carried.h"
-#include "sonar/geometry.h"
+#include "sonar/scenario/carried.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic::app {
 namespace {

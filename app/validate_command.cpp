@@ -13,9 +13,9 @@
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
 #include "raytrace/runs/memory.h"
-#include "sonar/ping.h"
-#include "sonar/sampling.h"
-#include "sonar/stream.h"
+#include "sonar/ping/ping.h"
+#include "sonar/ping/stream.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::app {
 namespace {

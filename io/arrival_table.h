@@ -1,7 +1,7 @@
 #pragma once
 #include "io/hdf5_file.h"
 #include "io/ping/growing_table.h"
-#include "sonar/ping_record.h"
+#include "sonar/ping/ping_record.h"
 
 namespace asdic {
 

@@ -7,8 +7,8 @@
 
 #include "io/hdf5_file.h"
 #include "io/output/output_file.h"
-#include "sonar/ping_record.h"
-#include "sonar/scenario.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 

@@ -32,7 +32,7 @@ void read_run_of_sonar(TomlTable table, const TomlValue& value, double frequency
 void set_scattered_elsewhere(Scenario& scenario) {
   const ReverberationSettings& reverberation = scenario.reverberation;
   if (!reverberation.enabled) return;
-  const auto [lowest, highest] = checks::pulse_frequencies(scenario);
+  const auto [lowest, highest] = pulse_frequencies(scenario);
   Environment& ocean = scenario.environment;
   const auto set = [&](Boundary& boundary, const auto& law) {
     if (!(boundary.roughness.rms_height > 0.0)) return;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The folders include one another in one direction only, and each borrowed library stays where it belongs.
+"""The folders include one another in one direction only, so do the rooms in them, and each borrowed library stays where it belongs.
 
 core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
@@ -11,6 +11,9 @@ import re
 import sys
 
 ORDER = ["core", "raytrace", "reverb", "sonar", "io", "study", "serve", "app"]
+ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
+    "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping", "processing"],
+}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
@@ -48,6 +51,33 @@ def faults():
         yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
 
 
+def room_of(name):
+    """(folder, number of the room) of a path in a folder with rooms; the number is None outside of all rooms. Room "": the folder's own files"""
+    folder, *inner = name.split("/")
+    if folder not in ROOMS:
+        return None
+    within = "/".join(inner[:-1])
+    homes = [room for room in ROOMS[folder] if within == room or within.startswith(room + "/")]
+    return folder, ROOMS[folder].index(max(homes, key=len)) if homes else None
+
+
+def room_faults():
+    """Rooms of one folder include one another in one direction only"""
+    for folder, rooms in ROOMS.items():
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix not in (".h", ".cpp"):
+                continue
+            name = str(path.relative_to(ROOT))
+            here = room_of(name)
+            if here[1] is None:
+                yield f"{name}: lies in none of the rooms {', '.join(rooms)}"
+                continue
+            for quote, header in INCLUDE.findall(path.read_text()):
+                there = room_of(header) if quote == '"' else None
+                if there and there[0] == folder and there[1] is not None and there[1] > here[1]:
+                    yield f"{name}: includes {header}, but {rooms[here[1]] or folder} comes before {rooms[there[1]] or folder}"
+
+
 def level_faults():
     """Sources that include what depends on the instruction level, and are compiled for one level alone"""
     includes = {}
@@ -67,6 +97,6 @@ def level_faults():
 
 
 if __name__ == "__main__":
-    found = [*faults(), *level_faults()]
+    found = [*faults(), *room_faults(), *level_faults()]
     print("\n".join(found) or "include order: clean")
     sys.exit(bool(found))

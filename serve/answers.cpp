@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sonar/sampling.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::serve {
 namespace {

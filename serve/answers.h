@@ -4,8 +4,8 @@
 #include "serve/latency.h"
 #include "serve/pace.h"
 #include "serve/session_limits.h"
-#include "sonar/ping_record.h"
-#include "sonar/scenario.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::serve {
 

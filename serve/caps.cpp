@@ -5,8 +5,8 @@
 
 #include "core/text.h"
 #include "serve/refusal.h"
-#include "sonar/ping_memory.h"
-#include "sonar/sampling.h"
+#include "sonar/ping/ping_memory.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::serve {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstddef>
 
 #include "serve/session_limits.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::serve {
 

@@ -10,7 +10,7 @@
 #include "serve/data_folder.h"
 #include "serve/refusal.h"
 #include "serve/session_limits.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::serve {
 

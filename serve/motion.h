@@ -1,6 +1,6 @@
 #pragma once
 #include "io/text/toml_table.h"
-#include "sonar/track.h"
+#include "sonar/scenario/track.h"
 
 namespace asdic::serve {
 

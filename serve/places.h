@@ -1,5 +1,5 @@
 #pragma once
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::serve {
 

@@ -10,7 +10,7 @@
 #include "io/scenario/propagation.h"
 #include "serve/answers.h"
 #include "serve/places.h"
-#include "sonar/sampling.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::serve {
 namespace {

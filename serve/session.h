@@ -16,8 +16,8 @@
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
 #include "serve/turns.h"
-#include "sonar/ping.h"
-#include "sonar/shared_propagation.h"
+#include "sonar/paths/shared_propagation.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic::serve {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "sonar/scenario.h"
-#include "sonar/transmission.h"
+#include "sonar/scenario/scenario.h"
+#include "sonar/scenario/transmission.h"
 
 namespace asdic::serve {
 

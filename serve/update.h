@@ -6,7 +6,7 @@
 #include "serve/data_folder.h"
 #include "serve/live_scenario.h"
 #include "serve/session_limits.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic::serve {
 

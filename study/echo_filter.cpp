@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "core/error.h"
-#include "sonar/fft.h"
-#include "sonar/geometry.h"
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/noise_spectrum.h"
 #include "sonar/processing/normaliser.h"
-#include "sonar/sampling.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/geometry.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/scenario/scenario.h"
+#include "sonar/signal/fft.h"
 #include "study/no_value.h"
 
 namespace asdic::study {

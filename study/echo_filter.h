@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "study/measure_plan.h"
 
 namespace asdic::study {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/transmission.h"
+#include "sonar/scenario/transmission.h"
 #include "study/measures.h"
 
 namespace asdic::study {

@@ -1,6 +1,6 @@
 #pragma once
 #include "io/text/toml_table.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 #include "study/measure_plan.h"
 
 namespace asdic::study {

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "study/realisation.h"
 #include "study/study.h"
 

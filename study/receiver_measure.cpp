@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sonar/processing/truth.h"
-#include "sonar/pulse.h"
+#include "sonar/signal/pulse.h"
 #include "study/no_value.h"
 
 namespace asdic::study {

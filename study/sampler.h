@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "io/text/toml_value.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 #include "study/design.h"
 #include "study/realisation.h"
 #include "study/study.h"

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic::study {
 

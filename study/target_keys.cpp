@@ -6,7 +6,7 @@
 #include <set>
 
 #include "io/scenario_reader.h"
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "io/scenario_reader.h"
 #include "raytrace/warnings/warnings.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "study/sampler.h"
 
 namespace asdic::study {

@@ -1,6 +1,6 @@
 // The datasets of a ping file, before their first row.
 #include "io/ping/writer.h"
-#include "sonar/stream.h"
+#include "sonar/ping/stream.h"
 
 namespace asdic {
 

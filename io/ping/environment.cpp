@@ -6,8 +6,8 @@
 #include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
 #include "io/text/material_text.h"
-#include "sonar/propagation_paths.h"
-#include "sonar/transmitter.h"
+#include "sonar/paths/propagation_paths.h"
+#include "sonar/scenario/transmitter.h"
 
 namespace asdic::ping_file {
 namespace {

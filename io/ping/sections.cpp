@@ -8,7 +8,7 @@
 #include "core/fields.h"
 #include "io/digest.h"
 #include "io/ping/growing_table.h"
-#include "sonar/sampling.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic::ping_file {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "io/hdf5_file.h"
 #include "io/ping_file.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 // The parts of a ping file that are written once (docs/formats/ping.md).
 namespace asdic::ping_file {

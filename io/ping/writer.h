@@ -7,7 +7,7 @@
 #include "io/ping/sections.h"
 #include "io/ping/tables.h"
 #include "io/ping_file.h"
-#include "sonar/phone_groups.h"
+#include "sonar/reverberation/phone_groups.h"
 
 // Inside of PingFileWriter, for its own .cpp files.
 namespace asdic {

@@ -10,8 +10,8 @@
 #include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
-#include "sonar/geometry.h"
 #include "sonar/processing/truth.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

@@ -7,7 +7,7 @@
 #include "io/ping_file.h"
 #include "sonar/processing/ping_processor.h"
 #include "sonar/processing/scoring.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 

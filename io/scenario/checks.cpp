@@ -5,11 +5,11 @@
 #include "core/text.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
-#include "sonar/ping_bounds.h"
-#include "sonar/ping_memory.h"
-#include "sonar/sampling.h"
-#include "sonar/stream.h"
-#include "sonar/transmission.h"
+#include "sonar/ping/ping_memory.h"
+#include "sonar/ping/stream.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/scenario/transmission.h"
 
 namespace asdic::scenario {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "io/text/toml_value.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 // Scenarios that came inside of a file of results: somebody else may have written them.
 namespace asdic::scenario {

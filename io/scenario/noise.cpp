@@ -7,7 +7,7 @@
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
 #include "io/settings/reader.h"
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/noise_spectrum.h"
 
 namespace asdic::scenario {
 namespace {

@@ -2,7 +2,7 @@
 #include "core/text.h"
 #include "io/scenario/sections.h"
 #include "io/scenario/tracks.h"
-#include "sonar/pulse.h"
+#include "sonar/signal/pulse.h"
 
 namespace asdic::scenario {
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "io/text/toml_table.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 /// The parts of a scenario file, one function per table (docs/formats/scenario.md). Each checks
 /// types and ranges of its own keys; check_scenario() holds the parts against one another. All

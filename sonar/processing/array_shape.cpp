@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
-#include "sonar/complex_product.h"
+#include "sonar/signal/complex_product.h"
 
 namespace asdic {
 

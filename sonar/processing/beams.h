@@ -3,8 +3,8 @@
 #include <span>
 
 #include "core/units.h"
-#include "sonar/fft.h"
-#include "sonar/synthesis.h"
+#include "sonar/signal/fft.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sonar/enough_bounces.h"
+#include "sonar/paths/enough_bounces.h"
 
 namespace asdic {
 namespace {

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <tuple>
 
+#include "sonar/paths/propagation_paths.h"
 #include "sonar/processing/delay_table.h"
-#include "sonar/propagation_paths.h"
 
 namespace asdic {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sonar/fft.h"
+#include "sonar/signal/fft.h"
 
 namespace asdic {
 namespace {}  // namespace

@@ -6,7 +6,7 @@
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/detection.h"
 #include "sonar/processing/replica.h"
-#include "sonar/synthesis.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "raytrace/parallel.h"
-#include "sonar/fft.h"
+#include "sonar/signal/fft.h"
 
 namespace asdic {
 namespace {

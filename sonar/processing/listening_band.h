@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "sonar/synthesis.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 

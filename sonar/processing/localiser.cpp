@@ -6,7 +6,7 @@
 
 #include "raytrace/environment.h"
 #include "raytrace/ray_path.h"
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

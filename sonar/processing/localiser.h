@@ -3,12 +3,12 @@
 #include <span>
 #include <vector>
 
+#include "sonar/paths/propagation_paths.h"
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/delay_tables.h"
 #include "sonar/processing/detection.h"
-#include "sonar/propagation_paths.h"
-#include "sonar/track.h"
-#include "sonar/transmitter.h"
+#include "sonar/scenario/track.h"
+#include "sonar/scenario/transmitter.h"
 
 namespace asdic {
 

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "raytrace/parallel.h"
-#include "sonar/complex_product.h"
+#include "sonar/signal/complex_product.h"
 
 namespace asdic {
 namespace {

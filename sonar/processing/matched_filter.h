@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "sonar/fft.h"
 #include "sonar/processing/replica.h"
-#include "sonar/synthesis.h"
+#include "sonar/signal/fft.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 

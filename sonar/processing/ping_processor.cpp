@@ -7,10 +7,10 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
-#include "sonar/carried.h"
-#include "sonar/geometry.h"
 #include "sonar/processing/listening_band.h"
-#include "sonar/transmission.h"
+#include "sonar/scenario/carried.h"
+#include "sonar/scenario/geometry.h"
+#include "sonar/scenario/transmission.h"
 
 namespace asdic {
 namespace {

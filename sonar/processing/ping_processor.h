@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "sonar/paths/propagation_paths.h"
 #include "sonar/processing/detector.h"
 #include "sonar/processing/localiser.h"
 #include "sonar/processing/replica.h"
 #include "sonar/processing/scoring.h"
 #include "sonar/processing/tracker.h"
-#include "sonar/propagation_paths.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "sonar/geometry.h"
 #include "sonar/processing/localiser.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "sonar/fft.h"
+#include "sonar/signal/fft.h"
 
 namespace asdic {
 namespace {

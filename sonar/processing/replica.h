@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "sonar/sampled_signal.h"
+#include "sonar/signal/sampled_signal.h"
 
 namespace asdic {
 

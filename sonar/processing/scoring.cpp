@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

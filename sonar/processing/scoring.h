@@ -6,7 +6,7 @@
 
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/detection.h"
-#include "sonar/track.h"
+#include "sonar/scenario/track.h"
 
 namespace asdic {
 

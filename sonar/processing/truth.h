@@ -2,9 +2,9 @@
 #include <span>
 #include <vector>
 
-#include "sonar/ping_record.h"
+#include "sonar/ping/ping_record.h"
 #include "sonar/processing/scoring.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 

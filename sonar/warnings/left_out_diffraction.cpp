@@ -3,8 +3,8 @@
 
 #include "raytrace/eigenrays.h"
 #include "raytrace/waves/diffraction.h"
-#include "sonar/geometry.h"
-#include "sonar/propagation_paths.h"
+#include "sonar/paths/propagation_paths.h"
+#include "sonar/scenario/geometry.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

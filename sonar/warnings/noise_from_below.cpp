@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "sonar/noise_in_guide.h"
+#include "sonar/noise/noise_in_guide.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

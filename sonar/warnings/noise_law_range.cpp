@@ -1,6 +1,6 @@
 #include <array>
 
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/noise_spectrum.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "sonar/sampling.h"
+#include "sonar/scenario/sampling.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

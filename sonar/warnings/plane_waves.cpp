@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "sonar/ambient_noise.h"
-#include "sonar/noise_coherence.h"
-#include "sonar/noise_in_guide.h"
-#include "sonar/phone_groups.h"
-#include "sonar/transmission.h"
+#include "sonar/noise/ambient_noise.h"
+#include "sonar/noise/noise_coherence.h"
+#include "sonar/noise/noise_in_guide.h"
+#include "sonar/reverberation/phone_groups.h"
+#include "sonar/scenario/transmission.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "raytrace/warnings/warnings.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/pulse_frequencies.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 
@@ -12,13 +13,6 @@ namespace asdic {
 [[nodiscard]] std::vector<std::string> warnings(const Scenario& scenario);
 
 namespace checks {
-
-/// Frequencies that a pulse goes through, from the lowest to the highest [Hz].
-struct PulseFrequencies {
-  double lowest = 0.0, highest = 0.0;
-};
-/// Of all transmitters.
-[[nodiscard]] PulseFrequencies pulse_frequencies(const Scenario& scenario);
 
 /// A pulse whose band reaches down to 0 Hz: written in kHz, most likely.
 [[nodiscard]] std::string pulse_band(const Scenario& scenario);
@@ -30,7 +24,7 @@ struct PulseFrequencies {
 /// Scattering at the sea surface by a law that was not measured for this frequency or wind.
 [[nodiscard]] std::string surface_scattering_range(const Scenario& scenario);
 /// Reverberation that may be drawn from its covariance, by plane waves, for an array that is too
-/// long for them (sonar/phone_groups.h).
+/// long for them (sonar/reverberation/phone_groups.h).
 [[nodiscard]] std::string reverberation_plane_waves(const Scenario& scenario);
 /// Coherent noise of a towed line that turns so fast that coherence changes within a block of it.
 [[nodiscard]] std::string noise_of_a_bent_line(const Scenario& scenario);

@@ -8,7 +8,7 @@
 
 #include "io/ping_file.h"
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 // The ping of the thesis: 60 s on 16 phones at 16 kHz, with target, reverberation and noise,
 // written to HDF5.

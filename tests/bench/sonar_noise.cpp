@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "sonar/array.h"
-#include "sonar/block_noise.h"
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/block_noise.h"
+#include "sonar/noise/noise_spectrum.h"
+#include "sonar/scenario/array.h"
 
 namespace asdic {
 namespace {

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/normal.h"
-#include "sonar/array.h"
 #include "sonar/processing/detector.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/processing/matched_filter.h"
+#include "sonar/scenario/array.h"
 
 namespace asdic {
 namespace {

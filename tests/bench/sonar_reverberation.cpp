@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "sonar/array.h"
-#include "sonar/ping.h"
-#include "sonar/reverberation.h"
-#include "sonar/synthesis.h"
+#include "sonar/ping/ping.h"
+#include "sonar/reverberation/reverberation.h"
+#include "sonar/scenario/array.h"
+#include "sonar/synthesis/synthesis.h"
 #include "support/deep_ocean.h"
 #include "support/thesis.h"
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sonar/array.h"
-#include "sonar/synthesis.h"
+#include "sonar/scenario/array.h"
+#include "sonar/synthesis/synthesis.h"
 #include "support/random_returns.h"
 
 namespace asdic {

@@ -18,7 +18,7 @@
 #include "io/processing/recordings.h"
 #include "io/result_file.h"
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "study/study_file.h"
 #include "support/synthetic_study.h"
 

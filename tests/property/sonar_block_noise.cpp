@@ -1,4 +1,4 @@
-#include "sonar/block_noise.h"
+#include "sonar/noise/block_noise.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <complex>
 
-#include "sonar/ambient_noise.h"
-#include "sonar/array.h"
-#include "sonar/fft.h"
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/ambient_noise.h"
+#include "sonar/noise/noise_spectrum.h"
+#include "sonar/scenario/array.h"
+#include "sonar/signal/fft.h"
 #include "support/thesis.h"
 
 namespace asdic {
@@ -209,7 +209,7 @@ TEST(AmbientNoise, HasTheCoherenceOfTheShapeInEachPing) {
     record.recording.samples = many;
     record.phones.resize(4);
     record.pressure.assign(4 * many, 0.0F);
-    noise.add(record);
+    noise.add(record.samples());
     Listener right = l, wrong = l;
     right.phones = ping == 1 ? straight : bent;
     wrong.phones = ping == 1 ? bent : straight;
@@ -241,7 +241,7 @@ TEST(AmbientNoise, KeepsTheFactorsOfALineThatGoesStraightOn) {
     record.recording.samples = 2000;
     record.phones.resize(3);
     record.pressure.assign(3 * 2000, 0.0F);
-    noise.add(record);
+    noise.add(record.samples());
     heard.push_back(record.pressure);
   }
   EXPECT_EQ(heard[0], heard[1]);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "sonar/doppler_expansion.h"
-#include "sonar/synthesis.h"
+#include "sonar/synthesis/doppler_expansion.h"
+#include "sonar/synthesis/synthesis.h"
 #include "support/random_returns.h"
 
 namespace asdic {

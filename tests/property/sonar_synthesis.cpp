@@ -1,4 +1,4 @@
-#include "sonar/synthesis.h"
+#include "sonar/synthesis/synthesis.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "sonar/array.h"
+#include "sonar/scenario/array.h"
 #include "support/random_returns.h"
 
 namespace asdic {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sonar/synthesis.h"
-#include "sonar/transmit_pattern.h"
+#include "sonar/scenario/transmit_pattern.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic::support {
 

@@ -6,8 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "sonar/fft.h"
-#include "sonar/ping_record.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/signal/fft.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic::support {
 

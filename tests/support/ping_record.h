@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "io/scenario_reader.h"
-#include "sonar/ping_record.h"
+#include "sonar/ping/ping_record.h"
 
 namespace asdic::support {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "sonar/processing/ping_processor.h"
 #include "sonar/processing/scoring.h"
 #include "sonar/processing/truth.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "sonar/returns.h"
+#include "sonar/paths/returns.h"
 
 namespace asdic::support {
 

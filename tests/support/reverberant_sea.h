@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "sonar/ping_bounds.h"
-#include "sonar/reverberation.h"
-#include "sonar/reverberation_covariance.h"
-#include "sonar/reverberation_streams.h"
-#include "sonar/synthesis.h"
+#include "sonar/reverberation/reverberation.h"
+#include "sonar/reverberation/reverberation_covariance.h"
+#include "sonar/reverberation/reverberation_streams.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/synthesis/synthesis.h"
 #include "support/thesis.h"
 
 namespace asdic::support {

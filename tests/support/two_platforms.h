@@ -1,5 +1,5 @@
 #pragma once
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic::support {
 

@@ -11,7 +11,7 @@
 #include "io/processing/recordings.h"
 #include "io/processing/results.h"
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "support/left_of.h"
 #include "support/program.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic {
 namespace {

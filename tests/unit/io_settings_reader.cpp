@@ -7,7 +7,7 @@
 
 #include "core/quantities.h"
 #include "io/settings/reader.h"
-#include "sonar/scenario.h"
+#include "sonar/scenario/scenario.h"
 #include "support/temporary_directory.h"
 
 namespace asdic {

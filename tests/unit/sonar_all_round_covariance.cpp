@@ -1,4 +1,4 @@
-#include "sonar/all_round_covariance.h"
+#include "sonar/reverberation/all_round_covariance.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "sonar/stretch_covariance.h"
+#include "sonar/reverberation/stretch_covariance.h"
 
 // The mean over bearings in closed form against the plain sum over many of them.
 namespace asdic {

@@ -1,4 +1,4 @@
-#include "sonar/detection_threshold.h"
+#include "sonar/processing/detection_threshold.h"
 
 #include <gtest/gtest.h>
 

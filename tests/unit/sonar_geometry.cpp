@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "sonar/array.h"
-#include "sonar/doppler.h"
-#include "sonar/track.h"
-#include "sonar/transmitter.h"
+#include "sonar/paths/doppler.h"
+#include "sonar/scenario/array.h"
+#include "sonar/scenario/track.h"
+#include "sonar/scenario/transmitter.h"
 
 namespace asdic {
 namespace {

@@ -1,4 +1,4 @@
-#include "sonar/moving_paths.h"
+#include "sonar/paths/moving_paths.h"
 
 #include <gtest/gtest.h>
 

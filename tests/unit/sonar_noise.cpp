@@ -1,4 +1,4 @@
-#include "sonar/noise.h"
+#include "sonar/noise/noise.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "sonar/fft.h"
+#include "sonar/signal/fft.h"
 
 namespace asdic {
 namespace {

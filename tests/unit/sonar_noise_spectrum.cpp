@@ -1,4 +1,4 @@
-#include "sonar/noise_spectrum.h"
+#include "sonar/noise/noise_spectrum.h"
 
 #include <gtest/gtest.h>
 

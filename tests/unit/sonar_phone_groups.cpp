@@ -1,12 +1,12 @@
 // Where an array hears reverberation: about the transmitter or its own middle, whole or in groups.
-#include "sonar/phone_groups.h"
+#include "sonar/reverberation/phone_groups.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "support/reverberant_sea.h"
 #include "support/two_platforms.h"
 

@@ -9,8 +9,8 @@
 #include "sonar/processing/beam_surroundings.h"
 #include "sonar/processing/detector.h"
 #include "sonar/processing/listening_band.h"
-#include "sonar/pulse.h"
-#include "sonar/synthesis.h"
+#include "sonar/signal/pulse.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 namespace {

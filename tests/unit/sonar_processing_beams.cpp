@@ -7,11 +7,11 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "sonar/array.h"
-#include "sonar/geometry.h"
 #include "sonar/processing/array_shape.h"
 #include "sonar/processing/beams.h"
 #include "sonar/processing/mvdr.h"
+#include "sonar/scenario/array.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

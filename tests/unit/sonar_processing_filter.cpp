@@ -9,14 +9,14 @@
 #include "core/normal.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "sonar/noise.h"
+#include "sonar/noise/noise.h"
 #include "sonar/processing/beams.h"
 #include "sonar/processing/listening_band.h"
 #include "sonar/processing/matched_filter.h"
 #include "sonar/processing/normaliser.h"
 #include "sonar/processing/replica.h"
-#include "sonar/pulse.h"
-#include "sonar/synthesis.h"
+#include "sonar/signal/pulse.h"
+#include "sonar/synthesis/synthesis.h"
 
 namespace asdic {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/doppler.h"
-#include "sonar/geometry.h"
-#include "sonar/moving_paths.h"
+#include "sonar/paths/doppler.h"
+#include "sonar/paths/moving_paths.h"
 #include "sonar/processing/delay_table.h"
 #include "sonar/processing/localiser.h"
 #include "sonar/processing/scoring.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

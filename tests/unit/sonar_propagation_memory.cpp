@@ -1,4 +1,4 @@
-#include "sonar/propagation_memory.h"
+#include "core/propagation_memory.h"
 
 #include <gtest/gtest.h>
 

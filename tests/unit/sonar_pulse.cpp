@@ -1,4 +1,4 @@
-#include "sonar/pulse.h"
+#include "sonar/signal/pulse.h"
 
 #include <gtest/gtest.h>
 

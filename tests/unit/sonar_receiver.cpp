@@ -4,11 +4,11 @@
 #include <complex>
 #include <vector>
 
-#include "sonar/carried.h"
-#include "sonar/fft.h"
-#include "sonar/ping.h"
-#include "sonar/plane_wave.h"
-#include "sonar/receiver_electronics.h"
+#include "sonar/paths/plane_wave.h"
+#include "sonar/ping/ping.h"
+#include "sonar/ping/receiver_electronics.h"
+#include "sonar/scenario/carried.h"
+#include "sonar/signal/fft.h"
 #include "support/two_platforms.h"
 
 namespace asdic {

@@ -1,11 +1,11 @@
-#include "sonar/stream.h"
+#include "sonar/ping/stream.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sonar/direct_blast.h"
-#include "sonar/sampling.h"
+#include "sonar/echoes/direct_blast.h"
+#include "sonar/scenario/sampling.h"
 #include "support/two_platforms.h"
 
 namespace asdic {

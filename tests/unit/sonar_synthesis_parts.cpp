@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "core/units.h"
-#include "sonar/delay_curve.h"
-#include "sonar/delay_kernel.h"
-#include "sonar/delay_windows.h"
-#include "sonar/doppler_expansion.h"
-#include "sonar/doppler_ridge.h"
-#include "sonar/fft.h"
-#include "sonar/place_weights.h"
-#include "sonar/sampled_signal.h"
+#include "sonar/paths/delay_curve.h"
+#include "sonar/signal/fft.h"
+#include "sonar/signal/sampled_signal.h"
+#include "sonar/synthesis/delay_kernel.h"
+#include "sonar/synthesis/delay_windows.h"
+#include "sonar/synthesis/doppler_expansion.h"
+#include "sonar/synthesis/doppler_ridge.h"
+#include "sonar/synthesis/place_weights.h"
 
 namespace asdic {
 namespace {

@@ -1,11 +1,11 @@
-#include "sonar/target.h"
+#include "sonar/scenario/target.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sonar/echo.h"
-#include "sonar/target_response.h"
+#include "sonar/echoes/echo.h"
+#include "sonar/echoes/target_response.h"
 #include "support/two_platforms.h"
 
 namespace asdic {

@@ -1,4 +1,4 @@
-#include "sonar/transect.h"
+#include "sonar/scenario/transect.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "sonar/transmitter.h"
+#include "sonar/scenario/transmitter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

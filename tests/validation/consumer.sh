@@ -32,7 +32,7 @@ cat >"$prefix/mine/main.cpp" <<'CPP'
 #include "raytrace/eigenrays.h"
 #include "reverb/scattering/lambert.h"
 #include "serve/token.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "sonar/processing/tracker.h"
 #include "study/law.h"
 

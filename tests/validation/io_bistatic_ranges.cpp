@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "io/scenario_reader.h"
-#include "sonar/geometry.h"
-#include "sonar/ping.h"
-#include "sonar/ping_bounds.h"
+#include "sonar/ping/ping.h"
 #include "sonar/processing/localiser.h"
+#include "sonar/scenario/geometry.h"
+#include "sonar/scenario/ping_bounds.h"
 
 namespace asdic {
 namespace {

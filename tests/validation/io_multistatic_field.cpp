@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
-#include "sonar/sampling.h"
+#include "sonar/ping/ping.h"
+#include "sonar/scenario/sampling.h"
 
 namespace asdic {
 namespace {

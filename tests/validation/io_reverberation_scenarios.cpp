@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic {
 namespace {

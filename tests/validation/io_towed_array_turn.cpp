@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "io/scenario_reader.h"
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "sonar/processing/beams.h"
 #include "sonar/processing/listening_band.h"
 

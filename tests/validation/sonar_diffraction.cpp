@@ -6,9 +6,9 @@
 
 #include "raytrace/propagation.h"
 #include "raytrace/waves/diffraction.h"
-#include "sonar/ping.h"
+#include "sonar/echoes/wave_response.h"
+#include "sonar/ping/ping.h"
 #include "sonar/warnings/warnings.h"
-#include "sonar/wave_response.h"
 #include "support/csv.h"
 #include "support/two_platforms.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "sonar/echo.h"
-#include "sonar/enough_bounces.h"
-#include "sonar/wave_response.h"
+#include "sonar/echoes/echo.h"
+#include "sonar/echoes/wave_response.h"
+#include "sonar/paths/enough_bounces.h"
 #include "support/csv.h"
 #include "support/reverberant_sea.h"
 

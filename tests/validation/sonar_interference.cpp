@@ -1,4 +1,4 @@
-#include "sonar/interference.h"
+#include "sonar/noise/interference.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <complex>
 
-#include "sonar/fft.h"
-#include "sonar/sampling.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/signal/fft.h"
 #include "support/two_platforms.h"
 
 namespace asdic {
@@ -41,7 +42,7 @@ PingRecord silence(const Scenario& s, std::size_t from, std::size_t samples) {
 PingRecord heard(const Scenario& s, std::size_t from, std::size_t samples) {
   const PropagationPaths paths(s.environment, s.transect);
   PingRecord record = silence(s, from, samples);
-  Interference(s, paths).add(record);
+  record.interference = Interference(s, paths).add(record.samples());
   return record;
 }
 

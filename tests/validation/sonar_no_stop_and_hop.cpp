@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "support/two_platforms.h"
 
 namespace asdic {

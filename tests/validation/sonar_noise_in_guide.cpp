@@ -1,13 +1,13 @@
 // Where the noise of the surface comes from in a guide: against plain counts of bounces.
-#include "sonar/noise_in_guide.h"
+#include "sonar/noise/noise_in_guide.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/ambient_noise.h"
-#include "sonar/noise_coherence.h"
+#include "sonar/noise/ambient_noise.h"
+#include "sonar/noise/noise_coherence.h"
 #include "support/two_platforms.h"
 
 namespace asdic {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 #include "support/processing.h"
 #include "support/thesis.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/geometry.h"
+#include "sonar/scenario/geometry.h"
 #include "support/processing.h"
 #include "support/thesis.h"
 

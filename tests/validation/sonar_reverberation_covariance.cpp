@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "sonar/ping.h"
+#include "sonar/ping/ping.h"
 #include "support/kolmogorov.h"
 #include "support/reverberant_sea.h"
 #include "support/sound_moments.h"

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "sonar/ping.h"
-#include "sonar/ping_bounds.h"
-#include "sonar/sampling.h"
-#include "sonar/sound_synthesis.h"
-#include "sonar/two_step_echo.h"
+#include "sonar/echoes/two_step_echo.h"
+#include "sonar/ping/ping.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/synthesis/sound_synthesis.h"
 #include "support/reverberant_sea.h"
 #include "support/two_platforms.h"
 

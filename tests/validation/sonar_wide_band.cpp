@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "raytrace/ocean/absorption.h"
-#include "sonar/band_response.h"
-#include "sonar/fft.h"
-#include "sonar/reverberation_band.h"
+#include "sonar/reverberation/reverberation_band.h"
+#include "sonar/signal/band_response.h"
+#include "sonar/signal/fft.h"
 #include "support/reverberant_sea.h"
 #include "support/two_platforms.h"
 
@@ -188,7 +188,7 @@ BandError reverberation_error(const Scenario& s, bool wide) {
                   .pulse = pulse,
                   .latest = heard_until,
                   .band = wide ? band.points() : std::span<const BandPoint>()});
-  const Synthesizer synthesizer = band.synthesizer(pulse, recording, 0.0);
+  const Synthesizer synthesizer(pulse, recording, 0.0, band.filters());
   const auto& phones = s.arrays[0].phones;
   std::vector<float> pressure(phones.size() * recording.samples);
   (wide ? synthesizer : plain)

@@ -1,0 +1,543 @@
+#include "sonar/echoes/echo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "reverb/forward_scatter.h"
+#include "reverb/scatterer_field.h"
+#include "sonar/echoes/one_leg.h"
+#include "sonar/echoes/target_response.h"
+#include "sonar/paths/doppler.h"
+#include "sonar/paths/moving_paths.h"
+#include "sonar/paths/plane_wave.h"
+#include "sonar/scenario/carried.h"
+#include "sonar/scenario/sampling.h"
+
+namespace asdic {
+namespace {
+
+/// One path out and one path back, met where things are by then.
+struct TwoWayPaths {
+  Kinematics source, target;
+  MetPath there, home;
+};
+
+double radius(std::span<const Vec3> places) {
+  double furthest = 0.0;
+  for (const Vec3& place : places) furthest = std::max(furthest, place.norm());
+  return furthest;
+}
+
+class EchoFinder {
+ public:
+  EchoFinder(const EchoContext& context, int target)
+      : context_(context),
+        scenario_(context.scenario),
+        array_(scenario_.arrays[static_cast<std::size_t>(context.array)]),
+        phones_(phones_at(scenario_, context.array, context.ping, context.ping_time)),
+        reference_(reference_of(scenario_, context.array)),
+        target_(scenario_.targets[static_cast<std::size_t>(target)]),
+        index_(target),
+        layered_(context.paths.layered()),
+        latest_(end_of_record(scenario_)),
+        bounces_(enough()),
+        limits_(limits_of(scenario_.propagation, bounces_)),
+        moving_(context.paths, limits_, context.frequency, context.ping_time, 1e-7, context.reuse),
+        closely_(context.paths, limits_, context.frequency, context.ping_time, 1e-9,
+                 context.reuse) {}
+
+  TargetEchoes find() {
+    const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);
+    Way out = moving_.way(source.position, 0.0, target_.track, Vec3::Zero());
+    out.leg.kind = Leg::Kind::source_to_target;
+    out.leg.target = index_;
+    TargetEchoes result;
+    result.bounces = bounces_;
+    result.legs.push_back(out.leg);
+    if (out.leg.arrivals.empty()) return result;
+    const bool exact = scenario_.propagation.exact_per_phone;
+    Way home = way_back(out, exact ? 0 : -1);
+    const bool many = home.leg.arrivals.size() > context_.most_pairs / out.leg.arrivals.size();
+    if (many) result.many = all_pairs(out, home);
+    for (std::size_t n = 0; n < (exact ? phones_.size() : 1); ++n) {
+      if (n > 0) home = way_back(out, static_cast<int>(n));
+      if (many) {
+        list_loudest(source, out, home, result);
+        shorten_bounces(home.leg.arrivals, exact ? phones_.size() : 1);
+      } else {
+        pair_up(source, out, home, result);
+      }
+      result.legs.push_back(std::move(home.leg));
+    }
+    if (many) {
+      shorten_bounces(result.legs.front().arrivals);
+    } else if (!exact && context_.listens && !plane_waves(result)) {
+      TargetEchoes at_phones;
+      for (std::size_t n = 0; n < phones_.size(); ++n)
+        pair_up(source, out, way_back(out, static_cast<int>(n)), at_phones);
+      result.at_phones = std::move(at_phones.echoes);
+      result.scattered = std::move(at_phones.scattered);
+    }
+    return result;
+  }
+
+ private:
+  /// Bounces for both legs, found for where everything is when the ping starts.
+  Bounces enough() const {
+    const Vec3 source =
+        transmitter_at(scenario_, context_.transmitter, context_.ping_time).position;
+    const Vec3 target = target_.track.at(context_.ping_time).position;
+    const Vec3 array = array_at(scenario_, context_.array, context_.ping_time).position;
+    const auto leg = [&](const Vec3& from, const Vec3& to) {
+      return enough_bounces(context_.paths, scenario_.propagation, from, to, context_.frequency,
+                            latest_);
+    };
+    const Bounces out = leg(source, target), back = leg(target, array);
+    Bounces both = out;
+    both.include(back);
+    both.left_out_db = out.left_out_db + back.left_out_db;
+    return both;
+  }
+
+  /// Whether all echoes are plane waves to the phones. \param found  at the reference point
+  bool plane_waves(const TargetEchoes& found) const {
+    const Arrivals& home = found.legs.back().arrivals;
+    return std::all_of(found.echoes.begin(), found.echoes.end(), [&](const EchoPath& echo) {
+      return is_plane_wave(context_, echo.heard,
+                           home[static_cast<std::size_t>(echo.returning)].path_length);
+    });
+  }
+
+  /// \param channel  phone that hears it; −1: the reference point
+  [[nodiscard]] Carried hearer(int channel) const {
+    return channel < 0 ? reference_ : phone_of(scenario_, context_.array, context_.ping, channel);
+  }
+
+  /// From where the first sound strikes the target.
+  [[nodiscard]] Way way_back(const Way& out, int channel) const {
+    const Carried hearer = this->hearer(channel);
+    Way back = moving_.way(out.end.position, out.reference_time, hearer.track, hearer.offset);
+    back.leg.kind = Leg::Kind::target_to_array;
+    back.leg.target = index_;
+    back.leg.channel = channel;
+    back.leg.array = context_.array;
+    return back;
+  }
+
+  /// A path out that has met the target.
+  struct Strike {
+    Kinematics source, target;
+    MetPath there;
+    std::optional<Way> home;  ///< where the target has moved since the way back was found
+  };
+  /// \param path  number of one of the way out   \param known  paths home, for where it moved to
+  [[nodiscard]] Strike strike(const Kinematics& source, const Way& out, std::size_t path,
+                              std::span<const Arrival> known, const Carried& hearer) const {
+    Strike s{.source = source,
+             .target = {},
+             .there = moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out,
+                                   out.leg.arrivals[path]),
+             .home = {}};
+    s.target = target_.track.at(context_.ping_time + s.there.time);
+    if (s.target.position != out.end.position)
+      s.home = moving_.way(s.target.position, s.there.time, hearer.track, hearer.offset, known);
+    return s;
+  }
+
+  /// With one of the paths home; nothing if by then it is gone.
+  [[nodiscard]] std::optional<TwoWayPaths> with_home(const Strike& strike, const Way& back,
+                                                     std::size_t number,
+                                                     const Carried& hearer) const {
+    const Way& home = strike.home ? *strike.home : back;
+    const Arrival& known = back.leg.arrivals[number];
+    const Arrival* path = strike.home ? same_path(home.leg.arrivals, known, layered_) : &known;
+    if (path == nullptr) return {};
+    return TwoWayPaths{.source = strike.source,
+                       .target = strike.target,
+                       .there = strike.there,
+                       .home = moving_.meet(strike.target.position, strike.there.time, hearer.track,
+                                            hearer.offset, home, *path)};
+  }
+
+  void pair_up(const Kinematics& source, const Way& out, const Way& back,
+               TargetEchoes& result) const {
+    const int channel = back.leg.channel;
+    const Carried hearer = this->hearer(channel);
+    for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
+      const Strike strike = this->strike(source, out, i, back.leg.arrivals, hearer);
+      for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
+        const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+        if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
+        const std::size_t first = result.scattered.size();
+        std::vector<EchoPath> echoes = answer(*pair, hearer, channel);
+        scatter(*pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
+                result.scattered);
+        name(i, j, std::span(result.scattered).subspan(first));
+        name(i, j, echoes);
+        for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
+      }
+    }
+  }
+
+  /// By the numbers of their paths.
+  static void name(std::size_t outgoing, std::size_t returning, std::span<EchoPath> echoes) {
+    for (EchoPath& echo : echoes) {
+      echo.outgoing = static_cast<int>(outgoing);
+      echo.returning = static_cast<int>(returning);
+    }
+  }
+
+  [[nodiscard]] ManyEchoes all_pairs(const Way& out, const Way& back) const {
+    const Arrivals &there = out.leg.arrivals, &home = back.leg.arrivals;
+    ManyEchoes many{.target = index_, .array = context_.array, .followed = bounces_};
+    const double c = context_.paths.speed_at(back.end.position);
+    std::size_t heard = home.size();  // of the paths home, after one more of those there
+    for (const Arrival& one : there) {
+      while (heard > 0 && one.delay + home[heard - 1].delay > latest_) --heard;
+      many.pairs += heard;
+    }
+    many.first = there.front().delay + home.front().delay;
+    many.last = std::min(latest_, there.back().delay + home.back().delay);
+    many.at_phones =
+        scenario_.propagation.exact_per_phone ||
+        (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
+           const Return heard_there{
+               .delay = there.front().delay + path.delay,
+               .slowness = met_by(back.end.velocity,
+                                  slowness_vector(back.leg.bearing, path.arrival_elevation, c))};
+           return is_plane_wave(context_, heard_there, path.path_length);
+         }));
+    return many;
+  }
+
+  /// The loudest of too many pairs, at one of the hearers.
+  void list_loudest(const Kinematics& source, const Way& out, const Way& back,
+                    TargetEchoes& result) const {
+    constexpr std::size_t most_listed = 1000;
+    const std::size_t most =
+        back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
+    const Carried hearer = this->hearer(back.leg.channel);
+    for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
+      const Strike strike =
+          this->strike(source, out, i, std::span(&back.leg.arrivals[j], 1), hearer);
+      const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+      if (!pair) continue;
+      std::vector<EchoPath> echoes = answer(*pair, hearer, back.leg.channel);
+      name(i, j, echoes);
+      for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
+    }
+  }
+
+  /// The first pair and the loudest that are heard in time, by the numbers of their paths. Loudest
+  /// paths first on both legs, the best of every row of pairs is its first that is left.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> loudest_pairs(
+      const Leg& out, const Leg& back, std::size_t most) const {
+    const Arrivals &there = out.arrivals, &home = back.arrivals;
+    const auto power = [](const Arrival& path) {
+      return std::norm(path.amplitude) + path.scattered;
+    };
+    const auto ordered = [&](const Arrivals& paths, const auto& of) {
+      std::vector<std::pair<double, std::size_t>> found;
+      for (std::size_t i = 0; i < paths.size(); ++i) found.emplace_back(of(paths[i]), i);
+      std::sort(found.begin(), found.end(), std::greater<>());
+      return found;
+    };
+    const auto outward = ordered(there, [&](const Arrival& path) {
+      return power(path) * std::norm(context_.pattern.towards(out.bearing, path.launch_elevation));
+    });
+    const auto homeward = ordered(home, power);
+    using Best = std::tuple<double, std::size_t, std::size_t>;  // power; row, place in it
+    std::priority_queue<Best> best;
+    for (std::size_t row = 0; row < outward.size(); ++row)
+      best.emplace(outward[row].first * homeward[0].first, row, 0);
+    std::vector<std::pair<std::size_t, std::size_t>> found = {{0, 0}};
+    for (std::size_t looked = 0; !best.empty() && found.size() < most && looked < 32 * most;
+         ++looked) {
+      const auto [loud, row, place] = best.top();
+      best.pop();
+      const std::size_t i = outward[row].second, j = homeward[place].second;
+      if (there[i].delay + home[j].delay <= latest_ && i + j > 0) found.emplace_back(i, j);
+      if (place + 1 < homeward.size())
+        best.emplace(outward[row].first * homeward[place + 1].first, row, place + 1);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  /// Into how many parts what is scattered about a pair of paths is drawn, of so many pairs.
+  static int parts_of(std::size_t pairs) {
+    constexpr std::size_t most = 4096;  // of a target
+    return static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(pairs, 1), 2, 16));
+  }
+
+  /// What rough boundaries scatter about a pair of paths. \param echoes  of the pair's own
+  void scatter(const TwoWayPaths& pair, std::span<const EchoPath> echoes, int parts,
+               std::vector<EchoPath>& found) const {
+    const Arrival &there = pair.there.path, &home = pair.home.path;
+    const double mean = std::norm(there.amplitude * home.amplitude);
+    const double scattered = intensity(pair) - mean;
+    if (!(scattered > 1e-9 * mean)) return;
+    const auto place = [](const Kinematics& end) { return Vec2(end.position.head<2>()); };
+    const ScatteredLeg legs[] = {
+        {&there, place(pair.source), pair.there.way.leg.bearing, context_.ping_time},
+        {&home, place(pair.target), pair.home.way.leg.bearing,
+         context_.ping_time + pair.there.time}};
+    const double c = context_.paths.speed_at(pair.home.way.end.position);
+    const double pressure = std::sqrt(scattered);
+    for (const EchoPath& echo : echoes) {
+      std::uint64_t entity = mixed(static_cast<std::uint64_t>(context_.transmitter),
+                                   static_cast<std::uint64_t>(index_));
+      for (const std::uint64_t more : {scatter_history(there), scatter_history(home)})
+        entity = mixed(entity, more);
+      // what the glint itself sends back, and the transmitter to there
+      const std::complex<double> of_glint = echo.glint,
+                                 pattern = context_.pattern.towards(echo.colour.bearing,
+                                                                    echo.colour.elevation);
+      for (const ScatteredPart& part : forward_scatter(
+               scenario_.environment, legs, context_.frequency, parts, scenario_.seed, entity)) {
+        EchoPath one = echo;
+        one.curve.reset();
+        one.heard.delay += part.delay;
+        one.heard.doppler *= 1.0 + part.shift / context_.frequency;
+        one.heard.slowness = met_by(pair.home.way.end.velocity,
+                                    slowness_vector(pair.home.way.leg.bearing + part.bearing,
+                                                    home.arrival_elevation + part.elevation, c));
+        one.colour.without_pattern = pressure * part.amplitude * of_glint;
+        one.heard.amplitude = one.colour.without_pattern * pattern;
+        one.level_db = source_level_db() + db_from_amplitude(std::abs(one.heard.amplitude));
+        found.push_back(std::move(one));
+      }
+    }
+  }
+
+  /// Of a pair of paths in the mean: the mean fields' and what is scattered about them.
+  static double intensity(const TwoWayPaths& pair) {
+    const Arrival &there = pair.there.path, &home = pair.home.path;
+    return (std::norm(there.amplitude) + there.scattered) *
+           (std::norm(home.amplitude) + home.scattered);
+  }
+
+  [[nodiscard]] double source_level_db() const {
+    return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
+  }
+
+  /// Slownesses at the four ends of a pair.
+  struct Slownesses {
+    Vec3 at_source, into_target, out_of_target, at_phone;
+  };
+  Slownesses slownesses(const TwoWayPaths& pair) const {
+    const auto speed = [&](const Kinematics& k) { return context_.paths.speed_at(k.position); };
+    const double c_source = speed(pair.source), c_target = speed(pair.target),
+                 c_phone = speed(pair.home.way.end);
+    const double there = pair.there.way.leg.bearing, home = pair.home.way.leg.bearing;
+    return {.at_source = slowness_vector(there, pair.there.path.launch_elevation, c_source),
+            .into_target = slowness_vector(there, pair.there.path.arrival_elevation, c_target),
+            .out_of_target = slowness_vector(home, pair.home.path.launch_elevation, c_target),
+            .at_phone = slowness_vector(home, pair.home.path.arrival_elevation, c_phone)};
+  }
+
+  Vec3 lag_of(const TwoWayPaths& pair) const {
+    const Slownesses s = slownesses(pair);
+    return BodyLag{.into = s.into_target,
+                   .out = s.out_of_target,
+                   .at_phone = s.at_phone,
+                   .body_velocity = pair.target.velocity,
+                   .phone_velocity = pair.home.way.end.velocity}
+        .per_offset();
+  }
+
+  /// What all glints of the target send back by one pair of paths.
+  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Carried& hearer, int channel) const {
+    const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
+    const Vec3 lag = lag_of(pair);
+    const Kinematics& phone = pair.home.way.end;
+    EchoPath echo;
+    echo.target = index_;
+    echo.array = context_.array;
+    echo.struck = pair.there.time;
+    echo.heard.channel = channel < 0 ? Return::all_channels : channel;
+    echo.heard.doppler =
+        echo_doppler({pair.source.velocity, at_source}, {pair.target.velocity, into_target},
+                     {pair.target.velocity, out_of_target}, {phone.velocity, at_phone});
+    echo.heard.slowness = met_by(phone.velocity, at_phone);
+    const double bearing = pair.there.way.leg.bearing, elevation = pair.there.path.launch_elevation;
+    const std::complex<double> crossed = pair.there.path.amplitude * pair.home.path.amplitude;
+    const std::complex<double> towards = context_.pattern.towards(bearing, elevation);
+    const std::complex<double> carried = crossed * towards;
+    echo.colour = {.path_length = pair.there.path.path_length + pair.home.path.path_length,
+                   .bearing = bearing,
+                   .elevation = elevation};
+    const Look look{.transmitter = context_.transmitter,
+                    .platform = array_.platform,
+                    .ping = context_.ping,
+                    .turn = context_.turn};
+    const std::vector<Glint> seen = glints(scenario_, index_, look, into_target, out_of_target,
+                                           context_.ping_time + pair.there.time);
+    // A return tells of the reference point, also where its path is a phone's own.
+    const Vec3 x = channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)];
+    std::vector<EchoPath> echoes;
+    for (const Glint& glint : seen) {
+      echo.highlight = glint.highlight;
+      echo.heard.delay = pair.home.time + lag.dot(glint.offset) - echo.heard.slowness.dot(x);
+      echo.heard.amplitude = carried * glint.amplitude;
+      echo.colour.without_pattern = crossed * glint.amplitude;
+      echo.glint = glint.amplitude;
+      echo.level_db = source_level_db() + db_from_amplitude(std::abs(echo.heard.amplitude));
+      if (const double all = intensity(pair); all > std::norm(crossed))
+        echo.level_db = source_level_db() +
+                        db_from_amplitude(std::sqrt(all) * std::abs(glint.amplitude * towards));
+      echoes.push_back(echo);
+    }
+    bend(pair, hearer, channel, seen, echoes);
+    return echoes;
+  }
+
+  /// Gives the echoes curves where the ranges change at changing rates during the pulse.
+  void bend(const TwoWayPaths& pair, const Carried& hearer, int channel,
+            const std::vector<Glint>& seen, std::vector<EchoPath>& echoes) const {
+    if (context_.pulse == nullptr || echoes.empty()) return;
+    const Pulse& pulse = *context_.pulse;
+    double aperture = channel < 0 ? radius(phones_) : 0.0;
+    for (const Glint& glint : seen) aperture = std::max(aperture, 2.0 * glint.offset.norm());
+    const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
+    const MovingPath path = follow(pair, hearer, highest);
+    const Vec3 out = pair.target.velocity - pair.source.velocity,
+               back = pair.home.way.end.velocity - pair.target.velocity;
+    const double c = context_.paths.speed_at(pair.target.position);
+    const double phase = curvature_phase(highest, pulse.duration(), out.norm(),
+                                         pair.there.path.path_length, c, aperture) +
+                         curvature_phase(highest, pulse.duration(), back.norm(),
+                                         pair.home.path.path_length, c, aperture);
+    const bool turns =
+        !(path.source_turns.empty() && path.target_turns.empty() && path.array_turns.empty());
+    if (phase < negligible_phase && !turns) return;
+    const std::vector<PulseMoment> moments = moments_of(path, pair, hearer);
+    for (std::size_t i = 0; i < echoes.size(); ++i)
+      echoes[i].curve = delay_curve(moments, echoes[i].heard, seen[i].offset, highest, aperture);
+  }
+
+  /// What was found for one pair of paths, and how many sets of eigenrays that asked for.
+  struct Moments {
+    std::vector<PulseMoment> along;
+    int legs = 0;
+  };
+
+  /// pulse_moments(), out of what is kept for equal ways and paths.
+  std::vector<PulseMoment> moments_of(const MovingPath& path, const TwoWayPaths& pair,
+                                      const Carried& hearer) const {
+    const auto& transmitter =
+        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
+    const PathLimits& limits = limits_;
+    ExactKey key = context_.paths.key(Kept::pulse_moments);
+    key.add_all(context_.ping_time, context_.frequency, path.pulse_duration, transmitter.offset,
+                hearer.offset, limits.max_surface_bounces, limits.max_bottom_bounces,
+                limits.max_launch_angle, limits.max_vertices, limits.faintest);
+    key.add_all(path.source_turns, path.target_turns, path.array_turns);
+    for (const Track* track :
+         {&scenario_.platforms[static_cast<std::size_t>(transmitter.platform)].track,
+          &target_.track, &hearer.track}) {
+      key.add_all(track->start.position, track->start.velocity, track->waypoints.size());
+      for (const Waypoint& point : track->waypoints) key.add_all(point.time, point.position);
+    }
+    add_path(key, pair.there.path);
+    add_path(key, pair.home.path);
+    PropagationMemory& memory = context_.paths.memory();
+    Reuse* const reuse = context_.reuse;
+    if (const auto known = memory.find<Moments>(key)) {
+      if (reuse != nullptr) reuse->legs_reused += known->legs;
+      return known->along;
+    }
+    const auto legs = [&] { return reuse ? reuse->legs_reused + reuse->legs_searched : 0; };
+    const int before = legs();
+    Moments found{.along = pulse_moments(path)};
+    found.legs = legs() - before;
+    memory.keep(key, std::make_shared<Moments>(found), found.along.size() * sizeof(PulseMoment));
+    return found.along;
+  }
+
+  MovingPath follow(const TwoWayPaths& pair, const Carried& hearer, double highest) const {
+    const auto& transmitter =
+        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
+    const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
+    // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
+    const auto near = [&](std::vector<double> turns, double from) {
+      std::erase_if(turns, [&](double turn) {
+        return turn <= from || turn >= from + 1.5 * context_.pulse->duration();
+      });
+      return turns;
+    };
+    return {.moment = [this, &pair, &hearer](double sent) { return moment(pair, hearer, sent); },
+            .pulse_duration = context_.pulse->duration(),
+            .frequency = highest,
+            .source_turns = near(turns_of(carrier.track, context_.ping_time), 0.0),
+            .target_turns = near(turns_of(target_.track, context_.ping_time), pair.there.time),
+            .array_turns = near(turns_of(hearer.track, context_.ping_time), pair.home.time)};
+  }
+
+  /// The same pair of paths for what leaves `sent` after the leading edge.
+  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Carried& hearer,
+                                    double sent) const {
+    TwoWayPaths then;
+    then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
+    const Way out = closely_.way(then.source.position, sent, target_.track, Vec3::Zero(),
+                                 std::span(&pair.there.path, 1));
+    const Arrival* path = same_path(out.leg.arrivals, pair.there.path, layered_);
+    if (path == nullptr) return std::nullopt;
+    then.there = closely_.meet(then.source.position, sent, target_.track, Vec3::Zero(), out, *path);
+    then.target = target_.track.at(context_.ping_time + then.there.time);
+    const Way home = closely_.way(then.target.position, then.there.time, hearer.track,
+                                  hearer.offset, std::span(&pair.home.path, 1));
+    path = same_path(home.leg.arrivals, pair.home.path, layered_);
+    if (path == nullptr) return std::nullopt;
+    then.home = closely_.meet(then.target.position, then.there.time, hearer.track, hearer.offset,
+                              home, *path);
+    const Slownesses s = slownesses(then);
+    return PulseMoment{.sent = sent,
+                       .struck = then.there.time,
+                       .heard = then.home.time,
+                       .lag = lag_of(then),
+                       .at_array = met_by(then.home.way.end.velocity, s.at_phone)};
+  }
+
+  const EchoContext& context_;
+  const Scenario& scenario_;
+  const ReceiverArray& array_;
+  std::vector<Vec3> phones_;
+  Carried reference_;
+  const Target& target_;
+  int index_;
+  bool layered_;
+  double latest_;    // end of the record [s]
+  Bounces bounces_;  // that are followed
+  PathLimits limits_;
+  MovingPaths moving_, closely_;  // closely: delays as they change during a pulse
+};
+
+}  // namespace
+
+bool is_plane_wave(const EchoContext& context, const Return& heard, double length) {
+  Front front{.slowness = heard.slowness,
+              .length = length,
+              .delay = heard.delay,
+              .highest_frequency = context.frequency};
+  if (const Pulse* pulse = context.pulse; pulse != nullptr) {
+    front.duration = pulse->duration() / heard.doppler;
+    front.highest_frequency = pulse->centre_frequency() + 0.5 * pulse->bandwidth_40db();
+  }
+  return is_plane_wave({.scenario = context.scenario,
+                        .array = context.array,
+                        .ping = context.ping,
+                        .ping_time = context.ping_time},
+                       front);
+}
+
+TargetEchoes target_echoes(const EchoContext& context, int target) {
+  return EchoFinder(context, target).find();
+}
+
+}  // namespace asdic

@@ -1,0 +1,148 @@
+#include "sonar/echoes/sparse_sound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "raytrace/ocean/absorption.h"
+#include "sonar/echoes/wave_response.h"
+#include "sonar/scenario/transmitter.h"
+
+namespace asdic {
+namespace {
+
+/// What an echo's legs that are no rays do across the band.
+struct PathWaves {
+  double ray_length = 0.0;  ///< of the legs that are rays [m]
+  std::vector<std::shared_ptr<const SampledResponse>> legs;
+
+  [[nodiscard]] std::complex<double> at(double frequency) const {
+    std::complex<double> product = 1.0;
+    for (const auto& leg : legs) product *= leg->at(frequency);
+    return product;
+  }
+  /// Of the polynomial that the product is.
+  [[nodiscard]] std::size_t degree() const {
+    std::size_t sum = 0;
+    for (const auto& leg : legs) sum += leg->values.size() - 1;
+    return sum;
+  }
+};
+
+/// Of every path; a leg that several share is computed once. \return [paths]
+std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const EchoPath> paths,
+                                std::span<const Leg> legs, double centre, double half_band) {
+  std::vector<std::pair<ExactKey, std::shared_ptr<const SampledResponse>>> known;
+  std::vector<PathWaves> all;
+  for (const EchoPath& path : paths) {
+    PathWaves& waves =
+        all.emplace_back(PathWaves{.ray_length = path.colour.path_length, .legs = {}});
+    for (const WaveLeg& leg : wave_legs(context, path, legs)) {
+      waves.ray_length -= leg.path.path_length;
+      ExactKey key = context.paths.key(Kept::legs);
+      key.add_all(leg.from, leg.to, leg.path.delay);
+      add_path(key, leg.path);
+      auto found = std::find_if(known.begin(), known.end(),
+                                [&](const auto& one) { return one.first == key; });
+      if (found == known.end())
+        found = known.insert(known.end(),
+                             {std::move(key), std::make_shared<SampledResponse>(wave_response(
+                                                  context.paths, leg, centre, half_band))});
+      waves.legs.push_back(found->second);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+PulseBand::PulseBand(const EchoContext& context, const Transmitter& projector,
+                     const Recording& recording, double max_doppler)
+    : water_(context.paths.along_transect().environment().absorption),
+      projector_(projector),
+      centre_(context.pulse->centre_frequency()),
+      half_band_(
+          Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory()).half_band()),
+      sound_speed_(context.paths.speed_at(
+          transmitter_at(context.scenario, context.transmitter, context.ping_time).position)),
+      heading_(platform_heading(context.scenario, projector.platform, context.ping_time)) {}
+
+double PulseBand::nepers_per_metre(double frequency) const {
+  return absorption_db_per_km(water_, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
+}
+
+BeamPattern PulseBand::pattern_at(double frequency) const {
+  return {projector_, sound_speed_ / frequency, sound_speed_, heading_, sound_speed_ / centre_};
+}
+
+BandNodes PulseBand::nodes(double longest) const {
+  const double lowest = std::max(1.0, centre_ - half_band_);
+  const double nepers =
+      0.5 * longest * std::abs(nepers_per_metre(centre_ + half_band_) - nepers_per_metre(lowest));
+  return band_nodes(centre_, half_band_, nepers, pattern_at(centre_).longest_delay());
+}
+
+BandPart PulseBand::part(const BandNodes& nodes, std::size_t k) const {
+  const double f = std::max(1.0, nodes.frequencies[k]);
+  return {.filter = [nodes, k,
+                     centre = centre_](double beside) { return nodes.basis(k, centre + beside); },
+          .pattern = pattern_at(f),
+          .more_nepers_per_metre = nepers_per_metre(f) - nepers_per_metre(centre_)};
+}
+
+Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoPath> paths,
+                           std::span<const Vec3> phones) {
+  Returns straight;
+  std::vector<CurvedReturn> curved;
+  for (const EchoPath& path : paths)
+    if (path.curve)
+      curved.push_back({path.heard, *path.curve});
+    else
+      straight.push_back(path.heard);
+  Baseband sound = synthesizer.baseband(straight, phones);
+  synthesizer.add_curved(curved, phones, sound);
+  return sound;
+}
+
+Baseband wide_band_sound(const EchoContext& context, const Transmitter& projector,
+                         std::span<const EchoPath> paths, std::span<const Leg> legs,
+                         std::span<const Vec3> phones, const Recording& recording,
+                         double max_doppler) {
+  const Pulse& pulse = *context.pulse;
+  const PulseBand of_pulse(context, projector, recording, max_doppler);
+  const double centre = of_pulse.centre(), half_band = of_pulse.half_width();
+  double longest = 0.0;
+  for (const EchoPath& path : paths) longest = std::max(longest, path.colour.path_length);
+  BandNodes band = of_pulse.nodes(longest);
+  const std::vector<PathWaves> waves = waves_of(context, paths, legs, centre, half_band);
+  std::size_t of_waves = 0;
+  for (const PathWaves& path : waves) of_waves = std::max(of_waves, path.degree());
+  if (of_waves > 0) band = chebyshev_nodes(centre, half_band, band.frequencies.size() + of_waves);
+
+  Baseband all;
+  std::vector<EchoPath> coloured(paths.begin(), paths.end());
+  for (std::size_t k = 0; k < band.frequencies.size(); ++k) {
+    const double f = std::max(1.0, band.frequencies[k]);
+    const BandPart at = of_pulse.part(band, k);
+    for (std::size_t i = 0; i < coloured.size(); ++i) {
+      const PathColour& colour = coloured[i].colour;
+      coloured[i].heard.amplitude =
+          colour.without_pattern * at.pattern.towards(colour.bearing, colour.elevation) *
+          std::exp(-at.more_nepers_per_metre * waves[i].ray_length) * waves[i].at(f);
+    }
+    Baseband sound =
+        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), coloured, phones);
+    if (k == 0)
+      all = std::move(sound);
+    else
+      std::transform(sound.values.begin(), sound.values.end(), all.values.begin(),
+                     all.values.begin(), std::plus<>{});
+  }
+  return all;
+}
+
+}  // namespace asdic

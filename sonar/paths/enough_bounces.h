@@ -1,0 +1,118 @@
+#pragma once
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "sonar/paths/propagation_paths.h"
+
+namespace asdic {
+
+/// What "auto" may leave out of a level: more is told as a warning once it is `tolerable_db`.
+inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
+
+/// Bounces off either boundary that "auto" follows at most over slopes and fronts, where every one
+/// takes longer marches, and between two places in layered water, where all bounces of four times
+/// as many paths are held.
+inline constexpr int most_over_slopes = 96, most_between_places = 768;
+
+/// How many bounces are followed off either boundary, and an estimate of how much of the level is
+/// missing for it [dB].
+struct Bounces {
+  int surface = 0, bottom = 0;
+  double left_out_db = std::numeric_limits<double>::quiet_NaN();  ///< none: not a number
+
+  /// The more of both.
+  void include(const Bounces& other) noexcept;
+};
+
+/// What reaches a place or comes back from the ground, in stretches of delay (or of whatever else
+/// may miss it), by the bounces of the path that has more of them.
+class EnergyByBounces {
+ public:
+  /// \param latest  end of the last stretch [s]   \param most  bounces   \param floor  what may be
+  /// missing of a stretch whatever is heard there
+  EnergyByBounces(std::size_t stretches, double latest, int most, double floor);
+
+  void add(double delay, int bounces, double energy);
+  /// What is missing of the stretch that misses most, if no more bounces are followed [dB]: 0 where
+  /// that is below the floor.
+  [[nodiscard]] double left_out_db(int bounces) const;
+  /// The fewest bounces, from fewest_bounces on, that leave out no more [dB].
+  [[nodiscard]] int enough(double db) const;
+  /// left_out_db(); of a search that was given up, no less than its last half added: what is beyond
+  /// adds about as much again.
+  [[nodiscard]] double estimate_db(int bounces, bool converged) const;
+  /// Whether those of more than half of the bounces are so weak that still more will not count, or
+  /// nothing was found that has as many as were allowed: there is no more.
+  [[nodiscard]] bool converged(double db) const {
+    return !any_has_most_ || left_out_db(most_ / 2) <= 0.5 * db;
+  }
+
+ private:
+  double latest_;
+  int most_;
+  double floor_;
+  bool any_has_most_ = false;
+  std::vector<double> energy_;  // [stretches × (most + 1)]
+};
+
+/// What a search for bounces has heard: of all paths, and of those beyond the numbers asked for.
+class HeardBounces {
+ public:
+  HeardBounces(std::size_t stretches, double latest, int most, double floor, const Bounces& asked)
+      : by_most_(stretches, latest, most, floor),
+        by_numbers_(stretches, latest, 1, floor),
+        asked_(asked) {}
+
+  void add(double delay, int surface, int bottom, double energy);
+  [[nodiscard]] const EnergyByBounces& by_most() const noexcept { return by_most_; }
+  [[nodiscard]] const EnergyByBounces& by_numbers() const noexcept { return by_numbers_; }
+
+ private:
+  EnergyByBounces by_most_, by_numbers_;  // by_numbers_: 0 within, 1 beyond
+  Bounces asked_;
+};
+
+/// How many bounces are looked for, and where.
+struct BounceSearch {
+  int first = 2 * fewest_bounces;  ///< tried first, then twice as many
+  int most = 768;                  ///< tried at most
+  double tolerance_db = negligible_db;
+  std::size_t stretches = 1;
+  double latest = std::numeric_limits<double>::infinity();  ///< end of the stretches
+  double floor = 0.0;                                       ///< as of EnergyByBounces
+};
+
+/// Whether the settings say how many off either boundary.
+[[nodiscard]] bool in_numbers(const PropagationSettings& settings) noexcept;
+/// What is asked for; where that is in numbers, without them: what there is to be heard.
+[[nodiscard]] PropagationSettings unlimited(const PropagationSettings& settings) noexcept;
+/// Bounces that the settings ask for, of which nothing is estimated.
+[[nodiscard]] Bounces as_asked(const PropagationSettings& settings,
+                               int enough = fewest_bounces) noexcept;
+/// What a scenario searches for, once it is known how many are enough.
+[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
+                                   const Bounces& enough) noexcept;
+
+/// Doubles the bounces until twice as many add next to nothing. Numbers of the settings are kept,
+/// and what they leave out is estimated. docs/theory/eigenrays.md, "Enough bounces"
+/// \param look  adds what there is within limits
+[[nodiscard]] Bounces search_bounces(
+    const PropagationSettings& settings, const BounceSearch& search,
+    const std::function<void(const PathLimits&, HeardBounces&)>& look);
+
+/// What a user should know of a sound that lacks bounces, in one line; "" where next to nothing is
+/// missing. \param sound  "an echo"
+[[nodiscard]] std::string lacking(const PropagationSettings& settings, const Bounces& followed,
+                                  const char* sound);
+
+/// Of the paths between two places that arrive by a time after they left [s]. Numbers of the
+/// settings are kept.
+/// \param judged  what numbers leave out is estimated, too
+[[nodiscard]] Bounces enough_bounces(const PropagationPaths& paths,
+                                     const PropagationSettings& settings, const Vec3& from,
+                                     const Vec3& to, double frequency, double latest,
+                                     bool judged = false);
+
+}  // namespace asdic

@@ -1,0 +1,227 @@
+#include "sonar/paths/propagation_paths.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "raytrace/ocean/slice.h"
+#include "raytrace/waves/caustics.h"
+#include "raytrace/waves/cycles.h"
+#include "raytrace/waves/diffraction.h"
+#include "sonar/paths/followed_path.h"
+#include "sonar/scenario/geometry.h"
+
+namespace asdic {
+namespace {
+
+// Of a sequence by itself. Schedules that come back to a place or a waveform do so sooner.
+constexpr std::size_t own_bytes = std::size_t{256} << 20;
+constexpr std::uint64_t own_pings = 64;
+
+std::uint64_t next_identity() {
+  static std::atomic<std::uint64_t> next{0};
+  return next++;
+}
+
+std::size_t bytes_of(const Arrivals& arrivals) {
+  std::size_t bytes = sizeof(Arrivals) + arrivals.capacity() * sizeof(Arrival);
+  for (const Arrival& a : arrivals) bytes += a.bounces.capacity() * sizeof(Bounce);
+  return bytes;
+}
+
+/// Of a solver of a range-dependent ocean and its tracer, roughly: they hold the section's speeds
+/// and the boundaries' nodes a few times, with derivatives.
+std::size_t bytes_of(const Environment& slice) {
+  constexpr std::size_t doubles_a_sample = 16;
+  std::size_t samples = 256 + slice.water.depths().size();
+  if (slice.section) samples += slice.section->speeds().size();
+  for (const Boundary* boundary : {&slice.surface, &slice.bottom})
+    if (boundary->shape) samples += boundary->shape->ranges().size();
+  return samples * doubles_a_sample * sizeof(double);
+}
+
+void sort_by_delay(Arrivals& arrivals) {
+  std::stable_sort(arrivals.begin(), arrivals.end(),
+                   [](const Arrival& a, const Arrival& b) { return a.delay < b.delay; });
+}
+
+/// No wider than paths that were known a moment before ask for: their bounces, and launch angles up
+/// to a degree beyond, five at least: those that leave almost level turn most (same_path in
+/// moving_paths.h).
+PathLimits limits_around(std::span<const Arrival> known, PathLimits limits) {
+  PathLimits needed{.max_surface_bounces = 0, .max_bottom_bounces = 0, .max_launch_angle = 0.0};
+  for (const Arrival& path : known) {
+    needed.max_surface_bounces = std::max(needed.max_surface_bounces, path.surface_bounces);
+    needed.max_bottom_bounces = std::max(needed.max_bottom_bounces, path.bottom_bounces);
+    needed.max_launch_angle = std::max(
+        {needed.max_launch_angle, std::abs(path.launch_elevation) + radians(1.0), radians(5.0)});
+  }
+  limits.max_surface_bounces = std::min(limits.max_surface_bounces, needed.max_surface_bounces);
+  limits.max_bottom_bounces = std::min(limits.max_bottom_bounces, needed.max_bottom_bounces);
+  limits.max_launch_angle = std::min(limits.max_launch_angle, needed.max_launch_angle);
+  return limits;
+}
+
+/// Gives a ray that was followed the amplitude of waves that it had, where that has hardly changed:
+/// two wavelengths further it has by some per cent. \return false: it must be found anew
+bool keeps_amplitude(const Arrival& known, Arrival& followed, double frequency) {
+  constexpr double periods = 2.0;
+  if (!(std::abs(followed.delay - known.delay) * frequency < periods)) return false;
+  followed.kind = known.kind;
+  followed.amplitude = known.amplitude;
+  followed.spreading = known.spreading;
+  followed.scattered = known.scattered;
+  return true;
+}
+
+}  // namespace
+
+void add_path(ExactKey& key, const Arrival& path) {
+  key.add(int(path.kind));
+  key.add_all(path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
+              path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
+}
+
+PathLimits limits_of(const PropagationSettings& settings, int enough) noexcept {
+  PathLimits limits{.max_surface_bounces = settings.max_surface_bounces.value_or(enough),
+                    .max_bottom_bounces = settings.max_bottom_bounces.value_or(enough),
+                    .max_launch_angle = settings.max_launch_angle,
+                    .diffraction = settings.diffraction};
+  const int vertices = 2 * (std::max(limits.max_surface_bounces, limits.max_bottom_bounces) + 1);
+  limits.max_vertices = std::max(limits.max_vertices, vertices);
+  return limits;
+}
+
+PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
+                                   std::shared_ptr<PropagationMemory> memory)
+    : along_(ocean),
+      transect_(transect),
+      layered_(is_layered(ocean)),
+      identity_(next_identity()),
+      memory_(memory ? std::move(memory)
+                     : std::make_shared<PropagationMemory>(own_bytes, own_pings)) {}
+
+Plane PropagationPaths::plane(const Vec3& from, double bearing) const noexcept {
+  return {.origin = along(from), .cos_beta = std::cos(bearing - transect_.bearing)};
+}
+
+Plane PropagationPaths::plane(const Vec3& from, const Vec3& to) const noexcept {
+  return plane(from, separation(from, to).bearing);
+}
+
+double PropagationPaths::surface_depth(const Vec3& place) const noexcept {
+  return along_.environment().surface.depth_at(along(place));
+}
+
+double PropagationPaths::bottom_depth(const Vec3& place) const noexcept {
+  return along_.environment().bottom.depth_at(along(place));
+}
+
+double PropagationPaths::speed_at(const Vec3& place) const noexcept {
+  const Environment& ocean = along_.environment();
+  if (layered_) return ocean.water.at(place.z()).c;
+  return sound_speed(ocean, along(place), place.z()).c;
+}
+
+std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
+  if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
+  const ExactKey kept_as = key(Kept::slice).add(plane.origin).add(plane.cos_beta);
+  if (auto kept = memory_->find<EigenraySolver>(kept_as)) return kept;
+  auto made =
+      std::make_shared<EigenraySolver>(slice(along_.environment(), plane.origin, plane.cos_beta));
+  const std::size_t bytes = bytes_of(made->environment());
+  return memory_->keep(kept_as, std::move(made), bytes);
+}
+
+/// All that a search depends on: in a layered ocean depths and range, otherwise the plane, too.
+ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
+                                   const PathLimits& limits) const {
+  ExactKey leg = key(kind);
+  leg.add(from.z()).add(to.z()).add(separation(from, to).range).add(frequency);
+  leg.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
+  leg.add(limits.max_vertices).add(limits.faintest).add(limits.max_delay).add(limits.diffraction);
+  if (layered_) return leg;
+  const Plane line = plane(from, to);
+  return leg.add(line.origin).add(line.cos_beta);
+}
+
+template <class Find>
+Arrivals PropagationPaths::recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const {
+  const auto known = memory_->find<Arrivals>(key);
+  if (reuse != nullptr) ++(known ? reuse->legs_reused : reuse->legs_searched);
+  if (known) return *known;
+  Arrivals found = find();
+  memory_->keep(key, std::make_shared<Arrivals>(found), bytes_of(found));
+  return found;
+}
+
+Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
+                                  const PathLimits& limits) const {
+  const double range = separation(from, to).range;
+  if (layered_) {
+    Arrivals found = along_.find(from.z(), to.z(), range, frequency, limits);
+    if (limits.diffraction) {
+      put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
+      put_waves(along_, from.z(), to.z(), range, frequency, limits, found,
+                [&](const CycleNeed& need, const CyclesMaker& make) {
+                  ExactKey kept_as = key(Kept::slice);  // of which layered oceans have none
+                  kept_as.add_all(need.source_depth, need.receiver_depth, need.frequency,
+                                  need.furthest, need.without_surface, need.without_bottom);
+                  if (const auto kept = memory_->find<CycleWaves>(kept_as)) return kept;
+                  const auto made = make();
+                  return memory_->keep(kept_as, made, made->bytes());
+                });
+      auto more =
+          diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
+      if (more && std::abs(more->launch_elevation) <= limits.max_launch_angle)
+        found.push_back(std::move(*more));
+    }
+    sort_by_delay(found);
+    return found;
+  }
+  return solver(plane(from, to))->find(from.z(), to.z(), range, frequency, limits);
+}
+
+Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
+                                const PathLimits& limits, Reuse* reuse) const {
+  return recall_or(leg_key(Kept::legs, from, to, frequency, limits), reuse,
+                   [&] { return search(from, to, frequency, limits); });
+}
+
+Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+                                  double frequency, const PathLimits& limits, Reuse* reuse) const {
+  ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
+  for (const Arrival& path : known) {
+    add_path(key, path);
+    if (path.kind == ArrivalKind::caustic)
+      key.add_all(path.delay, path.amplitude.real(), path.amplitude.imag());
+  }
+  return recall_or(key, reuse, [&] {
+    const double range = separation(from, to).range;
+    std::optional<RayTracer> tracer;
+    if (!layered_) {
+      const Plane line = plane(from, to);
+      tracer.emplace(slice(along_.environment(), line.origin, line.cos_beta), frequency);
+    }
+    Arrivals followed;
+    for (const Arrival& path : known) {
+      std::optional<Arrival> same;
+      if (path.kind == ArrivalKind::diffracted)
+        same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
+      else if (layered_)
+        same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
+      else if (!layered_)
+        same = followed_path(*tracer, path, from.z(), to.z(), range);
+      if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
+        return find(from, to, frequency, limits);  // that of all rays of its term
+      if (!same) return search(from, to, frequency, limits_around(known, limits));
+      followed.push_back(std::move(*same));
+    }
+    sort_by_delay(followed);
+    return followed;
+  });
+}
+
+}  // namespace asdic

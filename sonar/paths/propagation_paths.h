@@ -1,0 +1,97 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/propagation_memory.h"
+#include "raytrace/eigenrays.h"
+#include "sonar/paths/reuse.h"
+#include "sonar/scenario/scenario.h"
+
+namespace asdic {
+
+/// A vertical plane through the ocean: from a place on the map in one direction.
+struct Plane {
+  double origin = 0.0;    ///< of the place along the transect [m]
+  double cos_beta = 1.0;  ///< of the angle between the direction and the transect
+};
+
+/// The sound paths between any two places of a scenario's map.
+///
+/// In a layered ocean one solver serves all places. Where the ocean varies along a transect, sound
+/// travels in the vertical plane through both places (N × 2D), and each plane is a slice of the
+/// ocean with a solver of its own. The slices and eigenrays that were used last are kept. Shared by
+/// threads; what comes out does not depend on what is kept. docs/theory/transect.md
+class PropagationPaths {
+ public:
+  /// \param memory  of what was found; none: one of its own, which forgets what 64 pings did not
+  /// use
+  PropagationPaths(const Environment& ocean, const Transect& transect,
+                   std::shared_ptr<PropagationMemory> memory = nullptr);
+  PropagationPaths(const PropagationPaths&) = delete;
+  PropagationPaths& operator=(const PropagationPaths&) = delete;
+
+  /// Of the ocean as it is given: from the transect's origin along it.
+  [[nodiscard]] const EigenraySolver& along_transect() const noexcept { return along_; }
+  [[nodiscard]] bool layered() const noexcept { return layered_; }
+  [[nodiscard]] const Transect& transect() const noexcept { return transect_; }
+
+  [[nodiscard]] PropagationMemory& memory() const noexcept { return *memory_; }
+  /// A key of this ocean, to which is added what else a result depends on.
+  [[nodiscard]] ExactKey key(Kept kind) const { return ExactKey(kind, identity_); }
+
+  /// The plane through a place in a direction [rad, clockwise from north].
+  [[nodiscard]] Plane plane(const Vec3& from, double bearing) const noexcept;
+  /// The solver of a plane, source at range 0: one for all planes of a layered ocean.
+  [[nodiscard]] std::shared_ptr<const EigenraySolver> solver(const Plane& plane) const;
+
+  /// Of growing range, clockwise from north [rad].
+  [[nodiscard]] double transect_bearing() const noexcept { return transect_.bearing; }
+  /// How far along the transect a place is [m].
+  [[nodiscard]] double along(const Vec3& place) const noexcept {
+    return transect_.range_of(place.x(), place.y());
+  }
+  /// Depth of surface and bottom at a place [m].
+  [[nodiscard]] double surface_depth(const Vec3& place) const noexcept;
+  [[nodiscard]] double bottom_depth(const Vec3& place) const noexcept;
+  /// Speed of sound at a place [m/s].
+  [[nodiscard]] double speed_at(const Vec3& place) const noexcept;
+
+  /// All eigenrays from one place to another, sorted by delay. \param reuse  counts what was known
+  [[nodiscard]] Arrivals find(const Vec3& from, const Vec3& to, double frequency,
+                              const PathLimits& limits, Reuse* reuse = nullptr) const;
+  /// The same paths after the places have moved by metres, each followed from what it was, sorted
+  /// by delay; all of them searched anew, no wider than they ask for, if one cannot be. \param
+  /// known paths between two places nearby
+  [[nodiscard]] Arrivals follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+                                double frequency, const PathLimits& limits,
+                                Reuse* reuse = nullptr) const;
+
+ private:
+  [[nodiscard]] Plane plane(const Vec3& from, const Vec3& to) const noexcept;
+  [[nodiscard]] Arrivals search(const Vec3& from, const Vec3& to, double frequency,
+                                const PathLimits& limits) const;
+  [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
+                                 const PathLimits& limits) const;
+  template <class Find>
+  Arrivals recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const;
+
+  EigenraySolver along_;
+  Transect transect_;
+  bool layered_;
+  std::uint64_t identity_;  // of this ocean in a memory that several share
+  std::shared_ptr<PropagationMemory> memory_;
+};
+
+/// Adds all that a path is followed by to a key: its angle and history.
+void add_path(ExactKey& key, const Arrival& path);
+
+/// Bounces off either boundary that "auto" follows at least.
+inline constexpr int fewest_bounces = 3;
+
+/// What a scenario searches for. \param enough  bounces where the settings leave that open: those
+/// that hold all but a little of the sound are told by sonar/paths/enough_bounces.h
+[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
+                                   int enough = fewest_bounces) noexcept;
+
+}  // namespace asdic

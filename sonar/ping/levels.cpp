@@ -1,0 +1,147 @@
+#include "sonar/ping/levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sonar/noise/noise_spectrum.h"
+
+namespace asdic {
+
+LevelMeter::LevelMeter(const Recording& recording) {
+  const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
+  // 50 ms, and not more than 20 000 steps.
+  series_.time_step = std::max(0.05, duration / 20000.0);
+  const auto steps = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::ceil(duration / series_.time_step - 1e-9)));
+  for (auto* part : {&series_.echo, &series_.reverberation, &series_.noise})
+    part->assign(steps, 0.0F);
+}
+
+void LevelMeter::add_noise(double variance) {
+  for (float& value : series_.noise) value += static_cast<float>(variance);
+}
+
+void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<float>& into) const {
+  if (heard.channels == 0) return;
+  const auto step_of = [&](std::size_t i) {
+    return std::min(
+        into.size() - 1,
+        static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
+  };
+  const double step_samples = heard.sample_rate * series_.time_step;
+  std::array<float, 1024> squares;  // of the channels' real and imaginary parts, added up
+  constexpr std::size_t block = squares.size() / 2;
+  std::size_t begin = 0, end = 0, step = 0;  // samples of a step
+  double power = 0.0;                        // of those so far
+  for (std::size_t first = 0; first < heard.recorded; first += block) {
+    const std::size_t count = std::min(block, heard.recorded - first);
+    squares.fill(0.0F);
+    for (std::size_t n = 0; n < heard.channels; ++n) {
+      const auto* parts = reinterpret_cast<const float*>(heard.channel(n).data() + first);
+      for (std::size_t j = 0; j < 2 * count; ++j) squares[j] += parts[j] * parts[j];
+    }
+    for (std::size_t i = first; i < first + count;) {
+      if (i == end) {  // the next step
+        begin = i;
+        step = step_of(begin);
+        end = std::clamp(static_cast<std::size_t>(static_cast<double>(step + 1) * step_samples),
+                         begin + 1, heard.recorded);
+        while (end > begin + 1 && step_of(end - 1) != step) --end;
+        while (end < heard.recorded && step_of(end) == step) ++end;
+        power = 0.0;
+      }
+      const std::size_t until = std::min(end, first + count);
+      for (; i < until; ++i)
+        power += static_cast<double>(squares[2 * (i - first)] + squares[2 * (i - first) + 1]);
+      // mean square of a tone is half its envelope's square
+      if (i == end)
+        into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power /
+                                         static_cast<double>(heard.channels * (end - begin)));
+    }
+  }
+}
+
+namespace {
+
+/// Largest envelope of the echoes of one target as they add at the reference point (of the first
+/// phone, where every phone has its own), over √2. They may cancel: the direct path and its surface
+/// reflection are a period apart or less.
+double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& pulse,
+                      double source_level_db) {
+  double first = infinity, last = -infinity, slowest = 1.0;
+  for (const EchoPath* echo : echoes) {
+    first = std::min(first, echo->heard.delay);
+    last = std::max(last, echo->heard.delay);
+    slowest = std::min(slowest, echo->heard.doppler);
+  }
+  last += pulse.duration() / slowest;
+  const auto steps =
+      static_cast<int>(std::clamp((last - first) * 4.0 * pulse.bandwidth_40db(), 16.0, 4000.0));
+  double peak = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = first + (last - first) * i / steps;
+    std::complex<double> sum = 0.0;
+    for (const EchoPath* echo : echoes)
+      sum += echo->heard.amplitude * pulse.analytic(echo->heard.doppler * (t - echo->heard.delay));
+    peak = std::max(peak, std::abs(sum));
+  }
+  return source_level_db + db_from_amplitude(peak);
+}
+
+}  // namespace
+
+std::vector<TargetSummary> summarise(
+    const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
+    const std::function<double(int array, double time)>& reverberation_db) {
+  std::vector<TargetSummary> summary;
+  const double source_level_db =
+      scenario.transmitters[static_cast<std::size_t>(record.transmitter)].source_level_db;
+  for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    TargetSummary row{
+        .name = target.name,
+        .present = record.ping >= target.first_ping && record.ping <= target.last_ping};
+    const EchoPath* strongest = nullptr;
+    for (const EchoPath& echo : record.echoes)
+      if (echo.target == static_cast<int>(i) &&
+          (strongest == nullptr || echo.level_db > strongest->level_db))
+        strongest = &echo;
+    row.echo_level_db = row.echo_peak_db = row.signal_excess_db = -infinity;
+    row.echo_time = std::nan("");
+    row.reverberation_db = -infinity;
+    row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
+    if (strongest != nullptr) {
+      row.array = strongest->array;
+      std::vector<const EchoPath*> heard;
+      for (const EchoPath& echo : record.echoes) {
+        if (echo.target != static_cast<int>(i) || echo.array != row.array) continue;
+        ++row.paths;
+        if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
+          heard.push_back(&echo);
+      }
+      for (const EchoPath& part : record.scattered)
+        if (part.target == static_cast<int>(i) && part.array == row.array &&
+            (part.heard.channel == Return::all_channels || part.heard.channel == 0))
+          heard.push_back(&part);
+      const auto many = std::find_if(
+          record.many_echoes.begin(), record.many_echoes.end(), [&](const ManyEchoes& one) {
+            return one.target == static_cast<int>(i) && one.array == row.array;
+          });
+      const bool listed = many == record.many_echoes.end();
+      if (!listed) row.paths = static_cast<int>(std::min<std::size_t>(many->pairs, 1'000'000'000));
+      row.echo_time = strongest->heard.delay;
+      row.echo_level_db = strongest->level_db;
+      row.reverberation_db = reverberation_db(
+          row.array, strongest->heard.delay + 0.5 * pulse.duration() / strongest->heard.doppler);
+      row.echo_peak_db = listed ? peak_of_sum_db(heard, pulse, source_level_db)
+                                : source_level_db + db_from_amplitude(many->peak);
+      row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
+                                                              power_from_db(row.noise_db));
+    }
+    summary.push_back(row);
+  }
+  return summary;
+}
+
+}  // namespace asdic

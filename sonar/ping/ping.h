@@ -1,0 +1,171 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <stop_token>
+
+#include "core/memory_budget.h"
+#include "raytrace/eigenrays.h"
+#include "sonar/echoes/echo.h"
+#include "sonar/noise/ambient_noise.h"
+#include "sonar/noise/interference.h"
+#include "sonar/paths/propagation_paths.h"
+#include "sonar/paths/shared_propagation.h"
+#include "sonar/ping/ping_record.h"
+#include "sonar/ping/receiver_electronics.h"
+#include "sonar/reverberation/phone_groups.h"
+#include "sonar/reverberation/reverberation.h"
+#include "sonar/scenario/scenario.h"
+#include "sonar/scenario/transmission.h"
+#include "sonar/signal/pulse.h"
+
+namespace asdic {
+
+/// Some of the samples of a record.
+struct SampleRange {
+  std::ptrdiff_t first = 0;
+  std::size_t count = 0;
+};
+
+/// Simulates the pings of one scenario. Built once (the ocean, the pulse); simulate() is const in
+/// effect and may be called from many threads at once, for any ping in any order: the same bits
+/// come out.
+class PingSimulator {
+ public:
+  /// Says which part of a ping's record is wanted, once its echoes and legs are in it.
+  using ChoosePart = std::function<SampleRange(const PingRecord&)>;
+
+  /// \param shared  what simulators of equal oceans have in common; none: nothing. It never changes
+  /// what comes out \param budget  of a ping \throws InputError naming the key at fault
+  /// ("pings.sample_rate", "pulse.duration", …)
+  explicit PingSimulator(Scenario scenario,
+                         const std::shared_ptr<SharedPropagation>& shared = nullptr,
+                         MemoryBudget budget = {});
+
+  /// The record of one ping by itself, as it goes into a file of separate pings. \param ping
+  /// counted from 1
+  [[nodiscard]] PingRecord simulate(int ping) const;
+  /// The same for a ping that is sent when and how the schedule does not say (serve/session.h).
+  /// \param ping  its number from 1, by which random numbers are drawn
+  [[nodiscard]] PingRecord simulate(int ping, const Transmission& sent) const;
+  /// The same of which only a part is made: samples of the record as it would be, of another draw
+  /// of noise and scatterers. The whole where the part would not be alike: of receivers that ring,
+  /// of a stream, where the sender blanks it, and without noise. \param part  is asked once
+  [[nodiscard]] PingRecord simulate(int ping, const ChoosePart& part) const;
+  /// From now on nobody compares what is heard with another ping, or another array: a realisation
+  /// has one ping. Scatterers that keep their weights are then drawn as those that do not.
+  void hears_one_ping() noexcept { one_ping_ = true; }
+  /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
+  /// add these up (sonar/ping/stream.h) and complete() the sum.
+  [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
+  [[nodiscard]] PingRecord sound(int ping, const Transmission& sent,
+                                 const ChoosePart& part = {}) const;
+  /// Adds what does not come of a ping: noise through the receivers, blanking, conversion.
+  /// \param carried  of the part of the stream before, and for the next; null: a ping by itself
+  void complete(PingRecord& record, ReceiverElectronics::Carried* carried = nullptr) const;
+
+  /// What a study asks of a ping when it asks for no samples: legs, echoes and the summary of
+  /// simulate(), bit for bit, and the places of things. Nothing is synthesised and no noise is
+  /// drawn: pressure, level series, patches and interference stay empty.
+  [[nodiscard]] PingRecord levels(int ping) const;
+
+  /// What simulate() asks for before it makes a ping: what that takes at its peak, by what takes
+  /// it, within its budget. Traces the paths to scatterers. \throws MemoryError if that is
+  /// too much, as simulate() does
+  [[nodiscard]] MemoryBudget memory(int ping = 1) const;
+
+  /// What the bounces that are followed leave out of a scenario.
+  struct JudgedPaths {
+    Bounces followed;                   ///< the most that any sound is given, and what is left out
+    std::vector<std::string> warnings;  ///< where that is more than a little
+  };
+  /// Estimates it for each transmitter's first ping, and adds the warnings to the scenario's notes.
+  JudgedPaths judge_paths();
+
+  [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
+  /// Of the ocean as the scenario gives it, along its transect where it has one.
+  [[nodiscard]] const EigenraySolver& ocean() const noexcept { return paths_->along_transect(); }
+  [[nodiscard]] const PropagationPaths& paths() const noexcept { return *paths_; }
+  [[nodiscard]] const Pulse& pulse(int transmitter = 0) const noexcept {
+    return pulses_[static_cast<std::size_t>(transmitter)];
+  }
+  [[nodiscard]] int pings() const noexcept {
+    return static_cast<int>(transmissions_.size());
+  }  ///< of all transmitters
+  /// \param ping  counted from 1
+  [[nodiscard]] const Transmission& transmission(int ping) const noexcept {
+    return transmissions_[static_cast<std::size_t>(ping - 1)];
+  }
+  [[nodiscard]] Transmitter transmitter(int ping) const;  ///< with the elevation of that ping
+  [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
+
+ private:
+  [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
+  /// Echoes and direct blasts, also put into the record with their legs.
+  std::vector<EchoPath> sparse_returns(const EchoContext& context, PingRecord& record) const;
+  /// What a ping is for all who hear it.
+  struct Emission {
+    const Transmission& sent;
+    Transmitter projector;
+    const Pulse& pulse;
+    BeamPattern pattern;
+  };
+  [[nodiscard]] Emission emit(const Transmission& sent) const;
+  void add_many_echoes(const EchoContext& context, const Emission& emission,
+                       std::span<const Vec3> phones, const PingRecord& record,
+                       Baseband& heard) const;
+  [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
+                                         PingRecord& record) const;
+  [[nodiscard]] ReverberationContext reverberation_context(const Emission& emission, int array,
+                                                           PingRecord& record,
+                                                           std::span<const Vec3> phones,
+                                                           std::span<const BandPoint> band,
+                                                           MemoryBudget* budget) const;
+  [[nodiscard]] PingReverberation reverberation(const Emission& emission, int array,
+                                                PingRecord& record, std::span<const Vec3> phones,
+                                                std::span<const BandPoint> band,
+                                                MemoryBudget budget, bool plane_waves = true) const;
+  [[nodiscard]] Front front_of_reverberation(const Listening& here, const Emission& emission) const;
+  [[nodiscard]] PhoneGroups plane_wave_fit(const Emission& emission, int array,
+                                           const PingRecord& record) const;
+  [[nodiscard]] PhoneGroups reverberation_groups(const Emission& emission, int array,
+                                                 const PingRecord& record, PhoneGroups whole,
+                                                 const PingReverberation& heard) const;
+  [[nodiscard]] Baseband sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
+                                       int array, PingRecord& record, const PhoneGroups& groups,
+                                       std::span<const BandPoint> band,
+                                       const MemoryBudget& budget) const;
+  [[nodiscard]] Bounces judged_echoes(const Transmission& sent, int array) const;
+  [[nodiscard]] Bounces judged_reverberation(const Transmission& sent, int array) const;
+  [[nodiscard]] double most_samples() const;
+  [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
+  [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
+                                                std::int64_t samples) const;
+  void blank(PingRecord& record) const;
+
+  Scenario scenario_;
+  MemoryBudget budget_;  // of each ping
+  std::vector<Transmission> transmissions_;
+  std::vector<Pulse> pulses_;  // [transmitters]
+  bool known_ocean_ = false;   // written before paths_
+  std::shared_ptr<const PropagationPaths> paths_;
+  AmbientNoise noise_;
+  Interference interference_;
+  ReceiverElectronics receivers_;
+  std::unique_ptr<ReverberationModel> reverberation_;
+  double max_doppler_ = 0.0;
+  double latest_ = 0.0;  // end of a ping's record [s]
+  bool one_ping_ = false;
+};
+
+struct PingOptions {
+  std::stop_token stop;  ///< when requested, pings in hand are called off, no new one is begun
+  std::function<void(int done)> progress = {};  ///< called in the sink's thread after each ping
+};
+
+/// Runs the scenario's pings through a tbb::parallel_pipeline: simulated in parallel, handed to
+/// `sink` in order, one at a time; memory is bounded by the pings in flight. \return the number of
+/// pings handed over
+int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
+              const PingOptions& options = {});
+
+}  // namespace asdic

@@ -1,0 +1,153 @@
+#include "sonar/reverberation/boundary_fans.h"
+
+#include <tbb/collaborative_call_once.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+
+#include "raytrace/parallel.h"
+
+namespace asdic {
+namespace {
+
+/// How each cell's facet lies. A slope h′ along the transect is h′·cos β in the plane: the angle to
+/// the facet is that to its line in the plane, corrected for the part of its normal that sticks out
+/// of the plane.
+std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const GroundPaths& paths) {
+  std::vector<CellTilt> tilt;
+  if (!boundary.shape || cos_beta == 0.0) return tilt;
+  for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
+    const double in_plane = boundary.shape->at(paths.range(cell)).slope;
+    const double stretch = std::hypot(1.0, in_plane / cos_beta);  // √(1 + h′²)
+    tilt.push_back({.grazing = std::hypot(1.0, in_plane) / stretch, .area = stretch});
+  }
+  return tilt;
+}
+
+/// \param speed  of sound at the fan's source [m/s]
+std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
+  std::vector<PathEnds> ends;
+  ends.reserve(paths.size());
+  for (const GroundPath& p : paths.all()) {
+    const double sine = std::sin(p.grazing), cosine = std::cos(p.grazing);
+    ends.push_back({.launch_level = std::cos(p.launch_elevation) / speed,
+                    .launch_down = -std::sin(p.launch_elevation) / speed,
+                    .sine = sine,
+                    .cosine = cosine,
+                    .down = p.downward * p.horizontal_slowness * sine / cosine});
+  }
+  return ends;
+}
+
+std::size_t bytes_of(const BoundaryFan& fan) {
+  std::size_t bytes = sizeof(BoundaryFan);
+  for (const FanPlane& plane : fan.planes)
+    bytes += sizeof(FanPlane) + plane.paths->bytes() + plane.paths->size() * sizeof(PathEnds) +
+             plane.tilt.size() * sizeof(CellTilt);
+  return bytes;
+}
+
+GroundGrid grid_of(const BoundaryFans::Settings& settings) {
+  return {settings.spacing, std::max(settings.wide, settings.spacing),
+          settings.wide / BoundaryFans::widest_of_range};
+}
+
+std::uint64_t next_identity() {
+  static std::atomic<std::uint64_t> next{0};
+  return next++;
+}
+
+}  // namespace
+
+const FanPlane& BoundaryFan::towards(double bearing) const noexcept {
+  if (planes.size() == 1) return planes.front();
+  const double turns = (bearing - first_bearing) / (2.0 * pi);
+  const int sector = std::min(sectors - 1, static_cast<int>((turns - std::floor(turns)) * sectors));
+  return planes[static_cast<std::size_t>(std::min(sector, sectors - 1 - sector))];
+}
+
+struct BoundaryFans::Entry {
+  tbb::collaborative_once_flag traced;  // who waits for the planes helps to trace them
+  BoundaryFan fan;
+};
+
+std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const GroundLevel& level,
+                                                        const Settings& settings,
+                                                        bool* known) const {
+  const bool layered = paths_.layered();
+  const PathLimits& limits = settings.limits;
+  ExactKey key = paths_.key(Kept::boundary_fan);
+  key.add(level.boundary ? static_cast<int>(*level.boundary) : -1).add(level.depth);
+  key.add(layered ? 0.0 : paths_.plane(place, 0.0).origin).add(place.z()).add(settings.frequency);
+  key.add(settings.spacing)
+      .add(settings.wide)
+      .add(settings.max_range)
+      .add(layered ? 0 : settings.sectors);
+  key.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
+  key.add(limits.max_vertices).add(limits.faintest);
+  key.add(limits.max_delay).add(limits.home_slowness);
+  PropagationMemory& memory = paths_.memory();
+  auto entry = memory.find<Entry>(key);
+  if (known != nullptr) *known = entry != nullptr;
+  if (!entry) entry = memory.keep(key, std::make_shared<Entry>(), sizeof(Entry));
+  const StopPoint stop;
+  tbb::collaborative_call_once(entry->traced, [&] {
+    entry->fan = trace(place, level, settings, stop);
+    entry->fan.identity = next_identity();
+    memory.charge(key, bytes_of(entry->fan));
+  });
+  return {entry, &entry->fan};
+}
+
+MemoryNeed BoundaryFans::need(const Settings& settings) const {
+  // As they are found and as they are kept; then their ends.
+  constexpr double a_path = 2.0 * sizeof(GroundPath) + sizeof(PathEnds);
+  const PathLimits& limits = settings.limits;
+  const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
+  const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
+               cells = planes * static_cast<double>(grid_of(settings).count(settings.max_range)),
+               paths = 2.0 * (paths_.layered() ? followed_cycles(bounces) : bounces + 1.0) * cells;
+  return {.where = "reverberation.ground_spacing",
+          .what = "paths of up to " + std::to_string(bounces) + " bounces to " +
+                  std::to_string(std::llround(cells)) + " cells of the ground",
+          .bytes = paths * a_path,
+          .remedy =
+              "a larger spacing, fewer bounces (propagation.max_surface_bounces, "
+              "max_bottom_bounces) or a shorter record"};
+}
+
+BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
+                                const Settings& settings, const StopPoint& stop) const {
+  const auto ground = [&](const EigenraySolver& solver) {
+    return std::make_shared<const GroundPaths>(
+        ground_paths(solver, place.z(), level, grid_of(settings), settings.max_range,
+                     settings.frequency, settings.limits, stop));
+  };
+  const double speed = paths_.speed_at(place);
+  if (paths_.layered()) {
+    const auto paths = ground(paths_.along_transect());
+    return {.planes = {{.paths = paths, .ends = ends_of(*paths, speed), .tilt = {}}}};
+  }
+  const int n = settings.sectors;
+  BoundaryFan fan{.planes = std::vector<FanPlane>(static_cast<std::size_t>((n + 1) / 2)),
+                  .first_bearing = paths_.transect_bearing(),
+                  .sectors = n};
+  const double origin = paths_.plane(place, 0.0).origin;
+  in_parallel(fan.planes.size(), [&](std::size_t i) {
+    const Plane plane{.origin = origin,
+                      .cos_beta = std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / n)};
+    const auto solver = paths_.solver(plane);
+    const Environment& ocean = solver->environment();
+    fan.planes[i].paths = ground(*solver);
+    fan.planes[i].ends = ends_of(*fan.planes[i].paths, speed);
+    if (level.boundary)
+      fan.planes[i].tilt =
+          tilts(*level.boundary == BoundaryKind::surface ? ocean.surface : ocean.bottom,
+                plane.cos_beta, *fan.planes[i].paths);
+  });
+  return fan;
+}
+
+}  // namespace asdic

@@ -1,0 +1,322 @@
+#include "sonar/reverberation/expected_reverberation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/grouped.h"
+#include "raytrace/parallel.h"
+#include "sonar/reverberation/path_interference.h"
+
+namespace asdic {
+namespace {
+
+constexpr std::size_t rings_together = 64;  // rings that one task works through
+
+/// Runs f(ring, scratch, out) over every `step`-th ring in parallel. \param all  gets what they put
+/// out, in their order, behind what is there
+template <class Item, class F>
+void over_rings(std::uint32_t rings, std::uint32_t step, std::vector<Item>& all, F&& f) {
+  const std::size_t visited = (rings + step - 1) / step;
+  const std::size_t tasks = (visited + rings_together - 1) / rings_together;
+  std::vector<std::vector<Item>> parts(tasks);
+  in_parallel(tasks, [&](std::size_t b) {
+    PathPairs scratch;
+    for (std::size_t i = b * rings_together; i < std::min(visited, (b + 1) * rings_together); ++i)
+      f(static_cast<std::uint32_t>(i * step), scratch, parts[b]);
+  });
+  std::size_t total = all.size();
+  for (const auto& part : parts) total += part.size();
+  all.reserve(total);
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
+  }
+}
+
+/// Rings so near each other are sampled only once that eight still lie within a stretch.
+std::uint32_t sample_step(const ScatteringField& field, double stretch) {
+  constexpr double slow_sea = 1400.0, samples = 8.0;
+  const double delay = 2.0 * field.grid.spacing / slow_sea;  // from ring to ring, at most
+  return static_cast<std::uint32_t>(std::clamp(stretch / (samples * delay), 1.0, 1e6));
+}
+
+/// A pair through the middle of a cell.
+struct Found {
+  ExpectedReverberation::Sample sample;
+  double ring_power, share;  // of a whole ring like this place; how much of it that stands for
+  double scatterers;         // of that ring
+};
+
+/// The ground, or the layer, for which a place stands: how far the phases of sounds turn over it.
+class PiecePhases {
+ public:
+  /// \param rings, sectors  for which it stands; how many sectors stand for all
+  PiecePhases(const ScatteringField& field, std::uint32_t ring, int sector, std::uint32_t rings,
+              std::uint32_t sectors)
+      : outward_(std::sin(field.bearing(sector)), std::cos(field.bearing(sector))) {
+    // of what is even over a width
+    const double omega = 2.0 * pi * field.sheet.ends().frequency / std::sqrt(12.0);
+    const double range = (ring + 0.5) * field.grid.spacing;
+    along_ = omega * rings * field.grid.spacing;
+    across_ = omega * 2.0 * pi * range / sectors;
+    through_ = omega * field.thickness;
+  }
+  [[nodiscard]] std::array<float, 3> of(const PathPair& pair) const noexcept {
+    const Vec2 beside(-outward_.y(), outward_.x());
+    return {static_cast<float>(along_ * steepness(pair, outward_)),
+            static_cast<float>(across_ * steepness(pair, beside)),
+            static_cast<float>(through_ * (pair.out_ends->down + pair.back_ends->down))};
+  }
+
+ private:
+  Vec2 outward_;
+  double along_, across_, through_;
+};
+
+/// A sound of a place at a time.
+struct SoundNow {
+  std::complex<double> pressure;
+  std::array<float, 3> turns;
+};
+
+/// Mean over the place's piece of |Σp|².
+double power_of(std::span<const SoundNow> sounds) noexcept {
+  constexpr float nothing = 18.0F;  // e⁻⁹
+  double power = 0.0;
+  for (std::size_t i = 0; i < sounds.size(); ++i) {
+    const SoundNow& a = sounds[i];
+    power += std::norm(a.pressure);
+    for (const SoundNow& b : sounds.subspan(i + 1)) {
+      float turns = 0.0F;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float apart = a.turns[k] - b.turns[k];
+        turns += apart * apart;
+      }
+      if (!(turns < nothing)) continue;
+      power += 2.0 * double(std::exp(-0.5F * turns)) *
+               (a.pressure.real() * b.pressure.real() + a.pressure.imag() * b.pressure.imag());
+    }
+  }
+  return std::max(0.0, power);
+}
+
+/// The places of a field at which pairs are looked at: the middles of cells of a few sectors.
+struct Middles {
+  const ScatteringField& field;
+  std::uint32_t first_place;
+  std::vector<int> sectors = field.sample_sectors();
+  std::uint32_t step;
+
+  Middles(const ScatteringField& f, std::uint32_t first, double stretch)
+      : field(f), first_place(first), step(sample_step(f, stretch)) {}
+
+  [[nodiscard]] std::uint32_t count() const noexcept {
+    return static_cast<std::uint32_t>(sectors.size());
+  }
+  /// Adds the pairs of a ring.
+  void find(std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) const {
+    constexpr double faintest = 1e-8;  // of the loudest pair of a place
+    const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
+    for (std::uint32_t i = 0; i < count(); ++i) {
+      field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs, nullptr, 0.0, 0.0,
+                           mixed(ring, i));
+      const double share = double(stands_for) / count(), area = field.heard_area(ring);
+      const PiecePhases phases(field, ring, sectors[i], stands_for, count());
+      double loudest = 0.0;
+      for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
+      for (const PathPair& pair : pairs.found) {
+        if (pair.power < faintest * loudest) continue;
+        out.push_back(
+            {{.place = first_place + ring * count() + i,
+              .by_itself = pair.of_many,
+              .delay = pair.delay,
+              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share * pair.reciprocal),
+              .turns = phases.of(pair)},
+             pair.power * area,
+             share,
+             double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
+      }
+    }
+  }
+};
+
+std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double stretch) {
+  std::vector<Found> all;
+  std::uint32_t first_place = 0;
+  for (const ScatteringField& field : fields) {
+    const Middles middles(field, first_place, stretch);
+    over_rings<Found>(field.grid.rings, middles.step, all,
+                      [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
+                        middles.find(ring, pairs, out);
+                      });
+    first_place += field.grid.rings * middles.count();
+  }
+  return all;
+}
+
+/// Below which all that is left out of a stretch is a hundred-thousandth of its power.
+std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
+  constexpr double left_out = 1e-5;
+  struct Entry {
+    double power, share;
+  };
+  std::size_t stretches = 0;
+  std::vector<std::size_t> stretch_of;
+  stretch_of.reserve(all.size());
+  for (const Found& f : all) {
+    stretch_of.push_back(static_cast<std::size_t>(f.sample.delay / stretch));
+    stretches = std::max(stretches, stretch_of.back() + 1);
+  }
+  const Grouped by_stretch = grouped(stretch_of, stretches);
+  std::vector<double> least(stretches, 0.0);
+  std::vector<Entry> here;
+  for (std::size_t s = 0; s < stretches; ++s) {
+    here.clear();
+    for (const std::size_t i : by_stretch.of(s)) here.push_back({all[i].ring_power, all[i].share});
+    std::sort(here.begin(), here.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.power, a.share) < std::tie(b.power, b.share);
+    });
+    double total = 0.0, dropped = 0.0;
+    for (const Entry& e : here) total += e.power * e.share;
+    // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
+    // that lies a little nearer than its middle would be left out of this stretch for it.
+    for (const Entry& e : here) {
+      dropped += e.power * e.share;
+      if (dropped > left_out * total) break;
+      least[s] = e.power;
+    }
+  }
+  return least;
+}
+
+/// About how many pairs pairs_at_middles() finds, by those at a few rings of each field.
+double count_pairs(std::span<const ScatteringField> fields, double stretch, std::uint32_t at) {
+  double pairs = 0.0;
+  for (const ScatteringField& field : fields) {
+    const Middles middles(field, 0, stretch);
+    const std::uint32_t visited = (field.grid.rings + middles.step - 1) / middles.step;
+    const std::uint32_t every = std::max(1U, visited / at);
+    std::vector<Found> counted;
+    over_rings<Found>(field.grid.rings, every * middles.step, counted,
+                      [&](std::uint32_t ring, PathPairs& found, std::vector<Found>& out) {
+                        middles.find(ring, found, out);
+                      });
+    pairs += double(every) * static_cast<double>(counted.size());
+  }
+  return pairs;
+}
+
+}  // namespace
+
+MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
+                                       double pulse_duration) {
+  // Put together twice; then their stretches, their order and those that are kept are beside them.
+  constexpr double a_pair = 2.0 * sizeof(Found) + 2.0 * sizeof(std::size_t);
+  constexpr double little = 100e6;               // [bytes]
+  constexpr std::uint32_t few = 4, enough = 64;  // rings looked at
+  const double stretch = 0.25 * pulse_duration;
+  double pairs = count_pairs(fields, stretch, few);
+  if (pairs * a_pair > little) pairs = count_pairs(fields, stretch, enough);
+  return {.where = "reverberation.ground_spacing",
+          .what = std::to_string(std::llround(pairs)) + " pairs of paths to and from scatterers",
+          .bytes = pairs * a_pair,
+          .remedy =
+              "a larger spacing, fewer bounces (propagation.max_surface_bounces, "
+              "max_bottom_bounces) or fewer sheets of a layer"};
+}
+
+ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fields,
+                                             double pulse_duration) {
+  limits.stretch = 0.25 * pulse_duration;
+  const std::vector<Found> all = pairs_at_middles(fields, limits.stretch);
+  limits.least = least_power(all, limits.stretch);
+  std::vector<double> of_ring;  // returns of the field in hand
+  std::size_t next = 0;
+  std::uint32_t first_place = 0;
+  for (std::size_t field = 0; field < fields.size(); ++field) {
+    const std::uint32_t rings = fields[field].grid.rings;
+    const auto count = static_cast<std::uint32_t>(fields[field].sample_sectors().size());
+    of_ring.assign(rings, 0.0);
+    for (; next < all.size() && all[next].sample.place < first_place + rings * count; ++next) {
+      const Found& f = all[next];
+      if (f.ring_power <= limits.at(f.sample.delay)) continue;
+      samples.push_back(f.sample);
+      of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
+    }
+    // What was found at one ring belongs to those that it stands for.
+    const std::uint32_t step = sample_step(fields[field], limits.stretch);
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+      if (ring % step == 0)
+        of_ring[ring] /= std::min(step, rings - ring);
+      else
+        of_ring[ring] = of_ring[ring - ring % step];
+    first_place += rings * count;
+    cut_into_blocks(field, of_ring);
+  }
+}
+
+void ExpectedReverberation::cut_into_blocks(std::size_t field, const std::vector<double>& of_ring) {
+  constexpr double most = 4096.0;  // returns
+  double held = 0.0;
+  for (std::uint32_t ring = 0; ring < of_ring.size(); ++ring) {
+    if (ring == 0 || held + of_ring[ring] > most) {
+      blocks.push_back({.field = field, .begin = ring});
+      held = 0.0;
+    }
+    held += of_ring[ring];
+    blocks.back().end = ring + 1;
+    blocks.back().expected = static_cast<std::size_t>(std::ceil(held));
+    returns += of_ring[ring];
+  }
+}
+
+std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringField> fields,
+                                                   double pulse_duration, Kept kind) {
+  ExactKey key(kind, 0);
+  key.add_all(pulse_duration, fields.size());
+  for (const ScatteringField& f : fields) {
+    // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
+    const auto& [sheet, grid, field, weights, boundary, depth, thickness, heard_by, bearings,
+                 divided_below, bounces, share] = f;
+    const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
+    if (!sheet.add_to(key)) return std::nullopt;
+    key.add_all(anchor, spacing, azimuths, per_cell, first_bearing, rings, depth, bearings,
+                divided_below, share);
+  }
+  return key;
+}
+
+std::size_t ExpectedReverberation::bytes() const noexcept {
+  return sizeof *this + limits.least.capacity() * sizeof(double) +
+         samples.capacity() * sizeof(Sample) + blocks.capacity() * sizeof(Block);
+}
+
+double ExpectedReverberation::returns_of(std::size_t field) const noexcept {
+  double sum = 0.0;
+  for (const Block& block : blocks)
+    if (block.field == field) sum += static_cast<double>(block.expected);
+  return sum;
+}
+
+double ExpectedReverberation::power(const Pulse& pulse, double t) const {
+  double power = 0.0;
+  std::vector<SoundNow> here;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double since = t - samples[i].delay;
+    if (since >= 0.0 && since <= pulse.duration()) {
+      const std::complex<double> heard = samples[i].amplitude * pulse.analytic(since);
+      if (samples[i].by_itself)
+        power += std::norm(heard);
+      else
+        here.push_back({heard, samples[i].turns});
+    }
+    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
+      power += power_of(here);
+      here.clear();
+    }
+  }
+  return power;
+}
+
+}  // namespace asdic

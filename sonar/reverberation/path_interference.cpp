@@ -1,0 +1,168 @@
+#include "sonar/reverberation/path_interference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sonar/signal/phase_turn.h"
+
+namespace asdic {
+namespace {
+
+/// No water carries sound so slowly that two slownesses differ by more [s/m].
+constexpr double most_apart = 2.0 / 1400.0;
+
+/// Variance of what is even over a width.
+double square_of_even(double width) noexcept { return width * width / 12.0; }
+
+double squared(double x) noexcept { return x * x; }
+
+}  // namespace
+
+double steepness(const PathPair& pair, const Vec2& towards) noexcept {
+  return pair.out->horizontal_slowness * pair.leaving.dot(towards) -
+         pair.back->horizontal_slowness * pair.coming.dot(towards);
+}
+
+PathInterference::PathInterference(std::span<const Vec3> phones, double frequency,
+                                   const PulseCoherence& pulse, bool all_round)
+    : pulse_(pulse), frequency_(frequency) {
+  double level = 0.0;
+  for (const Vec3& x : phones) {
+    phones_.emplace_back(frequency * x);
+    level = std::max(level, phones_.back().head<2>().norm());
+    reach_ = std::max(reach_, phones_.back().norm());
+  }
+  if (all_round) bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
+}
+
+std::complex<double> PathInterference::over_phones(const Vec3& apart) const noexcept {
+  constexpr double alike = 1e-3;  // [rad]
+  if (2.0 * pi * apart.norm() * reach_ < alike) return 1.0;
+  const double level = 2.0 * pi * apart.head<2>().norm();
+  double re = 0.0, im = 0.0;
+  for (const Vec3& x : phones_) {
+    double one = bessel_ ? (*bessel_)(level * x.head<2>().norm()) : 1.0, other = 0.0;
+    turn_back(bessel_ ? apart.z() * x.z() : apart.dot(x), one, other);
+    re += one;
+    im += other;
+  }
+  return std::complex<double>(re, im) / static_cast<double>(phones_.size());
+}
+
+/// What two sounds of one place are together, 2·Re⟨p_a p_b*⟩: a mean over the piece of ground, the
+/// phones and the pulse.
+class PlaceSounds::Between {
+ public:
+  Between(const PathInterference& interference, const GroundPiece& piece, double strongest)
+      : interference_(interference), least_(squared(faint * strongest)) {
+    const double omega = 2.0 * pi * interference.frequency();
+    constexpr double hours = 1e4;  // [s] of a tone without end
+    along2_ = square_of_even(omega * piece.length);
+    across2_ = square_of_even(omega * piece.width);
+    through2_ = square_of_even(omega * piece.thickness);
+    doppler2_ = square_of_even(omega * std::min(hours, interference.pulse().duration()));
+  }
+
+  [[nodiscard]] double operator()(const Sound& a, const Sound& b) const noexcept {
+    if (std::norm(a.amplitude) * std::norm(b.amplitude) < least_) return 0.0;
+    constexpr double nothing = 9.0;  // 1 % of their product
+    const double turns =
+        along2_ * squared(a.along - b.along) + across2_ * squared(a.across - b.across) +
+        through2_ * squared(a.through - b.through) + doppler2_ * squared(a.doppler - b.doppler);
+    if (!(turns < nothing)) return 0.0;
+    const std::complex<double> heard = interference_.over_phones(a.slowness - b.slowness) *
+                                       interference_.pulse()(b.delay - a.delay);
+    return 2.0 * std::exp(-0.5 * turns) * (a.amplitude * std::conj(b.amplitude) * heard).real();
+  }
+
+ private:
+  static constexpr double faint = 1e-3;  // product of two sounds over the strongest's power
+  const PathInterference& interference_;
+  double least_;
+  double along2_, across2_, through2_, doppler2_;
+};
+
+void PlaceSounds::add(const ScatteringSheet& sheet, const PathPair& pair, const GroundPiece& piece,
+                      double doppler, const Vec3& slowness, std::size_t part) {
+  if (pair.of_many) return;
+  if (sounds_.empty()) origin_ = pair.delay;
+  const double root = std::sqrt(pair.area);
+  double re = root * pair.amplitude.real(), im = root * pair.amplitude.imag();
+  turn_back(sheet.ends().frequency * (pair.delay - origin_), re, im);
+  const Vec2 beside(-piece.outward.y(), piece.outward.x());
+  sounds_.push_back({.amplitude = {re, im},
+                     .delay = pair.delay,
+                     .along = steepness(pair, piece.outward),
+                     .across = steepness(pair, beside),
+                     .through = pair.out_ends->down + pair.back_ends->down,
+                     .doppler = doppler,
+                     .slowness = slowness,
+                     .part = part});
+}
+
+std::span<const double> PlaceSounds::gains(const PathInterference& interference,
+                                           const GroundPiece& piece, std::size_t parts) {
+  gains_.assign(parts, 1.0);
+  if (sounds_.size() < 2) return gains_;
+  constexpr std::size_t most = 32;
+  const auto strength = [](const Sound& s) { return std::norm(s.amplitude); };
+  if (sounds_.size() > most) {
+    std::nth_element(sounds_.begin(), sounds_.begin() + most, sounds_.end(),
+                     [&](const Sound& a, const Sound& b) { return strength(a) > strength(b); });
+    sounds_.resize(most);
+  }
+  std::sort(sounds_.begin(), sounds_.end(),
+            [](const Sound& a, const Sound& b) { return a.delay < b.delay; });
+  double strongest = 0.0;
+  for (const Sound& s : sounds_) strongest = std::max(strongest, strength(s));
+  const double lasting = interference.pulse().duration();
+  add_up({interference, piece, strongest}, lasting);
+  for (std::size_t begin = 0, end = 0; begin < sounds_.size(); begin = end) {
+    end = begin + 1;
+    while (end < sounds_.size() && sounds_[end].delay - sounds_[end - 1].delay < lasting) ++end;
+    share_out(begin, end);
+  }
+  return gains_;
+}
+
+void PlaceSounds::add_up(const Between& between, double lasting) {
+  alone_.assign(gains_.size(), 0.0);
+  between_.assign(gains_.size(), 0.0);
+  for (std::size_t i = 0; i < sounds_.size(); ++i) {
+    Sound& a = sounds_[i];
+    a.first = alone_[a.part] == 0.0;
+    alone_[a.part] += std::norm(a.amplitude);
+    for (std::size_t j = i + 1; j < sounds_.size(); ++j) {
+      const Sound& b = sounds_[j];
+      if (b.delay - a.delay >= lasting) break;
+      const double both = between(a, b);
+      if (a.part == b.part) {  // its two directions have this in their covariance
+        alone_[a.part] += both;
+        continue;
+      }
+      between_[a.part] += 0.5 * both;
+      between_[b.part] += 0.5 * both;
+    }
+  }
+}
+
+/// The sum over sounds that overlap is a power, and not below 0; the share of one may be.
+void PlaceSounds::share_out(std::size_t begin, std::size_t end) {
+  double all = 0.0, positive = 0.0;
+  const auto each = [&](auto&& of_part) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (sounds_[i].first) of_part(sounds_[i].part);
+  };
+  each([&](std::size_t part) {
+    const double power = alone_[part] + between_[part];
+    all += power;
+    positive += std::max(0.0, power);
+  });
+  const double share = positive > 0.0 ? std::max(0.0, all) / positive : 0.0;
+  each([&](std::size_t part) {
+    const double power = std::max(0.0, alone_[part] + between_[part]);
+    if (alone_[part] > 0.0) gains_[part] = std::sqrt(power * share / alone_[part]);
+  });
+}
+
+}  // namespace asdic

@@ -1,0 +1,80 @@
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sonar/reverberation/all_round_covariance.h"
+#include "sonar/reverberation/scattering_sheet.h"
+#include "sonar/signal/pulse_coherence.h"
+
+namespace asdic {
+
+/// Who hears sounds of one place that come by different paths, and so how far they add up in phase:
+/// through a pulse, and as a mean over the phones.
+class PathInterference {
+ public:
+  /// \param phones  relative to the array's reference point [m]; none: one phone there
+  /// \param frequency  [Hz]   \param all_round  of the mean over bearings
+  PathInterference(std::span<const Vec3> phones, double frequency, const PulseCoherence& pulse,
+                   bool all_round);
+  [[nodiscard]] double frequency() const noexcept { return frequency_; }
+  [[nodiscard]] const PulseCoherence& pulse() const noexcept { return pulse_; }
+  /// Mean over phones of e^{−iω(s_a − s_b)·x}. \param apart  s_a − s_b [s/m]
+  [[nodiscard]] std::complex<double> over_phones(const Vec3& apart) const noexcept;
+
+ private:
+  const PulseCoherence& pulse_;
+  double frequency_;
+  double reach_ = 0.0;                 // of the furthest
+  std::vector<Vec3> phones_;           // times the frequency
+  std::optional<BesselTable> bessel_;  // of the mean over bearings
+};
+
+/// A piece of ground that sends sounds back, or of a layer.
+struct GroundPiece {
+  Vec2 outward = Vec2(0.0, 1.0);     ///< unit vector along which it is `length` long
+  double length = 0.0, width = 0.0;  ///< [m]
+  double thickness = 0.0;            ///< [m]
+};
+
+/// The sounds of one place by all pairs of paths, each a part of something that is heard: a pair by
+/// itself, or with its reciprocal. Used again from place to place.
+class PlaceSounds {
+ public:
+  void clear() noexcept { sounds_.clear(); }
+  /// \param part  of which it is one. Pairs that stand for bundles add by energy and are left out
+  /// \param slowness  as the array meets it [s/m]
+  void add(const ScatteringSheet& sheet, const PathPair& pair, const GroundPiece& piece,
+           double doppler, const Vec3& slowness, std::size_t part);
+  /// Of the amplitudes of each part: what it is together with the others over what it is alone, as
+  /// a mean over the piece, the phones and the pulse. The 32 strongest sounds interfere.
+  /// docs/theory/reverberation.md, "Covariance" \param parts  how many
+  [[nodiscard]] std::span<const double> gains(const PathInterference& interference,
+                                              const GroundPiece& piece, std::size_t parts);
+
+ private:
+  struct Sound {
+    std::complex<double> amplitude = 0.0;  // with the phase of its delay
+    double delay = 0.0;                    // [s]
+    double along = 0.0, across = 0.0;  // ∂delay over the ground, outward and beside that [s/m]
+    double through = 0.0;              // the same over the depth [s/m]
+    double doppler = 1.0;
+    Vec3 slowness = Vec3::Zero();
+    std::size_t part = 0;
+    bool first = true;  // of its part, in the order of delays
+  };
+  class Between;
+  void add_up(const Between& between, double lasting);
+  void share_out(std::size_t begin, std::size_t end);
+
+  std::vector<Sound> sounds_;
+  double origin_ = 0.0;                          // of the phases [s]
+  std::vector<double> alone_, between_, gains_;  // [parts]
+};
+
+/// ∂delay of a pair over the ground, towards a direction [s/m].
+[[nodiscard]] double steepness(const PathPair& pair, const Vec2& towards) noexcept;
+
+}  // namespace asdic

@@ -1,0 +1,195 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "reverb/scatterer_field.h"
+#include "reverb/scattering/models.h"
+#include "sonar/paths/receiver_legs.h"
+#include "sonar/paths/return_source.h"
+#include "sonar/reverberation/boundary_fans.h"
+#include "sonar/scenario/reverberation_settings.h"
+#include "sonar/scenario/track.h"
+#include "sonar/scenario/transmit_pattern.h"
+
+namespace asdic {
+
+/// One of the frequencies at which amplitudes are known where one is not enough.
+struct BandPoint {
+  double frequency = 1000.0;                 ///< [Hz]
+  const TransmitPattern* pattern = nullptr;  ///< there
+  double more_nepers = 0.0;                  ///< absorption over that at the centre [Np/m]
+};
+
+/// A way for sound to take from the source to a scatterer and on to the receiver.
+struct PathPair {
+  const GroundPath* out = nullptr;
+  const GroundPath* back = nullptr;             ///< as launched from the receiver
+  std::uint32_t out_index = 0, back_index = 0;  ///< among the paths of their cells
+  const PathEnds* out_ends = nullptr;
+  const PathEnds* back_ends = nullptr;
+  double delay = 0.0;                    ///< of the leading edge when it is heard [s]
+  std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
+  double power = 0.0;                    ///< |amplitude|², the largest in the band
+  double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
+  double grazing_in = 0.0, grazing_out = 0.0;  ///< to the boundary itself [rad]
+  double area = 1.0;                           ///< of the boundary over its horizontal projection
+  Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
+  Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
+  const Kinematics* receiver = nullptr;  ///< the straight way on which it hears: of the sheet
+  bool of_many = false;  ///< it stands for the pairs of a bundle, whose sounds add by energy
+  /// Of such a pair: power of what is heard over its own, 2 where the same way back is taken in the
+  /// opposite direction with the same phase.
+  double reciprocal = 1.0;
+};
+
+/// A path that is followed from an end to a place: itself, or one out of a bundle.
+struct TakenPath {
+  static constexpr std::uint32_t no_bundle = 0xffffffff;
+  std::uint32_t path = 0;            ///< among the paths of the cell
+  std::uint32_t bundle = no_bundle;  ///< that it stands for
+  double gain = 1.0;                 ///< of its amplitude, to stand for all
+
+  [[nodiscard]] bool of_many() const noexcept { return bundle != no_bundle; }
+};
+
+class ScatteringSheet;
+
+/// The pairs of paths through a place, and the memory that finding them takes: used again from
+/// place to place, nothing is allocated once it is large enough. Places of one ring that see the
+/// same cells under the same angles share their cross-sections.
+struct PathPairs {
+  std::vector<PathPair> found;
+  std::vector<std::complex<double>>
+      colours;  ///< [found × points of the band] as PathPair::amplitude
+
+ private:
+  friend class ScatteringSheet;
+  const ScatteringSheet* sheet_ = nullptr;
+  std::size_t out_ = 0, back_ = 0;  // first paths of the cells whose cross-sections these are
+  double turn_ = 0.0;
+  std::vector<TakenPath> out_taken_, back_taken_;
+  std::vector<double>
+      sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
+};
+
+/// What is too faint to be heard: in every stretch of delay, the power up to which a pair through a
+/// whole ring is left out.
+struct AudibleLimits {
+  double stretch = 1.0;       ///< length [s]
+  std::vector<double> least;  ///< [stretches] [1]
+
+  [[nodiscard]] double at(double delay) const noexcept {
+    const auto i = static_cast<std::size_t>(std::max(0.0, delay) / stretch);
+    return i < least.size() ? least[i] : 0.0;
+  }
+};
+
+/// A law over the ends of one ping: which the boundary is, who sends and who hears.
+struct SheetEnds {
+  Kinematics source, receiver;                            ///< at the ping's start
+  std::vector<ReceiverLeg> legs = {};                     ///< none: it keeps its velocity
+  double source_speed = 1500.0, receiver_speed = 1500.0;  ///< of sound there [m/s]
+  double frequency = 1000.0;                              ///< [Hz]
+  double latest = infinity;                               ///< end of the record [s]
+  std::span<const BandPoint> band = {};  ///< where one frequency is not enough; outlives the sheet
+
+  /// Where the receiver is when a leading edge of that delay is heard [m].
+  [[nodiscard]] Vec3 receiver_at(double delay) const noexcept {
+    const Kinematics& way = legs.empty() ? receiver : leg_at(legs, delay).line;
+    return way.position + way.velocity * delay;
+  }
+  [[nodiscard]] bool receiver_moves() const noexcept {
+    return !legs.empty() || !receiver.velocity.isZero();
+  }
+};
+
+/// One scattering boundary of one ping: joins the paths out and the paths back at any place.
+class ScatteringSheet {
+ public:
+  /// Every law there is, as one list.
+  using Law = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert,
+                           EllisCrowe, VolumeSheet>;
+
+  ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
+                  Law law, const SheetEnds& ends, const TransmitPattern& pattern);
+
+  /// All pairs of paths through a place, in the order of the tables, heard before the record ends.
+  /// \param limits  pairs that are fainter are
+  /// left out; null: none   \param ring  area of the whole ring around [m²]
+  /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
+  /// \param chance  of this place: which path stands for each bundle where there are very many
+  void pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits = nullptr,
+                double ring = 0.0, double below = 0.0, std::uint64_t chance = 0) const;
+
+  /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
+  /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
+  [[nodiscard]] double doppler(const PathPair& pair, const Vec3& velocity,
+                               double bragg) const noexcept;
+  /// Stretches that hold every factor that doppler() gives with scatterers that move so.
+  [[nodiscard]] std::vector<DopplerSpan> dopplers(const ScattererMotion& motion) const;
+  /// Sum of the speeds with which source and receiver go along at most, by which Doppler factors
+  /// change with the bearing [m/s].
+  [[nodiscard]] double fastest_ends() const noexcept;
+  /// The sound's slowness at the receiver.
+  [[nodiscard]] Vec3 arriving(const PathPair& pair) const noexcept;
+
+  /// Distance of a place on the sheet from the nearer of source and receiver, depth included [m].
+  [[nodiscard]] double nearest_end(const Vec2& place, double depth) const noexcept;
+  /// Adds all that pairs_at() depends on to a key. \return whether the patterns did
+  [[nodiscard]] bool add_to(ExactKey& key) const;
+  [[nodiscard]] const SheetEnds& ends() const noexcept { return ends_; }
+  /// Source and receiver share a fan: the paths of a cell are the same out and back.
+  [[nodiscard]] bool one_fan() const noexcept { return out_ == back_; }
+  /// Somewhere there are very many paths.
+  [[nodiscard]] bool bundled() const noexcept;
+  /// The same at every bearing around the grid's middle.
+  [[nodiscard]] bool all_round() const noexcept;
+
+ private:
+  /// One leg at one place.
+  struct Leg {
+    std::span<const GroundPath> paths;
+    std::span<const PathBundle> bundles;
+    const PathEnds* ends = nullptr;  // [paths]
+    const CellTilt* tilt = nullptr;
+    Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
+    double bearing = 0.0;           // of it, where a table has bearings
+    double range = 0.0;             // of the place [m]
+    double beyond = 0.0;            // of the place past the cell's centre [m]
+    std::size_t first = 0;          // of the paths in their table
+  };
+  [[nodiscard]] std::complex<double> beam(const Leg& out, std::size_t path,
+                                          std::size_t point) const noexcept;
+  /// σ of the paths that out and back are at a place. \param point  0: the centre, then those of
+  /// the band
+  [[nodiscard]] double cross_section(const ScatterGeometry& geometry, const ScatterSines& sines,
+                                     std::size_t point) const noexcept;
+  [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
+                        bool bearing) const noexcept;
+  /// When a receiver that changes its velocity hears what comes along a path.
+  struct Hearing {
+    double delay = 0.0;                    // of the leading edge [s]
+    const Kinematics* receiver = nullptr;  // the leg on which it hears, at the ping's start
+  };
+  [[nodiscard]] Hearing heard_under_way(const Leg& back, std::size_t path, double heard,
+                                        double unmoved) const noexcept;
+
+  std::shared_ptr<const BoundaryFan> out_, back_;
+  Law law_;
+  SheetEnds ends_;
+  std::vector<NrlSurface::At> nrl_;  // at the centre and each point of the band; of that law alone
+  std::optional<Lambert::At> lambert_;  // of that law alone
+  const TransmitPattern& pattern_;
+  bool all_round_pattern_, receiver_moves_, moving_, one_place_;
+  bool in_phase_;  // so close together and at rest that a pair and its reciprocal are heard as one
+  // Of every outgoing path, if the same all round: at the centre, then at each point of the band.
+  std::vector<std::complex<double>> beam_;
+};
+
+}  // namespace asdic

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raytrace/environment.h"
+#include "sonar/scenario/array.h"
+#include "sonar/scenario/interferer.h"
+#include "sonar/scenario/noise_settings.h"
+#include "sonar/scenario/ping_schedule.h"
+#include "sonar/scenario/platform.h"
+#include "sonar/scenario/reverberation_settings.h"
+#include "sonar/scenario/target.h"
+#include "sonar/scenario/transect.h"
+#include "sonar/scenario/transmitter.h"
+#include "sonar/signal/pulse.h"
+
+namespace asdic {
+
+/// What is searched for. A path is kept when it is within all the limits.
+struct PropagationSettings {
+  /// None ("auto"): as many as there is sound in, sonar/paths/enough_bounces.h.
+  std::optional<int> max_surface_bounces = {};
+  std::optional<int> max_bottom_bounces = {};
+  double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
+  bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
+  bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries
+  bool wide_band = false;   ///< echoes' losses and patterns at every frequency of the pulse
+  bool diffraction = true;  ///< echoes and direct sound where no ray goes, in stratified water
+  bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
+};
+
+/// All that a simulation needs, as plain data. Times in s, lengths in m, angles in rad.
+struct Scenario {
+  std::string title;
+  std::uint64_t seed = 1;
+  Environment environment;
+  Transect transect;                             ///< where its range axis lies on the map
+  double wind_speed = 10.0;                      ///< at 10 m [m/s]
+  std::vector<Platform> platforms = {{}};        ///< carry transmitters and arrays
+  std::vector<Transmitter> transmitters = {{}};  ///< [n ≥ 1]
+  PulseSettings pulse;                           ///< of the transmitters without one of their own
+  std::vector<ReceiverArray> arrays = {{}};      ///< [n ≥ 1]
+  std::vector<Target> targets;
+  std::vector<Interferer> interferers;
+  NoiseSettings noise;
+  ReverberationSettings reverberation;
+  PropagationSettings propagation;
+  PingSchedule pings;
+
+  std::string text;                    ///< the scenario file, verbatim
+  std::string path;                    ///< where it was read
+  std::vector<std::string> overrides;  ///< "key.path=value" that changed the text's values
+  std::vector<std::string> notes;      ///< what the reader did that the user should know
+};
+
+/// Where a transmitter is and how it moves. \param transmitter  index   \param time  since the
+/// start of the scenario [s]
+[[nodiscard]] Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time);
+/// The same of an array's reference point, the middle of its phones (sonar/scenario/carried.h).
+[[nodiscard]] Kinematics array_at(const Scenario& scenario, int array, double time);
+/// Its phones as they lie then, from its reference point at that time.
+/// \param ping  of the run, counted from 1: its shape   \param time  since the start of the
+/// scenario [s]
+[[nodiscard]] std::vector<Vec3> phones_at(const Scenario& scenario, int array, int ping,
+                                          double time);
+/// The course of a platform, north if it never moves [rad].
+[[nodiscard]] double platform_heading(const Scenario& scenario, int platform, double time);
+/// The pulse that a transmitter sends: its own or the scenario's.
+[[nodiscard]] const PulseSettings& pulse_of(const Scenario& scenario, int transmitter);
+/// Phones of all arrays, one after the other: the channels of a record.
+[[nodiscard]] std::size_t channels_of(const Scenario& scenario);
+/// The channel of an array's first phone.
+[[nodiscard]] std::size_t first_channel(const Scenario& scenario, int array);
+
+}  // namespace asdic

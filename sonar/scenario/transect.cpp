@@ -1,0 +1,11 @@
+#include "sonar/scenario/transect.h"
+
+#include <cmath>
+
+namespace asdic {
+
+double Transect::range_of(double east, double north) const noexcept {
+  return (east - x) * std::sin(bearing) + (north - y) * std::cos(bearing);
+}
+
+}  // namespace asdic

@@ -1,0 +1,44 @@
+#include "sonar/scenario/transmission.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "sonar/scenario/sampling.h"
+
+namespace asdic {
+
+std::vector<Transmission> transmissions(const Scenario& scenario) {
+  std::vector<Transmission> sent;
+  const PingSchedule& schedule = scenario.pings;
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const Transmitter& transmitter = scenario.transmitters[t];
+    const auto& sweep =
+        transmitter.elevations.empty() ? schedule.elevations : transmitter.elevations;
+    const double interval = transmitter.interval.value_or(schedule.interval);
+    for (int turn = 1; turn <= schedule.count; ++turn) {
+      const auto n = static_cast<std::size_t>(turn - 1);
+      sent.push_back(
+          {.transmitter = static_cast<int>(t),
+           .turn = turn,
+           .time = transmitter.first_ping_time + static_cast<double>(n) * interval,
+           .elevation = sweep.empty() ? transmitter.elevation : sweep[n % sweep.size()]});
+    }
+  }
+  if (schedule.continuous) {
+    const double rate = recorded_rate(scenario);
+    for (Transmission& one : sent) one.time = std::round(one.time * rate) / rate;
+  }
+  std::stable_sort(sent.begin(), sent.end(), [](const Transmission& a, const Transmission& b) {
+    return std::tie(a.time, a.transmitter) < std::tie(b.time, b.transmitter);
+  });
+  return sent;
+}
+
+Transmitter projector_of(const Scenario& scenario, const Transmission& sent) {
+  Transmitter projector = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)];
+  projector.elevation = sent.elevation;
+  return projector;
+}
+
+}  // namespace asdic

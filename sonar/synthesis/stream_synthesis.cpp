@@ -1,0 +1,473 @@
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "core/normal.h"
+#include "raytrace/parallel.h"
+#include "sonar/reverberation/reverberation_covariance.h"
+#include "sonar/reverberation/reverberation_streams.h"
+#include "sonar/signal/band_response.h"
+#include "sonar/signal/complex_product.h"
+#include "sonar/signal/phase_turn.h"
+#include "sonar/signal/pulse_spectrum.h"
+#include "sonar/synthesis/own_grid.h"
+#include "sonar/synthesis/place_weights.h"
+#include "sonar/synthesis/synthesis.h"
+#include "sonar/synthesis/synthesis_plan.h"
+
+namespace asdic {
+namespace {
+
+using Scratch = FftBuffer<std::complex<float>>;
+using StreamBlock = ReverberationStreams::Block;
+
+constexpr std::size_t lanes = 16;
+
+/// Real and imaginary parts in rows of their own, bins from the band's lower edge up.
+struct Rows {
+  std::size_t stride = 0;
+  std::vector<float> values;
+
+  void reset(std::size_t rows, std::size_t bins) {
+    stride = (bins + lanes - 1) / lanes * lanes;
+    values.assign(2 * rows * stride, 0.0F);
+  }
+  [[nodiscard]] float* re(std::size_t row) noexcept { return values.data() + 2 * row * stride; }
+  [[nodiscard]] float* im(std::size_t row) noexcept { return re(row) + stride; }
+};
+
+/// to += at·turn^k·sound over the bins k, |turn| = 1. \param bins  a whole number of lanes
+void add_turned(const float* __restrict re, const float* __restrict im, std::size_t bins,
+                std::complex<double> at, std::complex<double> turn, float* __restrict to_re,
+                float* __restrict to_im) {
+  alignas(64) std::array<float, lanes> c, s;
+  c[0] = 1.0F;
+  s[0] = 0.0F;
+  for (std::size_t m = 1; m < lanes; m *= 2, turn = finite_product(turn, turn)) {  // turn = turn^m
+    const auto a = static_cast<float>(turn.real()), b = static_cast<float>(turn.imag());
+    for (std::size_t l = 0; l < m; ++l) {
+      c[m + l] = c[l] * a - s[l] * b;
+      s[m + l] = c[l] * b + s[l] * a;
+    }
+  }
+  for (std::size_t k = 0; k < bins; k += lanes) {
+    const auto a = static_cast<float>(at.real()), b = static_cast<float>(at.imag());
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const float x = a * c[l] - b * s[l], y = a * s[l] + b * c[l];
+      to_re[k + l] += re[k + l] * x - im[k + l] * y;
+      to_im[k + l] += re[k + l] * y + im[k + l] * x;
+    }
+    at = finite_product(at, turn);
+  }
+}
+
+/// Where the phones are, coordinate by coordinate [m].
+struct PhonePlaces {
+  std::vector<double> x, y, z;
+
+  explicit PhonePlaces(std::span<const Vec3> phones) {
+    for (const Vec3& phone : phones) {
+      x.push_back(phone.x());
+      y.push_back(phone.y());
+      z.push_back(phone.z());
+    }
+  }
+};
+
+/// How much later than the reference point phones hear a wave whose fronts are spheres about the
+/// point R·u, u = −s/|s|: |s|·(|R·u − x| − R) [s]. \param curvature  1/R [1/m]
+void find_lags(const Vec3& slowness, double curvature, const PhonePlaces& at,
+               std::span<double> lags) noexcept {
+  const double s = slowness.norm();
+  const Vec3 towards = s > 0.0 ? Vec3(slowness / s) : Vec3::Zero();
+  for (std::size_t p = 0; p < lags.size(); ++p) {
+    // (|R·u − x|² − R²)/R = 2·s·x/|s| + |x|²/R, over (|R·u − x| + R)/R.
+    const double x = at.x[p], y = at.y[p], z = at.z[p];
+    const double excess = 2.0 * (towards.x() * x + towards.y() * y + towards.z() * z) +
+                          curvature * (x * x + y * y + z * z);
+    lags[p] = s * excess / (1.0 + std::sqrt(std::max(0.0, 1.0 + curvature * excess)));
+  }
+}
+
+/// The pulse's spectrum, finely enough for a polynomial between its values.
+class FineSpectrum {
+ public:
+  explicit FineSpectrum(const BandLimitedPulse& pulse) : half_band_(pulse.half_band()) {
+    // Of a signal D long, 16 values to 1/D: six of them foretell those between to 1e-6.
+    constexpr double finer = 16.0, oversampling = 1.25;
+    const double duration = 2.0 * pulse.half_duration();
+    const double least = finer * duration * 2.0 * half_band_ * oversampling;
+    const std::size_t n = fast_fft_length(static_cast<std::size_t>(std::ceil(least)) + 64);
+    const double rate = static_cast<double>(n) / (finer * duration);
+    step_ = rate / static_cast<double>(n);
+    Scratch samples(n);
+    const auto reach = static_cast<std::ptrdiff_t>(pulse.half_duration() * rate);
+    for (std::ptrdiff_t j = -reach; j <= reach; ++j)
+      samples[static_cast<std::size_t>(j < 0 ? j + static_cast<std::ptrdiff_t>(n) : j)] =
+          std::complex<float>(pulse.at(static_cast<double>(j) / rate) / rate);
+    ComplexFft<float>(n).forward(samples.data());
+    const auto middle = static_cast<std::ptrdiff_t>(n / 2 - 1);
+    const auto half = std::min(static_cast<std::ptrdiff_t>(half_band_ / step_) + 4, middle);
+    // Nothing beyond either end, so that every place has neighbours.
+    first_ = static_cast<double>(-half) - static_cast<double>(taps);
+    const auto room = static_cast<std::size_t>(2 * half + 1) + 2 * taps;
+    re_.assign(room, 0.0F);
+    im_.assign(room, 0.0F);
+    for (std::ptrdiff_t k = -half; k <= half; ++k) {
+      const std::complex<float> value =
+          samples[static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(n) : k)];
+      re_[static_cast<std::size_t>(k + half) + taps] = value.real();
+      im_[static_cast<std::size_t>(k + half) + taps] = value.imag();
+    }
+  }
+
+  /// scale·∫ s₊(ηu + T/2)·e^{−i2πfu} du [s] at frequencies f from ηf_c + `beside` on.
+  /// \param spectrum  a whole number of lanes
+  void fill(double beside, double spacing, double doppler, double scale,
+            std::span<std::complex<float>> spectrum) const noexcept {
+    const double begin = beside / doppler / step_ - first_, on = spacing / doppler / step_;
+    const double end = static_cast<double>(re_.size() - taps);
+    const auto gain = static_cast<float>(scale / doppler);
+    alignas(64) std::array<float, lanes> t, re, im;
+    alignas(64) std::array<std::int32_t, lanes> at;
+    alignas(64) std::array<std::array<float, lanes>, taps> weight;
+    for (std::size_t k = 0; k < spectrum.size(); k += lanes) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const double place = std::clamp(begin + on * static_cast<double>(k + l), 2.0, end);
+        at[l] = static_cast<std::int32_t>(place);
+        t[l] = static_cast<float>(place - static_cast<double>(at[l]));
+      }
+      // Lagrange's polynomials through the values −2 … 3 beside each place.
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const float x = t[l], a = x + 2.0F, b = x + 1.0F, d = x - 1.0F, e = x - 2.0F, f = x - 3.0F;
+        const float ab = gain * a * b, ef = e * f, xd = x * d;
+        weight[0][l] = gain * b * xd * ef * (-1.0F / 120.0F);
+        weight[1][l] = gain * a * xd * ef * (1.0F / 24.0F);
+        weight[2][l] = ab * d * ef * (-1.0F / 12.0F);
+        weight[3][l] = ab * x * ef * (1.0F / 12.0F);
+        weight[4][l] = ab * xd * f * (-1.0F / 24.0F);
+        weight[5][l] = ab * xd * e * (1.0F / 120.0F);
+      }
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const float *const x = &re_[static_cast<std::size_t>(at[l]) - 2],
+                           *const y = &im_[static_cast<std::size_t>(at[l]) - 2];
+        re[l] = im[l] = 0.0F;
+        for (std::size_t i = 0; i < taps; ++i) {
+          re[l] += weight[i][l] * x[i];
+          im[l] += weight[i][l] * y[i];
+        }
+      }
+      for (std::size_t l = 0; l < lanes; ++l) spectrum[k + l] = {re[l], im[l]};
+    }
+  }
+
+ private:
+  static constexpr std::size_t taps = 6;
+  double half_band_, step_ = 1.0, first_ = 0.0;
+  std::vector<float> re_, im_;
+};
+
+/// What a piece needs to know of the grid and of the pulse.
+struct StreamGrid {
+  double rate = 1.0;                  // [Hz]
+  double first = 0.0;                 // delay of sample 0 [s]
+  std::ptrdiff_t begin = 0, end = 0;  // of impulses
+  double carrier = 0.0;               // [Hz]
+  std::size_t guard = 0;              // samples by which a pulse hangs over its impulse
+  double half_band = 0.0;             // of the sound about the carrier [Hz]
+  double centre = 0.0;                // frequency of the pulse [Hz]
+  double own_half_band = 0.0;         // of the pulse about it, as any stream's factor has it [Hz]
+  double pulse_duration = 1.0;        // [s]
+
+  /// The sample at or before a delay.
+  [[nodiscard]] std::ptrdiff_t before(double delay) const noexcept {
+    return std::clamp(static_cast<std::ptrdiff_t>(std::floor((delay - first) * rate)), begin, end);
+  }
+  [[nodiscard]] double delay_of(std::ptrdiff_t sample) const noexcept {
+    return first + static_cast<double>(sample) / rate;
+  }
+};
+
+/// The pulse as Doppler factors stretch it, each in the bins about its own shifted carrier. Factors
+/// to a 32nd of what a pulse tells apart are shifted alike; shapes whose phases at the band's edges
+/// are alike to 0.04 rad are one.
+class StretchedPulses {
+ public:
+  StretchedPulses(const FineSpectrum& pulse, const StreamGrid& grid, double spacing)
+      : pulse_(pulse),
+        grid_(grid),
+        spacing_(spacing),
+        highest_(static_cast<std::ptrdiff_t>(std::ceil(grid.own_half_band / spacing)) + 1),
+        places_(std::ceil(16.0 * grid.pulse_duration * spacing)),
+        // A sweep of the band B has the phase 2πf²T/B·η at f from its centre.
+        stretch_(0.05 / (2.0 * grid.own_half_band * grid.pulse_duration)) {}
+
+  /// Bins of each; its carrier is the middle one.
+  [[nodiscard]] std::size_t bins() const noexcept {
+    return static_cast<std::size_t>(2 * highest_ + 1);
+  }
+  [[nodiscard]] std::size_t stride() const noexcept { return (bins() + lanes - 1) / lanes * lanes; }
+  /// [stride] from bin `first` beside the carrier on.
+  struct Shifted {
+    std::ptrdiff_t first = 0;
+    const std::complex<float>* values = nullptr;
+  };
+  [[nodiscard]] Shifted at(double doppler) {
+    const double shift = (grid_.centre * doppler - grid_.carrier) / spacing_;
+    const double bin = std::floor(shift);
+    const long place = std::min(std::lround((shift - bin) * places_), std::lround(places_));
+    const long stretch = std::lround((doppler - 1.0) / stretch_);
+    auto [known, is_new] = spectra_.try_emplace({stretch, place});
+    if (is_new) {
+      known->second.resize(stride());
+      const double lowest =
+          -static_cast<double>(highest_) - static_cast<double>(place) / places_;  // [bins]
+      pulse_.fill(lowest * spacing_, spacing_, 1.0 + static_cast<double>(stretch) * stretch_,
+                  spacing_, known->second);
+    }
+    return {static_cast<std::ptrdiff_t>(bin) - highest_, known->second.data()};
+  }
+
+ private:
+  const FineSpectrum& pulse_;
+  const StreamGrid& grid_;
+  double spacing_;
+  std::ptrdiff_t highest_;
+  double places_, stretch_;  // to a bin; of factors
+  std::map<std::pair<long, long>, std::vector<std::complex<float>>> spectra_;
+};
+
+/// One block's sound at all phones.
+struct Piece {
+  std::ptrdiff_t first = 0;  // sample of the grid
+  std::size_t samples = 0;
+  std::vector<std::complex<float>> values;  // [phones × samples]
+};
+
+/// What a stream's intensity over delay sends into each of the steps between edges.
+class PowerOfSteps {
+ public:
+  /// \param from, to  delays of the first edge and the last [s]
+  PowerOfSteps(const StreamBlock& block, double bin, double from, double to, double step)
+      : bin_(bin), bins_(block.end - block.begin), sum_(bins_ + 1) {
+    const auto n = static_cast<std::size_t>(std::ceil((to - from) / step));
+    for (std::size_t j = 0; j <= n; ++j) {
+      const double delay = std::min(to, from + static_cast<double>(j) * step);
+      const double at = std::clamp(delay / bin - static_cast<double>(block.begin), 0.0,
+                                   static_cast<double>(bins_));
+      const std::size_t below = std::min(static_cast<std::size_t>(at), bins_ - 1);
+      edges_.push_back({below, at - static_cast<double>(below)});
+    }
+  }
+  [[nodiscard]] std::size_t steps() const noexcept { return edges_.size() - 1; }
+  /// \param power  [steps] of [bins of the block] intensity [1/s]
+  void find(const float* intensity, std::span<float> power) {
+    for (std::size_t i = 0; i < bins_; ++i)
+      sum_[i + 1] = sum_[i] + bin_ * static_cast<double>(intensity[i]);
+    double before = at(0, intensity);
+    for (std::size_t j = 0; j < power.size(); ++j) {
+      const double until = at(j + 1, intensity);
+      power[j] = static_cast<float>(std::max(0.0, until - before));
+      before = until;
+    }
+  }
+
+ private:
+  struct Edge {
+    std::size_t bin;
+    double within;
+  };
+  [[nodiscard]] double at(std::size_t edge, const float* intensity) const noexcept {
+    const Edge& e = edges_[edge];
+    return sum_[e.bin] + e.within * bin_ * static_cast<double>(intensity[e.bin]);
+  }
+
+  double bin_;
+  std::size_t bins_;
+  std::vector<double> sum_;  // up to each bin
+  std::vector<Edge> edges_;
+};
+
+/// A block's streams. Each has impulses of white noise at the rate of its own band, wherever that
+/// lies: noise that is shifted is as white.
+Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const FineSpectrum& pulse,
+               const StreamGrid& grid, std::span<const Vec3> phones, const CovarianceDraw& draw) {
+  const double block_begin = static_cast<double>(block.begin) * sea.bin,
+               block_end = static_cast<double>(block.end) * sea.bin;
+  const std::ptrdiff_t begin = grid.before(block_begin),
+                       end = std::min(grid.end, grid.before(block_end) + 1);
+  Piece piece;
+  const double until = std::min(block_end, grid.delay_of(end));
+  // Blocks that were heard before the record begins have no impulse on its grid.
+  if (begin >= end || block.first == block.last || !(until > grid.delay_of(begin))) return piece;
+  const auto n = static_cast<std::size_t>(end - begin);
+  const std::size_t length = grid_length(static_cast<double>(n + 2 * grid.guard));
+  const double spacing = grid.rate / static_cast<double>(length);  // of bins [Hz]
+  const std::size_t highest =
+      std::min(static_cast<std::size_t>(std::ceil(grid.half_band / spacing)), (length - 1) / 2);
+  const std::size_t bins = 2 * highest + 1;
+  StretchedPulses pulses(pulse, grid, spacing);
+  const std::size_t own = pulses.bins(), stride = pulses.stride();
+  const std::size_t own_length = grid_length(static_cast<double>(own));
+  const double step = 1.0 / (spacing * static_cast<double>(own_length));  // between impulses [s]
+  const double origin = grid.delay_of(begin);
+  PowerOfSteps power_of(block, sea.bin, origin, until, step);
+  const ComplexFft<float> own_fft(own_length);
+  Scratch noise_of(own_length);
+  std::vector<float> power(power_of.steps()), normals(2 * power_of.steps());
+  Rows sound, heard;
+  sound.reset(1, own);
+  heard.reset(phones.size(), bins + 2 * stride);  // factors beyond the band are cut off
+  struct Turn {
+    double re = 1.0, im = 0.0;
+  };
+  const PhonePlaces places(phones);
+  std::vector<double> late(phones.size());
+  std::vector<Turn> first(phones.size()), on(phones.size());
+  for (std::size_t s = block.first; s < block.last; ++s) {
+    const ReverberationStreams::Stream& stream = sea.streams[s];
+    const ReverberationStreams::Part& part = sea.part_of(stream, draw.seed, draw.ping);
+    const StretchedPulses::Shifted stretched = pulses.at(part.doppler);
+    const std::ptrdiff_t place =
+        static_cast<std::ptrdiff_t>(stride + highest) + stretched.first;  // in the rows heard
+    if (place < 0 || place > static_cast<std::ptrdiff_t>(bins + stride)) continue;
+    const double lowest = grid.carrier + spacing * static_cast<double>(stretched.first);
+    power_of.find(&sea.intensity[stream.first], power);
+    for (std::size_t noise = 0; noise < part.weight.size(); ++noise) {
+      if (part.weight[noise][0] == 0.0 && part.weight[noise][1] == 0.0) continue;
+      fill_normal(normals, draw.seed, Draw::covariance_weight, draw.ping, stream.entity + noise);
+      for (std::size_t j = 0; j < power.size(); ++j) {
+        const float root = std::sqrt(0.5F * power[j]);
+        noise_of[j] = {root * normals[2 * j], root * normals[2 * j + 1]};
+      }
+      std::fill(noise_of.data() + power.size(), noise_of.data() + own_length, 0.0F);
+      own_fft.forward(noise_of.data());
+      const auto take = [&](std::size_t from, std::size_t count, std::size_t to) {
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::complex<float> x = noise_of[from + k], h = stretched.values[to + k];
+          sound.re(0)[to + k] = x.real() * h.real() - x.imag() * h.imag();
+          sound.im(0)[to + k] = x.real() * h.imag() + x.imag() * h.real();
+        }
+      };
+      take(own_length - own / 2, own / 2, 0);
+      take(0, own / 2 + 1, own / 2);
+      for (std::size_t wave = 0; wave < part.slowness.size(); ++wave) {
+        if (part.weight[noise][wave] == 0.0) continue;
+        find_lags(part.slowness[wave], part.curvature[wave], places, late);
+        for (std::size_t p = 0; p < phones.size(); ++p) {
+          // An impulse stands in the middle of its step.
+          const double delay = 0.5 * step + late[p];
+          first[p] = on[p] = {};
+          turn_back(delay * lowest, first[p].re, first[p].im);
+          turn_back(delay * spacing, on[p].re, on[p].im);
+        }
+        for (std::size_t p = 0; p < phones.size(); ++p)
+          add_turned(sound.re(0), sound.im(0), stride,
+                     finite_product(part.weight[noise][wave], {first[p].re, first[p].im}),
+                     {on[p].re, on[p].im}, heard.re(p) + place, heard.im(p) + place);
+      }
+    }
+  }
+  piece.first = begin - static_cast<std::ptrdiff_t>(grid.guard);
+  piece.samples = n + 2 * grid.guard;
+  piece.values.resize(phones.size() * piece.samples);
+  const ComplexFft<float> fft(length);
+  Scratch scratch(length);
+  for (std::size_t p = 0; p < phones.size(); ++p) {
+    std::fill_n(scratch.data(), length, 0.0F);
+    const float *const re = heard.re(p) + stride, *const im = heard.im(p) + stride;
+    for (std::size_t k = 0; k < bins; ++k)
+      scratch[k < highest ? length - highest + k : k - highest] = {re[k], im[k]};
+    fft.inverse(scratch.data());
+    std::complex<float>* const to = piece.values.data() + p * piece.samples;
+    std::copy_n(scratch.data() + (length - grid.guard), grid.guard, to);
+    std::copy_n(scratch.data(), n + grid.guard, to + grid.guard);
+  }
+  return piece;
+}
+
+}  // namespace
+
+Synthesizer::StreamBand Synthesizer::band_of(const ReverberationStreams& sea) const {
+  constexpr double left_out = 1e-6;  // of a pulse's energy
+  const Plan& plan = *plan_;
+  const double period = static_cast<double>(plan.length) / plan.rate;
+  const auto pulse = covariance_spectra(chebyshev_nodes(plan.carrier, 0.0, 1));
+  const auto power = [&](std::size_t i) { return static_cast<double>(std::norm((*pulse)[i])); };
+  const std::size_t middle = pulse->size() / 2;
+  double all = power(middle);
+  for (std::size_t k = 1; k <= middle; ++k) all += power(middle - k) + power(middle + k);
+  const std::size_t still = outermost_pair(
+      middle, left_out * all, [&](std::size_t k) { return power(middle - k) + power(middle + k); });
+  double most = 0.0;
+  for (const ReverberationStreams::Part& part : sea.parts)
+    most = std::max(most, std::abs(part.doppler - 1.0));
+  const double one = static_cast<double>(still + 1) * (1.0 + most);
+  return {.one = one,
+          .all = std::min(static_cast<double>(plan.highest_bin),
+                          std::ceil(one + most * plan.carrier * period))};
+}
+
+Baseband Synthesizer::silence(const ReverberationStreams& sea, std::size_t phones,
+                              std::vector<std::complex<float>> memory) const {
+  return silence_of_band(phones, 2.0 * band_of(sea).all + 1.0, std::move(memory));
+}
+
+void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
+                              const CovarianceDraw& draw, Baseband& baseband) const {
+  const Plan& plan = *plan_;
+  assert(phones.size() == baseband.channels && baseband.samples <= plan.length);
+  const std::size_t fine = baseband.samples;
+  const double period = static_cast<double>(plan.length) / plan.rate;
+  const StreamBand band = band_of(sea);
+  const double half_band = band.all;  // [bins]
+  const std::size_t length = std::min(fine, grid_length(2.0 * half_band + 2.0));
+  const double rate = static_cast<double>(length) / period;
+  const double before = static_cast<double>(plan.lead) / plan.rate;
+  const BandLimitedPulse& pulse = plan.pulses.front();
+  const StreamGrid grid{
+      .rate = rate,
+      .first = plan.recording.start - 0.5 * plan.pulse_duration,
+      .begin = -static_cast<std::ptrdiff_t>(before * rate),
+      .end = static_cast<std::ptrdiff_t>((plan.last_position / plan.rate - before) * rate) + 1,
+      .carrier = plan.carrier,
+      .guard = static_cast<std::size_t>(
+                   std::ceil(pulse.half_duration() / (1.0 - plan.max_doppler) * rate)) +
+               lanes,
+      .half_band = half_band / period,
+      .centre = pulse.centre_frequency(),
+      .own_half_band = band.one / period,
+      .pulse_duration = plan.pulse_duration};
+  const FineSpectrum spectrum(pulse);
+  std::vector<Piece> pieces(sea.blocks.size());
+  in_parallel(pieces.size(), [&](std::size_t b) {
+    pieces[b] = piece_of(sea, sea.blocks[b], spectrum, grid, phones, draw);
+  });
+  const ComplexFft<float> coarse(length), fft(fine);
+  const auto highest = std::min(static_cast<std::size_t>(half_band), (length - 1) / 2);
+  in_parallel(phones.size(), [&](std::size_t phone) {
+    Scratch sum(length), values(fine);
+    for (const Piece& piece : pieces) {
+      const std::complex<float>* const from = piece.values.data() + phone * piece.samples;
+      auto at = static_cast<std::size_t>((piece.first + 2 * static_cast<std::ptrdiff_t>(length)) %
+                                         static_cast<std::ptrdiff_t>(length));
+      for (std::size_t i = 0; i < piece.samples; ++i) {
+        sum[at] += from[i];
+        if (++at == length) at = 0;
+      }
+    }
+    coarse.forward(sum.data());
+    const float scale = 1.0F / static_cast<float>(length);
+    std::copy_n(sum.data(), highest + 1, values.data());
+    std::copy_n(sum.data() + (length - highest), highest, values.data() + (fine - highest));
+    fft.inverse(values.data());
+    std::complex<float>* of_phone = baseband.values.data() + phone * fine;
+    for (std::size_t i = 0; i < fine; ++i) of_phone[i] += scale * values[i];
+  });
+}
+
+}  // namespace asdic

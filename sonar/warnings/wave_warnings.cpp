@@ -1,0 +1,242 @@
+#include "sonar/warnings/wave_warnings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "raytrace/warnings/warnings.h"
+#include "raytrace/waves/diffraction.h"
+#include "raytrace/waves/focus.h"
+#include "raytrace/waves/ray_errors.h"
+#include "sonar/echoes/wave_response.h"
+#include "sonar/paths/enough_bounces.h"
+#include "sonar/scenario/sampling.h"
+
+namespace asdic {
+namespace {
+
+/// What is told of legs that are no rays: how far their level changes across the pulse.
+struct AcrossThePulse {
+  double change_db = 0.0;  ///< from the centre to either edge, the most
+  double error = 0.0;      ///< of what is computed across it, over the greatest
+  double corners = 0.0;    ///< share of the leg's energy, of turned_at_corners()
+  double caustics = 0.0;   ///< the same, of unsure_amplitudes()
+};
+
+AcrossThePulse across_the_pulse(const PropagationPaths& paths, const WaveLeg& leg,
+                                const Pulse& pulse, bool wide) {
+  const double centre = pulse.centre_frequency(), half = 0.5 * pulse.bandwidth_99();
+  if (wide) return {.error = wave_response(paths, leg, centre, half).error};
+  AcrossThePulse found;
+  for (const double f : {centre - half, centre + half}) {
+    const double db = db_from_amplitude(std::abs(wave_response(paths, leg, f)));
+    found.change_db = std::max(found.change_db, std::abs(db));
+  }
+  return found;
+}
+
+/// "" where the amplitudes of the centre will do, or those across the band are known.
+std::string line_of(const AcrossThePulse& waves, const std::string& whose) {
+  char text[300] = "", how_far[32] = "gone";
+  constexpr double tolerable_change_db = 1.0, tolerable_error = 0.03;
+  if (std::isfinite(waves.change_db))
+    std::snprintf(how_far, sizeof how_far, "up to %.2g dB off", waves.change_db);
+  if (waves.change_db > tolerable_change_db)
+    std::snprintf(
+        text, sizeof text,
+        "propagation.band: what reaches %.60s where no ray does, or at a caustic, has the "
+        "amplitude of the pulse's centre; at the edges of its band it is %s; \"wide\" follows it",
+        whose.c_str(), how_far);
+  if (waves.error > tolerable_error)
+    std::snprintf(text, sizeof text,
+                  "propagation.band: the level of what reaches %.60s where no ray does changes "
+                  "faster across the pulse than %d frequencies tell: errors up to %.2g of its "
+                  "greatest amplitude",
+                  whose.c_str(), int(most_wave_frequencies), waves.error);
+  return text;
+}
+
+/// \param share  of the energy   \param how  it comes: what follows on "the sound to or from it"
+std::string line_of_share(double share, const std::string& whose, const char* how) {
+  constexpr double tolerable_share = 0.25;
+  if (!(share > tolerable_share)) return "";
+  char text[320];
+  std::snprintf(text, sizeof text, "propagation: %.0f %% of the sound to or from %.60s %s",
+                100.0 * share, whose.c_str(), how);
+  return text;
+}
+constexpr char beside_corners[] =
+    "turns so often beside corners of the sound-speed profile that rays have its phase wrong by a "
+    "radian; how paths interfere is open";
+constexpr char at_caustics[] =
+    "comes by rays at a focus, at a caustic which is no simple fold or at the end of their family: "
+    "their level may be decibels off";
+
+/// Whether another ray meets this one, ζ < 1, where both have the amplitude of rays still: at what
+/// is no simple fold (raytrace/waves/caustics.h).
+bool meets_another(const Arrival& path, const Arrivals& paths, double frequency) {
+  const double together = 4.0 / 3.0 / (2.0 * pi * frequency);  // of delays, at ζ = 1
+  return std::any_of(paths.begin(), paths.end(), [&](const Arrival& other) {
+    return other.kind == ArrivalKind::ray && std::abs(other.caustics - path.caustics) == 1 &&
+           other.surface_bounces == path.surface_bounces &&
+           other.bottom_bounces == path.bottom_bounces &&
+           std::abs(other.delay - path.delay) < together &&
+           std::abs(other.launch_elevation - path.launch_elevation) < radians(3.0);
+  });
+}
+
+/// Share of the energy of rays whose amplitude is not to be trusted: they meet at what is no simple
+/// fold, pass a focus, or are the last of their family.
+double unsure_amplitudes(const EigenraySolver& solver, double source_depth, double receiver_depth,
+                         double frequency, const PathLimits& limits, const Arrivals& paths) {
+  constexpr double faintest = 0.01, tolerable_error = 0.12;  // 1 dB
+  const std::vector<double> errors =
+      focusing_errors(solver, source_depth, receiver_depth, frequency, limits, paths, faintest);
+  double all = 0.0, unsure = 0.0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const double energy = std::norm(paths[i].amplitude);
+    all += energy;
+    if (paths[i].kind == ArrivalKind::ray &&
+        (errors[i] > tolerable_error || meets_another(paths[i], paths, frequency)))
+      unsure += energy;
+  }
+  return all > 0.0 ? unsure / all : 0.0;
+}
+
+/// Share of the energy that comes by rays which turn so often, so near a corner of the profile,
+/// that their phase is a radian off.
+double turned_at_corners(const Environment& ocean, const Arrivals& paths, double frequency) {
+  const std::vector<double> errors = corner_errors(ocean, frequency, paths, false);
+  double all = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const double energy = std::norm(paths[i].amplitude);
+    all += energy;
+    if (paths[i].kind == ArrivalKind::ray && errors[i] > 1.0) off += energy;
+  }
+  return all > 0.0 ? off / all : 0.0;
+}
+
+/// What reaches a place from a source.
+struct Reached {
+  bool in_the_water = false;  ///< by a ray without the bottom
+  double by_rays = 0.0;       ///< Σ|A|² [1/m² × 1 m²]
+};
+
+Reached reached(const PropagationPaths& paths, const PropagationSettings& settings,
+                const Vec3& source, double depth, double range, double frequency, double latest) {
+  const Vec3 place = source + Vec3(range, 0.0, depth - source.z());
+  PathLimits limits =
+      limits_of(settings, enough_bounces(paths, settings, source, place, frequency, latest));
+  limits.diffraction = false;
+  Reached sum;
+  for (const Arrival& ray : paths.find(source, place, frequency, limits)) {
+    sum.in_the_water = sum.in_the_water || ray.bottom_bounces == 0;
+    sum.by_rays += std::norm(ray.amplitude) + ray.scattered;
+  }
+  return sum;
+}
+
+/// Whether waves carry sound to ground that scatters and that rays reach off the bottom alone:
+/// where that is affordable, at a few ranges of the record. Both boundaries are held to scatter
+/// alike.
+std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths, const Vec3& source,
+                        double frequency) {
+  constexpr std::array shares = {0.04, 0.08, 0.16, 0.32, 0.64, 1.0};
+  constexpr double cheaper = 10.0;  // than the dearest arrival
+  const Environment& ocean = paths.along_transect().environment();
+  const double c = paths.speed_at(source), latest = end_of_record(scenario),
+               furthest = 0.5 * c * latest;
+  const double wavelength = c / frequency;
+  // A wave is nothing at the surface itself; where it turns it is greatest a few lengths below.
+  const double gradient = std::abs(ocean.water.at(ocean.surface.depth).dc_dz);
+  const double wavenumber = 2.0 * pi / wavelength;
+  const double airy_length =
+      std::cbrt(c / (2.0 * wavenumber * wavenumber * std::max(gradient, 1e-3)));
+  const double top = std::min(ocean.surface.depth + std::max(wavelength, airy_length), source.z()),
+               floor = ocean.bottom.depth - 0.01;
+  const bool of_surface = scenario.reverberation.surface_scatters,
+             of_bottom = scenario.reverberation.bottom.has_value();
+  double most = 0.0, nearest = 0.0;
+  const char* dark = "";
+  for (const double share : shares) {
+    const double range = share * furthest;
+    const auto at = [&](double depth) {
+      return reached(paths, scenario.propagation, source, depth, range, frequency, latest);
+    };
+    const Reached above = at(top), below = at(floor);
+    const double rays = (of_surface ? above.by_rays : 0.0) + (of_bottom ? below.by_rays : 0.0);
+    for (const bool surface : {true, false}) {
+      const double depth = surface ? top : floor;
+      if (!(surface ? of_surface : of_bottom) || (surface ? above : below).in_the_water ||
+          !diffraction_is_affordable(ocean, source.z(), depth, cheaper * range, frequency))
+        continue;
+      const auto wave = diffracted_arrival(ocean, source.z(), depth, range, frequency);
+      if (!wave) continue;
+      const double more = 2.0 * db_from_power(1.0 + std::norm(wave->amplitude) / rays);
+      if (more > tolerable_db && most == 0.0)
+        nearest = range, dark = surface ? "surface" : "bottom";
+      most = std::max(most, more);
+    }
+  }
+  if (!(most > tolerable_db)) return "";
+  char how_much[64] = "it is all there is";
+  if (std::isfinite(most)) std::snprintf(how_much, sizeof how_much, "up to %.2g dB", most);
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "reverberation: about %.2g km away and beyond no ray reaches the %s without the "
+                "bottom; what waves carry there is left out, %s of what scatters there",
+                nearest / 1000.0, dark, how_much);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> wave_warnings(const Scenario& scenario, const PropagationPaths& paths,
+                                       const Transmission& sent, const Pulse& heard, int array) {
+  const Vec3 source = transmitter_at(scenario, sent.transmitter, sent.time).position,
+             receiver = array_at(scenario, array, sent.time).position;
+  const auto judged = [&](const Vec3& from, const Vec3& to) {
+    const double centre = heard.centre_frequency();
+    const PathLimits limits = limits_of(
+        scenario.propagation,
+        enough_bounces(paths, scenario.propagation, from, to, centre, end_of_record(scenario)));
+    constexpr double matters = 0.01;  // of the leg's energy
+    const Arrivals arrivals = paths.find(from, to, centre, limits);
+    double energy = 0.0;
+    for (const Arrival& path : arrivals) energy += std::norm(path.amplitude);
+    AcrossThePulse worst;
+    worst.caustics =
+        unsure_amplitudes(paths.along_transect(), from.z(), to.z(), centre, limits, arrivals);
+    worst.corners = turned_at_corners(paths.along_transect().environment(), arrivals, centre);
+    for (const Arrival& path : arrivals) {
+      if (path.kind == ArrivalKind::ray || std::norm(path.amplitude) < matters * energy) continue;
+      const AcrossThePulse one =
+          across_the_pulse(paths, {.from = from, .to = to, .path = path, .limits = limits}, heard,
+                           scenario.propagation.wide_band);
+      worst.change_db = std::max(worst.change_db, one.change_db);
+      worst.error = std::max(worst.error, one.error);
+    }
+    return worst;
+  };
+  std::vector<std::string> found;
+  if (!paths.layered() || !scenario.propagation.diffraction) return found;
+  for (const Target& target : scenario.targets) {
+    const Vec3 place = target.track.at(sent.time).position;
+    const std::string name = "target \"" + target.name + "\"";
+    const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
+    add_warnings({line_of(there, name), line_of(home, name),
+                  line_of_share(std::max(there.corners, home.corners), name, beside_corners),
+                  line_of_share(std::max(there.caustics, home.caustics), name, at_caustics)},
+                 found);
+  }
+  const bool apart = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].platform !=
+                     scenario.arrays[static_cast<std::size_t>(array)].platform;
+  if (scenario.propagation.direct_blast && apart)
+    add_warnings({line_of(judged(source, receiver), "an array")}, found);
+  if (scenario.reverberation.enabled)
+    add_warnings({dark_ground(scenario, paths, source, heard.centre_frequency())}, found);
+  return found;
+}
+
+}  // namespace asdic
