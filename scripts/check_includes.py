@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The folders include one another in one direction only, so do the rooms in them, and each borrowed library stays where it belongs.
 
-core <- raytrace <- reverb <- sonar <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
+core <- raytrace <- reverb <- sonar <- processing <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
 Parallel loops are raytrace/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
 instruction level (core/level_namespace.h) is included by sources that are compiled once a level (LEVELS in CMakeLists.txt) alone.
@@ -10,15 +10,15 @@ import pathlib
 import re
 import sys
 
-ORDER = ["core", "raytrace", "reverb", "sonar", "io", "study", "serve", "app"]
+ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"]
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
-    "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping", "processing"],
+    "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
     "sqlite3": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
-    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "study", "serve", "app"],
+    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "processing", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "processing", "study", "serve", "app"],
     "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "fmt/": ["app"],
 }
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/error.h"
+#include "processing/normaliser.h"
 #include "sonar/noise/noise_spectrum.h"
-#include "sonar/processing/normaliser.h"
 #include "sonar/scenario/geometry.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/scenario.h"

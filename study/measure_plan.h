@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sonar/processing/ping_processor.h"
+#include "processing/ping_processor.h"
 
 namespace asdic::study {
 

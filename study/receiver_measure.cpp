@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sonar/processing/truth.h"
+#include "processing/truth.h"
 #include "sonar/signal/pulse.h"
 #include "study/no_value.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <complex>
 
+#include "processing/detection_threshold.h"
 #include "sonar/noise/noise_coherence.h"
 #include "sonar/noise/noise_in_guide.h"
-#include "sonar/processing/detection_threshold.h"
 #include "study/echo_filter.h"
 
 namespace asdic::study {

@@ -10,7 +10,7 @@
 #include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
-#include "sonar/processing/truth.h"
+#include "processing/truth.h"
 #include "sonar/scenario/geometry.h"
 
 namespace asdic {

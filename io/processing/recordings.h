@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "io/ping_file.h"
-#include "sonar/processing/ping_processor.h"
-#include "sonar/processing/scoring.h"
+#include "processing/ping_processor.h"
+#include "processing/scoring.h"
 #include "sonar/scenario/scenario.h"
 
 namespace asdic {

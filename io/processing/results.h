@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "io/output/output_file.h"
-#include "sonar/processing/ping_processor.h"
-#include "sonar/processing/scoring.h"
-#include "sonar/processing/tracker.h"
+#include "processing/ping_processor.h"
+#include "processing/scoring.h"
+#include "processing/tracker.h"
 
 namespace asdic {
 

@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
+#include "processing/ping_processor.h"
+#include "processing/scoring.h"
+#include "processing/truth.h"
 #include "sonar/ping/ping.h"
-#include "sonar/processing/ping_processor.h"
-#include "sonar/processing/scoring.h"
-#include "sonar/processing/truth.h"
 
 namespace asdic::support {
 

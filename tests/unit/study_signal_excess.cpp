@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "sonar/processing/detection_threshold.h"
+#include "processing/detection_threshold.h"
 #include "study/measures.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"

@@ -33,7 +33,7 @@ cat >"$prefix/mine/main.cpp" <<'CPP'
 #include "reverb/scattering/lambert.h"
 #include "serve/token.h"
 #include "sonar/ping/ping.h"
-#include "sonar/processing/tracker.h"
+#include "processing/tracker.h"
 #include "study/law.h"
 
 // A function of each library; one of them keeps matrices.

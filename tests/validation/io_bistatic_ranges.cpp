@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/scenario_reader.h"
+#include "processing/localiser.h"
 #include "sonar/ping/ping.h"
-#include "sonar/processing/localiser.h"
 #include "sonar/scenario/geometry.h"
 #include "sonar/scenario/ping_bounds.h"
 

@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "io/scenario_reader.h"
+#include "processing/beams.h"
+#include "processing/listening_band.h"
 #include "sonar/ping/ping.h"
-#include "sonar/processing/beams.h"
-#include "sonar/processing/listening_band.h"
 
 namespace asdic {
 namespace {

@@ -1,0 +1,347 @@
+#include "processing/detector.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "core/memory_budget.h"
+#include "processing/across_beams.h"
+#include "processing/echo_pointing.h"
+#include "processing/peak_cluster.h"
+#include "processing/threshold_probes.h"
+#include "raytrace/parallel.h"
+#include "raytrace/propagation.h"
+
+namespace asdic {
+namespace {
+
+/// Offset of a parabola's top through three logarithms of power, within half a step.
+double top_of(double before, double here, double after) {
+  const double bend = before - 2.0 * here + after;
+  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
+double log_power(std::complex<float> x) {
+  return std::log(static_cast<double>(std::norm(x)) + std::numeric_limits<double>::min());
+}
+
+std::vector<Vec3> about(const Vec3& middle, std::span<const Vec3> phones) {
+  std::vector<Vec3> moved;
+  for (const Vec3& phone : phones) moved.push_back(phone - middle);
+  return moved;
+}
+
+/// Asks for what all beams and filters take. \throws MemoryError
+BeamGrid within_memory(BeamGrid grid, const Baseband& baseband, std::size_t filters,
+                       const DetectorSettings& settings) {
+  const auto number = [](std::size_t n) { return static_cast<double>(n); };
+  const double beams = number(grid.looks.size()), banks = number(filters);
+  const double row = 8.0 * number(baseband.samples);
+  // Spectra of beams, phones (twice by MVDR, in blocks) and filters; what all cells hold, if beams
+  // are compared; maps.
+  const double phones =
+      number(baseband.channels) * (settings.beamformer == Beamformer::mvdr ? 3.0 : 1.0);
+  const double cells = settings.normaliser.across_beams ? 0.5 * beams * banks * row : 0.0;
+  MemoryBudget budget = MemoryBudget::without_key();
+  budget.take({.where = "receiver",
+               .what = std::to_string(grid.looks.size()) + " beams and " + std::to_string(filters) +
+                       " Doppler filters of " + std::to_string(baseband.samples) + " samples",
+               .bytes = (beams + phones + banks) * row + cells +
+                        4.0 * (beams + banks) * number(settings.map_columns),
+               .remedy = "a lower max_speed, fewer elevations or phones, or a shorter record"});
+  return grid;
+}
+
+/// Beams are steered about the middle of the phones, so that an echo comes at one time in all of
+/// them, also on a line that is towed far behind the point that delays refer to.
+class Search {
+ public:
+  Search(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
+         const Replica& replica, std::span<const double> dopplers, const DetectorSettings& settings)
+      : baseband_(baseband),
+        sound_speed_(sound_speed),
+        replica_(replica),
+        settings_(settings),
+        wavelength_(sound_speed / replica.centre_frequency()),
+        middle_(shape_of(phones, wavelength_).centre),
+        phones_(about(middle_, phones)),
+        shape_(shape_of(phones_, wavelength_)),
+        grid_(within_memory(
+            beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation),
+            baseband, dopplers.size(), settings)),
+        weights_(shading(phones_, settings.hann_shading)),
+        bank_(replica, dopplers, baseband),
+        estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
+        channels_(channel_spectra(baseband)),
+        across_(shape_, phones_, weights_, grid_.looks, wavelength_,
+                settings.normaliser.across_beams ? bank_.filters() : 0, bank_.samples(),
+                bank_.sample_rate() / replica.noise_bandwidth()),
+        pointing_(baseband, phones_, sound_speed, replica, shape_, weights_, grid_.spacing,
+                  dopplers.front()),
+        doppler_cell_(doppler_cell(replica)),
+        ridge_(-doppler_answer(replica, 1.0 + 0.25 * doppler_cell_).delay /
+               (0.25 * doppler_cell_)) {}
+
+  DetectorResult run(std::span<const Probe> probes, const std::function<bool()>& proceed) {
+    const BeamSpectra beams =
+        settings_.beamformer == Beamformer::mvdr && shape_.kind != ArrayKind::point
+            ? mvdr_beams(baseband_, phones_, grid_.looks, sound_speed_, settings_.mvdr)
+            : conventional_beams(channels_, baseband_, phones_, grid_.looks, sound_speed_,
+                                 weights_);
+    DetectorResult result;
+    prepare_maps(result.maps);
+    std::vector<Probe> at_middle(probes.begin(), probes.end());
+    for (Probe& probe : at_middle) probe.time -= lead(probe.look);
+    probes_ = place_probes(at_middle, bank_, doppler_cell_, grid_, phones_, weights_,
+                           2.0 * pi / wavelength_);
+    std::vector<Peak> peaks = find_peaks(beams, proceed, result.maps);
+    if (settings_.normaliser.across_beams) compare_across_beams(peaks);
+    result.peaks = peaks.size();
+    for (const PlacedProbe& probe : probes_)
+      result.thresholds_db.push_back(std::isfinite(probe.threshold) ? level_of(probe.threshold)
+                                                                    : infinity);
+    const LeakTable leaks(replica_, bank_);
+    // Of one echo's paths the pattern of the loudest is known; the others' fill its zeros, to about
+    // the level of far side lobes, 1/N².
+    const double k = 2.0 * pi / wavelength_, least = 1.0 / std::pow(phones_.size(), 2.0);
+    std::map<std::size_t, Vec3> look;  // of kept peaks
+    std::map<std::pair<std::size_t, std::size_t>, double> known;
+    const auto keep = [&](std::size_t i) {
+      Detection& kept = result.detections.emplace_back(refine(peaks[i], beams));
+      look[i] = kept.look;
+      kept.time += lead(kept.look);
+    };
+    const auto beam_leak = [&](std::size_t kept, std::size_t beam) {
+      const auto [at, fresh] = known.try_emplace({kept, beam}, 0.0);
+      if (fresh) {
+        // Phones that stray a little from their line or plane hear its other side a little
+        // otherwise.
+        const Vec3& to = grid_.looks[beam];
+        at->second =
+            std::max({beam_pattern(phones_, weights_, to, look[kept], k),
+                      beam_pattern(phones_, weights_, to, mirrored(shape_, look[kept]), k), least});
+      }
+      return at->second;
+    };
+    static_cast<void>(independent_peaks(peaks, leaks, keep, beam_leak,
+                                        power_from_db(settings_.leak_margin_db),
+                                        settings_.most_detections));
+    std::sort(result.detections.begin(), result.detections.end(),
+              [](const Detection& a, const Detection& b) {
+                return std::tuple(a.time, a.doppler, a.level_db) <
+                       std::tuple(b.time, b.doppler, b.level_db);
+              });
+    result.grid = grid_;
+    for (std::size_t f = 0; f < bank_.filters(); ++f) result.dopplers.push_back(bank_.doppler(f));
+    result.time_cell = 1.0 / replica_.noise_bandwidth();
+    result.doppler_cell = doppler_cell_;
+    result.delay_per_doppler = ridge_;
+    return result;
+  }
+
+ private:
+  struct Work {
+    FftBuffer<std::complex<float>> out;
+    std::vector<float> power, background, threshold;
+    BackgroundEstimator::Scratch scratch;
+    std::vector<float> doppler_time;  // [filters × columns]
+  };
+
+  /// By how much the middle hears what comes from there before the point that delays refer to [s]
+  double lead(const Vec3& look) const { return look.dot(middle_) / sound_speed_; }
+
+  /// \return level of an echo of power |y|² [dB re 1 µPa]
+  static double level_of(double power) {
+    return db_from_power(0.5 * power) - db_from_amplitude(micropascal);
+  }
+
+  void prepare_maps(DetectionMaps& maps) const {
+    const std::size_t columns = std::min(settings_.map_columns, bank_.samples());
+    maps.time.resize(columns);
+    for (std::size_t i = 0; i < columns; ++i)
+      maps.time[i] =
+          bank_.time((static_cast<double>(i) + 0.5) * static_cast<double>(bank_.samples()) /
+                     static_cast<double>(columns));
+    maps.beam_time.assign(grid_.looks.size() * columns, 0.0F);
+    maps.doppler_time.assign(bank_.filters() * columns, 0.0F);
+  }
+
+  std::vector<Peak> find_peaks(const BeamSpectra& beams, const std::function<bool()>& proceed,
+                               DetectionMaps& maps) {
+    const std::size_t n = bank_.samples(), columns = maps.time.size();
+    std::vector<std::vector<Peak>> found(beams.beams);
+    tbb::enumerable_thread_specific<Work> works;
+    in_parallel(beams.beams, [&](std::size_t b) {
+      if (proceed && !proceed()) throw Interrupted();
+      Work& work = works.local();
+      work.out.reserve(bank_.work());
+      work.power.resize(n);
+      work.background.resize(n);
+      work.threshold.resize(n);
+      work.doppler_time.resize(bank_.filters() * columns, 0.0F);
+      for (std::size_t f = 0; f < bank_.filters(); ++f) {
+        bank_.filter(f, beams.beam(b), work.out.data());
+        for (std::size_t i = 0; i < n; ++i) work.power[i] = std::norm(work.out[i]);
+        compare_over_time(grid_.looks[b], work);
+        pick(b, f, work, found[b]);
+        if (settings_.normaliser.across_beams) across_.set(f, b, work.power);
+        for (PlacedProbe& probe : probes_)  // each has one beam and one filter
+          if (probe.inside && probe.beam == b && probe.filter == f) {
+            probe.power = work.power[probe.sample];
+            probe.background = work.background[probe.sample];
+            probe.threshold = work.threshold[probe.sample];
+          }
+        const auto early =
+            static_cast<std::ptrdiff_t>(std::lround(lead(grid_.looks[b]) * bank_.sample_rate()));
+        const auto at_middle = [&](std::size_t i) {  // the sample there of one at the reference
+          return static_cast<std::size_t>(std::clamp(static_cast<std::ptrdiff_t>(i) - early,
+                                                     std::ptrdiff_t{0},
+                                                     static_cast<std::ptrdiff_t>(n)));
+        };
+        for (std::size_t column = 0; column < columns; ++column) {
+          float most = 0.0F;
+          for (std::size_t i = at_middle(column * n / columns),
+                           end = at_middle((column + 1) * n / columns);
+               i < end; ++i)
+            if (work.background[i] > 0.0F)
+              most = std::max(most, work.power[i] / work.background[i]);
+          float& by_beam = maps.beam_time[b * columns + column];
+          by_beam = std::max(by_beam, most);
+          float& by_doppler = work.doppler_time[f * columns + column];
+          by_doppler = std::max(by_doppler, most);
+        }
+      }
+    });
+    for (const Work& work : works)  // a maximum: in any order
+      for (std::size_t i = 0; i < work.doppler_time.size(); ++i)
+        maps.doppler_time[i] = std::max(maps.doppler_time[i], work.doppler_time[i]);
+    std::vector<Peak> peaks;
+    for (const auto& of_beam : found) peaks.insert(peaks.end(), of_beam.begin(), of_beam.end());
+    return peaks;
+  }
+
+  /// Background and threshold of the samples that a look hears with all phones: one at x hears
+  /// u·x/c before the middle, so that the ends of a long line begin and end their record too late
+  /// or too early. Elsewhere there is no background, and nothing to find.
+  void compare_over_time(const Vec3& look, Work& work) const {
+    const auto samples = static_cast<double>(work.power.size());
+    double first = 0.0, end = samples;
+    for (const Vec3& phone : phones_) {
+      const double early = look.dot(phone) / sound_speed_ * bank_.sample_rate();
+      first = std::max(first, std::ceil(early));
+      end = std::min(end, samples + std::floor(early));
+    }
+    const auto i = static_cast<std::size_t>(std::min(first, samples));
+    const auto count = static_cast<std::size_t>(std::max(end - static_cast<double>(i), 0.0));
+    std::fill(work.background.begin(), work.background.end(),
+              std::numeric_limits<float>::infinity());
+    std::fill(work.threshold.begin(), work.threshold.end(), std::numeric_limits<float>::infinity());
+    estimator_(std::span(work.power).subspan(i, count),
+               std::span(work.background).subspan(i, count),
+               std::span(work.threshold).subspan(i, count), work.scratch);
+  }
+
+  void pick(std::size_t beam, std::size_t filter, const Work& work, std::vector<Peak>& into) const {
+    const std::size_t n = work.power.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const float p = work.power[i];
+      if (!(p > work.threshold[i])) continue;
+      if ((i > 0 && work.power[i - 1] > p) || (i + 1 < n && work.power[i + 1] >= p)) continue;
+      const double time = bank_.time(static_cast<double>(i)) + lead(grid_.looks[beam]);
+      if (time < settings_.first_time || time > settings_.last_time) continue;
+      into.push_back({.beam = beam,
+                      .filter = filter,
+                      .sample = i,
+                      .power = p,
+                      .background = work.background[i],
+                      .threshold = work.threshold[i]});
+    }
+  }
+
+  void compare_across_beams(std::vector<Peak>& peaks) {
+    for (Peak& peak : peaks) across_.correct(peak);
+    for (PlacedProbe& probe : probes_)
+      if (probe.inside) across_.correct(probe);
+    std::erase_if(peaks, [](const Peak& peak) { return !(peak.power > peak.threshold); });
+  }
+
+  /// Between the samples, filters and beams.
+  Detection refine(const Peak& peak, const BeamSpectra& beams) const {
+    FftBuffer<std::complex<float>> out(bank_.work());
+    const std::size_t i = peak.sample, last = bank_.filters() - 1;
+    const auto filtered = [&](std::size_t f) {
+      bank_.filter(f, beams.beam(peak.beam), out.data());
+      return out[i];
+    };
+    double filter_offset = 0.0;
+    if (peak.filter > 0 && peak.filter < last) {
+      const double before = log_power(filtered(peak.filter - 1));
+      const double after = log_power(filtered(peak.filter + 1));
+      filter_offset = top_of(before, log_power(filtered(peak.filter)), after);
+    } else {
+      static_cast<void>(filtered(peak.filter));
+    }
+    double sample_offset = 0.0;
+    if (i > 0 && i + 1 < bank_.samples())
+      sample_offset = top_of(log_power(out[i - 1]), log_power(out[i]), log_power(out[i + 1]));
+    Detection d;
+    d.time = bank_.time(static_cast<double>(i) + sample_offset);
+    const double step = last > 0 ? bank_.doppler(1) - bank_.doppler(0) : 0.0;
+    d.doppler = bank_.doppler(peak.filter) + filter_offset * step;
+    pointing_.point(d, grid_.looks[peak.beam]);
+    const double power = std::max(static_cast<double>(peak.power), pointing_.power_at(d));
+    d.snr_db = db_from_power(power / static_cast<double>(peak.background));
+    d.excess_db = db_from_power(power / static_cast<double>(peak.threshold));
+    d.level_db = level_of(power);
+    d.doppler_sigma = sigma_of(2.0 * doppler_cell_, power / static_cast<double>(peak.background));
+    const double middle = 0.5 * (bank_.doppler(0) + bank_.doppler(last)),
+                 half_span = bank_.doppler(last) - middle;
+    if (half_span > 0.0 && half_span <= doppler_cell_) {
+      const double known_before = half_span / std::sqrt(3.0);  // evenly likely all over the bank
+      d.doppler_sigma = std::min(d.doppler_sigma, known_before);
+      if (peak.filter == 0 || peak.filter == last) {  // no maximum: along the ridge to the middle
+        d.time -= ridge_ * (d.doppler - middle);
+        d.doppler = middle;
+        d.doppler_sigma = known_before;
+      }
+    }
+    return d;
+  }
+
+  const Baseband& baseband_;
+  double sound_speed_;
+  const Replica& replica_;
+  const DetectorSettings& settings_;
+  double wavelength_;
+  Vec3 middle_;
+  std::vector<Vec3> phones_;  // from there
+  ArrayShape shape_;
+  BeamGrid grid_;
+  std::vector<double> weights_;
+  MatchedFilterBank bank_;
+  BackgroundEstimator estimator_;
+  BeamSpectra channels_;
+  AcrossBeams across_;
+  EchoPointing pointing_;
+  double doppler_cell_, ridge_;  // delay_per_doppler
+  std::vector<PlacedProbe> probes_;
+};
+
+}  // namespace
+
+double sigma_of(double cell, double snr) {
+  return cell * std::max(0.1, 0.5 / std::sqrt(2.0 * snr));
+}
+
+DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones, double sound_speed,
+                      const Replica& replica, std::span<const double> dopplers,
+                      const DetectorSettings& settings, std::span<const Probe> probes,
+                      const std::function<bool()>& proceed) {
+  return Search(baseband, phones, sound_speed, replica, dopplers, settings).run(probes, proceed);
+}
+
+}  // namespace asdic

@@ -1,0 +1,82 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "processing/array_shape.h"
+#include "processing/beams.h"
+#include "processing/detection.h"
+#include "processing/matched_filter.h"
+#include "processing/mvdr.h"
+#include "processing/normaliser.h"
+
+namespace asdic {
+
+/// A cell of time, Doppler factor and direction whose threshold is asked for.
+struct Probe {
+  double time = 0.0, doppler = 1.0;
+  Vec3 look = Vec3::UnitY();
+};
+
+enum class Beamformer { conventional, mvdr };
+
+struct DetectorSettings {
+  Beamformer beamformer = Beamformer::conventional;
+  bool hann_shading = false;
+  MvdrSettings mvdr;
+  NormaliserSettings normaliser;
+  double lowest_elevation = -0.5 * pi, highest_elevation = 0.5 * pi;  ///< of planes, volumes [rad]
+  double first_time = 0.0;      ///< nothing is detected before [s]
+  double last_time = infinity;  ///< nor after
+  double leak_margin_db = 6.0;  ///< what a loud echo leaks into other cells is taken so much louder
+  std::size_t most_detections = 1000;  ///< the loudest of a ping
+  std::size_t map_columns = 600;       ///< of the maps
+};
+
+/// For pictures: what all cells hold, the largest of those that fall together.
+struct DetectionMaps {
+  std::vector<double> time;      ///< [columns] middle of each [s]
+  std::vector<float> beam_time;  ///< [beams × columns] power over background, largest factor [1]
+  std::vector<float> doppler_time;  ///< [filters × columns] the same, largest beam [1]
+};
+
+/// Standard deviation of an estimate whose resolution cell is this wide: Cramér and Rao's bound is
+/// about cell/√(2·SNR)/2; nothing is trusted to better than a tenth of a cell. \param snr  E/N₀
+[[nodiscard]] double sigma_of(double cell, double snr);
+
+struct DetectorResult {
+  BeamGrid grid;
+  std::vector<double> dopplers;       ///< [filters]
+  std::vector<Detection> detections;  ///< sorted by time
+  DetectionMaps maps;
+  double time_cell = 0.0;     ///< [s]
+  double doppler_cell = 0.0;  ///< half the factors' span in which a filter answers within 3 dB
+  double delay_per_doppler =
+      0.0;  ///< by which a sweep's delay errs for an error of η: its ridge [s]
+  std::vector<double> thresholds_db;  ///< [probes] level of an echo that just meets the threshold
+                                      ///< there [dB re 1 µPa]; ∞ outside of what is searched
+  std::size_t peaks = 0;              ///< local maxima over the threshold, before clustering
+};
+
+/// Matched filters in beams, compared with their surroundings: what stands out, one detection a
+/// thing.
+///
+/// Every beam goes through every Doppler filter; each such series is normalised over time, and its
+/// maxima over the threshold are peaks. From the loudest down, a peak is a detection unless a
+/// louder one explains it: what that leaks into its cell by the pulse's ambiguity function and the
+/// beams' pattern, times a margin. Time and Doppler factor are then interpolated, and the direction
+/// is the one that fits the phones' own filter outputs best. A sweep whose bank lies within one
+/// Doppler cell and whose loudest filter is the bank's first or last has no Doppler factor: told is
+/// the bank's middle, with the bank's own deviation, and the time there. Deterministic for any
+/// number of threads. Source: docs/theory/processing.md
+/// \param phones       [channels] relative to the point that delays refer to [m]
+/// \param sound_speed  at the array [m/s]
+/// \param probes       cells whose thresholds are told
+/// \param proceed      asked now and then; false stops (Interrupted is thrown)
+[[nodiscard]] DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones,
+                                    double sound_speed, const Replica& replica,
+                                    std::span<const double> dopplers,
+                                    const DetectorSettings& settings,
+                                    std::span<const Probe> probes = {},
+                                    const std::function<bool()>& proceed = {});
+
+}  // namespace asdic

@@ -1,0 +1,114 @@
+#include "processing/echo_pointing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sonar/signal/fft.h"
+
+namespace asdic {
+namespace {}  // namespace
+
+EchoPointing::EchoPointing(const Baseband& baseband, std::span<const Vec3> phones,
+                           double sound_speed, const Replica& replica, const ArrayShape& shape,
+                           std::span<const double> weights, double spacing, double lowest_doppler)
+    : baseband_(baseband),
+      phones_(phones),
+      sound_speed_(sound_speed),
+      replica_(replica),
+      shape_(shape),
+      weights_(weights),
+      spacing_(spacing),
+      wavelength_(sound_speed / replica.centre_frequency()),
+      cut_(fast_fft_length(static_cast<std::size_t>(
+          std::ceil(1.5 * replica.duration() / lowest_doppler * baseband.sample_rate) + 64))) {}
+
+std::vector<std::complex<double>> EchoPointing::snapshot(double time, double doppler,
+                                                         const Vec3& look) const {
+  const double rate = baseband_.sample_rate, spacing = rate / static_cast<double>(cut_);
+  // The cut begins an eighth of its length before the echo, as far as the record goes.
+  const double before = 0.125 * static_cast<double>(cut_);
+  const auto wanted = std::lround((time - baseband_.start) * rate - before);
+  const auto first_sample = static_cast<std::ptrdiff_t>(wanted);
+  const auto half = static_cast<std::ptrdiff_t>(cut_ / 2);
+  const double room = 0.25 * replica_.bandwidth();
+  const auto bin = [&](double f) {
+    return static_cast<std::ptrdiff_t>(std::floor((f * doppler - baseband_.carrier) / spacing));
+  };
+  const std::ptrdiff_t first = std::max(bin(replica_.lowest_frequency() - room), 1 - half);
+  const std::ptrdiff_t last = std::min(bin(replica_.highest_frequency() + room), half - 1);
+  std::vector<std::complex<double>> weights;
+  for (std::ptrdiff_t k = first; k <= last; ++k)
+    weights.push_back(std::conj(
+        replica_.spectrum(baseband_.carrier + static_cast<double>(k) * spacing, doppler)));
+  const double scale = doppler / (replica_.energy() * static_cast<double>(cut_));
+  const ComplexFft<float> fft(cut_);
+  FftBuffer<std::complex<float>> work(cut_);
+  std::vector<std::complex<double>> sums;
+  for (std::size_t n = 0; n < phones_.size(); ++n) {
+    const auto row = baseband_.channel(n);
+    for (std::size_t i = 0; i < cut_; ++i) {
+      const std::ptrdiff_t at = first_sample + static_cast<std::ptrdiff_t>(i);
+      work[i] = at >= 0 && at < std::ssize(row) ? row[static_cast<std::size_t>(at)]
+                                                : std::complex<float>(0.0F);
+    }
+    fft.forward(work.data());
+    // From bin to bin the phase of the delay turns by a constant step.
+    const double lag = time - baseband_.start - static_cast<double>(first_sample) / rate -
+                       look.dot(phones_[n]) / sound_speed_;  // [s]
+    const double turns = spacing * lag;
+    const std::complex<double> step = std::polar(1.0, 2.0 * pi * turns);
+    std::complex<double> turn =
+        std::polar(1.0, 2.0 * pi * std::remainder(turns * static_cast<double>(first), 1.0));
+    std::complex<double> sum = 0.0;
+    for (std::ptrdiff_t k = first; k <= last; ++k) {
+      const auto at = static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(cut_) : k);
+      sum += weights[static_cast<std::size_t>(k - first)] * std::complex<double>(work[at]) * turn;
+      turn *= step;
+    }
+    sums.push_back(sum * scale);
+  }
+  return sums;
+}
+
+double EchoPointing::power_at(const Detection& d) const {
+  const auto x = snapshot(d.time, d.doppler, d.look);
+  std::complex<double> sum = 0.0;
+  for (std::size_t n = 0; n < phones_.size(); ++n)
+    sum += weights_[n] * x[n] *
+           std::polar(1.0, -2.0 * pi * baseband_.carrier * d.look.dot(phones_[n]) / sound_speed_);
+  return std::norm(sum);
+}
+
+void EchoPointing::point(Detection& d, const Vec3& beam) const {
+  d.cosine = std::nan("");
+  d.bearing = std::nan("");
+  d.elevation = std::nan("");
+  d.look = beam;
+  if (shape_.kind == ArrayKind::point) return;
+  auto x = snapshot(d.time, d.doppler, beam);
+  // The envelopes are aligned by the beam's delays; the carrier's phases are still the wave's.
+  // What is left of the delays' differences turns at the pulse's frequency.
+  const double k = 2.0 * pi / wavelength_ * d.doppler,
+               carrier = 2.0 * pi * baseband_.carrier / sound_speed_;
+  for (std::size_t n = 0; n < phones_.size(); ++n)
+    x[n] *= std::polar(1.0, (k - carrier) * beam.dot(phones_[n] - shape_.centre));
+  d.look = refine_direction(x, phones_, shape_, weights_, beam, spacing_, k);
+  const double elevation = std::asin(std::clamp(-d.look.z(), -1.0, 1.0));
+  const double bearing = std::atan2(d.look.x(), d.look.y());
+  if (shape_.kind == ArrayKind::line) {
+    d.cosine = d.look.dot(shape_.axis);
+    if (shape_.upright())
+      d.elevation = std::asin(std::clamp(shape_.axis.z() < 0.0 ? d.cosine : -d.cosine, -1.0, 1.0));
+    else
+      d.bearing = bearing;
+    return;
+  }
+  d.bearing = bearing;
+  if (shape_.bent)
+    d.cosine = d.look.dot(shape_.axis);
+  else
+    d.elevation = elevation;
+}
+
+}  // namespace asdic

@@ -1,0 +1,190 @@
+#include "processing/matched_filter.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "raytrace/parallel.h"
+#include "sonar/signal/complex_product.h"
+
+namespace asdic {
+namespace {
+
+constexpr double oversampling = 2.0;  // of the output: half a sample off a peak loses 0.9 dB
+constexpr std::size_t most_filters = 20000;
+
+/// S(f)·S*(f/η)/η over the pulse's band, at bins fine enough for delays of two durations.
+struct CrossSpectrum {
+  double first = 0.0, spacing = 0.0;  // [Hz]
+  std::vector<std::complex<double>> bins;
+
+  CrossSpectrum(const Replica& replica, double doppler) {
+    spacing = 0.25 / replica.duration();
+    const double margin = replica.highest_frequency() * std::abs(doppler - 1.0);
+    first = replica.lowest_frequency() - 0.5 * replica.bandwidth() - margin;
+    const double last = replica.highest_frequency() + 0.5 * replica.bandwidth() + margin;
+    const auto n = static_cast<std::size_t>(std::ceil((last - first) / spacing)) + 1;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double f = first + static_cast<double>(k) * spacing;
+      bins.push_back(replica.spectrum(f, doppler) * std::conj(replica.spectrum(f)));
+    }
+  }
+  /// ∫ … e^{i2πfτ} df, without a common phase
+  [[nodiscard]] std::complex<double> at(double delay) const {
+    std::complex<double> sum = 0.0, turn = 1.0;
+    const std::complex<double> step = std::polar(1.0, 2.0 * pi * spacing * delay);
+    for (const auto& bin : bins) {
+      sum += bin * turn;
+      turn *= step;
+    }
+    return sum * spacing;
+  }
+};
+
+}  // namespace
+
+DopplerAnswer doppler_answer(const Replica& replica, double doppler) {
+  const CrossSpectrum cross(replica, doppler);
+  const std::size_t n = fast_fft_length(4 * cross.bins.size());
+  FftBuffer<std::complex<double>> work(n);
+  std::copy(cross.bins.begin(), cross.bins.end(), work.data());
+  ComplexFft<double>(n).inverse(work.data());
+  std::size_t top = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (std::norm(work[i]) > std::norm(work[top])) top = i;
+  const double before = std::norm(work[(top + n - 1) % n]), here = std::norm(work[top]),
+               after = std::norm(work[(top + 1) % n]);
+  const double bend = before - 2.0 * here + after;
+  const double offset = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
+  const double most = here - 0.25 * (before - after) * offset;
+  double place = static_cast<double>(top) + offset;
+  if (place > 0.5 * static_cast<double>(n)) place -= static_cast<double>(n);
+  // √(energies) of both: an echo of factor η has the energy E/η
+  return {.response = std::sqrt(most * doppler) * cross.spacing / replica.energy(),
+          .delay = place / (static_cast<double>(n) * cross.spacing)};
+}
+
+namespace {
+
+/// The offset of η from 1 at which the response has fallen to `least`, or `most` if it has not.
+double offset_of_response(const Replica& replica, double least, double most) {
+  double inside = 0.0, outside = 0.02 / (replica.centre_frequency() * replica.duration());
+  while (outside < most && doppler_answer(replica, 1.0 + outside).response > least) {
+    inside = outside;
+    outside *= 2.0;
+  }
+  outside = std::min(outside, most);
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (doppler_answer(replica, 1.0 + middle).response > least ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+}  // namespace
+
+double doppler_cell(const Replica& replica) {
+  return offset_of_response(replica, std::numbers::sqrt2 / 2.0, 0.1);
+}
+
+std::vector<double> ambiguity(const Replica& replica, std::span<const double> delays,
+                              std::span<const double> dopplers) {
+  std::vector<double> surface;
+  surface.reserve(delays.size() * dopplers.size());
+  for (const double doppler : dopplers) {
+    const CrossSpectrum cross(replica, doppler);
+    for (const double delay : delays)
+      surface.push_back(std::norm(cross.at(-delay)) * doppler /
+                        (replica.energy() * replica.energy()));
+  }
+  return surface;
+}
+
+std::vector<double> doppler_bank(const Replica& replica, double span, double loss_db) {
+  if (!(span > 0.0)) return {1.0};
+  const double inside = offset_of_response(replica, amplitude_from_db(-loss_db), span);
+  const double half = std::ceil(span / (2.0 * inside));
+  if (2.0 * half + 1.0 > static_cast<double>(most_filters))
+    throw InputError(
+        {.where = "max_speed",
+         .got = "a span that asks for " + std::to_string(2.0 * half + 1.0) + " Doppler filters",
+         .expected = "at most " + std::to_string(most_filters)});
+  const int side = static_cast<int>(half);
+  std::vector<double> factors;
+  for (int k = -side; k <= side; ++k) factors.push_back(1.0 + span / side * k);
+  return factors;
+}
+
+MatchedFilterBank::MatchedFilterBank(const Replica& replica, std::span<const double> dopplers,
+                                     const Baseband& like)
+    : dopplers_(dopplers.begin(), dopplers.end()), row_(like.samples), start_(like.start) {
+  const double spacing = like.sample_rate / static_cast<double>(like.samples);
+  // The pulse's band; what lies outside it is 40 dB weaker, but an unwindowed tone keeps a
+  // hundredth of its energy there: as much again on either side.
+  const double widest = *std::max_element(dopplers_.begin(), dopplers_.end());
+  const double room = 0.25 * replica.bandwidth();
+  bins_ =
+      static_cast<std::size_t>(std::ceil((replica.bandwidth() + 2.0 * room) * widest / spacing));
+  bins_ = std::min(bins_ + 1, like.samples);
+  length_ = fast_fft_length(
+      static_cast<std::size_t>(std::ceil(oversampling * replica.bandwidth() * widest / spacing)));
+  length_ = std::max(length_, fast_fft_length(bins_));
+  rate_ = static_cast<double>(length_) * spacing;
+  const double recorded = static_cast<double>(like.recorded) / like.sample_rate * rate_;
+  samples_ = std::min(length_, static_cast<std::size_t>(std::ceil(recorded)));
+
+  const auto half_row = static_cast<std::ptrdiff_t>(like.samples / 2);
+  for (const double doppler : dopplers_) {
+    const double low = (replica.lowest_frequency() - room) * doppler - like.carrier;
+    first_.push_back(static_cast<std::ptrdiff_t>(std::floor(low / spacing)));
+    const double centre = replica.centre_frequency() * doppler - like.carrier;
+    if (std::abs(centre) > 0.5 * like.sample_rate)
+      throw InputError({.where = "dopplers",
+                        .got = "a factor of " + std::to_string(doppler),
+                        .expected = "one whose echo lies within the band"});
+  }
+  weights_.resize(dopplers_.size() * bins_);
+  in_parallel(dopplers_.size(), [&](std::size_t f) {
+    const double energy = replica.energy() / dopplers_[f];
+    const double scale = 1.0 / (static_cast<double>(like.samples) * energy);
+    for (std::size_t k = 0; k < bins_; ++k) {
+      const std::ptrdiff_t bin = first_[f] + static_cast<std::ptrdiff_t>(k);
+      if (std::abs(bin) < half_row)  // nothing outside the row's band
+        weights_[f * bins_ + k] = std::complex<float>(
+            scale * std::conj(replica.spectrum(like.carrier + static_cast<double>(bin) * spacing,
+                                               dopplers_[f])));
+    }
+  });
+}
+
+void MatchedFilterBank::transform(std::span<const std::complex<float>> row,
+                                  std::complex<float>* out) const {
+  assert(row.size() == row_);
+  std::copy(row.begin(), row.end(), out);
+  ComplexFft<float>(row_).forward(out);
+}
+
+void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectrum,
+                               std::complex<float>* out) const {
+  // Bins below the carrier lie at the end of the row; what would lie beyond either has no weight.
+  const auto n = static_cast<std::ptrdiff_t>(row_), count = static_cast<std::ptrdiff_t>(bins_);
+  const std::complex<float>* weight = weights_.data() + k * bins_;
+  const auto multiply = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t shift) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      out[i] = finite_product(spectrum[first_[k] + i + shift], weight[i]);
+  };
+  const auto within = [&](std::ptrdiff_t i) { return std::clamp<std::ptrdiff_t>(i, 0, count); };
+  const std::ptrdiff_t lowest = within(-n - first_[k]), zero = within(-first_[k]),
+                       end = within(n - first_[k]);
+  std::fill(out, out + lowest, 0.0F);
+  multiply(lowest, zero, n);
+  multiply(zero, end, 0);
+  std::fill(out + end, out + count, 0.0F);
+  std::fill(out + bins_, out + length_, 0.0F);
+  ComplexFft<float>(length_).inverse(out);
+}
+
+}  // namespace asdic

@@ -1,0 +1,68 @@
+#pragma once
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "processing/replica.h"
+#include "sonar/signal/fft.h"
+#include "sonar/synthesis/synthesis.h"
+
+namespace asdic {
+
+/// What the filter matched to η = 1 makes of an echo of another Doppler factor.
+struct DopplerAnswer {
+  double response = 1.0;  ///< |χ|, where most is left of it; 1 at η = 1
+  double delay = 0.0;     ///< and by how much that is late [s]
+};
+[[nodiscard]] DopplerAnswer doppler_answer(const Replica& replica, double doppler);
+
+/// Half the span of factors in which a filter answers within 3 dB.
+[[nodiscard]] double doppler_cell(const Replica& replica);
+
+/// Ambiguity surface |χ(τ, η)|² of a pulse: the answer of the filter matched to η = 1 to an echo of
+/// factor η and delay τ. \return [dopplers × delays], 1 at (0, 1)
+[[nodiscard]] std::vector<double> ambiguity(const Replica& replica, std::span<const double> delays,
+                                            std::span<const double> dopplers);
+
+/// Factors 1 − span … 1 + span, evenly spaced and 1 among them, so close that an echo between two
+/// of them loses at most `loss_db`: every half cycle over the pulse for a tone (0.5/T [Hz]), few
+/// for a wide sweep. \throws InputError ("max_speed") if more than 20 000 were needed
+[[nodiscard]] std::vector<double> doppler_bank(const Replica& replica, double span,
+                                               double loss_db = 0.25);
+
+/// Filters matched to an echo at each of many Doppler factors.
+///
+/// y(τ) = ∫ p₊(t)·s₊*(η(t − τ)) dt / ∫|s₊(ηt)|²dt: an echo A·s₊(η(t − τ₀)) gives |y| = |A| at its
+/// leading edge τ₀; real noise of one-sided density N₀ gives E|y|² = 2N₀/E, E = ∫|s₊|²dt/η. Only
+/// the bins where the pulse has energy are transformed back, so a tone's output is as slow as it
+/// may be. Built once per replica and baseband; const and shared by threads. Source:
+/// docs/theory/processing.md, eq. (3)
+class MatchedFilterBank {
+ public:
+  /// \param like  rows of the same rate, carrier, start and length are filtered
+  /// \throws InputError ("dopplers") if a filter lies outside the band
+  MatchedFilterBank(const Replica& replica, std::span<const double> dopplers, const Baseband& like);
+
+  [[nodiscard]] std::size_t filters() const noexcept { return dopplers_.size(); }
+  [[nodiscard]] double doppler(std::size_t k) const noexcept { return dopplers_[k]; }
+  [[nodiscard]] double sample_rate() const noexcept { return rate_; }  ///< of the output [Hz]
+  /// Samples of the output that lie within the record; the first at its start.
+  [[nodiscard]] std::size_t samples() const noexcept { return samples_; }
+  [[nodiscard]] double time(double sample) const noexcept { return start_ + sample / rate_; }
+
+  /// The spectrum of a row, as filter() wants it. \param row [like.samples] \param out the same
+  void transform(std::span<const std::complex<float>> row, std::complex<float>* out) const;
+  /// y of filter k, without the phase of the carrier. \param work, out  work() long, an FftBuffer;
+  /// the first samples() of it are meant
+  void filter(std::size_t k, const std::complex<float>* spectrum, std::complex<float>* out) const;
+  [[nodiscard]] std::size_t work() const noexcept { return length_; }
+
+ private:
+  std::vector<double> dopplers_;
+  std::vector<std::ptrdiff_t> first_;         // [filters] bin, counted from the carrier
+  std::vector<std::complex<float>> weights_;  // [filters × bins_] of S*(f/η)/η/E
+  std::size_t bins_ = 0, length_ = 0, row_ = 0, samples_ = 0;
+  double rate_ = 0.0, start_ = 0.0;
+};
+
+}  // namespace asdic

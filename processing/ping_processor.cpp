@@ -1,0 +1,289 @@
+#include "processing/ping_processor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "processing/listening_band.h"
+#include "raytrace/parallel.h"
+#include "sonar/scenario/carried.h"
+#include "sonar/scenario/geometry.h"
+#include "sonar/scenario/transmission.h"
+
+namespace asdic {
+namespace {
+
+/// The pulse's band with room for its flanks, stretched by all Doppler factors.
+ListeningBand listening_band(const Replica& replica, std::span<const double> dopplers,
+                             double highest_allowed) {
+  const double room = 0.25 * replica.bandwidth();
+  const double low = std::max((replica.lowest_frequency() - room) * dopplers.front(), 0.0);
+  const double high =
+      std::min((replica.highest_frequency() + room) * dopplers.back(), highest_allowed);
+  return {.centre = 0.5 * (low + high), .width = high - low};
+}
+
+/// The factors whose echoes lie within a recorded baseband; always one.
+std::span<const double> heard_factors(const Replica& replica, std::span<const double> all,
+                                      double carrier, double rate) {
+  const auto heard = [&](double factor) {
+    return std::abs(replica.centre_frequency() * factor - carrier) < 0.45 * rate;
+  };
+  const auto first = std::find_if(all.begin(), all.end(), heard);
+  const auto last = std::find_if_not(first, all.end(), heard);
+  if (first == all.end())
+    throw InputError(
+        {.where = "replica",
+         .got = "a centre frequency of " + std::to_string(replica.centre_frequency()) + " Hz",
+         .expected = "one within the recorded baseband"});
+  return {first, last};
+}
+
+/// Of the way from the first phone to the last [rad].
+double chord_bearing(std::span<const Vec3> phones) {
+  const Vec3 chord = phones.back() - phones.front();
+  return std::atan2(chord.x(), chord.y());
+}
+
+/// Turns what was heard, and the array that heard it, clockwise by an angle [rad].
+void turn(Detection& d, ArrayShape& shape, double angle) {
+  const auto turned = [&](const Vec3& v) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return Vec3(c * v.x() + s * v.y(), c * v.y() - s * v.x(), v.z());
+  };
+  d.look = turned(d.look);
+  d.bearing = std::remainder(d.bearing + angle, 2.0 * pi);
+  shape.axis = turned(shape.axis);
+  shape.across = turned(shape.across);
+  shape.normal = turned(shape.normal);
+}
+
+}  // namespace
+
+PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
+                             ProcessingSettings settings)
+    : scenario_(std::move(scenario)),
+      replicas_(std::move(replicas)),
+      settings_(settings),
+      paths_(scenario_.environment, scenario_.transect) {
+  if (replicas_.empty())
+    throw InputError({.where = "replica", .got = "none", .expected = "at least one"});
+  const auto require = [](bool good, const char* where, double got, const char* expected) {
+    if (!good) throw InputError({.where = where, .got = std::to_string(got), .expected = expected});
+  };
+  require(settings_.max_speed >= 0.0 && settings_.max_speed < 700.0, "max_speed",
+          settings_.max_speed, "a speed from 0 to 700 m/s");
+  require(settings_.detector.lowest_elevation <= settings_.detector.highest_elevation, "elevations",
+          degrees(settings_.detector.lowest_elevation), "no more than the highest");
+  require(settings_.tracker.start_hits >= 1 &&
+              settings_.tracker.start_hits <= settings_.tracker.start_pings,
+          "track_start", settings_.tracker.start_hits, "hits from 1 to the number of pings");
+  if (settings_.target_depth) {
+    // Somewhere at the platforms or targets there must be water that deep.
+    double floor = 0.0;
+    const auto look_at = [&](const Track& track) {
+      floor = std::max(floor, paths_.bottom_depth(track.at(0.0).position));
+    };
+    for (const Platform& platform : scenario_.platforms) look_at(platform.track);
+    for (const Target& target : scenario_.targets) look_at(target.track);
+    if (!(*settings_.target_depth < floor))
+      throw InputError(
+          {.where = "target_depth",
+           .got = std::to_string(*settings_.target_depth) + " m",
+           .expected = "a depth above the sea floor at " + std::to_string(floor) + " m"});
+  }
+  for (const Replica& replica : replicas_) {
+    // The slowest sound of any ocean, so that no echo falls outside the bank.
+    banks_.push_back(
+        doppler_bank(replica, 2.0 * settings_.max_speed / 1400.0, settings_.bank_loss_db));
+    localisers_.push_back(std::make_unique<Localiser>(
+        paths_, LocaliserSettings{.frequency = replica.centre_frequency(),
+                                  .propagation = scenario_.propagation,
+                                  .depth = settings_.target_depth,
+                                  .speed = settings_.range_speed}));
+  }
+}
+
+ProcessedArray PingProcessor::process(const ArrayRecording& recording,
+                                      const std::function<bool()>& proceed,
+                                      std::span<const TrueEcho> echoes) const {
+  const Replica& pulse = replica(recording.transmitter);
+  std::span<const double> factors = dopplers(recording.transmitter);
+  if (recording.carrier)
+    factors = heard_factors(pulse, factors, *recording.carrier, recording.sample_rate);
+  const std::size_t channels = recording.phones.size();
+  const double top = recording.carrier ? *recording.carrier + 0.5 * recording.sample_rate
+                                       : 0.5 * recording.sample_rate;
+  ListeningBand band = listening_band(pulse, factors, top);
+  if (recording.carrier) {
+    const double bottom = *recording.carrier - 0.5 * recording.sample_rate;
+    const double low = std::max(band.centre - 0.5 * band.width, bottom);
+    const double high = band.centre + 0.5 * band.width;
+    band = {.centre = 0.5 * (low + high), .width = high - low};
+  }
+  const double silence = pulse.duration() / factors.front();
+  const Baseband baseband = recording.carrier
+                                ? to_baseband(recording.envelope, channels, recording.sample_rate,
+                                              *recording.carrier, recording.start, band, silence)
+                                : to_baseband(recording.pressure, channels, recording.sample_rate,
+                                              recording.start, band, silence);
+
+  ProcessedArray done{.ping = recording.ping, .array = recording.array};
+  done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
+  const Carried reference = reference_of(scenario_, recording.array);
+  done.places.array = reference.track.since(recording.ping_time, reference.offset);
+  const Vec3 at_ping = done.places.array.at(0.0).position;
+  done.sound_speed = paths_.speed_at(at_ping);
+  std::vector<Vec3> phones;
+  for (const Vec3& x : recording.phones) phones.push_back(x - at_ping);
+  if (deforms(scenario_, recording.array)) {  // its shape in the middle of the record
+    const auto values = recording.carrier ? recording.envelope.size() : recording.pressure.size();
+    const double samples = static_cast<double>(values / std::max<std::size_t>(channels, 1));
+    const double middle = recording.start + 0.5 * samples / recording.sample_rate;
+    phones = phones_at(scenario_, recording.array, recording.ping, recording.ping_time + middle);
+  }
+  const double heading = chord_bearing(phones);
+  // How far the line has turned from the shape that its beams are formed for [rad].
+  const auto turned_by = [&](double time) {
+    if (!deforms(scenario_, recording.array)) return 0.0;
+    return chord_bearing(phones_at(scenario_, recording.array, recording.ping,
+                                   recording.ping_time + time + 0.5 * pulse.duration())) -
+           heading;
+  };
+  const double wavelength = done.sound_speed / pulse.centre_frequency();
+  done.shape = shape_of(phones, wavelength);
+  done.places.shape = done.shape;
+  done.elevation_sigma = 0.25 * wavelength / std::max(done.shape.height, 0.25 * wavelength);
+
+  DetectorSettings detector = settings_.detector;
+  detector.first_time = std::max(detector.first_time, recording.start);
+  std::vector<Probe> probes;
+  for (const TrueEcho& echo : echoes)
+    probes.push_back({.time = echo.time,
+                      .doppler = std::isnan(echo.doppler) ? 1.0 : echo.doppler,
+                      .look = -echo.travel});
+  done.result =
+      detect(baseband, phones, done.sound_speed, pulse, factors, detector, probes, proceed);
+
+  // The transmitter as it was for that ping.
+  const std::vector<Transmission> sent = transmissions(scenario_);
+  const auto ping = static_cast<std::size_t>(recording.ping - 1);
+  const Transmitter projector =
+      ping < sent.size() ? projector_of(scenario_, sent[ping])
+                         : scenario_.transmitters[static_cast<std::size_t>(recording.transmitter)];
+  const double c = paths_.speed_at(done.places.source.position);
+  const BeamPattern pattern(projector, c / pulse.centre_frequency(), c,
+                            platform_heading(scenario_, projector.platform, recording.ping_time));
+  SonarPlaces places = done.places;
+  places.pattern = &pattern;
+  const Localiser& localiser =
+      *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(recording.transmitter) : 0];
+  in_parallel(done.result.detections.size(), [&](std::size_t i) {
+    Detection& d = done.result.detections[i];
+    d.ping = recording.ping;
+    d.array = recording.array;
+    SonarPlaces then = places;
+    if (const double angle = turned_by(d.time); angle != 0.0) turn(d, then.shape, angle);
+    d.locations = localiser.locate(d, then, done.elevation_sigma);
+    if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
+  });
+  return done;
+}
+
+std::string PingProcessor::lack() const {
+  if (std::none_of(localisers_.begin(), localisers_.end(),
+                   [](const auto& localiser) { return localiser->lacks_bounces(); }))
+    return "";
+  return "propagation: places are found by paths of up to " +
+         std::to_string(DelayTables::most_bounces) +
+         " bounces off either boundary, and more hold sound here: an echo along one of those is "
+         "placed as if it came along another";
+}
+
+MapRanges PingProcessor::ranges_at(const ProcessedArray& processed, int sender,
+                                   std::span<const double> times) const {
+  const Localiser& localiser =
+      *localisers_[localisers_.size() > 1 ? static_cast<std::size_t>(sender) : 0];
+  MapRanges ranges;
+  if (times.empty()) return ranges;
+  SonarPlaces places = processed.places;
+  const double apart = separation(places.source.position, places.array.at(0.0).position).range;
+  if (apart <= 0.1 * farthest_apart * times.back()) {
+    places.shape.kind = ArrayKind::point;  // no direction is needed
+    ranges.of_time.assign(times.size(), std::numeric_limits<double>::quiet_NaN());
+    in_parallel(times.size(), [&](std::size_t i) {
+      const auto found = localiser.locate({.time = times[i]}, places, 1.0);
+      if (!found.empty()) ranges.of_time[i] = found[0].range;
+    });
+    return ranges;
+  }
+  if (places.shape.kind == ArrayKind::point || places.shape.upright()) return ranges;
+  const std::vector<Vec3>& looks = processed.result.grid.looks;
+  const bool two_sides = places.shape.kind == ArrayKind::line;
+  ranges.of_beam.resize(looks.size() * times.size());
+  if (two_sides) ranges.of_mirror.resize(looks.size() * times.size());
+  in_parallel(looks.size(), [&](std::size_t b) {
+    const auto row = [&](const Vec3& look, std::vector<double>& into) {
+      const std::vector<double> found =
+          localiser.ranges(std::atan2(look.x(), look.y()), times, places);
+      std::copy(found.begin(), found.end(),
+                into.begin() + static_cast<std::ptrdiff_t>(b * times.size()));
+    };
+    row(looks[b], ranges.of_beam);
+    if (two_sides) row(mirrored(places.shape, looks[b]), ranges.of_mirror);
+  });
+  return ranges;
+}
+
+Resolution PingProcessor::resolution(const ProcessedArray& processed) const {
+  const double wavelength = processed.sound_speed / replica(0).centre_frequency();
+  return {.time = processed.result.time_cell,
+          .doppler = processed.result.doppler_cell,
+          .delay_per_doppler = processed.result.delay_per_doppler,
+          .direction =
+              processed.shape.kind == ArrayKind::point ? 2.0 : wavelength / processed.shape.length};
+}
+
+std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, double ping_time,
+                                             int side) const {
+  std::vector<Contact> result;
+  const double wavelength = processed.sound_speed / replica(0).centre_frequency();
+  for (std::size_t i = 0; i < processed.result.detections.size(); ++i) {
+    const Detection& d = processed.result.detections[i];
+    if (d.locations.size() <= static_cast<std::size_t>(side)) continue;
+    const Location& place = d.locations[static_cast<std::size_t>(side)];
+    const double snr = power_from_db(d.snr_db);
+    Contact c{.detection = static_cast<int>(i), .time = ping_time + place.struck};
+    c.range = place.range;
+    c.range_rate = place.range_rate;
+    c.range_sigma = sigma_of(processed.result.time_cell, snr) * place.range_slope;
+    c.range_rate_sigma = d.doppler_sigma * place.rate_slope;
+    // Along the ridge the delay is late by D for an error of η, the range rate low by rate_slope.
+    c.range_per_rate = -processed.result.delay_per_doppler * place.range_slope / place.rate_slope;
+    if (std::isnan(place.bearing)) {  // no bearing: a track along one line, seen from the platform
+      c.bearing_known = false;
+      c.bearing = 0.0;
+      c.bearing_sigma = 1e-3;
+    } else {
+      c.bearing = place.bearing;
+      // A line's cell widens as 1/sin of the angle with its axis, to its square root at endfire.
+      double across = 1.0;
+      if (processed.shape.kind == ArrayKind::line || processed.shape.bent)
+        across = std::max(std::sqrt(std::max(1.0 - d.cosine * d.cosine, 0.0)),
+                          std::sqrt(wavelength / processed.shape.length));
+      c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
+      c.range_per_bearing = place.bearing_slope;
+      const Kinematics heard = processed.places.array.at(d.time);
+      c.array = heard.position.head<2>();
+      c.array_velocity = heard.velocity.head<2>();
+      c.source = processed.places.source.position.head<2>();
+      c.source_velocity = processed.places.source.velocity.head<2>();
+    }
+    result.push_back(c);
+  }
+  return result;
+}
+
+}  // namespace asdic
