@@ -12,7 +12,7 @@
 #include "io/file_check.h"
 #include "io/ping_file.h"
 #include "io/result_file.h"
-#include "study/study_file.h"
+#include "study/runs/study_file.h"
 
 namespace asdic::app {
 namespace {

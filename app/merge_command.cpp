@@ -8,8 +8,8 @@
 #include "io/output/own_files.h"
 #include "io/scenario/embedded.h"
 #include "io/text/csv_table.h"
-#include "study/merge.h"
-#include "study/study.h"
+#include "study/plan/study.h"
+#include "study/runs/merge.h"
 
 namespace asdic::app {
 namespace {

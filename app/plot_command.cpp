@@ -10,7 +10,7 @@
 #include "io/hdf5/readable.h"
 #include "io/ping_file.h"
 #include "io/result_file.h"
-#include "study/study_file.h"
+#include "study/runs/study_file.h"
 
 namespace asdic::app {
 namespace {

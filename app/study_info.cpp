@@ -8,7 +8,7 @@
 
 #include "app/console.h"
 #include "io/result_file.h"
-#include "study/study_file.h"
+#include "study/runs/study_file.h"
 
 namespace asdic::app {
 namespace {

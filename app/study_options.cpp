@@ -12,7 +12,7 @@
 #include "app/provenance.h"
 #include "app/study_progress.h"
 #include "core/error.h"
-#include "study/shard.h"
+#include "study/sampling/shard.h"
 
 namespace asdic::app {
 namespace {

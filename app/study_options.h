@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/command.h"
-#include "study/run_study.h"
-#include "study/study.h"
+#include "study/plan/study.h"
+#include "study/runs/run_study.h"
 
 // What `asdic study` and `asdic-mpi study` have in common.
 namespace asdic::app {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/progress_painter.h"
-#include "study/run_study.h"
+#include "study/runs/run_study.h"
 
 namespace asdic::app {
 

@@ -6,8 +6,8 @@ namespace asdic {
 
 /// Calls body(i) for every i of 0 … count − 1, spread over the threads.
 /// \throws Interrupted when this belongs to a task group that was cancelled, such as a realisation
-/// in hand when a study is stopped (study/run.h): the loop ended early, and what it made is half
-/// made
+/// in hand when a study is stopped (study/runs/run.h): the loop ended early, and what it made is
+/// half made
 void in_parallel_called(std::size_t count, const std::function<void(std::size_t i)>& body);
 
 /// The same for any body, which is not copied.

@@ -12,6 +12,7 @@ import sys
 
 ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"]
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
+    "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
     "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent

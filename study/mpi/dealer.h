@@ -7,7 +7,7 @@
 #include "study/mpi/messages.h"
 #include "study/mpi/session.h"
 #include "study/mpi/worker.h"
-#include "study/run_study.h"
+#include "study/runs/run_study.h"
 
 namespace asdic::study::mpi {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 #include "study/mpi/session.h"
-#include "study/run_study.h"
+#include "study/runs/run_study.h"
 
 // Studies over MPI: the only place that knows it. docs/formats/study-results.md, "How a run goes"
 namespace asdic::study::mpi {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "study/index_set.h"
-#include "study/realisation.h"
+#include "study/measures/realisation.h"
+#include "study/sampling/index_set.h"
 
 // What ranks say to one another.
 namespace asdic::study::mpi {

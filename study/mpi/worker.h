@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include "study/journal.h"
-#include "study/run_study.h"
+#include "study/journal/journal.h"
+#include "study/runs/run_study.h"
 
 namespace asdic::study::mpi {
 

@@ -19,7 +19,7 @@
 #include "io/result_file.h"
 #include "io/scenario_reader.h"
 #include "sonar/ping/ping.h"
-#include "study/study_file.h"
+#include "study/runs/study_file.h"
 #include "support/synthetic_study.h"
 
 // HDF5 and netCDF files with a few bytes changed:  fuzz_damaged_files hdf5|netcdf [RUNS [SEED]]

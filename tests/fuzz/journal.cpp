@@ -1,4 +1,4 @@
-#include "study/journal.h"
+#include "study/journal/journal.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
 

@@ -1,4 +1,4 @@
-#include "study/study.h"
+#include "study/plan/study.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
 

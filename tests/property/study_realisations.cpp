@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "study/realisation.h"
+#include "study/measures/realisation.h"
 
 namespace asdic::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "study/merge.h"
+#include "study/runs/merge.h"
 #include "support/same_study_file.h"
 #include "support/synthetic_study.h"
 

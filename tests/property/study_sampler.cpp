@@ -1,4 +1,4 @@
-#include "study/sampler.h"
+#include "study/measures/sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/random.h"
-#include "study/run_study.h"
+#include "study/runs/run_study.h"
 #include "support/program.h"
 
 namespace asdic::support {

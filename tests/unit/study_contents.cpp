@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "io/hdf5_file.h"
-#include "study/merge.h"
-#include "study/run_study.h"
+#include "study/runs/merge.h"
+#include "study/runs/run_study.h"
 #include "support/plain_sea.h"
 #include "support/synthetic_study.h"
 

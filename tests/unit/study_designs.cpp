@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "study/design.h"
-#include "study/sobol.h"
+#include "study/sampling/design.h"
+#include "study/sampling/sobol.h"
 #include "support/kolmogorov.h"
 
 namespace asdic::study {

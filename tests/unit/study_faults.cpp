@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "study/realisation.h"
+#include "study/measures/realisation.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

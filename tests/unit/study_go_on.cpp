@@ -3,8 +3,8 @@
 #include <atomic>
 
 #include "core/error.h"
-#include "study/run_study.h"
-#include "study/study_file.h"
+#include "study/runs/run_study.h"
+#include "study/runs/study_file.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

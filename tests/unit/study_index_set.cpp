@@ -2,9 +2,9 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "study/index_set.h"
-#include "study/shard.h"
-#include "study/until.h"
+#include "study/sampling/index_set.h"
+#include "study/sampling/shard.h"
+#include "study/summary/until.h"
 
 namespace asdic::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "study/journal.h"
+#include "study/journal/journal.h"
 #include "support/synthetic_study.h"
 
 namespace asdic::study {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/units.h"
-#include "study/design.h"
-#include "study/law.h"
+#include "study/sampling/design.h"
+#include "study/sampling/law.h"
 #include "support/kolmogorov.h"
 
 namespace asdic::study {

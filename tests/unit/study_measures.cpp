@@ -1,4 +1,4 @@
-#include "study/measures.h"
+#include "study/measures/measures.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 #include "core/units.h"
 #include "io/scenario_reader.h"
-#include "study/echo_filter.h"
-#include "study/summary.h"
+#include "study/measures/echo_filter.h"
+#include "study/summary/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

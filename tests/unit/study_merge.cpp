@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "io/output/own_files.h"
-#include "study/merge.h"
+#include "study/runs/merge.h"
 #include "support/left_of.h"
 #include "support/synthetic_study.h"
 

@@ -1,9 +1,9 @@
-#include "study/realisation.h"
+#include "study/measures/realisation.h"
 
 #include <gtest/gtest.h>
 
 #include "core/units.h"
-#include "study/summary.h"
+#include "study/summary/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

@@ -1,4 +1,4 @@
-#include "study/row_memory.h"
+#include "study/measures/row_memory.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "raytrace/parallel.h"
-#include "study/run.h"
+#include "study/runs/run.h"
 
 namespace asdic::study {
 namespace {

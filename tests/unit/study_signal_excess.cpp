@@ -1,4 +1,4 @@
-#include "study/signal_excess.h"
+#include "study/measures/signal_excess.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "core/units.h"
 #include "processing/detection_threshold.h"
-#include "study/measures.h"
+#include "study/measures/measures.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

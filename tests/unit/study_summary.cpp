@@ -1,13 +1,13 @@
-#include "study/summary.h"
+#include "study/summary/summary.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "study/design.h"
-#include "study/intervals.h"
-#include "study/law.h"
+#include "study/sampling/design.h"
+#include "study/sampling/law.h"
+#include "study/summary/intervals.h"
 
 namespace asdic::study {
 namespace {

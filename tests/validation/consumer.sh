@@ -34,7 +34,7 @@ cat >"$prefix/mine/main.cpp" <<'CPP'
 #include "serve/token.h"
 #include "sonar/ping/ping.h"
 #include "processing/tracker.h"
-#include "study/law.h"
+#include "study/sampling/law.h"
 
 // A function of each library; one of them keeps matrices.
 int main(int, char** arguments) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "study/summary.h"
+#include "study/summary/summary.h"
 
 namespace asdic::study {
 namespace {

@@ -1,0 +1,148 @@
+#include "study/journal/journal.h"
+
+#include "core/error.h"
+#include "study/journal/journal_database.h"
+#include "study/measures/row_bytes.h"
+
+namespace asdic::study {
+
+Journal::Journal(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {
+  impl_->check_format();
+  impl_->identity = impl_->meta("identity");
+  impl_->start();
+}
+
+Journal::Journal(const std::filesystem::path& path, const Imprint& imprint)
+    : impl_(std::make_unique<Impl>(path)) {
+  if (impl_->meta("format").empty()) impl_->take_over(imprint);
+  impl_->check_format();
+  impl_->identity = impl_->meta("identity");
+  if (const std::int64_t rows = impl_->count_rows();
+      impl_->identity != imprint.identity && rows > 0)
+    throw InputError(
+        {.where = path.string(),
+         .got = (rows == 1 ? "a realisation" : std::to_string(rows) + " realisations") +
+                " of another study" + how_changed(impl_->meta("study"), imprint.text) +
+                " (identity " + impl_->identity + ")",
+         .expected = "those of this one (identity " + imprint.identity +
+                     "): --fresh throws them away and begins anew, another -o keeps "
+                     "them"});
+  if (impl_->identity != imprint.identity) impl_->take_over(imprint);
+  if (impl_->meta("columns") != to_json(imprint.columns))
+    throw InputError({.where = path.string(),
+                      .got = "rows with other columns, of another version of asdic",
+                      .expected = "those of this one; --fresh begins anew"});
+  impl_->start();
+}
+
+Journal::~Journal() {
+  if (impl_ == nullptr) return;
+  try {
+    if (impl_->database.get() != nullptr) impl_->close();
+  } catch (const std::exception&) {
+    // whoever wants to hear of it calls close()
+  }
+}
+
+Journal::Journal(Journal&&) noexcept = default;
+Journal& Journal::operator=(Journal&&) noexcept = default;
+
+void Journal::begin(const Session& session) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->commit();
+  impl_->session = session;
+  impl_->session->rows = 0;
+  impl_->began = std::chrono::steady_clock::now();
+  impl_->session_id = impl_->next_session();
+}
+
+void Journal::add(const Session& session) {
+  const std::lock_guard lock(impl_->mutex);
+  const std::string text = to_json(session);
+  sqlite::Statement(impl_->database, "INSERT INTO session VALUES(?,?)")
+      .bind(0, impl_->next_session())
+      .bind(1, text)
+      .run();
+}
+
+void Journal::append(const Row& row) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->append(row);
+}
+
+void Journal::drop_skipped() {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<std::uint64_t> skipped;
+  {
+    sqlite::Statement get(impl_->database, "SELECT idx FROM row WHERE valid=0");
+    while (get.step()) skipped.push_back(static_cast<std::uint64_t>(get.integer(0)));
+  }
+  if (skipped.empty()) return;
+  for (const std::uint64_t index : skipped) impl_->drop(index);
+  impl_->done = {};
+  impl_->find_done();
+}
+
+void Journal::commit() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->commit();
+}
+
+void Journal::close() { impl_->close(); }
+
+const std::filesystem::path& Journal::path() const noexcept { return impl_->database.path(); }
+const std::string& Journal::identity() const noexcept { return impl_->identity; }
+const IndexSet& Journal::done() const noexcept { return impl_->done; }
+std::uint64_t Journal::damaged() const noexcept { return impl_->damaged; }
+
+std::vector<Session> Journal::sessions() const {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->commit();  // with what this one has made so far
+  std::vector<Session> all;
+  sqlite::Statement get(impl_->database, "SELECT text FROM session ORDER BY id");
+  while (get.step()) try {
+      all.push_back(session_from_json(get.text(0)));
+    } catch (const std::exception& error) {
+      throw InputError({.where = path().string(),
+                        .got = std::string("a session that cannot be read (") + error.what() + ")",
+                        .expected = "a journal as asdic study left it"});
+    }
+  return all;
+}
+
+void Journal::rows(IndexRange range, bool pressure, const std::function<void(Row&&)>& take) const {
+  const std::lock_guard lock(impl_->mutex);
+  sqlite::Statement get(impl_->database,
+                        "SELECT idx,valid,fault,vals,kept,checksum FROM row"
+                        " WHERE idx>=? AND idx<? ORDER BY idx");
+  get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
+  while (get.step()) {
+    Row row = impl_->row_at(get);
+    const bool kept = get.integer(4) != 0;
+    const bool good =
+        get.text(5) == checksum(row, kept) && (!kept || !pressure || impl_->add_series(row));
+    if (!good) {
+      const std::uint64_t index = row.index;
+      get.reset();
+      impl_->drop(index);
+      throw RunError(path().string() + ": realisation " + std::to_string(index) +
+                     " was damaged and has been thrown away; the same command makes it again");
+    }
+    take(std::move(row));
+  }
+}
+
+void Journal::series(IndexRange range, const std::function<void(Row&&)>& take) const {
+  const std::lock_guard lock(impl_->mutex);
+  sqlite::Statement get(impl_->database,
+                        "SELECT idx,shape,timing FROM series WHERE idx>=? AND idx<? ORDER BY idx");
+  get.bind(0, static_cast<std::int64_t>(range.first)).bind(1, static_cast<std::int64_t>(range.end));
+  while (get.step()) {
+    Row row{.index = static_cast<std::uint64_t>(get.integer(0))};
+    row.pressure_shape = shape_of(get.text(1));
+    row.timing = timing_of(get.text(2));
+    take(std::move(row));
+  }
+}
+
+}  // namespace asdic::study

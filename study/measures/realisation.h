@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "study/plan/study.h"
+
+namespace asdic::study {
+
+/// A column of a study's table.
+struct Column {
+  enum class Role { input, measure, reuse };
+  std::string name;  ///< "wind_speed", "echo_level_db"; [a-z0-9_]
+  std::string unit;  ///< "m/s", "dB re 1 µPa", "1"
+  std::string meaning;
+  Role role = Role::measure;
+  std::vector<std::string> labels;  ///< of a categorical column, whose values are indices into it
+};
+
+/// What places a kept time series in time and band: p(t) = Re(x_k e^{i2πf_c(t + t_0)}) at
+/// t = start + k/sample_rate after the ping; of real pressure, p = x_k.
+struct SeriesTiming {
+  double sample_rate = 0.0;  ///< [Hz]
+  double start = 0.0;        ///< of the first sample, after the ping's start [s]
+  double carrier = 0.0;      ///< f_c of complex baseband [Hz]; 0: real pressure
+  double epoch = 0.0;        ///< t_0 [s]
+
+  bool operator==(const SeriesTiming&) const = default;
+};
+
+/// What came out of one realisation: a pure function of (study, index), but for `reuse`.
+struct Row {
+  std::uint64_t index = 0;
+  bool valid = true;            ///< false: skipped (on_error = "skip"); its measures are NaN
+  std::string fault;            ///< why it was skipped
+  std::vector<double> values;   ///< [columns]
+  std::vector<float> pressure;  ///< kept time series, empty where none [channels × samples × iq]
+  std::vector<std::size_t> pressure_shape;
+  SeriesTiming timing{};      ///< of the time series
+  std::vector<double> reuse;  ///< [reuse_columns()] what was known before it was made
+};
+
+/// The columns of a study's rows: inputs first, in the order of [vary], then measures.
+[[nodiscard]] std::vector<Column> columns(const Study& study);
+
+/// What a realisation found known (sonar/paths/reuse.h), NaN of one that was skipped. It tells of
+/// the run: of two alike the first one searches, whichever that is; their rows are the same.
+[[nodiscard]] const std::vector<Column>& reuse_columns();
+
+/// Makes rows. Built once; shared by threads. It keeps what realisations have in common (the ocean,
+/// its paths) for as long as they have it, which never changes a bit of a row.
+class Realiser {
+ public:
+  /// \param processes  on this machine, which share its memory where run.memory does not say
+  explicit Realiser(Study study, int processes = 1);
+  ~Realiser();
+
+  /// \throws InputError naming realisation, key and drawn value (on_error = "stop")
+  [[nodiscard]] Row realise(std::uint64_t index) const;
+  /// One that is not made: what it drew, and why. Its measures are NaN.
+  [[nodiscard]] Row skipped(std::uint64_t index, const std::string& fault) const;
+
+  [[nodiscard]] const Study& study() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace asdic::study

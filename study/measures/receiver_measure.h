@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "sonar/ping/ping.h"
+#include "study/plan/measure_plan.h"
+
+namespace asdic::study {
+
+/// What the whole receiver makes of one target.
+struct ReceiverAnswer {
+  bool hit = false;             ///< a detection is the target's
+  double snr_db = 0.0;          ///< of the loudest of those; NaN
+  double position_error = 0.0;  ///< horizontal; NaN without a place [m]
+  double range_error = 0.0;     ///< found − true; NaN [m]
+  double bearing_error = 0.0;   ///< found − true; NaN [rad]
+};
+struct ReceiverAnswers {
+  std::vector<ReceiverAnswer> targets;
+  int false_alarms = 0;  ///< detections that are nobody's
+};
+
+/// `asdic process` for one ping of one array, in memory: band, beams, matched filters, detections,
+/// places, and whose they are. Source: docs/theory/processing.md   \throws InputError
+[[nodiscard]] ReceiverAnswers receiver_answers(const PingSimulator& simulator,
+                                               const PingRecord& record,
+                                               const ProcessingSettings& settings, int array);
+
+}  // namespace asdic::study

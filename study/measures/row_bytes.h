@@ -1,0 +1,43 @@
+#pragma once
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/measures/realisation.h"
+
+// Rows as a journal keeps them: bytes, and checksums that find damage.
+namespace asdic::study {
+
+template <class T>
+[[nodiscard]] std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span<const T>(values));
+}
+
+template <class T>
+[[nodiscard]] std::vector<T> vector_of(std::span<const std::byte> bytes) {
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+/// Of a row without its time series. \param kept  whether it has one
+[[nodiscard]] std::string checksum(const Row& row, bool kept);
+/// Of the time series alone. \param shape, timing  as shape_text() and timing_text() write them
+[[nodiscard]] std::string checksum_of_series(std::uint64_t index, const std::string& shape,
+                                             const std::string& timing,
+                                             std::span<const std::byte> pressure);
+
+/// Numbers with a blank behind each.
+[[nodiscard]] std::string shape_text(const std::vector<std::size_t>& shape);
+[[nodiscard]] std::vector<std::size_t> shape_of(const std::string& text);
+/// Its four numbers, exactly, with a blank behind each.
+[[nodiscard]] std::string timing_text(const SeriesTiming& timing);
+[[nodiscard]] SeriesTiming timing_of(const std::string& text);
+
+/// A missing number has the same bits however it came about.
+void one_kind_of_nan(std::vector<double>& values);
+
+}  // namespace asdic::study

@@ -1,0 +1,118 @@
+#include "study/measures/sampler.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "io/scenario_reader.h"
+
+namespace asdic::study {
+namespace {
+
+std::size_t dimensions_of(const Study& study) {
+  std::size_t sum = 0;
+  for (const Variable& variable : study.variables)
+    sum += dimensions_of(variable, study.design == Design::grid);
+  return sum;
+}
+
+}  // namespace
+
+std::uint64_t grid_points(const std::vector<Variable>& variables) {
+  std::uint64_t product = 1;
+  for (const Variable& variable : variables)
+    product *= std::max<std::uint64_t>(1, choices_of(variable));
+  return product;
+}
+
+Sampler::Sampler(const Study& study)
+    : on_grid_(study.design == Design::grid),
+      variables_(study.variables),
+      design_(study.design, study.seed, study.realisations, dimensions_of(study)) {
+  for (const Variable& variable : variables_) {
+    first_column_.push_back(columns_.size());
+    for (InputColumn& column : input_columns(variable))
+      columns_.push_back({.name = std::move(column.name),
+                          .unit = std::move(column.unit),
+                          .meaning = std::move(column.meaning),
+                          .role = Column::Role::input,
+                          .labels = std::move(column.labels)});
+  }
+  first_column_.push_back(columns_.size());
+}
+
+Sampler::Drawn Sampler::draw(std::uint64_t index) const {
+  std::vector<double> u(design_.dimensions());
+  design_.point(index, u);
+  Drawn drawn;
+  drawn.choices.assign(variables_.size(), 0);
+  // Of the grid the last variable changes fastest: a number of mixed radix.
+  std::uint64_t rest = index;
+  for (std::size_t v = variables_.size(); on_grid_ && v-- > 0;)
+    if (const std::uint64_t n = choices_of(variables_[v]); n > 0) {
+      drawn.choices[v] = rest % n;
+      rest /= n;
+    }
+  std::size_t at = 0;
+  for (std::size_t v = 0; v < variables_.size(); ++v) {
+    const Variable& variable = variables_[v];
+    const std::size_t count = study::dimensions_of(variable, on_grid_);
+    const std::span<const double> mine(u.data() + at, count);
+    const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
+    if (choice != nullptr && !on_grid_)
+      drawn.choices[v] = choice->kind == ChoiceLaw::Kind::in_turn ? index % choice->values.size()
+                                                                  : chosen(variable, mine[0]);
+    append_values(variable, mine, drawn.choices[v], drawn.values);
+    at += count;
+  }
+  return drawn;
+}
+
+void Sampler::apply(const Drawn& drawn, TomlValue& scenario) const {
+  for (std::size_t v = 0; v < variables_.size(); ++v)
+    study::apply(
+        variables_[v],
+        std::span(drawn.values).subspan(first_column_[v], first_column_[v + 1] - first_column_[v]),
+        drawn.choices[v], scenario);
+}
+
+std::string Sampler::describe(const Drawn& drawn) const {
+  std::string text;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const double x = drawn.values[i];
+    text +=
+        (i == 0 ? "" : ", ") + columns_[i].name + " = " +
+        (columns_[i].labels.empty() ? to_text(x) : columns_[i].labels[static_cast<std::size_t>(x)]);
+  }
+  return text;
+}
+
+InputError told(const InputError& error, const std::filesystem::path& file, std::uint64_t index,
+                const std::string& drawn) {
+  InputFault fault = error.fault();
+  // Faults of a simulator (a rate too slow for a drawn frequency) name no file.
+  if (fault.where.find(':') == std::string::npos && !fault.where.starts_with("--set"))
+    fault.where = file.string() + ": " + fault.where;
+  fault.got += " (realisation " + std::to_string(index) + (drawn.empty() ? "" : ": ") + drawn + ")";
+  return InputError(fault);
+}
+
+Scenario example_of(const Study& study) {
+  const Sampler sampler(study);
+  const std::uint64_t tries =
+      study.on_error == OnError::stop ? 1 : std::min<std::uint64_t>(100, study.realisations);
+  std::optional<InputError> first;
+  for (std::uint64_t index = 0; index < tries; ++index) {
+    const Sampler::Drawn drawn = sampler.draw(index);
+    try {
+      TomlValue tree = study.scenario;
+      sampler.apply(drawn, tree);
+      return scenario_of(tree, study.scenario_path);
+    } catch (const InputError& error) {
+      if (!first) first = told(error, study.scenario_path, index, sampler.describe(drawn));
+    }
+  }
+  throw InputError(*first);
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,97 @@
+#include "study/measures/signal_excess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "processing/detection_threshold.h"
+#include "sonar/noise/noise_coherence.h"
+#include "sonar/noise/noise_in_guide.h"
+#include "study/measures/echo_filter.h"
+
+namespace asdic::study {
+namespace {
+
+/// The phones that are added, and where the beam looks.
+struct Beam {
+  std::vector<Vec3> phones;        // [n] [m]
+  Vec3 slowness = Vec3::Zero();    // of the echo [s/m]
+  double angular_frequency = 0.0;  // at the pulse's centre [rad/s]
+};
+
+/// 10 lg of 1/(wᴴΓw), w_n = e^{−iω s·x_n}/n: what the beam keeps of the scenario's noise [dB].
+double gain_over_noise(const Beam& beam, const NoiseField& noise) {
+  const std::size_t n = beam.phones.size();
+  if (noise.coherence == NoiseCoherence::independent) return db_from_power(static_cast<double>(n));
+  const double wavenumber = beam.angular_frequency * beam.slowness.norm();
+  double kept = 0.0;
+  for (const Vec3& a : beam.phones)
+    for (const Vec3& b : beam.phones)
+      kept += std::real(noise_coherence(noise.coherence, noise.directions, a - b, wavenumber) *
+                        std::polar(1.0, beam.angular_frequency * beam.slowness.dot(a - b)));
+  return -db_from_power(kept / static_cast<double>(n * n));
+}
+
+/// 10 lg of 1/⟨|w·e^{−iω s_φ·x}|²⟩: what it keeps of sound that comes from all bearings φ alike, at
+/// the echo's own elevation [dB].
+double gain_over_reverberation(const Beam& beam) {
+  const double horizontal = beam.slowness.head<2>().norm();
+  double extent = 0.0;
+  for (const Vec3& phone : beam.phones)
+    extent = std::max(extent, (phone - beam.phones.front()).norm());
+  const double waves = beam.angular_frequency * horizontal * extent / (2.0 * pi);
+  const int steps = 360 + 16 * static_cast<int>(std::ceil(waves));
+  double kept = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double bearing = 2.0 * pi * i / steps;
+    const Vec3 from(horizontal * std::sin(bearing), horizontal * std::cos(bearing),
+                    beam.slowness.z());
+    std::complex<double> sum = 0.0;
+    for (const Vec3& phone : beam.phones)
+      sum += std::polar(1.0, beam.angular_frequency * (beam.slowness - from).dot(phone));
+    kept += std::norm(sum);
+  }
+  const auto n = static_cast<double>(beam.phones.size());
+  return -db_from_power(kept / (n * n * steps));
+}
+
+const EchoPath* loudest(const PingRecord& record, int array, int target) {
+  const EchoPath* best = nullptr;
+  for (const EchoPath& echo : record.echoes)
+    if (echo.array == array && echo.target == target &&
+        (best == nullptr || echo.level_db > best->level_db))
+      best = &echo;
+  return best;
+}
+
+}  // namespace
+
+double detection_signal_excess_db(const PingSimulator& simulator, const PingRecord& record,
+                                  const ListeningReceiver& receiver, int target) {
+  const TargetSummary& heard = record.summary[static_cast<std::size_t>(target)];
+  if (!heard.present || heard.paths == 0) return -infinity;
+  if (heard.array != receiver.array) return std::nan("");
+  const Scenario& scenario = simulator.scenario();
+  const Pulse& pulse = simulator.pulse(record.transmitter);
+  Beam beam{.phones = {},
+            .slowness = loudest(record, receiver.array, target)->heard.slowness,
+            .angular_frequency = 2.0 * pi * pulse.centre_frequency()};
+  const std::size_t first = first_channel(scenario, receiver.array);
+  const std::size_t count = scenario.arrays[static_cast<std::size_t>(receiver.array)].phones.size();
+  for (std::size_t n = 0; n < count; ++n)
+    if (!receiver.phone || static_cast<std::size_t>(*receiver.phone) == n)
+      beam.phones.push_back(record.phones[first + n] - record.phones[first]);
+
+  const double energy = pulse.energy();
+  const double noise_gain = db_from_power(energy * pulse.bandwidth_40db()) +
+                            gain_over_noise(beam, noise_field(scenario, receiver.array));
+  const double reverberation_gain =
+      db_from_power(energy * noise_bandwidth(pulse)) + gain_over_reverberation(beam);
+  const double background =
+      db_from_power(power_from_db(heard.reverberation_db - reverberation_gain) +
+                    power_from_db(heard.noise_db - noise_gain));
+  return heard.echo_peak_db - background -
+         detection_threshold_db(receiver.false_alarm_probability, receiver.cells);
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,59 @@
+#include <filesystem>
+
+#include "io/digest.h"
+#include "io/text/csv_table.h"
+#include "io/text/toml_writer.h"
+#include "study/plan/study.h"
+
+namespace asdic::study {
+namespace {
+
+/// Values without where they were written; what files hold, not what they are called.
+void write(const TomlValue& value, const std::string& key, const std::filesystem::path& folder,
+           std::string& text) {
+  if (const auto* table = value.table()) {
+    text += '{';
+    for (const TomlEntry& entry : *table) {
+      text += entry.key + '=';
+      write(entry.value, entry.key, folder, text);
+    }
+    text += '}';
+  } else if (const auto* array = std::get_if<TomlValue::Array>(&value.data)) {
+    text += '[';
+    for (const TomlValue& item : *array) write(item, key, folder, text);
+    text += ']';
+  } else if (const auto* real = std::get_if<double>(&value.data)) {
+    text += toml_number(*real);
+  } else if (const auto* name = std::get_if<std::string>(&value.data);
+             name != nullptr && (key == "file" || key == "casts") &&
+             std::filesystem::is_regular_file(folder / *name)) {
+    text += "file " + sha256(read_text_file(folder / *name));
+  } else {
+    text += value.describe();
+  }
+  text += ',';
+}
+
+}  // namespace
+
+std::string identity(const Study& study) {
+  // What becomes of a realisation that fails changes none of those that do not.
+  std::string text = "asdic study 1;seed=" + std::to_string(study.seed) +
+                     ";design=" + std::string(name(study.design)) + ";on_error=stop;";
+  if (study.design == Design::latin_hypercube)
+    text += "realisations=" + std::to_string(study.realisations) + ";";
+  TomlValue scenario = study.scenario;  // without what changes no row
+  if (TomlValue* run = scenario.find("run")) {
+    erase_key(*run, "memory");
+    if (run->table() != nullptr && run->table()->empty()) erase_key(scenario, "run");
+  }
+  write(scenario, "", study.scenario_path.parent_path(), text);
+  for (const char* table : {"vary", "measure"})
+    if (const TomlValue* value = study.document.find(table))
+      write(*value, "", study.path.parent_path(), text);
+  // The order of the variables is that of their lines, which the tree does not tell.
+  for (const Variable& variable : study.variables) text += variable.name + ";";
+  return sha256(text);
+}
+
+}  // namespace asdic::study

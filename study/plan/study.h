@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/plan/measure_plan.h"
+#include "study/plan/summary_plan.h"
+#include "study/sampling/design.h"
+#include "study/sampling/variable.h"
+
+namespace asdic::study {
+
+/// What becomes of a realisation whose drawn values make no scenario (a target below the bottom).
+enum class OnError { stop, skip };
+
+/// A Monte Carlo study as plain data: a scenario, what varies in it, what is measured, what is made
+/// of the measurements. docs/formats/study.md
+struct Study {
+  std::string title;
+  std::uint64_t seed = 1;          ///< of designs and of every realisation's own streams
+  std::uint64_t realisations = 0;  ///< indices 0 … realisations − 1
+  Design design = Design::random;
+  OnError on_error = OnError::stop;
+  std::vector<Variable> variables;  ///< [vary]
+  MeasurePlan measure;              ///< [measure]
+  SummaryPlan summary;              ///< [summary]
+
+  TomlValue scenario;  ///< what the variables edit: with its include and the overrides in it
+  TomlValue document;  ///< [study], [set], [vary], [measure], [summary], with their overrides
+
+  std::string scenario_text;            ///< of the scenario, verbatim
+  std::filesystem::path scenario_path;  ///< where it was read; files it names are relative to it
+  std::string text;                     ///< the study file, verbatim
+  std::filesystem::path path;
+  std::vector<std::string> overrides;  ///< "key.path=value"
+  std::vector<std::string> warnings;   ///< what the reader met that the user should know
+};
+
+/// Reads a study file (docs/formats/study.md) and checks all of it, the scenario included.
+/// \throws InputError "FILE:LINE: key.path: found X, expected Y" at the first fault
+[[nodiscard]] Study read_study(const std::filesystem::path& path,
+                               std::span<const std::string> overrides = {});
+
+/// SHA-256 of all that decides the rows (seed, design, scenario with what it includes, variables,
+/// measures, overrides), as hexadecimal text: parts with the same one belong together. How many
+/// realisations are asked for enters only where the design depends on it (Latin hypercube);
+/// the summary and on_error never do.
+[[nodiscard]] std::string identity(const Study& study);
+
+}  // namespace asdic::study

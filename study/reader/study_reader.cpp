@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <array>
+
+#include "io/scenario/document.h"
+#include "io/scenario_reader.h"
+#include "io/text/csv_table.h"
+#include "io/text/toml_table.h"
+#include "study/measures/sampler.h"
+#include "study/plan/study.h"
+#include "study/plan/target_keys.h"
+#include "study/reader/measure_reader.h"
+#include "study/reader/summary_reader.h"
+#include "study/reader/vary_reader.h"
+#include "study/summary/summary_parts.h"
+
+namespace asdic::study {
+namespace {
+
+constexpr std::array<std::string_view, 5> study_tables{"study", "set", "vary", "measure",
+                                                       "summary"};
+
+bool is_study_table(std::string_view key) {
+  return std::find(study_tables.begin(), study_tables.end(), key) != study_tables.end();
+}
+
+/// Whether an override "study.seed=3" is of the study's own tables.
+bool is_of_study(const std::string& assignment) {
+  return is_study_table(std::string_view(assignment).substr(0, assignment.find_first_of(".=")));
+}
+
+/// Keeps the study's own tables, or all but them.
+TomlValue keep(TomlValue document, bool own) {
+  if (TomlValue::Table* table = document.table())
+    std::erase_if(*table, [&](const TomlEntry& entry) { return is_study_table(entry.key) != own; });
+  return document;
+}
+
+void read_head(TomlTable table, Study& study) {
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  study.title = table.text("title", "");
+  study.seed = static_cast<std::uint64_t>(table.integer("seed", 0, most, 1));
+  const std::string design =
+      table.choice("design", {"random", "latin_hypercube", "sobol", "grid"}, "random");
+  for (const Design d : {Design::latin_hypercube, Design::sobol, Design::grid})
+    if (design == name(d)) study.design = d;
+  constexpr std::int64_t plenty = 1'000'000'000'000'000;
+  const std::int64_t last = study.design == Design::sobol ? std::int64_t{1} << 32 : plenty;
+  if (study.design != Design::grid || table.has("realisations"))  // else: of the grid once
+    study.realisations = static_cast<std::uint64_t>(table.integer("realisations", 1, last));
+  if (table.choice("on_error", {"stop", "skip"}, "stop") == "skip") study.on_error = OnError::skip;
+  static_cast<void>(table.has("scenario"));
+  table.finish();
+}
+
+/// [set]: keys of the scenario, by their paths, that the study changes for good.
+void apply_set(const TomlValue& document, TomlValue& scenario) {
+  const TomlValue* set = document.find("set");
+  if (set == nullptr) return;
+  static_cast<void>(TomlTable(*set, "set"));  // must be a table
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(set->data))
+    value_at(scenario, entry.key, entry.value.origin) = entry.value;
+}
+
+/// The tree that the variables edit: of the file that [study] names, or of what the study file
+/// holds beside its own tables.
+void read_scenario_tree(TomlTable head, const TomlValue& document, Study& study) {
+  std::vector<std::string> overrides, includes;  // which file to include comes first
+  for (const std::string& assignment : study.overrides) {
+    if (is_of_study(assignment)) continue;
+    overrides.push_back(assignment);
+    if (assignment.starts_with("include=")) includes.push_back(assignment);
+  }
+  if (head.has("scenario")) {
+    study.scenario_path = study.path.parent_path() / head.text("scenario");
+    if (!std::filesystem::exists(study.scenario_path))
+      throw head.fault("scenario", "a scenario file",
+                       "no such file \"" + study.scenario_path.string() + '"');
+    for (const TomlEntry& entry : std::get<TomlValue::Table>(document.data))
+      if (!is_study_table(entry.key))
+        throw InputError({.where = entry.value.origin + ": " + entry.key,
+                          .got = "a key of the scenario beside study.scenario",
+                          .expected = "[study], [set], [vary], [measure] and [summary] alone"});
+    study.scenario_text = read_text_file(study.scenario_path);
+  } else {
+    study.scenario_path = study.path;
+    study.scenario_text = study.text;
+  }
+  study.scenario =
+      keep(scenario::read_document(study.scenario_text, study.scenario_path, includes), false);
+  apply_set(document, study.scenario);
+  for (const std::string& assignment : overrides) apply_override(study.scenario, assignment);
+}
+
+}  // namespace
+
+Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  Study study;
+  study.path = path;
+  study.text = read_text_file(path, "a study file");
+  study.overrides.assign(overrides.begin(), overrides.end());
+  study.document = parse_toml(study.text, path.string());
+  for (const std::string& assignment : overrides)
+    if (is_of_study(assignment)) apply_override(study.document, assignment);
+  TomlTable root(study.document);
+  if (!root.has("study"))
+    throw root.fault("study", "a [study] with its realisations: a study file", "no [study]");
+  read_head(root.table("study"), study);
+  read_scenario_tree(root.table("study"), study.document, study);
+  study.document = keep(std::move(study.document), true);
+  TomlTable own(study.document);
+  study.variables = read_vary(study.document, study);
+  if (study.realisations == 0) study.realisations = grid_points(study.variables);
+  make_room(study.variables, study.scenario_path, study.scenario);
+  study.measure = read_measure(own.table("measure"), example_of(study));
+  if (own.table("measure").has("signal_excess"))
+    study.warnings.push_back(own.table("measure").where("signal_excess") +
+                             ": old name of echo_to_background, before any processing; it will "
+                             "go. detection_signal_excess counts processing gain and threshold");
+  study.summary =
+      read_summary(own.table("summary"), study.document.find("summary"), columns(study));
+  check_summary_names(study);
+  return study;
+}
+
+}  // namespace asdic::study

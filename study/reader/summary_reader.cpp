@@ -1,0 +1,107 @@
+#include "study/reader/summary_reader.h"
+
+#include <algorithm>
+
+#include "core/text.h"
+
+namespace asdic::study {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + in_quotes(names[i]);
+  return text;
+}
+
+/// A column's name, as it stands in an array or alone. \param where  its key, for messages
+std::string read_axis_name(const TomlValue& value, const std::string& where,
+                           const std::vector<std::string>& names) {
+  const auto* name = std::get_if<std::string>(&value.data);
+  if (name != nullptr && std::find(names.begin(), names.end(), *name) != names.end()) return *name;
+  const std::string nearest = name == nullptr ? "" : nearest_name(*name, names);
+  throw InputError(
+      {.where = value.origin + ": " + where,
+       .got = value.describe(),
+       .expected = "a column, " + list_of(names) +
+                   (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)")});
+}
+
+/// { axis = "range", bins = 12 } or { axis = "range", edges = [..] }
+SummaryAxis read_axis(TomlTable table, const TomlValue& value, const std::string& where,
+                      const std::vector<std::string>& names) {
+  SummaryAxis axis;
+  if (!table.has("axis")) throw table.fault("axis", "a column, " + list_of(names));
+  axis.column = read_axis_name(*value.find("axis"), where + ".axis", names);
+  if (table.has("edges")) {
+    if (table.has("bins")) throw table.fault("bins", "no \"bins\" beside edges");
+    axis.edges = table.numbers("edges", {});
+    if (axis.edges.size() < 2) throw table.fault("edges", "at least two edges");
+    for (std::size_t i = 1; i < axis.edges.size(); ++i)
+      if (!(axis.edges[i] > axis.edges[i - 1]))
+        throw table.fault("edges[" + std::to_string(i) + "]",
+                          "an edge above the one before it, " + to_text(axis.edges[i - 1]));
+  }
+  axis.bins = static_cast<int>(table.integer("bins", 1, 1000, 0));
+  axis.equal_count = table.flag("equal_count", false);
+  table.finish();
+  return axis;
+}
+
+/// One of `by`: "range", { axis = .. }, or two of either in an array.
+std::vector<SummaryAxis> read_by(const TomlValue& value, const std::string& where,
+                                 const std::vector<std::string>& names) {
+  const auto one = [&](const TomlValue& item, const std::string& at) {
+    if (item.table() != nullptr) return read_axis(TomlTable(item, at), item, at, names);
+    return SummaryAxis{.column = read_axis_name(item, at, names)};
+  };
+  const auto* pair = std::get_if<TomlValue::Array>(&value.data);
+  if (pair == nullptr) return {one(value, where)};
+  if (pair->size() != 2)
+    throw InputError({.where = value.origin + ": " + where,
+                      .got = value.describe(),
+                      .expected = "a column, or an array of two"});
+  return {one((*pair)[0], where + "[0]"), one((*pair)[1], where + "[1]")};
+}
+
+}  // namespace
+
+SummaryPlan read_summary(TomlTable table, const TomlValue* value,
+                         const std::vector<Column>& columns) {
+  SummaryPlan plan;
+  plan.confidence = table.number(
+      "confidence", {.noun = "probability", .low = 0.5, .high = 0.999999}, plan.confidence);
+  if (table.choice("interval", {"wilson", "clopper_pearson"}, "wilson") == "clopper_pearson")
+    plan.interval = ProportionInterval::clopper_pearson;
+  if (table.has("quantiles")) {
+    plan.quantiles = table.numbers("quantiles", {.noun = "probability", .low = 0.0, .high = 1.0});
+    for (std::size_t i = 1; i < plan.quantiles.size(); ++i)
+      if (const auto at = plan.quantiles.begin() + static_cast<std::ptrdiff_t>(i);
+          std::find(plan.quantiles.begin(), at, *at) != at)
+        throw table.fault("quantiles[" + std::to_string(i) + "]", "every probability once");
+  }
+  if (table.has("by")) {
+    const TomlValue& by = *value->find("by");
+    const auto* items = std::get_if<TomlValue::Array>(&by.data);
+    if (items == nullptr) throw table.fault("by", "an array of columns");
+    for (std::size_t i = 0; i < items->size(); ++i)
+      plan.by.push_back(
+          read_by((*items)[i], "summary.by[" + std::to_string(i) + "]", names_of(columns)));
+  } else {
+    for (const Column& column : columns)
+      if (column.role == Column::Role::input) plan.by.push_back({{.column = column.name}});
+  }
+  plan.roc = table.flag("roc", plan.roc);
+  plan.convergence = table.flag("convergence", plan.convergence);
+  plan.sensitivity = table.flag("sensitivity", plan.sensitivity);
+  table.finish();
+  return plan;
+}
+
+}  // namespace asdic::study

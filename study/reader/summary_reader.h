@@ -1,0 +1,13 @@
+#pragma once
+#include "io/text/toml_table.h"
+#include "study/measures/realisation.h"
+#include "study/plan/summary_plan.h"
+
+namespace asdic::study {
+
+/// [summary]. \param value  the table itself, or null   \param columns  of the rows, which axes
+/// name   \throws InputError
+[[nodiscard]] SummaryPlan read_summary(TomlTable table, const TomlValue* value,
+                                       const std::vector<Column>& columns);
+
+}  // namespace asdic::study

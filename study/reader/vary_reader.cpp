@@ -1,0 +1,151 @@
+#include "study/reader/vary_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "study/reader/vary_laws.h"
+#include "study/reader/vary_profiles.h"
+
+namespace asdic::study {
+namespace {
+
+/// The line of "study.toml:12"; overrides come last.
+int line_of(const std::string& origin) {
+  int line = 0;
+  const char* end = origin.data() + origin.size();
+  const char* begin = origin.data() + origin.rfind(':') + 1;
+  return std::from_chars(begin, end, line).ptr == end && begin != end ? line : 1 << 30;
+}
+
+/// Lower case, and _ for whatever is no letter or digit.
+std::string column_name(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool capital = c >= 'A' && c <= 'Z';
+    const bool plain = capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (plain)
+      result += capital ? static_cast<char>(c - 'A' + 'a') : c;
+    else if (!result.empty() && result.back() != '_')
+      result += '_';
+  }
+  return result;
+}
+
+/// "range" of target.0.range, "target_0" of target.0.
+std::string short_name(std::string_view key) {
+  const auto dot = key.rfind('.');
+  const std::string_view last = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  const bool index = !last.empty() && std::all_of(last.begin(), last.end(),
+                                                  [](char c) { return c >= '0' && c <= '9'; });
+  if (!index || dot == std::string_view::npos) return column_name(last);
+  return column_name(key.substr(key.rfind('.', dot - 1) + 1));
+}
+
+/// What the number at a key of a scenario is counted in.
+std::string unit_of(std::string_view key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> units{
+      {{"spectral_level_db", "dB re 1 µPa²/Hz"},
+       {"source_level_db", "dB re 1 µPa at 1 m"},
+       {"_db", "dB"},
+       {"_deg", "degrees"},
+       {"speed", "m/s"},
+       {"frequency", "Hz"},
+       {"duration", "s"},
+       {"interval", "s"},
+       {"time", "s"},
+       {"range", "m"},
+       {"depth", "m"},
+       {"spacing", "m"},
+       {"roughness", "m"},
+       {"density", "kg/m3"},
+       {"temperature", "degC"},
+       {"low", "Hz"}}};
+  for (const auto& [tail, unit] : units)
+    if (key.ends_with(tail)) return std::string(unit);
+  return "1";
+}
+
+/// These laws know the key that they write: profile = { law = "profile_eof", … }
+bool is_profile_law(const TomlValue& entry) {
+  const TomlValue* law = entry.find("law");
+  const auto* name = law == nullptr ? nullptr : std::get_if<std::string>(&law->data);
+  return name != nullptr && (*name == "profile_eof" || *name == "profile_casts");
+}
+
+std::vector<std::string> read_keys(const TomlEntry& entry, TomlTable& table) {
+  const TomlValue* keys = table.has("keys") ? entry.value.find("keys") : nullptr;
+  if (keys == nullptr && entry.key.find('.') == std::string::npos && is_profile_law(entry.value))
+    return {profile_key};
+  if (keys == nullptr) return {entry.key};
+  std::vector<std::string> result;
+  if (const auto* array = std::get_if<TomlValue::Array>(&keys->data))
+    for (const TomlValue& item : *array) {
+      const auto* key = std::get_if<std::string>(&item.data);
+      if (key == nullptr || key->empty())
+        throw table.fault("keys", "an array of keys, each in quotes");
+      result.push_back(*key);
+    }
+  if (result.empty()) throw table.fault("keys", "an array of keys, each in quotes");
+  return result;
+}
+
+Variable read_variable(const TomlEntry& entry, const Study& study) {
+  const bool quoted = entry.key.find('.') != std::string::npos;
+  TomlTable table(entry.value, "vary." + (quoted ? '"' + entry.key + '"' : entry.key));
+  Variable variable{.keys = read_keys(entry, table), .origin = entry.value.origin};
+  const bool group = variable.keys.front() != entry.key;
+  variable.name = column_name(table.text("name", group ? entry.key : short_name(entry.key)));
+  if (variable.name.empty()) throw table.fault("name", "a name with letters or digits");
+  variable.unit = table.text("unit", unit_of(variable.keys.front()));
+  variable.law = read_law(table, entry.value, variable, study);
+  table.finish();
+  return variable;
+}
+
+/// Two variables of one name take the whole of their keys as names.
+void tell_apart(std::vector<Variable>& variables) {
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const std::string name = variables[i].name;
+    const auto alike = [&](const Variable& v) { return v.name == name; };
+    if (std::count_if(variables.begin(), variables.end(), alike) < 2) continue;
+    for (Variable& variable : variables)
+      if (alike(variable)) variable.name = column_name(variable.keys.front());
+  }
+}
+
+void check_columns(const std::vector<Variable>& variables) {
+  std::vector<std::string> names, keys;
+  const auto add = [](std::vector<std::string>& list, const std::string& word,
+                      const Variable& variable, const std::string& what) {
+    if (std::find(list.begin(), list.end(), word) != list.end())
+      throw InputError(
+          {.where = variable.origin + ": vary", .got = "\"" + word + "\" twice", .expected = what});
+    list.push_back(word);
+  };
+  for (const Variable& variable : variables) {
+    for (const InputColumn& column : input_columns(variable))
+      add(names, column.name, variable, "columns of different names (give one a name = \"…\")");
+    for (const std::string& key : variable.keys) add(keys, key, variable, "each key once");
+  }
+}
+
+}  // namespace
+
+std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
+  const TomlValue* vary = document.find("vary");
+  if (vary == nullptr) return {};
+  static_cast<void>(TomlTable(*vary, "vary"));  // must be a table
+  std::vector<const TomlEntry*> entries;
+  for (const TomlEntry& entry : std::get<TomlValue::Table>(vary->data)) entries.push_back(&entry);
+  std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry* a, const TomlEntry* b) {
+    return line_of(a->value.origin) < line_of(b->value.origin);
+  });
+  std::vector<Variable> variables;
+  for (const TomlEntry* entry : entries) variables.push_back(read_variable(*entry, study));
+  tell_apart(variables);
+  check_columns(variables);
+  return variables;
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,78 @@
+#include "study/runs/assemble.h"
+
+#include <algorithm>
+
+namespace asdic::study {
+namespace {
+
+void add(Table& table, const Row& row) {
+  table.index.push_back(row.index);
+  table.valid.push_back(row.valid ? 1 : 0);
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    table.values[i].push_back(row.values.at(i));
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+std::vector<Stretch> stretches(const std::vector<const Journal*>& journals, IndexRange range) {
+  std::vector<Stretch> all;
+  IndexSet taken;
+  for (std::size_t j = 0; j < journals.size(); ++j) {
+    const IndexSet here = journals[j]->done().within(range);
+    IndexSet more;
+    for (const IndexRange& stretch : here.ranges()) {
+      const IndexSet open = taken.missing(stretch);
+      for (const IndexRange& piece : open.ranges()) {
+        all.push_back({piece, j});
+        more.add(piece);
+      }
+    }
+    for (const IndexRange& stretch : more.ranges()) taken.add(stretch);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Stretch& a, const Stretch& b) { return a.range.first < b.range.first; });
+  return all;
+}
+
+bool assemble(OutputFile& output, const Imprint& imprint, IndexRange range,
+              const std::vector<const Journal*>& journals, const Summarise& summarise,
+              const std::string& stopped_by) {
+  StudyResults results{.imprint = imprint, .range = range, .stopped_by = stopped_by};
+  results.table.columns = imprint.columns;
+  results.table.values.resize(imprint.columns.size());
+  SeriesSource series;
+  std::vector<std::size_t> home;  // [kept] which journal
+  for (const Stretch& stretch : stretches(journals, range)) {
+    const Journal& journal = *journals[stretch.journal];
+    journal.rows(stretch.range, false, [&](Row&& row) {
+      add(results.table, row);
+      if (!row.valid && results.faults.size() < most_faults)
+        results.faults.push_back(std::to_string(row.index) + ": " + one_line(row.fault));
+    });
+    journal.series(stretch.range, [&](Row&& row) {
+      series.index.push_back(row.index);
+      series.shapes.push_back(std::move(row.pressure_shape));
+      series.timing.push_back(row.timing);
+      home.push_back(stretch.journal);
+    });
+  }
+  series.pressure = [&](std::size_t k) {
+    std::vector<float> pressure;
+    journals[home[k]]->rows({series.index[k], series.index[k] + 1}, true,
+                            [&](Row&& row) { pressure = std::move(row.pressure); });
+    return pressure;
+  };
+  for (const Journal* journal : journals)
+    for (const Session& session : journal->sessions()) results.sessions.push_back(session);
+  results.reuse = take_reuse(results.table);
+  results.summary = summarise(results.table);
+  write_study_file(output, results, series);
+  return results.complete();
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,247 @@
+#include "study/runs/merge.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "core/error.h"
+#include "io/output/own_files.h"
+
+namespace asdic::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows in a row of one part.
+struct Piece {
+  std::size_t part = 0, row = 0;  ///< its first row there
+  IndexRange range;
+};
+
+/// The parts, opened one by one as they are needed: there may be more than files can be open.
+class Parts {
+ public:
+  explicit Parts(const std::vector<fs::path>& paths) : paths_(paths) {}
+
+  [[nodiscard]] const StudyFile& at(std::size_t part) {
+    if (!open_ || here_ != part) {
+      open_.reset();
+      open_ = std::make_unique<StudyFile>(paths_[part]);
+      here_ = part;
+    }
+    return *open_;
+  }
+  [[nodiscard]] std::string name(std::size_t part) const { return paths_[part].string(); }
+  [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
+
+ private:
+  const std::vector<fs::path>& paths_;
+  std::unique_ptr<StudyFile> open_;
+  std::size_t here_ = 0;
+};
+
+void check_same_study(const StudyFile& part, const Imprint& imprint, const std::string& first) {
+  const Imprint& its = part.imprint();
+  if (its.identity != imprint.identity)
+    throw InputError(
+        {.where = part.path().string(),
+         .got = "a part of another study (identity " + its.identity + ")",
+         .expected = "one of the study of " + first + " (identity " + imprint.identity + ")"});
+  if (to_json(its.columns) != to_json(imprint.columns))
+    throw InputError({.where = part.path().string(),
+                      .got = "other columns than " + first + ", by another version of asdic",
+                      .expected = "parts of one version"});
+}
+
+/// What a part holds, as stretches of indices.
+void add_pieces(std::size_t part, const std::vector<std::uint64_t>& index,
+                std::vector<Piece>& pieces) {
+  for (std::size_t row = 0; row < index.size(); ++row) {
+    if (row > 0 && index[row] == index[row - 1] + 1)
+      pieces.back().range.end = index[row] + 1;
+    else
+      pieces.push_back({part, row, {index[row], index[row] + 1}});
+  }
+}
+
+void check_once(const std::vector<Piece>& pieces, const Parts& parts) {
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const Piece &a = pieces[i - 1], &b = pieces[i];
+    if (b.range.first >= a.range.end) continue;
+    const IndexRange both{b.range.first, std::min(a.range.end, b.range.end)};
+    throw InputError({.where = parts.name(b.part),
+                      .got = "realisations " + index_text(both) + ", which are in " +
+                             parts.name(a.part) + " too",
+                      .expected = "every realisation in one part"});
+  }
+}
+
+void check_gaps(const IndexSet& missing, std::uint64_t count) {
+  if (missing.empty()) return;
+  throw InputError({.where = "merge",
+                    .got = "no part with " + std::to_string(missing.size()) + " of " +
+                           std::to_string(count) + " realisations: " + index_text(missing),
+                    .expected = "all of them, or --allow-gaps"});
+}
+
+/// A part that stopped early says so: what it lacks is missing, not forgotten.
+struct Gathered {
+  Imprint imprint;
+  std::vector<Piece> pieces;
+  std::vector<Session> sessions;
+};
+
+Gathered gather(Parts& parts) {
+  Gathered all;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const StudyFile& part = parts.at(p);
+    if (p == 0) all.imprint = part.imprint();
+    check_same_study(part, all.imprint, parts.name(0));
+    all.imprint.realisations = std::max(all.imprint.realisations, part.imprint().realisations);
+    part.verify();
+    add_pieces(p, part.index(), all.pieces);
+    for (const Session& session : part.sessions()) all.sessions.push_back(session);
+  }
+  std::stable_sort(all.pieces.begin(), all.pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.range.first < b.range.first; });
+  return all;
+}
+
+/// Appends the rows of one piece.
+void add_rows(Table& table, const Table& from, const Piece& piece) {
+  const auto cut = [&](auto& into, const auto& column) {
+    const auto begin = column.begin() + static_cast<std::ptrdiff_t>(piece.row);
+    into.insert(into.end(), begin, begin + static_cast<std::ptrdiff_t>(piece.range.size()));
+  };
+  cut(table.index, from.index);
+  cut(table.valid, from.valid);
+  for (std::size_t i = 0; i < table.values.size(); ++i) cut(table.values[i], from.values[i]);
+}
+
+/// Messages of skipped realisations are sorted by their number again.
+void sort_faults(std::vector<std::string>& faults) {
+  std::stable_sort(faults.begin(), faults.end(), [](const std::string& a, const std::string& b) {
+    return std::stoull(a) < std::stoull(b);
+  });
+  if (faults.size() > most_faults) faults.resize(most_faults);
+}
+
+/// The k-th kept time series: part and row there.
+struct Kept {
+  std::size_t part = 0, row = 0;
+};
+
+/// Everything but the summary, piece by piece.
+class PartsCollector {
+ public:
+  PartsCollector(Parts& parts, StudyResults& results, SeriesSource& series, const fs::path& folder)
+      : parts_(parts), results_(results), series_(series), folder_(folder) {}
+
+  void add(const Piece& piece);
+  [[nodiscard]] std::vector<CataloguePart> catalogue() && { return std::move(catalogue_); }
+  [[nodiscard]] std::vector<Kept> kept() && { return std::move(kept_); }
+
+ private:
+  void open(std::size_t part);
+
+  Parts& parts_;
+  StudyResults& results_;
+  SeriesSource& series_;
+  fs::path folder_;
+  std::vector<CataloguePart> catalogue_;
+  std::vector<Kept> kept_;
+  // of the part that is looked at
+  std::optional<std::size_t> here_;
+  Table table_;
+  std::vector<std::uint64_t> series_index_;
+  std::vector<std::int32_t> samples_;
+  std::vector<SeriesTiming> timing_;
+  Shape series_shape_;
+};
+
+void PartsCollector::open(std::size_t part) {
+  if (here_ == part) return;
+  const StudyFile& file = parts_.at(part);
+  table_ = file.table();
+  series_index_ = file.series_index();
+  series_shape_ = file.series_shape();
+  samples_ = series_index_.empty() ? std::vector<std::int32_t>{} : file.series_samples();
+  timing_ = file.series_timing();
+  here_ = part;
+}
+
+void PartsCollector::add(const Piece& piece) {
+  open(piece.part);
+  add_rows(results_.table, table_, piece);
+  const auto at = [&](std::uint64_t index) {
+    return static_cast<std::size_t>(
+        std::lower_bound(series_index_.begin(), series_index_.end(), index) -
+        series_index_.begin());
+  };
+  const std::size_t first = at(piece.range.first), end = at(piece.range.end);
+  for (std::size_t k = first; k < end; ++k) {
+    Shape shape(series_shape_.begin() + 1, series_shape_.end());
+    shape[sample_axis(shape)] = static_cast<std::size_t>(samples_[k]);
+    series_.index.push_back(series_index_[k]);
+    series_.shapes.push_back(std::move(shape));
+    series_.timing.push_back(timing_[k]);
+    kept_.push_back({piece.part, k});
+  }
+  std::error_code error;
+  const fs::path relative = fs::relative(parts_.name(piece.part), folder_, error);
+  catalogue_.push_back(
+      {.file = error || relative.empty() ? fs::absolute(parts_.name(piece.part)) : relative,
+       .first = piece.row,
+       .rows = piece.range.size(),
+       .first_series = first,
+       .series_rows = end - first,
+       .all_rows = table_.index.size(),
+       .series_shape = series_shape_.empty() ? Shape{0} : series_shape_});
+}
+
+}  // namespace
+
+MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
+                  const SummariseImprint& summarise, const MergeOptions& options) {
+  Parts parts(paths);
+  Gathered all = gather(parts);
+  check_once(all.pieces, parts);
+  const IndexRange range{0, all.imprint.realisations};
+  IndexSet there;
+  for (const Piece& piece : all.pieces) there.add(piece.range);
+  const IndexSet missing = there.missing(range);
+  if (!options.allow_gaps) check_gaps(missing, range.size());
+
+  StudyResults results{.imprint = all.imprint, .range = range, .sessions = all.sessions};
+  if (options.text) results.imprint.text = *options.text;
+  results.table.columns = all.imprint.columns;
+  results.table.values.resize(all.imprint.columns.size());
+  SeriesSource series;
+  PartsCollector collector(parts, results, series,
+                           output.target().has_parent_path() ? output.target().parent_path() : ".");
+  for (const Piece& piece : all.pieces) collector.add(piece);
+  std::vector<CataloguePart> catalogue = std::move(collector).catalogue();
+  const std::vector<Kept> kept = std::move(collector).kept();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (std::string& fault : parts.at(p).faults()) results.faults.push_back(std::move(fault));
+    sort_faults(results.faults);
+  }
+  series.pressure = [&](std::size_t k) { return parts.at(kept[k].part).series(kept[k].row); };
+  results.reuse = take_reuse(results.table);
+  results.summary = summarise(results.imprint, results.table);
+  if (options.copy) catalogue.clear();
+  write_study_file(output, results, series, catalogue);
+  MergeReport report{
+      .rows = results.table.index.size(), .realisations = range.size(), .missing = missing};
+  if (std::string mixed = mixed_builds(all.sessions); !mixed.empty())
+    report.warnings.push_back(std::move(mixed));
+  return report;
+}
+
+MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
+                  const SummariseImprint& summarise, const MergeOptions& options) {
+  OutputFile file(output, {.own = own::hdf5, .inputs = paths});
+  return merge(paths, file, summarise, options);
+}
+
+}  // namespace asdic::study

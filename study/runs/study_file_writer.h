@@ -1,0 +1,102 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/digest.h"
+#include "io/hdf5/scale.h"
+#include "study/runs/study_file.h"
+
+// Inside of write_study_file(), for its own .cpp files.
+namespace asdic::study {
+
+/// Writes the parts of a study's file one after the other, and notes each in the manifest.
+class StudyFileWriter {
+ public:
+  StudyFileWriter(const std::filesystem::path& path, const StudyResults& results,
+                  const std::vector<CataloguePart>& catalogue)
+      : file_(Hdf5File::create(path)), results_(results), catalogue_(catalogue) {}
+
+  void write(const SeriesSource& series) {
+    write_root();
+    write_table();
+    write_series(series);
+    write_summary();
+    write_manifest();
+    write_run();
+    file_.close();
+  }
+
+ private:
+  void write_root();
+  void write_table();
+  void write_series(const SeriesSource& series);
+  void write_summary();
+  std::string write_rows(const SummaryTable& table, const std::string& group);
+  void write_coordinates(const SummaryTable& table, const std::string& group);
+  void write_manifest();
+  void write_run();
+  void write_pressure(const SeriesSource& series, const Shape& row);
+
+  /// Notes a dataset in the manifest.
+  void note(const std::string& dataset, const Shape& shape, const std::string& sha256) {
+    noted_[dataset] = {.shape = shape, .sha256 = sha256};
+  }
+
+  /// A column, here or in the parts.
+  template <class T>
+  void column(const std::string& dataset, const std::vector<T>& values, T fill,
+              bool series = false) {
+    const Shape shape{values.size()};
+    if (catalogue_.empty()) {
+      file_.write<T>(dataset, values, shape);
+    } else {
+      std::vector<VirtualRows> parts;
+      for (const CataloguePart& part : catalogue_)
+        parts.push_back({.file = part.file,
+                         .dataset = "/" + dataset,
+                         .shape = {series ? part.series_shape.at(0) : part.all_rows},
+                         .first = series ? part.first_series : part.first,
+                         .rows = series ? part.series_rows : part.rows});
+      file_.write_virtual<T>(dataset, shape, parts, fill);
+    }
+    noted(dataset, values);
+  }
+
+  template <class T>
+  void noted(const std::string& dataset, const std::vector<T>& values) {
+    Digest digest;
+    digest.add(std::span<const T>(values));
+    note(dataset, {values.size()}, digest.text());
+  }
+
+  void text(const std::string& dataset, const std::string& value, const std::string& long_name) {
+    file_.write_text(dataset, value);
+    describe(file_, dataset, long_name);
+    Digest digest;
+    digest.add(std::span<const char>(value));
+    note(dataset, {}, digest.text());
+  }
+
+  /// "dB re 1 µPa" is units "dB", reference "1 µPa": UDUNITS has no words for it.
+  void describe_column(const std::string& dataset, const Column& column) {
+    constexpr std::string_view re = " re ";
+    const auto at = std::min(column.unit.find(re), column.unit.size());
+    const std::string reference = column.unit.substr(std::min(at + re.size(), column.unit.size()));
+    describe(file_, dataset, column.meaning, column.unit.substr(0, at), {.reference = reference});
+    if (!column.labels.empty()) file_.set_attribute(dataset, "labels", column.labels);
+  }
+
+  Hdf5File file_;
+  const StudyResults& results_;
+  const std::vector<CataloguePart>& catalogue_;
+  struct Noted {
+    Shape shape;
+    std::string sha256;
+  };
+  std::map<std::string, Noted> noted_;
+};
+
+}  // namespace asdic::study

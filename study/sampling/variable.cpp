@@ -1,0 +1,194 @@
+#include "study/sampling/variable.h"
+
+#include <algorithm>
+
+namespace asdic::study {
+namespace {
+
+std::string last_name(std::string_view key) { return std::string(key.substr(key.rfind('.') + 1)); }
+
+TomlValue array_of(std::span<const double> numbers, const std::string& origin) {
+  TomlValue::Array items;
+  for (const double x : numbers) items.push_back({.data = x, .origin = origin});
+  return {.data = std::move(items), .origin = origin};
+}
+
+// What each law takes and makes.
+
+std::size_t dimensions(const NumberLaw&) { return 1; }
+std::size_t dimensions(const ChoiceLaw& law) { return law.kind == ChoiceLaw::Kind::weighted; }
+std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
+std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
+
+std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
+  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .ends = law.law.ends()}};
+}
+
+std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
+  if (!law.by_row)
+    return {{.name = v.name,
+             .unit = law.labels.front().empty() ? v.unit
+                                                : "1",  // a choice among names is a number of it
+             .meaning = v.keys.front(),
+             .labels = law.labels.front()}};
+  std::vector<InputColumn> made;
+  for (std::size_t k = 0; k < v.keys.size(); ++k)
+    made.push_back({.name = v.name + '_' + last_name(v.keys[k]),
+                    .unit = "1",
+                    .meaning = v.keys[k],
+                    .labels = law.labels[k]});
+  return made;
+}
+
+std::vector<InputColumn> columns(const TrackLaw& law, const Variable& v) {
+  const std::string& key = v.keys.front();
+  std::vector<InputColumn> made{{.name = v.name + "_range",
+                                 .unit = "m",
+                                 .meaning = key + ": horizontal, from the centre",
+                                 .ends = law.range},
+                                {.name = v.name + "_bearing_deg",
+                                 .unit = "degrees",
+                                 .meaning = key + ": from the centre",
+                                 .ends = {degrees(law.bearing.low), degrees(law.bearing.high)}},
+                                {.name = v.name + "_depth",
+                                 .unit = "m",
+                                 .meaning = key + ": depth at the start",
+                                 .ends = law.depth}};
+  if (law.speed) {
+    made.push_back(
+        {.name = v.name + "_speed", .unit = "m/s", .meaning = key + ": speed", .ends = *law.speed});
+    made.push_back({.name = v.name + "_course_deg",
+                    .unit = "degrees",
+                    .meaning = key + ": course",
+                    .ends = {degrees(law.course.low), degrees(law.course.high)}});
+  }
+  return made;
+}
+
+std::vector<InputColumn> columns(const ModesLaw& law, const Variable& v) {
+  std::vector<InputColumn> made;
+  for (std::size_t k = 0; k < law.modes.size(); ++k)
+    made.push_back({.name = v.name + '_' + std::to_string(k + 1),
+                    .unit = "m/s",
+                    .meaning = "amplitude of mode " + std::to_string(k + 1)});
+  return made;
+}
+
+void values_of(const NumberLaw& law, std::span<const double> u, std::size_t,
+               std::vector<double>& values) {
+  values.push_back(law.law.quantile(u[0]));
+}
+
+void values_of(const ChoiceLaw& law, std::span<const double>, std::size_t choice,
+               std::vector<double>& values) {
+  for (std::size_t k = 0; k < law.labels.size(); ++k)
+    values.push_back(law.labels[k].empty() ? number_of(law.values[choice][k]).value_or(0.0)
+                                           : static_cast<double>(choice));
+}
+
+void values_of(const TrackLaw& law, std::span<const double> u, std::size_t,
+               std::vector<double>& values) {
+  const Span squared{law.range.low * law.range.low, law.range.high * law.range.high};
+  values.push_back(law.even_in_area ? std::sqrt(squared.at(u[0])) : law.range.at(u[0]));
+  values.push_back(degrees(law.bearing.at(u[1])));
+  values.push_back(law.depth.at(u[2]));
+  if (!law.speed) return;
+  values.push_back(law.speed->at(u[3]));
+  values.push_back(degrees(law.course.at(u[4])));
+}
+
+void values_of(const ModesLaw& law, std::span<const double> u, std::size_t,
+               std::vector<double>& values) {
+  for (std::size_t k = 0; k < law.amplitudes.size(); ++k)
+    values.push_back(law.amplitudes[k].quantile(u[k]));
+}
+
+void write(const NumberLaw&, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  for (const std::string& key : v.keys)
+    value_at(scenario, key, v.origin) = {.data = values[0], .origin = v.origin};
+}
+
+void write(const ChoiceLaw& law, const Variable& v, std::span<const double>, std::size_t choice,
+           TomlValue& scenario) {
+  for (std::size_t k = 0; k < v.keys.size(); ++k)
+    value_at(scenario, v.keys[k], v.origin) = law.values[choice][law.by_row ? k : 0];
+}
+
+void write(const TrackLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  const auto along = [](double bearing_deg) {
+    return Vec2(std::sin(radians(bearing_deg)), std::cos(radians(bearing_deg)));
+  };
+  const Vec2 place = law.centre + values[0] * along(values[1]);
+  for (const std::string& key : v.keys) {
+    const std::array<double, 3> position{place.x(), place.y(), values[2]};
+    value_at(scenario, key + ".position", v.origin) = array_of(position, v.origin);
+    if (!law.speed) continue;
+    const Vec2 moves = values[3] * along(values[4]);
+    const std::array<double, 3> velocity{moves.x(), moves.y(), 0.0};
+    value_at(scenario, key + ".velocity", v.origin) = array_of(velocity, v.origin);
+  }
+}
+
+void write(const ModesLaw& law, const Variable& v, std::span<const double> values, std::size_t,
+           TomlValue& scenario) {
+  std::vector<double> speed = law.mean;
+  for (std::size_t k = 0; k < law.modes.size(); ++k)
+    for (std::size_t i = 0; i < speed.size(); ++i) speed[i] += values[k] * law.modes[k][i];
+  TomlValue::Table table{{"kind", {.data = std::string("table"), .origin = v.origin}},
+                         {"interpolation", {.data = law.interpolation, .origin = v.origin}},
+                         {"depth", array_of(law.depth, v.origin)},
+                         {"speed", array_of(speed, v.origin)}};
+  for (const std::string& key : v.keys)
+    value_at(scenario, key, v.origin) = {.data = table, .origin = v.origin};
+}
+
+}  // namespace
+
+std::optional<double> number_of(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value.data))
+    return static_cast<double>(*integer);
+  if (const auto* real = std::get_if<double>(&value.data)) return *real;
+  return std::nullopt;
+}
+
+std::vector<InputColumn> input_columns(const Variable& variable) {
+  return std::visit([&](const auto& law) { return columns(law, variable); }, variable.law);
+}
+
+Span ends_of(std::span<const Variable> variables, std::string_view column) {
+  for (const Variable& variable : variables)
+    for (const InputColumn& input : input_columns(variable))
+      if (input.name == column) return input.ends;
+  return InputColumn{}.ends;
+}
+
+std::size_t dimensions_of(const Variable& variable, bool on_grid) {
+  if (on_grid && choices_of(variable) > 0) return 0;
+  return std::visit([](const auto& law) { return dimensions(law); }, variable.law);
+}
+
+std::size_t choices_of(const Variable& variable) {
+  const auto* choice = std::get_if<ChoiceLaw>(&variable.law);
+  return choice == nullptr ? 0 : choice->values.size();
+}
+
+std::size_t chosen(const Variable& variable, double u) {
+  const auto& cumulative = std::get<ChoiceLaw>(variable.law).cumulative;
+  const auto it = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
+  return static_cast<std::size_t>(it - cumulative.begin());
+}
+
+void append_values(const Variable& variable, std::span<const double> u, std::size_t choice,
+                   std::vector<double>& values) {
+  std::visit([&](const auto& law) { values_of(law, u, choice, values); }, variable.law);
+}
+
+void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
+           TomlValue& scenario) {
+  std::visit([&](const auto& law) { write(law, variable, values, choice, scenario); },
+             variable.law);
+}
+
+}  // namespace asdic::study

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/units.h"
+#include "io/text/toml_value.h"
+#include "study/sampling/law.h"
+
+namespace asdic::study {
+
+/// A number of a continuous law, the same at all keys.
+struct NumberLaw {
+  CutLaw law;
+};
+
+/// One of several values, each of any kind a scenario knows.
+struct ChoiceLaw {
+  enum class Kind {
+    weighted,  ///< drawn, by weights; an axis of the grid
+    in_turn,   ///< realisation i takes value i mod n; an axis of the grid
+  };
+  Kind kind = Kind::weighted;
+  std::vector<std::vector<TomlValue>> values;    ///< [choices][keys]
+  std::vector<double> cumulative;                ///< [choices] of the weights, the last one 1
+  bool by_row = false;                           ///< keys have values of their own, and columns
+  std::vector<std::vector<std::string>> labels;  ///< [columns][choices]; [columns][0] of numbers
+};
+
+/// Where something starts and how it goes: `position` and `velocity` below its key. Drawn evenly in
+/// range, or over the area.
+struct TrackLaw {
+  Vec2 centre = Vec2::Zero();  ///< east, north [m]
+  Span range, bearing;         ///< from the centre [m], [rad]
+  bool even_in_area = false;   ///< range as r², not as r
+  Span depth;                  ///< [m]
+  std::optional<Span> speed;   ///< [m/s]; none: velocity stays as it is
+  Span course{0.0, 2.0 * pi};  ///< [rad]
+};
+
+/// A mean profile and modes with independent normal amplitudes: c(z) = c̄(z) + Σ a_k φ_k(z).
+struct ModesLaw {
+  std::vector<double> depth;               ///< [levels] [m]
+  std::vector<double> mean;                ///< [levels] [m/s]
+  std::vector<std::vector<double>> modes;  ///< [modes][levels]
+  std::vector<CutLaw> amplitudes;          ///< [modes]
+  std::string interpolation;               ///< of the table that is made
+};
+
+using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw>;
+
+/// One input that varies from realisation to realisation: a key of the scenario (or several that
+/// move together) and the law that its values follow.
+struct Variable {
+  std::string name;               ///< of its column, or what its columns' names begin with
+  std::vector<std::string> keys;  ///< "target.0.strength_db"; paths as in --set
+  std::string unit;               ///< of its column
+  std::string origin;             ///< where it was written, "study.toml:12"
+  AnyLaw law;
+};
+
+/// A whole or real number as such; none for anything else.
+[[nodiscard]] std::optional<double> number_of(const TomlValue& value);
+
+/// What a column of an input is called and counted in.
+struct InputColumn {
+  std::string name, unit, meaning;
+  std::vector<std::string> labels;
+  /// Between which its values are drawn; infinite where the law has no end.
+  Span ends{-infinity, infinity};
+};
+[[nodiscard]] std::vector<InputColumn> input_columns(const Variable& variable);
+/// Between which the values of a column are drawn; infinite where it is none of an input.
+[[nodiscard]] Span ends_of(std::span<const Variable> variables, std::string_view column);
+
+/// Coordinates of the unit cube that a variable takes. \param on_grid  choices are axes
+[[nodiscard]] std::size_t dimensions_of(const Variable& variable, bool on_grid);
+/// Values that it has to choose from, 0: it is no choice.
+[[nodiscard]] std::size_t choices_of(const Variable& variable);
+/// Which of them a coordinate chooses. \param u  in (0, 1)
+[[nodiscard]] std::size_t chosen(const Variable& variable, double u);
+
+/// The values of its columns. \param u  [dimensions] in (0, 1); not of choices
+void append_values(const Variable& variable, std::span<const double> u, std::size_t choice,
+                   std::vector<double>& values);
+/// Writes them where its keys lead. \param values  [columns] \throws InputError
+void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
+           TomlValue& scenario);
+
+}  // namespace asdic::study

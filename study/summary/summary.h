@@ -1,0 +1,66 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/measures/realisation.h"
+
+namespace asdic::study {
+
+/// Rows of a study, by column; sorted by index.
+struct Table {
+  std::vector<Column> columns;
+  std::vector<std::uint64_t> index;         ///< [rows]
+  std::vector<std::uint8_t> valid;          ///< [rows]
+  std::vector<std::vector<double>> values;  ///< [columns][rows]
+};
+
+/// A table of the summary: columns of equal length ("pd_by_range": centre, count, pd, low, high).
+struct SummaryTable {
+  std::string name, title;
+  std::vector<Column> columns;
+  std::vector<std::vector<double>> values;  ///< [columns][rows]
+  std::vector<std::string> axes{};   ///< columns that tell which row it is: of one, its coordinate
+  std::vector<std::string> edges{};  ///< columns with the ends of the bins along them
+};
+
+/// All that [summary] asks for, out of the rows alone: the same bits for the same rows.
+[[nodiscard]] std::vector<SummaryTable> summarise(const Study& study, const Table& table);
+
+/// The tables, and what their intervals are.
+struct Summary {
+  std::vector<SummaryTable> tables{};
+  double confidence = 0.95;                    ///< of all intervals
+  std::string proportion_interval = "wilson";  ///< or "clopper_pearson"
+  std::string intervals{};                     ///< what they suppose, in a sentence
+};
+[[nodiscard]] Summary summary_of(const Study& study, const Table& table);
+
+/// The running answer to the study's first question (Pd, or the mean of the first measure).
+struct Estimate {
+  std::string name, unit;
+  double value = 0.0, low = 0.0, high = 0.0;  ///< with its confidence interval
+  double level = 0.95;
+  std::uint64_t count = 0;  ///< valid rows behind it
+};
+/// Accumulates rows one by one, in order of their index. Copyable; constant memory.
+class RunningEstimate {
+ public:
+  explicit RunningEstimate(const Study& study);
+  void add(const Row& row);
+  [[nodiscard]] std::optional<Estimate> estimate() const;  ///< none before two valid rows
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Valid rows in which the answer is not known or not finite: they do not count.
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
+
+ private:
+  std::string name_, unit_;
+  std::size_t column_ = 0;
+  bool proportion_ = false;
+  ProportionInterval interval_ = ProportionInterval::wilson;
+  double level_ = 0.95;
+  std::uint64_t count_ = 0, left_out_ = 0;
+  double mean_ = 0.0, squares_ = 0.0;  // Welford
+};
+
+}  // namespace asdic::study

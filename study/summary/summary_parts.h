@@ -1,0 +1,48 @@
+#pragma once
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "study/summary/summary.h"
+
+namespace asdic::study {
+
+// The tables of a summary, one function each. docs/theory/studies.md
+
+/// A measure that is 0 or 1, whose mean is a probability.
+[[nodiscard]] bool is_proportion(const Column& column) noexcept;
+/// "pd" of "detected", "pfa" of "false_alarm", with a target's suffix.
+[[nodiscard]] std::string proportion_name(const Column& column);
+/// The column that the study is about: the first proportion, else the first measure. None: no
+/// measures.
+[[nodiscard]] std::optional<std::size_t> first_question(std::span<const Column> columns) noexcept;
+
+/// "q0500" of 0.5, "q09999" of 0.9999: the probability's digits without its point, at least three
+/// behind it.
+[[nodiscard]] std::string quantile_name(double probability);
+
+/// \throws InputError where two columns of the rows, two tables of [summary], or two columns of one
+/// of these would have one name; names the entry of `by` that brings the second. \param study whole
+/// but for its rows
+void check_summary_names(const Study& study);
+
+/// Whether a row counts for a column: valid, and finite there.
+[[nodiscard]] bool counts(const Table& table, std::size_t row, std::size_t column) noexcept;
+
+/// Count, mean, deviation, interval of the mean, extremes and quantiles of every column.
+[[nodiscard]] SummaryTable statistics_table(const SummaryPlan& plan, const Table& table);
+/// Proportions and means of all measures along one axis or over two: "pd_by_range", …,
+/// "means_by_range".
+[[nodiscard]] std::vector<SummaryTable> tables_by(const Study& study,
+                                                  const std::vector<SummaryAxis>& axes,
+                                                  const Table& table);
+/// Receiver operating characteristic of each target's matched filter, and the area under it.
+[[nodiscard]] std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table);
+/// The first question's estimate after ever more rows.
+[[nodiscard]] std::vector<SummaryTable> convergence_table(const SummaryPlan& plan,
+                                                          const Table& table);
+/// How much every measure depends on every input.
+[[nodiscard]] std::vector<SummaryTable> sensitivity_table(const SummaryPlan& plan,
+                                                          const Table& table);
+
+}  // namespace asdic::study
