@@ -17,7 +17,7 @@
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
 #include "io/output/own_files.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 
 namespace asdic::app {
 namespace {

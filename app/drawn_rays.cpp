@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/ray_path.h"
+#include "raytrace/paths/trace_ray.h"
 #include "sonar/scenario/geometry.h"
 
 namespace asdic::app {

@@ -10,7 +10,7 @@
 #include "io/compare/statistics.h"
 #include "io/environment_group.h"
 #include "io/scenario/propagation.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 
 namespace asdic::app {
 namespace {

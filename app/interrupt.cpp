@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "app/console.h"
-#include "raytrace/stop.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic::app {
 namespace {

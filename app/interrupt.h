@@ -40,8 +40,8 @@ class StopOnInterrupt {
   std::jthread watcher_;
 };
 
-/// Does some work, which the first such signal ends (raytrace/stop.h). \throws Interrupted if it
-/// did
+/// Does some work, which the first such signal ends (raytrace/parallel/stop.h). \throws Interrupted
+/// if it did
 void until_interrupted(const std::function<void()>& work);
 
 }  // namespace asdic::app

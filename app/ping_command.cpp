@@ -19,8 +19,8 @@
 #include "core/error.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "raytrace/stop.h"
 
 namespace asdic::app {
 namespace {

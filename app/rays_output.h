@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "app/output.h"
-#include "raytrace/propagation_case.h"
-#include "raytrace/ray_path.h"
+#include "raytrace/cases/propagation_case.h"
+#include "raytrace/paths/trace_ray.h"
 
 namespace asdic::app {
 

@@ -12,7 +12,7 @@
 #include "app/field_output.h"
 #include "io/result_file.h"
 #include "io/wav.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 
 namespace asdic::app {
 namespace {

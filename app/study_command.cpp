@@ -12,8 +12,8 @@
 #include "app/study_progress.h"
 #include "app/warn.h"
 #include "core/error.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "raytrace/stop.h"
 
 namespace asdic::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
 #include "io/text/material_text.h"
-#include "raytrace/runs/memory.h"
+#include "raytrace/cases/memory.h"
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stream.h"
 #include "sonar/scenario/sampling.h"

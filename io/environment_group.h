@@ -1,6 +1,6 @@
 #pragma once
 #include "io/hdf5_file.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

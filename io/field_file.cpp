@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "io/finite_field.h"
 #include "io/hdf5/scale.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 
 namespace asdic {
 namespace {

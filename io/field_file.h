@@ -6,7 +6,7 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/hdf5_file.h"
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/signal/complex_product.h"
 
 namespace asdic {

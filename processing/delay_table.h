@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 

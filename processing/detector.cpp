@@ -13,7 +13,7 @@
 #include "processing/echo_pointing.h"
 #include "processing/peak_cluster.h"
 #include "processing/threshold_probes.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "raytrace/propagation.h"
 
 namespace asdic {

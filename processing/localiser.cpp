@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "raytrace/environment.h"
-#include "raytrace/ray_path.h"
+#include "raytrace/ocean/environment.h"
+#include "raytrace/paths/trace_ray.h"
 #include "sonar/scenario/geometry.h"
 
 namespace asdic {

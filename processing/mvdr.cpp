@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 namespace {

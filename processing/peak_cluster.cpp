@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "processing/listening_band.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/geometry.h"
 #include "sonar/scenario/transmission.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "raytrace/beams/field_run.h"
+#include "raytrace/cases/memory.h"
 #include "raytrace/runs/arrivals_run.h"
-#include "raytrace/runs/memory.h"
+#include "raytrace/runs/field_run.h"
 #include "raytrace/runs/rays_run.h"
 
 namespace asdic {

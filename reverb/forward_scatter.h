@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/arrivals.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

@@ -3,7 +3,7 @@
 
 core <- raytrace <- reverb <- sonar <- processing <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
-Parallel loops are raytrace/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
+Parallel loops are raytrace/parallel/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
 instruction level (core/level_namespace.h) is included by sources that are compiled once a level (LEVELS in CMakeLists.txt) alone.
 """
 import pathlib
@@ -13,6 +13,7 @@ import sys
 ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"]
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
     "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
+    "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "like_bellhop", "runs", "warnings", ""],
     "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -39,8 +40,8 @@ def faults():
                     elif ORDER.index(top) > ORDER.index(folder):
                         yield f"{name}: includes {header}, but {folder} comes before {top}"
                     continue
-                if header.endswith("tbb/parallel_for.h") and str(name) != "raytrace/parallel.cpp":
-                    yield f"{name}: <{header}> belongs in raytrace/parallel.cpp; loops are in_parallel() of raytrace/parallel.h"
+                if header.endswith("tbb/parallel_for.h") and str(name) != "raytrace/parallel/parallel.cpp":
+                    yield f"{name}: <{header}> belongs in raytrace/parallel/parallel.cpp; loops are in_parallel() of raytrace/parallel/parallel.h"
                 if header.startswith("CLI/") and str(name) != "app/command.cpp":
                     yield f"{name}: <{header}> belongs in app/command.cpp, which alone takes seconds to compile"
                 for prefix, homes in HOMES.items():

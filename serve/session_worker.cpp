@@ -2,8 +2,8 @@
 
 #include <chrono>
 
+#include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "raytrace/stop.h"
 
 namespace asdic::serve {
 namespace {

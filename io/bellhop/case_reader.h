@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic::bellhop {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/text/toml_table.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

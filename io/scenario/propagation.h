@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "io/text/toml_table.h"
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
 namespace asdic {

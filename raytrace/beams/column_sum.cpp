@@ -5,7 +5,7 @@
 
 #include "raytrace/beams/crossing.h"
 #include "raytrace/beams/geometric.h"
-#include "raytrace/beams/lanes.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 

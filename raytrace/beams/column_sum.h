@@ -9,7 +9,7 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
-#include "raytrace/beams/lanes.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "raytrace/beams/column_sum.h"
-#include "raytrace/beams/lanes.h"
+#include "raytrace/math/lanes.h"
 
 // Gaussians of constant width along evenly spaced rows: their logarithm is a polynomial of second
 // degree in the depth, so that each group of rows follows from the one before by multiplications.

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "raytrace/beams/column_sum.h"
-#include "raytrace/beams/lanes.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 

@@ -3,7 +3,7 @@
 
 #include "raytrace/beams/column_sum.h"
 #include "raytrace/beams/geometric.h"
-#include "raytrace/beams/lanes.h"
+#include "raytrace/math/lanes.h"
 
 // What the loops over receivers need, for all crossings of a beam: loops that the compiler
 // vectorises.

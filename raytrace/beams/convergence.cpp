@@ -422,6 +422,11 @@ bool DoublingsInVain::add(std::size_t beams, const std::vector<double>& errors, 
   return in_vain_ >= 2;
 }
 
+bool has_error_bound(const PropagationCase& run_case) noexcept {
+  const BeamKind kind = run_case.beams.kind;
+  return !run_case.receivers.irregular && (kind == BeamKind::hat || kind == BeamKind::gaussian);
+}
+
 ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan& field_of,
                                const LevelRays& level, double source_depth, FanProgress* progress) {
   const BeamSettings& beams = run_case.beams;

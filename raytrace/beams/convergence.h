@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/beam_error_text.h"
 #include "raytrace/beams/fan.h"
+#include "raytrace/beams/fan_field.h"
 #include "raytrace/beams/fan_progress.h"
-#include "raytrace/beams/field_run.h"
-#include "raytrace/tracing/level_rays.h"
+#include "raytrace/cases/beam_error_text.h"
+#include "raytrace/ocean/level_rays.h"
 
 namespace asdic {
 

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "raytrace/beams/beam.h"
+#include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/ray_trajectory.h"
 #include "raytrace/tracing/reflected.h"
-#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 

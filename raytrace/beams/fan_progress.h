@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "raytrace/propagation.h"
+#include "raytrace/parallel/progress.h"
 
 namespace asdic {
 

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "raytrace/beams/arc.h"
-#include "raytrace/beams/lanes.h"
-#include "raytrace/layered/lane_math.h"
+#include "raytrace/math/lane_math.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 

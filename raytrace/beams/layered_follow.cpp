@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "raytrace/beams/arc.h"
-#include "raytrace/beams/lanes.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/math/lanes.h"
 
 // A ray from layer to layer: what LayeredCrossings knows of it before it looks at columns.
 namespace asdic {

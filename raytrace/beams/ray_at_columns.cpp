@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "raytrace/beams/geometric.h"
-#include "raytrace/beams/lanes.h"
 #include "raytrace/beams/larger.h"
 #include "raytrace/beams/tube_error.h"
+#include "raytrace/math/lanes.h"
 
 // What a ray foretells of its neighbours where it crosses the columns.
 namespace asdic {

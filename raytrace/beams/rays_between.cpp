@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/beams/lanes.h"
 #include "raytrace/beams/larger.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 namespace {

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "raytrace/beams/crossings.h"
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic {
 

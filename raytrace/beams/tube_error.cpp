@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "raytrace/beams/geometric.h"
-#include "raytrace/beams/lanes.h"
 #include "raytrace/beams/larger.h"
+#include "raytrace/math/lanes.h"
 
 namespace asdic {
 

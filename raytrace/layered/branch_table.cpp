@@ -6,8 +6,8 @@
 
 #include "core/units.h"
 #include "raytrace/layered/column_lanes.h"
-#include "raytrace/layered/hermite.h"
 #include "raytrace/layered/stretch_splitter.h"
+#include "raytrace/math/hermite.h"
 
 namespace asdic {
 

@@ -8,10 +8,10 @@
 
 #include "raytrace/layered/branch.h"
 #include "raytrace/layered/column.h"
-#include "raytrace/layered/hermite.h"
 #include "raytrace/layered/ocean_fan.h"
 #include "raytrace/layered/ocean_series.h"
-#include "raytrace/path_limits.h"
+#include "raytrace/math/hermite.h"
+#include "raytrace/ocean/path_limits.h"
 
 namespace asdic {
 

@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/environment.h"
 #include "raytrace/layered/layer.h"
 #include "raytrace/layered/layer_pass.h"
 #include "raytrace/layered/ray_parameter.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

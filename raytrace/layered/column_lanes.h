@@ -1,7 +1,7 @@
 #pragma once
 #include "core/level_namespace.h"
 #include "raytrace/layered/column.h"
-#include "raytrace/layered/lane_math.h"
+#include "raytrace/math/lane_math.h"
 
 namespace asdic {
 

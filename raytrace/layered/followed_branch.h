@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

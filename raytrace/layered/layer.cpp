@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/layered/gauss_legendre.h"
 #include "raytrace/layered/water_lanes.h"
+#include "raytrace/math/gauss_legendre.h"
 
 namespace asdic {
 namespace {

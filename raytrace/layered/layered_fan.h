@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "raytrace/layered/column.h"
-#include "raytrace/layered/lane_math.h"
 #include "raytrace/layered/path_builder.h"
-#include "raytrace/ray_fan.h"
+#include "raytrace/layered/ray_at_range.h"
+#include "raytrace/math/lane_math.h"
 
 namespace asdic {
 

@@ -7,7 +7,7 @@
 
 #include "core/level_namespace.h"
 #include "raytrace/layered/column_lanes.h"
-#include "raytrace/layered/polynomial_fit.h"
+#include "raytrace/math/polynomial_fit.h"
 
 namespace asdic {
 

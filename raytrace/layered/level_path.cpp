@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/tracing/level_rays.h"
-#include "raytrace/tracing/tube_amplitude.h"
+#include "raytrace/ocean/level_rays.h"
+#include "raytrace/ocean/tube_amplitude.h"
 
 namespace asdic {
 namespace {

@@ -2,8 +2,8 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 #include "raytrace/layered/reflection_lanes.h"
-#include "raytrace/tracing/tube_amplitude.h"
+#include "raytrace/ocean/tube_amplitude.h"
 
 namespace asdic {
 namespace {

@@ -1,11 +1,11 @@
 #pragma once
 #include <span>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/environment.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/layered/reflection_lanes.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

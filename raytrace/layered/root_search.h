@@ -7,9 +7,9 @@
 #include "core/level_namespace.h"
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/layered/column_lanes.h"
-#include "raytrace/layered/hermite.h"
 #include "raytrace/layered/leg_series.h"
 #include "raytrace/layered/ocean_series.h"
+#include "raytrace/math/hermite.h"
 
 namespace asdic {
 

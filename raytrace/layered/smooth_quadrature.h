@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 
-#include "raytrace/layered/gauss_legendre.h"
 #include "raytrace/layered/layer.h"
 #include "raytrace/layered/ray_parameter.h"
 #include "raytrace/layered/speed_drop.h"
+#include "raytrace/math/gauss_legendre.h"
 
 namespace asdic {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "raytrace/layered/arc_series.h"
+#include "raytrace/math/arc_series.h"
 
 namespace asdic {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "raytrace/cases/propagation_case.h"
 #include "raytrace/like_bellhop/literal_ray.h"
-#include "raytrace/propagation_case.h"
 
 namespace asdic::like_bellhop {
 

@@ -1,7 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "raytrace/propagation.h"
+#include "raytrace/cases/propagation_case.h"
+#include "raytrace/cases/propagation_result.h"
+#include "raytrace/parallel/progress.h"
 
 namespace asdic {
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "raytrace/cases/propagation_case.h"
 #include "raytrace/like_bellhop/step.h"
-#include "raytrace/propagation_case.h"
 
 namespace asdic::like_bellhop {
 

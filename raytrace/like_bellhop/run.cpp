@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "core/error.h"
+#include "raytrace/cases/memory.h"
 #include "raytrace/like_bellhop/fan.h"
 #include "raytrace/like_bellhop/results.h"
 #include "raytrace/like_bellhop/sinks.h"
 #include "raytrace/like_bellhop/trace.h"
-#include "raytrace/parallel.h"
-#include "raytrace/runs/memory.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 namespace like_bellhop {

@@ -2,8 +2,8 @@
 #include <compare>
 #include <vector>
 
-#include "raytrace/arrivals.h"
 #include "raytrace/like_bellhop/beam.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic::like_bellhop {
 

@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic::like_bellhop {
 

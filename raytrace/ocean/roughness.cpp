@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/math/gauss_legendre.h"
 
 namespace asdic {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
+#include "raytrace/ocean/level_rays.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/paths/drawn_path.h"
 #include "raytrace/runs/checks.h"
-#include "raytrace/runs/drawn_path.h"
 #include "raytrace/runs/rays_run.h"
 #include "raytrace/runs/single_beam.h"
-#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 namespace asdic {

@@ -1,6 +1,8 @@
 #pragma once
-#include "raytrace/eigenrays.h"
-#include "raytrace/propagation.h"
+#include "raytrace/cases/propagation_case.h"
+#include "raytrace/cases/propagation_result.h"
+#include "raytrace/parallel/progress.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 

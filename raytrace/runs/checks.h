@@ -1,5 +1,5 @@
 #pragma once
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "raytrace/beams/fan.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "raytrace/tracing/reflected.h"
 
 namespace asdic {

@@ -2,7 +2,9 @@
 #include <optional>
 
 #include "raytrace/beams/convergence.h"
-#include "raytrace/propagation.h"
+#include "raytrace/cases/propagation_case.h"
+#include "raytrace/cases/propagation_result.h"
+#include "raytrace/parallel/progress.h"
 
 namespace asdic {
 

@@ -7,10 +7,10 @@
 
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/fan.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/parallel.h"
+#include "raytrace/ocean/level_rays.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/runs/image_field.h"
-#include "raytrace/tracing/level_rays.h"
 
 namespace asdic {
 namespace {

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/paths/drawn_path.h"
 #include "raytrace/runs/checks.h"
-#include "raytrace/runs/drawn_path.h"
 #include "raytrace/runs/single_beam.h"
 
 namespace asdic {

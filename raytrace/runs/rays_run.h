@@ -1,5 +1,7 @@
 #pragma once
-#include "raytrace/propagation.h"
+#include "raytrace/cases/propagation_case.h"
+#include "raytrace/cases/propagation_result.h"
+#include "raytrace/parallel/progress.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/ground_paths.h"
+#include "raytrace/ocean/ground_level.h"
 #include "raytrace/tracing/fan_ray.h"
 
 namespace asdic {

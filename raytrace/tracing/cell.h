@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
 namespace asdic::tracing {

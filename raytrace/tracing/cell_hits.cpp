@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/layered/hermite.h"
-#include "raytrace/layered/monotone_root.h"
+#include "raytrace/math/hermite.h"
+#include "raytrace/math/monotone_root.h"
+#include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/fan_splitting.h"
-#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {

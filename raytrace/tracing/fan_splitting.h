@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "raytrace/parallel.h"
-#include "raytrace/stop.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/tracing/search_watch.h"
 
 namespace asdic {

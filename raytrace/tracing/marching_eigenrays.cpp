@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/ocean/level_rays.h"
 #include "raytrace/tracing/fan_splitting.h"
-#include "raytrace/tracing/level_rays.h"
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
 

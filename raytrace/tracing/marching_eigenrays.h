@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "raytrace/tracing/receiver_columns.h"
 #include "raytrace/tracing/search_watch.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "raytrace/layered/hermite.h"
+#include "raytrace/math/hermite.h"
 #include "raytrace/tracing/neighbours.h"
 
 namespace asdic {

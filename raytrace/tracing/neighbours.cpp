@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/layered/hermite.h"
+#include "raytrace/math/hermite.h"
 
 namespace asdic {
 

@@ -4,7 +4,7 @@
 #include <experimental/simd>
 #include <utility>
 
-#include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/math/gauss_legendre.h"
 #include "raytrace/tracing/power_series_terms.h"
 
 namespace asdic::tracing {

@@ -2,7 +2,7 @@
 #include <memory>
 #include <span>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
 namespace asdic {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/neighbours.h"
-#include "raytrace/tracing/tube_amplitude.h"
 
 namespace asdic {
 namespace {

@@ -2,8 +2,8 @@
 #include <deque>
 #include <functional>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/layered/hermite.h"
+#include "raytrace/math/hermite.h"
+#include "raytrace/ocean/arrivals.h"
 #include "raytrace/tracing/fan_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_family.h"

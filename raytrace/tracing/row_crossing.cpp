@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/math/gauss_legendre.h"
 
 namespace asdic::tracing {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 /// What a user should know of an ocean or a run before he trusts a number, in one line each: "KEY:
 /// what is the matter". Every check is a file of this folder (and of sonar/warnings, for what only

@@ -1,6 +1,6 @@
 #pragma once
-#include "raytrace/arrivals.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 

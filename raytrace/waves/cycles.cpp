@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
-#include "raytrace/stop.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/waves/diffraction.h"
 #include "raytrace/waves/make_wave.h"
 #include "raytrace/waves/ray_errors.h"

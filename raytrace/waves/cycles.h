@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/eigenrays.h"
 #include "raytrace/layered/branch.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/waves/water_window.h"
 
 namespace asdic {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
-#include "raytrace/stop.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/waves/water_window.h"
 
 namespace asdic {

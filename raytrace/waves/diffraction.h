@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 

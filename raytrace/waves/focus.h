@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "raytrace/arrivals.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/ocean/arrivals.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <complex>
 
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "raytrace/waves/depth_wave.h"
 
 namespace asdic {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
-#include "raytrace/propagation.h"
-#include "raytrace/stop.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/parallel/progress.h"
+#include "raytrace/parallel/stop.h"
 #include "raytrace/waves/range_sum.h"
 
 namespace asdic {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <variant>
 
-#include "raytrace/layered/gauss_legendre.h"
+#include "raytrace/math/gauss_legendre.h"
 #include "raytrace/ocean/roughness.h"
 #include "reverb/scattering/geometry.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/normal.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
 namespace asdic {

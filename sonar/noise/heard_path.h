@@ -1,6 +1,6 @@
 #pragma once
 #include "core/units.h"
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/noise/interference_stretch.h"
 #include "sonar/signal/fractional_delay.h"
 

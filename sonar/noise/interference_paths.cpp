@@ -6,7 +6,7 @@
 #include <complex>
 #include <utility>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "reverb/scatterer_field.h"
 #include "sonar/noise/interference_stretch.h"
 #include "sonar/noise/noise_spectrum.h"

@@ -7,7 +7,7 @@
 
 #include "core/normal.h"
 #include "core/units.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 

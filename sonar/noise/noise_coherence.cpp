@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse.h"
 

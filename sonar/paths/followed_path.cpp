@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/tracing/tube_amplitude.h"
+#include "raytrace/ocean/tube_amplitude.h"
 
 namespace asdic {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 #include "raytrace/tracing/ray_tracer.h"
 
 namespace asdic {

@@ -1,5 +1,5 @@
 #pragma once
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic {
 

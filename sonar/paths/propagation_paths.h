@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/propagation_memory.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 #include "sonar/paths/reuse.h"
 #include "sonar/scenario/scenario.h"
 

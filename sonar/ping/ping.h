@@ -4,7 +4,7 @@
 #include <stop_token>
 
 #include "core/memory_budget.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 #include "sonar/echoes/echo.h"
 #include "sonar/noise/ambient_noise.h"
 #include "sonar/noise/interference.h"

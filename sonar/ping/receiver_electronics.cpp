@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
 namespace asdic {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "raytrace/stop.h"
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stream.h"
 

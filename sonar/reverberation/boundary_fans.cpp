@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 
 namespace asdic {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/memory_budget.h"
-#include "raytrace/ground_paths.h"
+#include "raytrace/paths/ground_paths.h"
 #include "sonar/paths/propagation_paths.h"
 
 namespace asdic {

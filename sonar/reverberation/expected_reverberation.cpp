@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/grouped.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/path_interference.h"
 
 namespace asdic {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/paths/moving_paths.h"
 
 namespace asdic {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/grouped.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/delay_bins.h"
 #include "sonar/reverberation/stretch_covariance.h"
 

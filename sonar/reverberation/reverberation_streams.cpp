@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "reverb/uniform_of_bits.h"
 #include "sonar/reverberation/delay_bins.h"
 #include "sonar/reverberation/heard_places.h"

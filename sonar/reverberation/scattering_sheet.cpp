@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "raytrace/stop.h"
+#include "raytrace/parallel/stop.h"
 #include "reverb/uniform_of_bits.h"
 
 namespace asdic {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/interferer.h"
 #include "sonar/scenario/noise_settings.h"

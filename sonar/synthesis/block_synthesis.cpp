@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/sound_synthesis.h"
 #include "sonar/synthesis/spectrum_product.h"
 #include "sonar/synthesis/synthesis_bytes.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/block_synthesis.h"
 #include "sonar/synthesis/spectrum_product.h"
 

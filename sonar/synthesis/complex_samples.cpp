@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"

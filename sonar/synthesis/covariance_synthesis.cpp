@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/normal.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/reverberation_covariance.h"
 #include "sonar/signal/pulse_spectrum.h"
 #include "sonar/synthesis/own_grid.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/signal/phase_turn.h"
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/signal/phase_turn.h"
 
 namespace asdic {

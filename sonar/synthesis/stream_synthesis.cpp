@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/normal.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/reverberation_covariance.h"
 #include "sonar/reverberation/reverberation_streams.h"
 #include "sonar/signal/band_response.h"

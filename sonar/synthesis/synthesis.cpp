@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/units.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/synthesis_plan.h"
 
 namespace asdic {

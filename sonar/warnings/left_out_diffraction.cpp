@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/waves/diffraction.h"
 #include "sonar/paths/propagation_paths.h"
 #include "sonar/scenario/geometry.h"

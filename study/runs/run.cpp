@@ -7,8 +7,8 @@
 #include <exception>
 #include <memory>
 
+#include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "raytrace/stop.h"
 
 namespace asdic::study {
 namespace {

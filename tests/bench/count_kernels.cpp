@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/beams/field_run.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ray_fan.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ray_fan.h"
+#include "raytrace/runs/field_run.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "sonar/noise/block_noise.h"
 #include "sonar/noise/noise_spectrum.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "io/bellhop/case_reader.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/runs/field_run.h"
 
 // The coherent field of 5000 beams on 501 × 201 receivers to 100 km, tracing and accumulation;
 // threads as told. BELLHOP on one core of the same class of machine: hat 0.63 s, Gaussian 1.8 s, at

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
-#include "raytrace/ray_fan.h"
-#include "raytrace/ray_path.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ground_paths.h"
+#include "raytrace/paths/ray_fan.h"
+#include "raytrace/paths/trace_ray.h"
 #include "raytrace/runs/arrivals_run.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/deep_ocean.h"

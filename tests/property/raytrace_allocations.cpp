@@ -8,8 +8,8 @@
 
 #include "core/units.h"
 #include "raytrace/beams/layered_crossings.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ray_fan.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ray_fan.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/deep_ocean.h"

@@ -7,8 +7,9 @@
 
 #include "core/error.h"
 #include "raytrace/beams/convergence.h"
-#include "raytrace/beams/field_run.h"
 #include "raytrace/beams/layered_crossings.h"
+#include "raytrace/propagation.h"
+#include "raytrace/runs/field_run.h"
 
 // Laws of fields: the fast way is the plain way, and the number of threads changes no bit.
 namespace asdic {

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "raytrace/beams/convergence.h"
-#include "raytrace/beams/field_run.h"
 #include "raytrace/beams/rays_between.h"
+#include "raytrace/runs/field_run.h"
 #include "raytrace/runs/path_field.h"
 
 // Fields with less tracing: rays between traced ones, and sums of paths instead of beams.

@@ -6,7 +6,7 @@
 
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/convergence.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/runs/field_run.h"
 
 // Fields at receivers on the surface and on the bottom (boundary_rows.h).
 namespace asdic {

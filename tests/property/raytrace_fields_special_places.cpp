@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "raytrace/beams/convergence.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/ocean/level_rays.h"
+#include "raytrace/propagation.h"
 #include "raytrace/runs/arrivals_run.h"
-#include "raytrace/tracing/level_rays.h"
+#include "raytrace/runs/field_run.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 // Fields of sources and at receivers where rays have something special to them: kinks of the sound

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 namespace {

@@ -1,4 +1,4 @@
-#include "raytrace/ground_paths.h"
+#include "raytrace/paths/ground_paths.h"
 
 #include <gtest/gtest.h>
 

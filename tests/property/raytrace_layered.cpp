@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
 #include "raytrace/layered/branch_table.h"
-#include "raytrace/ray_path.h"
-#include "raytrace/tracing/tube_amplitude.h"
+#include "raytrace/ocean/tube_amplitude.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ground_paths.h"
+#include "raytrace/paths/trace_ray.h"
 #include "support/test_id.h"
 
 namespace asdic {

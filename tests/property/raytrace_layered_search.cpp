@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
 #include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/leg_series.h"
 #include "raytrace/layered/reflection_lanes.h"
+#include "raytrace/paths/eigenrays.h"
 #include "support/fan_intervals.h"
 #include "support/test_id.h"
 

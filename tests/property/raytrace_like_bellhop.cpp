@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "raytrace/beams/fan.h"
-#include "raytrace/beams/field_run.h"
 #include "raytrace/like_bellhop/like_bellhop.h"
+#include "raytrace/propagation.h"
+#include "raytrace/runs/field_run.h"
 #include "raytrace/runs/rays_run.h"
 
 // Laws of the literal run: what it must keep however BELLHOP does it.

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
-#include "raytrace/ray_path.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ground_paths.h"
+#include "raytrace/paths/trace_ray.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/oceans.h"
 #include "support/plain_rays.h"

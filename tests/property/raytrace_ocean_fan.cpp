@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "raytrace/eigenrays.h"
 #include "raytrace/layered/branch_table.h"
+#include "raytrace/paths/eigenrays.h"
 #include "support/deep_ocean.h"
 #include "support/fan_intervals.h"
 

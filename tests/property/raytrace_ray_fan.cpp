@@ -1,4 +1,4 @@
-#include "raytrace/ray_fan.h"
+#include "raytrace/paths/ray_fan.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
 #include "raytrace/layered/branch_table.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "raytrace/tracing/ray_tracer.h"
 #include "support/deep_ocean.h"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "raytrace/eigenrays.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/propagation.h"
 
 namespace asdic {

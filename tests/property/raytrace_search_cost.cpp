@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "raytrace/eigenrays.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 #include "support/deep_ocean.h"
 #include "support/oceans.h"

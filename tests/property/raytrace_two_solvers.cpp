@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
 // Where both solvers apply they agree to rounding: layered oceans under every law of the profile.

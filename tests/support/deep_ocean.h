@@ -2,7 +2,7 @@
 #include <string_view>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic::support {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic::support {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic::support {
 

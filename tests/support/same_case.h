@@ -2,7 +2,7 @@
 #include <sstream>
 #include <string>
 
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic::support {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 #include "support/oceans.h"
 
 namespace asdic::support {

@@ -3,7 +3,7 @@
 #include <complex>
 
 #include "core/units.h"
-#include "raytrace/arrivals.h"
+#include "raytrace/ocean/arrivals.h"
 
 namespace asdic::support {
 

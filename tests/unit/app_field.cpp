@@ -5,7 +5,7 @@
 
 #include "io/field_file.h"
 #include "io/result_file.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 #include "support/left_of.h"
 #include "support/program.h"
 

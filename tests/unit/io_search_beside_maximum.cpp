@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/scenario_reader.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/finite_field.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario_reader.h"
-#include "raytrace/beam_error_text.h"
+#include "raytrace/cases/beam_error_text.h"
 #include "raytrace/propagation.h"
 #include "raytrace/warnings/warnings.h"
 #include "support/plain_sea.h"

@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "raytrace/beam_error_text.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/fan_progress.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/cases/beam_error_text.h"
+#include "raytrace/runs/field_run.h"
 
 // How sure a field is of its number of beams, when no more are taken, and what is told meanwhile.
 namespace asdic {

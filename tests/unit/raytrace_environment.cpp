@@ -1,4 +1,4 @@
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/propagation_case.h"
+#include "raytrace/cases/propagation_case.h"
 
 namespace asdic {
 namespace {

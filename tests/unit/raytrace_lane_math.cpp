@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "raytrace/layered/lane_math.h"
+#include "raytrace/math/lane_math.h"
 
 namespace asdic {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "raytrace/environment.h"
+#include "raytrace/ocean/environment.h"
 
 namespace asdic {
 namespace {

@@ -1,4 +1,4 @@
-#include "raytrace/tracing/tube_amplitude.h"
+#include "raytrace/ocean/tube_amplitude.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 namespace {

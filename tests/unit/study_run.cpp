@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "raytrace/parallel.h"
+#include "raytrace/parallel/parallel.h"
 #include "study/runs/run.h"
 
 namespace asdic::study {

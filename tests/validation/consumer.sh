@@ -29,7 +29,7 @@ cat >"$prefix/mine/main.cpp" <<'CPP'
 
 #include "core/random.h"
 #include "io/scenario_reader.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 #include "reverb/scattering/lambert.h"
 #include "serve/token.h"
 #include "sonar/ping/ping.h"

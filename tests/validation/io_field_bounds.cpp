@@ -9,7 +9,7 @@
 #include "io/bellhop/case_reader.h"
 #include "raytrace/beams/convergence.h"
 #include "raytrace/beams/fan.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/runs/field_run.h"
 
 // The error bound of the number of beams on the reference cases (tests/data/bellhop): the truth is
 // a fan eight times as dense. docs/theory/fields.md

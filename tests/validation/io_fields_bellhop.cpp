@@ -10,7 +10,7 @@
 #include "io/bellhop/results.h"
 #include "io/compare/fields.h"
 #include "raytrace/beams/fan.h"
-#include "raytrace/beams/field_run.h"
+#include "raytrace/runs/field_run.h"
 
 // Fields of our own tracer beside what BELLHOP converges to (tests/data/bellhop; the docs are
 // docs/theory/fields.md and docs/guide/from-bellhop.md). Bounds are as asked: a figure may be as

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "raytrace/propagation.h"
 #include "raytrace/runs/arrivals_run.h"
 
 // A beach: the sea floor comes up to the surface. In uniform water such a wedge unfolds about its

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/units.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ground_paths.h"
 #include "support/csv.h"
 #include "support/integrator.h"
 

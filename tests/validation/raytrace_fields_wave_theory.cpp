@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "raytrace/beams/fan.h"
-#include "raytrace/beams/field_run.h"
 #include "raytrace/like_bellhop/like_bellhop.h"
+#include "raytrace/propagation.h"
+#include "raytrace/runs/field_run.h"
 #include "support/csv.h"
 
 // Fields beside wave theory (tests/data/physics-reference; complex fields there are for e^(−iωt)).

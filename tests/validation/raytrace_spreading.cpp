@@ -9,11 +9,11 @@
 #include <complex>
 #include <vector>
 
-#include "raytrace/beams/field_run.h"
-#include "raytrace/eigenrays.h"
-#include "raytrace/ground_paths.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/paths/ground_paths.h"
 #include "raytrace/propagation.h"
+#include "raytrace/runs/field_run.h"
 #include "support/oceans.h"
 
 namespace asdic {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "raytrace/eigenrays.h"
+#include "raytrace/paths/eigenrays.h"
 
 namespace asdic {
 namespace {

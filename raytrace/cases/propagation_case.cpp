@@ -1,0 +1,19 @@
+#include "raytrace/cases/propagation_case.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace asdic {
+
+double SourcePattern::at(double launch_elevation) const noexcept {
+  assert(!elevation.empty() && amplitude.size() == elevation.size());
+  if (elevation.size() == 1) return amplitude.front();
+  // The pair of rows around the angle; the first or the last pair goes on beyond them.
+  const auto first = elevation.begin() + 1, last = elevation.end() - 1;
+  const auto i =
+      static_cast<std::size_t>(std::upper_bound(first, last, launch_elevation) - elevation.begin());
+  const double share = (launch_elevation - elevation[i - 1]) / (elevation[i] - elevation[i - 1]);
+  return amplitude[i - 1] + share * (amplitude[i] - amplitude[i - 1]);
+}
+
+}  // namespace asdic

@@ -1,0 +1,278 @@
+#include "raytrace/paths/eigenrays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <optional>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "raytrace/layered/followed_branch.h"
+#include "raytrace/layered/level_path.h"
+#include "raytrace/layered/path_builder.h"
+#include "raytrace/layered/root_search.h"
+#include "raytrace/parallel/parallel.h"
+#include "raytrace/tracing/marching_eigenrays.h"
+
+namespace asdic {
+namespace {
+
+/// Of a source and a receiver at one depth; the sums take them apart, no answer changes by more
+/// than rounding [m].
+constexpr double depth_offset = 1e-6;
+
+/// A receiver (almost) straight above or below is met by (almost) vertical rays, whose ξ is
+/// proportional to the range; they are found at this range and then put upright. The delay of a
+/// path of length h is longer by range²/(2hc), 3 ns at a metre [m].
+constexpr double least_range = 0.1;
+
+void raise(Arrival& path, double share, const Column& column) {
+  path.horizontal_slowness *= share;
+  path.launch_elevation = std::copysign(std::acos(path.horizontal_slowness * column.source_speed()),
+                                        path.launch_elevation);
+  path.arrival_elevation = std::copysign(
+      std::acos(path.horizontal_slowness * column.receiver_speed()), path.arrival_elevation);
+  for (Bounce& bounce : path.bounces) {
+    const double c =
+        bounce.boundary == BoundaryKind::surface ? column.surface_speed() : column.bottom_speed();
+    bounce.grazing = std::acos(path.horizontal_slowness * c);
+    bounce.range *= share;
+  }
+}
+
+/// Distance below which two roots of one branch are one [m of range per slope].
+constexpr double same_root = 1e-9;
+
+/// By delay; a root found twice (on the end that two stretches share) counts once.
+void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) {
+  const auto same = [](const Arrival& a, const Arrival& b) {
+    return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
+           a.upper_turns + a.lower_turns == b.upper_turns + b.lower_turns &&
+           std::abs(a.launch_elevation - b.launch_elevation) < same_root &&
+           std::abs(a.delay - b.delay) < same_root;
+  };
+  // Arrivals are large: their order is found first, then each is moved once.
+  order.resize(arrivals.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return earlier(arrivals[a], arrivals[b]); });
+  for (std::size_t start = 0; start < order.size(); ++start) {
+    if (order[start] == start) continue;
+    Arrival first = std::move(arrivals[start]);
+    std::size_t i = start;
+    while (order[i] != start) {
+      arrivals[i] = std::move(arrivals[order[i]]);
+      i = std::exchange(order[i], i);
+    }
+    arrivals[i] = std::move(first);
+    order[i] = i;
+  }
+  arrivals.erase(std::unique(arrivals.begin(), arrivals.end(), same), arrivals.end());
+}
+
+FanLimits fan_of(const PathLimits& limits) {
+  return {.lowest = -limits.max_launch_angle,
+          .highest = limits.max_launch_angle,
+          .max_surface_bounces = limits.max_surface_bounces,
+          .max_bottom_bounces = limits.max_bottom_bounces,
+          .max_turns = limits.max_vertices,
+          .faintest = limits.faintest};
+}
+
+}  // namespace
+
+/// The layers of a layered ocean, and what of them is worth keeping.
+struct EigenraySolver::LayeredOcean {
+  std::vector<Layer> layers;
+  std::optional<OceanFan> fan;
+  std::optional<OceanSeries> series;
+
+  explicit LayeredOcean(std::vector<Layer> all) : layers(std::move(all)) {
+    if (OceanSeries::worth_keeping(layers)) series.emplace(layers);
+    const bool fan_by_series = series && layers.front().law == Layer::Law::munk;
+    if (layers.size() <= OceanFan::most_layers && !fan_by_series) fan.emplace(layers);
+  }
+  [[nodiscard]] KeptOcean kept() const noexcept {
+    return {.layers = layers, .fan = fan ? &*fan : nullptr, .series = series ? &*series : nullptr};
+  }
+};
+
+/// The last columns that paths were followed in: ends move, their depths seldom.
+struct EigenraySolver::Columns {
+  static constexpr std::size_t most = 4;
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const WaterBetween>> of;  // the latest last
+
+  std::shared_ptr<const WaterBetween> between(double source, double receiver,
+                                              const KeptOcean& ocean) {
+    const std::lock_guard lock(mutex);
+    const auto known = std::find_if(of.begin(), of.end(), [&](const auto& water) {
+      return water->source_depth == source && water->receiver_depth == receiver;
+    });
+    if (known != of.end()) return *known;
+    if (of.size() == most) of.erase(of.begin());
+    return of.emplace_back(std::make_shared<const WaterBetween>(source, receiver, ocean));
+  }
+};
+
+/// The tracers of an environment by frequency: a sonar works at a few.
+struct EigenraySolver::Tracers {
+  std::mutex mutex;
+  std::map<double, std::shared_ptr<const RayTracer>> of;
+};
+
+EigenraySolver::EigenraySolver(const Environment& environment)
+    : environment_(environment),
+      layered_(is_layered(environment)),
+      tracers_(std::make_shared<Tracers>()),
+      columns_(std::make_shared<Columns>()) {
+  std::vector<double> ranges = {0.0};  // where the boundaries are nearest to each other
+  for (const Boundary* boundary : {&environment.surface, &environment.bottom})
+    if (boundary->shape)
+      ranges.insert(ranges.end(), boundary->shape->ranges().begin(),
+                    boundary->shape->ranges().end());
+  for (const double range : ranges) {
+    const double top = environment.surface.depth_at(range),
+                 bottom = environment.bottom.depth_at(range);
+    if (!(bottom > top))
+      throw InputError(
+          {.where = "bottom.depth",
+           .got = std::to_string(bottom) + " m" +
+                  (ranges.size() > 1 ? " at a range of " + std::to_string(range) + " m" : ""),
+           .expected = "a depth below the surface at " + std::to_string(top) + " m"});
+  }
+  if (layered_)
+    water_ = std::make_shared<const LayeredOcean>(
+        make_layers(environment.water, environment.surface.depth, environment.bottom.depth));
+}
+
+std::shared_ptr<const RayTracer> EigenraySolver::tracer(double frequency) const {
+  const std::lock_guard lock(tracers_->mutex);
+  auto& tracer = tracers_->of[frequency];
+  if (!tracer) tracer = std::make_shared<const RayTracer>(environment_, frequency);
+  return tracer;
+}
+
+std::vector<Arrivals> EigenraySolver::find(double source_depth,
+                                           std::span<const ReceiverPoint> receivers,
+                                           double frequency, const PathLimits& limits) const {
+  if (!layered_)
+    return marching_eigenrays(*tracer(frequency), 0.0, source_depth, receivers, fan_of(limits));
+  // one fan for each depth
+  std::map<double, std::vector<std::size_t>> rows;
+  for (std::size_t i = 0; i < receivers.size(); ++i) rows[receivers[i].depth].push_back(i);
+  const std::vector<std::pair<double, std::vector<std::size_t>>> work(rows.begin(), rows.end());
+  std::vector<Arrivals> found(receivers.size());
+  const auto search = [&](std::size_t row) {
+    std::vector<double> ranges;
+    for (const std::size_t i : work[row].second) ranges.push_back(receivers[i].range);
+    std::vector<Arrivals> here = find(source_depth, work[row].first, ranges, frequency, limits);
+    for (std::size_t i = 0; i < here.size(); ++i) found[work[row].second[i]] = std::move(here[i]);
+  };
+  // A row takes less time than waking threads.
+  if (work.size() == 1)
+    search(0);
+  else
+    in_parallel(work.size(), search);
+  return found;
+}
+
+BranchTable EigenraySolver::table(double source_depth, double receiver_depth,
+                                  const PathLimits& limits) const {
+  if (source_depth == receiver_depth) {
+    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
+    receiver_depth += room_below ? depth_offset : -depth_offset;
+  }
+  return {Column(water_->layers, source_depth, receiver_depth), limits, &environment_,
+          water_->kept()};
+}
+
+std::optional<Arrival> EigenraySolver::follow(const Arrival& known, double source_depth,
+                                              double receiver_depth, double range, double frequency,
+                                              const PathLimits& limits) const {
+  const bool horizontal = known.launch_elevation == 0.0;  // a ray that stays at its depth
+  if (!layered_ || horizontal || !(range >= least_range)) return std::nullopt;
+  if (source_depth == receiver_depth) {  // as in table()
+    const bool room_below = receiver_depth + depth_offset < environment_.bottom.depth;
+    receiver_depth += room_below ? depth_offset : -depth_offset;
+  }
+  const auto water = columns_->between(source_depth, receiver_depth, water_->kept());
+  return followed_branch(environment_, *water, range, frequency, known, limits);
+}
+
+Arrivals EigenraySolver::find(double source_depth, double receiver_depth, double range,
+                              double frequency, const PathLimits& limits) const {
+  return std::move(
+      find(source_depth, receiver_depth, std::span(&range, 1), frequency, limits).front());
+}
+
+std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_depth,
+                                           std::span<const double> ranges, double frequency,
+                                           const PathLimits& limits) const {
+  if (!layered_) {
+    std::vector<ReceiverPoint> points;
+    for (const double range : ranges) points.push_back({range, receiver_depth});
+    return marching_eigenrays(*tracer(frequency), 0.0, source_depth, points, fan_of(limits));
+  }
+  if (ranges.empty()) return {};
+  std::vector<std::size_t> order(ranges.size());  // by range
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return ranges[a] < ranges[b]; });
+  std::vector<double> wanted;
+  wanted.reserve(ranges.size());
+  for (const std::size_t i : order) wanted.push_back(std::max(ranges[i], least_range));
+
+  const BranchTable fan = table(source_depth, receiver_depth, limits);
+  const PathBuilder builder(environment_, fan.column(), frequency);
+  // Stretches with the receivers between their ends, by range [first, last).
+  struct Held {
+    RootStretch stretch;
+    std::size_t first, last;
+  };
+  std::vector<Held> held;
+  std::size_t roots = 0;
+  fan.for_each_stretch(wanted, [&](const MonotoneStretch& stretch) {
+    const auto [low, high] = std::minmax(stretch.range_begin, stretch.range_end);
+    const auto first = std::lower_bound(wanted.begin(), wanted.end(), low),
+               last = std::upper_bound(first, wanted.end(), high);
+    if (first == last) return;
+    held.push_back({.stretch = {stretch, fan.column().source_is_upper()},
+                    .first = static_cast<std::size_t>(first - wanted.begin()),
+                    .last = static_cast<std::size_t>(last - wanted.begin())});
+    roots += held.back().last - held.back().first;
+  });
+  std::vector<RootTask> tasks;
+  tasks.reserve(roots);
+  std::vector<std::size_t> expected(ranges.size(), 0);
+  for (const auto& [stretch, first, last] : held)
+    for (std::size_t i = first; i < last; ++i) {
+      tasks.push_back({.stretch = &stretch, .receiver = order[i], .range = wanted[i]});
+      ++expected[order[i]];
+    }
+
+  std::vector<Arrivals> found(ranges.size());
+  for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(expected[i]);
+  for (auto begin = tasks.begin(); begin != tasks.end();) {  // stretches come interval by interval
+    const FanInterval& interval = *begin->stretch->interval;
+    const auto end = std::find_if(
+        begin, tasks.end(), [&](const RootTask& t) { return t.stretch->interval != &interval; });
+    RootGroups(fan, interval, std::span(begin, end))
+        .solve([&](const TaskLanes& batch, const FoundRays& rays) {
+          builder.build(interval, batch, rays, limits.faintest, found);
+        });
+    begin = end;
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (ranges[i] < least_range)
+      for (Arrival& path : found[i]) raise(path, ranges[i] / least_range, fan.column());
+    sort_and_drop_doubles(found[i], order);
+  }
+
+  put_level_paths(environment_, frequency, source_depth, receiver_depth, ranges, found);
+  return found;
+}
+
+}  // namespace asdic
