@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry.h"
 #include "raytrace/paths/trace_ray.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic::app {
 namespace {

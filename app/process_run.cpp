@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "raytrace/propagation.h"
 #include "sonar/scenario/carried.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic::app {
 namespace {

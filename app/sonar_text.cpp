@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "app/console.h"
+#include "core/geometry.h"
 #include "sonar/noise/noise_spectrum.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic::app {
 namespace {

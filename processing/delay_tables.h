@@ -6,7 +6,8 @@
 #include <tuple>
 
 #include "processing/delay_table.h"
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry.h"
 #include "raytrace/ocean/environment.h"
 #include "raytrace/paths/trace_ray.h"
-#include "sonar/scenario/geometry.h"
+#include "sonar/paths/enough_bounces.h"
 
 namespace asdic {
 namespace {

@@ -6,7 +6,8 @@
 #include "processing/array_shape.h"
 #include "processing/delay_tables.h"
 #include "processing/detection.h"
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
+#include "sonar/scenario/scenario.h"
 #include "sonar/scenario/track.h"
 #include "sonar/scenario/transmitter.h"
 

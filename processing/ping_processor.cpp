@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "processing/listening_band.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/scenario/carried.h"
-#include "sonar/scenario/geometry.h"
 #include "sonar/scenario/transmission.h"
 
 namespace asdic {

@@ -10,7 +10,7 @@
 #include "processing/replica.h"
 #include "processing/scoring.h"
 #include "processing/tracker.h"
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 
 namespace asdic {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry.h"
 #include "processing/localiser.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 

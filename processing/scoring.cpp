@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sonar/scenario/geometry.h"
+#include "core/geometry.h"
 
 namespace asdic {
 namespace {

@@ -13,7 +13,8 @@ import sys
 ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"]
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
     "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
-    "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "like_bellhop", "runs", "warnings", ""],
+    "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "places", "like_bellhop", "runs", "warnings", ""],
+    "reverb": ["scattering", ""],
     "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent

@@ -6,7 +6,7 @@
 #include "io/hdf5/scale.h"
 #include "io/ping/sections.h"
 #include "io/text/material_text.h"
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/transmitter.h"
 
 namespace asdic::ping_file {

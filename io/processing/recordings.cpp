@@ -5,13 +5,13 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/memory_budget.h"
 #include "io/hdf5/scale.h"
 #include "io/scenario/embedded.h"
 #include "io/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "processing/truth.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

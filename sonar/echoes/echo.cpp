@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
+#include "core/doppler.h"
 #include "reverb/forward_scatter.h"
 #include "reverb/scatterer_field.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
-#include "sonar/paths/doppler.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
 #include "sonar/scenario/carried.h"

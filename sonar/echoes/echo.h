@@ -2,10 +2,10 @@
 #include <optional>
 #include <vector>
 
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/echoes/echo_path.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/leg.h"
-#include "sonar/paths/propagation_paths.h"
 #include "sonar/paths/returns.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmitter.h"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/doppler.h"
 #include "reverb/forward_scatter.h"
 #include "reverb/scatterer_field.h"
-#include "sonar/paths/doppler.h"
 
 namespace asdic {
 

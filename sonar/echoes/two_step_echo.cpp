@@ -6,12 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "core/geometry.h"
 #include "reverb/scatterer_field.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/scenario/carried.h"
-#include "sonar/scenario/geometry.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/synthesis/sound_synthesis.h"
 

@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/noise/block_noise.h"
-#include "sonar/paths/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/recording.h"
 

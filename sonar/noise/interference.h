@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "raytrace/places/propagation_paths.h"
 #include "reverb/forward_scatter.h"
 #include "sonar/noise/block_noise.h"
 #include "sonar/noise/heard_path.h"
-#include "sonar/paths/propagation_paths.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/recording.h"

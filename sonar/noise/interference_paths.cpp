@@ -6,15 +6,15 @@
 #include <complex>
 #include <utility>
 
+#include "core/doppler.h"
+#include "core/geometry.h"
 #include "raytrace/parallel/parallel.h"
 #include "reverb/scatterer_field.h"
 #include "sonar/noise/interference_stretch.h"
 #include "sonar/noise/noise_spectrum.h"
-#include "sonar/paths/doppler.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"
-#include "sonar/scenario/geometry.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
 

@@ -18,10 +18,14 @@ double missing_db(double missing, double all) {
 
 }  // namespace
 
-void Bounces::include(const Bounces& other) noexcept {
-  surface = std::max(surface, other.surface);
-  bottom = std::max(bottom, other.bottom);
-  left_out_db = std::fmax(left_out_db, other.left_out_db);
+PathLimits limits_of(const PropagationSettings& settings, int enough) noexcept {
+  PathLimits limits{.max_surface_bounces = settings.max_surface_bounces.value_or(enough),
+                    .max_bottom_bounces = settings.max_bottom_bounces.value_or(enough),
+                    .max_launch_angle = settings.max_launch_angle,
+                    .diffraction = settings.diffraction};
+  const int vertices = 2 * (std::max(limits.max_surface_bounces, limits.max_bottom_bounces) + 1);
+  limits.max_vertices = std::max(limits.max_vertices, vertices);
+  return limits;
 }
 
 bool in_numbers(const PropagationSettings& settings) noexcept {

@@ -4,9 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/bounces.h"
+#include "raytrace/places/propagation_paths.h"
+#include "sonar/scenario/scenario.h"
 
 namespace asdic {
+
+/// Bounces off either boundary that "auto" follows at least.
+inline constexpr int fewest_bounces = 3;
+
+/// What a scenario searches for. \param enough  bounces where the settings leave that open: those
+/// that hold all but a little of the sound are told by enough_bounces()
+[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
+                                   int enough = fewest_bounces) noexcept;
 
 /// What "auto" may leave out of a level: more is told as a warning once it is `tolerable_db`.
 inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
@@ -15,16 +25,6 @@ inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
 /// takes longer marches, and between two places in layered water, where all bounces of four times
 /// as many paths are held.
 inline constexpr int most_over_slopes = 96, most_between_places = 768;
-
-/// How many bounces are followed off either boundary, and an estimate of how much of the level is
-/// missing for it [dB].
-struct Bounces {
-  int surface = 0, bottom = 0;
-  double left_out_db = std::numeric_limits<double>::quiet_NaN();  ///< none: not a number
-
-  /// The more of both.
-  void include(const Bounces& other) noexcept;
-};
 
 /// What reaches a place or comes back from the ground, in stretches of delay (or of whatever else
 /// may miss it), by the bounces of the path that has more of them.

@@ -1,8 +1,8 @@
 #pragma once
 #include <span>
 
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/paths/leg.h"
-#include "sonar/paths/propagation_paths.h"
 #include "sonar/scenario/track.h"
 
 namespace asdic {

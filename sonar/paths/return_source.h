@@ -5,14 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "reverb/doppler_span.h"
 #include "sonar/paths/returns.h"
 
 namespace asdic {
-
-/// A stretch of Doppler factors.
-struct DopplerSpan {
-  double lowest = 1.0, highest = 1.0;
-};
 
 /// Some returns, and what they are across the band.
 struct ReturnBlock {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 
 namespace asdic {
 

@@ -5,10 +5,10 @@
 
 #include "core/memory_budget.h"
 #include "raytrace/paths/eigenrays.h"
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/echoes/echo.h"
 #include "sonar/noise/ambient_noise.h"
 #include "sonar/noise/interference.h"
-#include "sonar/paths/propagation_paths.h"
 #include "sonar/paths/shared_propagation.h"
 #include "sonar/ping/ping_record.h"
 #include "sonar/ping/receiver_electronics.h"

@@ -2,11 +2,11 @@
 #include <string>
 #include <vector>
 
+#include "raytrace/places/reuse.h"
 #include "sonar/echoes/echo_path.h"
 #include "sonar/noise/heard_path.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/leg.h"
-#include "sonar/paths/reuse.h"
 #include "sonar/reverberation/patch_row.h"
 #include "sonar/scenario/track.h"
 #include "sonar/signal/recording.h"

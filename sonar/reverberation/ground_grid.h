@@ -1,5 +1,5 @@
 #pragma once
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/pulse.h"
 

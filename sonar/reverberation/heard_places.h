@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "reverb/scattering_field.h"
 #include "sonar/reverberation/path_interference.h"
-#include "sonar/reverberation/scattering_field.h"
 
 namespace asdic {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "reverb/scattering_sheet.h"
 #include "sonar/reverberation/all_round_covariance.h"
-#include "sonar/reverberation/scattering_sheet.h"
 #include "sonar/signal/pulse_coherence.h"
 
 namespace asdic {

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "core/memory_budget.h"
+#include "reverb/boundary_fans.h"
+#include "reverb/scattering_field.h"
+#include "reverb/transmit_pattern.h"
 #include "sonar/paths/return_source.h"
-#include "sonar/reverberation/boundary_fans.h"
 #include "sonar/reverberation/expected_reverberation.h"
 #include "sonar/reverberation/patch_row.h"
-#include "sonar/reverberation/scattering_field.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/scenario.h"
-#include "sonar/scenario/transmit_pattern.h"
 #include "sonar/signal/pulse.h"
 
 namespace asdic {

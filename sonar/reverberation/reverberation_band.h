@@ -3,8 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "sonar/paths/propagation_paths.h"
-#include "sonar/reverberation/scattering_sheet.h"
+#include "raytrace/places/propagation_paths.h"
+#include "reverb/scattering_sheet.h"
+#include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmitter.h"
 #include "sonar/signal/band_response.h"
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sonar/noise/noise_spectrum.h"
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/reverberation.h"
 
 namespace asdic {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sonar/paths/enough_bounces.h"
+#include "sonar/paths/receiver_legs.h"
 #include "sonar/reverberation/ground_grid.h"
 #include "sonar/reverberation/reverberation.h"
 #include "sonar/reverberation/reverberation_covariance.h"

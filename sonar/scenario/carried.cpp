@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sonar/scenario/geometry.h"
+#include "core/geometry.h"
 
 namespace asdic {
 namespace {

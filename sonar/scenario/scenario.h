@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "raytrace/ocean/environment.h"
+#include "raytrace/ocean/transect.h"
+#include "reverb/reverberation_settings.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/interferer.h"
 #include "sonar/scenario/noise_settings.h"
 #include "sonar/scenario/ping_schedule.h"
 #include "sonar/scenario/platform.h"
-#include "sonar/scenario/reverberation_settings.h"
 #include "sonar/scenario/target.h"
-#include "sonar/scenario/transect.h"
 #include "sonar/scenario/transmitter.h"
 #include "sonar/signal/pulse.h"
 

@@ -2,14 +2,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/kinematics.h"
 #include "core/units.h"
 
 namespace asdic {
-
-struct Kinematics {
-  Vec3 position = Vec3::Zero();  ///< [m]
-  Vec3 velocity = Vec3::Zero();  ///< [m/s]
-};
 
 struct Waypoint {
   double time = 0.0;  ///< since the start of the scenario [s]

@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/propagation_memory.h"
 #include "core/units.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "sonar/scenario/transmit_pattern.h"
+#include "reverb/transmit_pattern.h"
 #include "sonar/signal/pulse.h"
 
 namespace asdic {

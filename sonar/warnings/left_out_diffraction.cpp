@@ -1,10 +1,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/geometry.h"
 #include "raytrace/paths/eigenrays.h"
+#include "raytrace/places/propagation_paths.h"
 #include "raytrace/waves/diffraction.h"
-#include "sonar/paths/propagation_paths.h"
-#include "sonar/scenario/geometry.h"
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/warnings/warnings.h"
 
 namespace asdic::checks {

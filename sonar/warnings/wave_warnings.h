@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/transmission.h"
 #include "sonar/signal/pulse.h"
 

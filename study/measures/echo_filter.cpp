@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "processing/normaliser.h"
 #include "sonar/noise/noise_spectrum.h"
-#include "sonar/scenario/geometry.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/fft.h"

@@ -44,8 +44,8 @@ struct Row {
 /// The columns of a study's rows: inputs first, in the order of [vary], then measures.
 [[nodiscard]] std::vector<Column> columns(const Study& study);
 
-/// What a realisation found known (sonar/paths/reuse.h), NaN of one that was skipped. It tells of
-/// the run: of two alike the first one searches, whichever that is; their rows are the same.
+/// What a realisation found known (raytrace/places/reuse.h), NaN of one that was skipped. It tells
+/// of the run: of two alike the first one searches, whichever that is; their rows are the same.
 [[nodiscard]] const std::vector<Column>& reuse_columns();
 
 /// Makes rows. Built once; shared by threads. It keeps what realisations have in common (the ocean,

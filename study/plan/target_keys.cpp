@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/geometry.h"
 #include "io/scenario_reader.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sonar/scenario/transmit_pattern.h"
+#include "reverb/transmit_pattern.h"
 #include "sonar/synthesis/synthesis.h"
 
 namespace asdic::support {

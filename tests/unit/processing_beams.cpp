@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "processing/array_shape.h"
 #include "processing/beams.h"
 #include "processing/mvdr.h"
 #include "sonar/scenario/array.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

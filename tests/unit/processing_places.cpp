@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/doppler.h"
+#include "core/geometry.h"
 #include "processing/delay_table.h"
 #include "processing/localiser.h"
 #include "processing/scoring.h"
-#include "sonar/paths/doppler.h"
+#include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/moving_paths.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {

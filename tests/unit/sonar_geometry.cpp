@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/doppler.h"
 #include "core/error.h"
-#include "sonar/paths/doppler.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/track.h"
 #include "sonar/scenario/transmitter.h"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry.h"
 #include "io/scenario_reader.h"
 #include "processing/localiser.h"
 #include "sonar/ping/ping.h"
-#include "sonar/scenario/geometry.h"
 #include "sonar/scenario/ping_bounds.h"
 
 namespace asdic {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/scenario/geometry.h"
+#include "core/geometry.h"
 #include "support/processing.h"
 #include "support/thesis.h"
 

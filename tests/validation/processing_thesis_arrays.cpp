@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "core/geometry.h"
 #include "processing/beams.h"
-#include "sonar/scenario/geometry.h"
 #include "support/csv.h"
 #include "support/listen.h"
 #include "support/thesis.h"

@@ -5,7 +5,7 @@
 
 #include "core/memory_budget.h"
 #include "raytrace/paths/ground_paths.h"
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 
 namespace asdic {
 

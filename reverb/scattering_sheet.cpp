@@ -1,4 +1,4 @@
-#include "sonar/reverberation/scattering_sheet.h"
+#include "reverb/scattering_sheet.h"
 
 #include <algorithm>
 

@@ -2,10 +2,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "raytrace/places/bounces.h"
+#include "reverb/reverberation_settings.h"
 #include "reverb/scatterer_field.h"
-#include "sonar/paths/enough_bounces.h"
-#include "sonar/reverberation/scattering_sheet.h"
-#include "sonar/scenario/reverberation_settings.h"
+#include "reverb/scattering_sheet.h"
 
 namespace asdic {
 

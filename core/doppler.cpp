@@ -1,4 +1,4 @@
-#include "sonar/paths/doppler.h"
+#include "core/doppler.h"
 
 namespace asdic {
 

@@ -8,14 +8,14 @@
 #include <variant>
 #include <vector>
 
+#include "core/kinematics.h"
+#include "reverb/boundary_fans.h"
+#include "reverb/doppler_span.h"
+#include "reverb/receiver_leg.h"
+#include "reverb/reverberation_settings.h"
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering/models.h"
-#include "sonar/paths/receiver_legs.h"
-#include "sonar/paths/return_source.h"
-#include "sonar/reverberation/boundary_fans.h"
-#include "sonar/scenario/reverberation_settings.h"
-#include "sonar/scenario/track.h"
-#include "sonar/scenario/transmit_pattern.h"
+#include "reverb/transmit_pattern.h"
 
 namespace asdic {
 

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "core/propagation_memory.h"
+#include "raytrace/ocean/transect.h"
 #include "raytrace/paths/eigenrays.h"
-#include "sonar/paths/reuse.h"
-#include "sonar/scenario/scenario.h"
+#include "raytrace/places/reuse.h"
 
 namespace asdic {
 
@@ -85,13 +85,5 @@ class PropagationPaths {
 
 /// Adds all that a path is followed by to a key: its angle and history.
 void add_path(ExactKey& key, const Arrival& path);
-
-/// Bounces off either boundary that "auto" follows at least.
-inline constexpr int fewest_bounces = 3;
-
-/// What a scenario searches for. \param enough  bounces where the settings leave that open: those
-/// that hold all but a little of the sound are told by sonar/paths/enough_bounces.h
-[[nodiscard]] PathLimits limits_of(const PropagationSettings& settings,
-                                   int enough = fewest_bounces) noexcept;
 
 }  // namespace asdic

@@ -1,4 +1,4 @@
-#include "sonar/scenario/transect.h"
+#include "raytrace/ocean/transect.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "sonar/paths/propagation_paths.h"
+#include "raytrace/places/propagation_paths.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,12 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "core/geometry.h"
 #include "raytrace/ocean/slice.h"
+#include "raytrace/places/followed_path.h"
 #include "raytrace/waves/caustics.h"
 #include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
-#include "sonar/paths/followed_path.h"
-#include "sonar/scenario/geometry.h"
 
 namespace asdic {
 namespace {
@@ -82,16 +82,6 @@ void add_path(ExactKey& key, const Arrival& path) {
   key.add(int(path.kind));
   key.add_all(path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
               path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
-}
-
-PathLimits limits_of(const PropagationSettings& settings, int enough) noexcept {
-  PathLimits limits{.max_surface_bounces = settings.max_surface_bounces.value_or(enough),
-                    .max_bottom_bounces = settings.max_bottom_bounces.value_or(enough),
-                    .max_launch_angle = settings.max_launch_angle,
-                    .diffraction = settings.diffraction};
-  const int vertices = 2 * (std::max(limits.max_surface_bounces, limits.max_bottom_bounces) + 1);
-  limits.max_vertices = std::max(limits.max_vertices, vertices);
-  return limits;
 }
 
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,

@@ -1,4 +1,4 @@
-#include "sonar/reverberation/boundary_fans.h"
+#include "reverb/boundary_fans.h"
 
 #include <tbb/collaborative_call_once.h>
 

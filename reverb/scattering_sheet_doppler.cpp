@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/doppler.h"
 #include "reverb/scattering/motion.h"
-#include "sonar/paths/doppler.h"
-#include "sonar/reverberation/scattering_sheet.h"
+#include "reverb/scattering_sheet.h"
 
 namespace asdic {
 

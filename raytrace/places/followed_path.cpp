@@ -1,4 +1,4 @@
-#include "sonar/paths/followed_path.h"
+#include "raytrace/places/followed_path.h"
 
 #include <algorithm>
 #include <cmath>

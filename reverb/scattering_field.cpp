@@ -1,4 +1,4 @@
-#include "sonar/reverberation/scattering_field.h"
+#include "reverb/scattering_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "core/propagation_memory.h"
 #include "core/settings_words.h"
-#include "sonar/reverberation/scattering_sheet.h"
+#include "reverb/scattering_sheet.h"
 
 namespace asdic {
 namespace {

@@ -1,0 +1,12 @@
+#pragma once
+#include "core/units.h"
+
+namespace asdic {
+
+/// Where something is, and how it moves.
+struct Kinematics {
+  Vec3 position = Vec3::Zero();  ///< [m]
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+};
+
+}  // namespace asdic
