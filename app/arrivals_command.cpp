@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -12,12 +12,10 @@
 #include "app/warn.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
-#include "io/scenario_reader.h"
-#include "sonar/echoes/echo.h"
-#include "sonar/ping/ping.h"
-#include "sonar/scenario/sampling.h"
+#include "io/scenario/scenario_reader.h"
+#include "sonar/ping/asked_arrivals.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ArrivalsOptions {
@@ -31,14 +29,13 @@ struct ArrivalsOptions {
   std::string output;
 };
 
-/// Where the transmitter of a ping is when it sends.
-Vec3 source_of(const PingSimulator& simulator, int ping) {
-  if (ping > simulator.pings())
-    throw InputError({.where = "--ping",
-                      .got = std::to_string(ping),
-                      .expected = fmt::format("a ping from 1 to {}", simulator.pings())});
-  const Transmission& sent = simulator.transmission(ping);
-  return transmitter_at(simulator.scenario(), sent.transmitter, sent.time).position;
+/// A fault of what was asked for, told of the option that says it: "receiver_depth" is
+/// --receiver-depth.
+InputError told_of_option(const InputError& error) {
+  InputFault fault = error.fault();
+  std::replace(fault.where.begin(), fault.where.end(), '_', '-');
+  fault.where = "--" + fault.where;
+  return InputError(std::move(fault));
 }
 
 /// From the platform's depth (or another) to any depth and range.
@@ -47,39 +44,20 @@ Leg to_receiver(const PingSimulator& simulator, const ArrivalsOptions& options) 
     throw InputError({.where = options.range ? "--receiver-depth" : "--range",
                       .got = "nothing",
                       .expected = "a length: --receiver-depth and --range go together"});
-  const Scenario& scenario = simulator.scenario();
-  const Vec3 platform = source_of(simulator, options.ping);
-  const PropagationPaths& paths = simulator.paths();
-  const double bearing = options.bearing   ? radians(*options.bearing)
-                         : paths.layered() ? 0.0
-                                           : scenario.transect.bearing;
-  const auto plane = paths.solver(paths.plane(platform, bearing));
-  const auto in_water = [&](const std::string& option, double depth, double range) {
-    const double top = plane->environment().surface.depth_at(range),
-                 bottom = plane->environment().bottom.depth_at(range);
-    if (depth >= top && depth <= bottom) return depth;
-    throw InputError({.where = option,
-                      .got = fmt::format("{} m", depth),
-                      .expected = fmt::format("a depth between {} and {} m", top, bottom)});
-  };
-  Leg leg{.bearing = bearing, .range = *options.range};
-  const double from = in_water("--source-depth", options.source_depth.value_or(platform.z()), 0.0);
-  const double to = in_water("--receiver-depth", *options.receiver_depth, *options.range);
-  const double frequency = options.frequency.value_or(simulator.pulse().centre_frequency());
-  const Vec3 source(platform.x(), platform.y(), from),
-      receiver(platform.x() + *options.range * std::sin(bearing),
-               platform.y() + *options.range * std::cos(bearing), to);
-  const PathLimits limits =
-      limits_of(scenario.propagation, enough_bounces(paths, scenario.propagation, source, receiver,
-                                                     frequency, end_of_record(scenario)));
-  leg.arrivals = paths.layered() ? paths.find(source, receiver, frequency, limits)
-                                 : plane->find(from, to, *options.range, frequency, limits);
-  return leg;
+  AskedReceiver asked{.range = *options.range,
+                      .depth = *options.receiver_depth,
+                      .source_depth = options.source_depth,
+                      .frequency = options.frequency};
+  if (options.bearing) asked.bearing = radians(*options.bearing);
+  try {
+    return leg_to(simulator, options.ping, asked);
+  } catch (const InputError& error) {
+    throw told_of_option(error);
+  }
 }
 
 std::vector<Leg> to_targets(const PingSimulator& simulator, const ArrivalsOptions& options) {
-  const Scenario& scenario = simulator.scenario();
-  const int n = static_cast<int>(scenario.targets.size());
+  const int n = static_cast<int>(simulator.scenario().targets.size());
   if (n == 0)
     throw InputError({.where = options.scenario.path + ": target",
                       .got = "none",
@@ -88,33 +66,24 @@ std::vector<Leg> to_targets(const PingSimulator& simulator, const ArrivalsOption
     throw InputError({.where = "--target",
                       .got = std::to_string(*options.target),
                       .expected = fmt::format("a target from 0 to {}", n - 1)});
-  const double c = simulator.paths().speed_at(source_of(simulator, options.ping));
-  const Transmission& sent = simulator.transmission(options.ping);
-  const Transmitter transmitter = simulator.transmitter(options.ping);
-  const double frequency =
-      options.frequency.value_or(simulator.pulse(sent.transmitter).centre_frequency());
-  const BeamPattern pattern(transmitter, c / frequency, c,
-                            platform_heading(scenario, transmitter.platform, sent.time));
-  const EchoContext context{.paths = simulator.paths(),
-                            .scenario = scenario,
-                            .pattern = pattern,
-                            .frequency = frequency,
-                            .ping_time = sent.time,
-                            .transmitter = sent.transmitter,
-                            .ping = options.ping,
-                            .turn = sent.turn};
   const auto wanted = [&](Leg::Kind kind) {
     const std::string name = kind == Leg::Kind::source_to_target ? "target" : "array";
     return options.legs.empty() ||
            std::find(options.legs.begin(), options.legs.end(), name) != options.legs.end();
   };
-  std::vector<Leg> legs;
-  for (int i = 0; i < n; ++i) {
-    if (options.target && *options.target != i) continue;
-    for (Leg& leg : target_echoes(context, i).legs)
-      if (wanted(leg.kind)) legs.push_back(std::move(leg));
-  }
+  std::vector<Leg> legs =
+      legs_of_targets(simulator, options.ping, options.target, options.frequency);
+  std::erase_if(legs, [&](const Leg& leg) { return !wanted(leg.kind); });
   return legs;
+}
+
+/// Where the ping that was asked for is sent.
+Vec3 source_of(const PingSimulator& simulator, const ArrivalsOptions& options) {
+  try {
+    return detail::source_of(simulator, options.ping);
+  } catch (const InputError& error) {
+    throw told_of_option(error);
+  }
 }
 
 /// Of a scenario with [run] and without a sonar: at all its receivers, or at the one asked for.
@@ -154,7 +123,7 @@ int arrivals(const ArrivalsOptions& options) {
   const Scenario& scenario = simulator.scenario();
   warn(scenario.notes);
   const bool free = options.receiver_depth || options.range;
-  const Vec3 source = source_of(simulator, options.ping);
+  const Vec3 source = source_of(simulator, options);
   ArrivalsResult result{
       .origin = origin_of(scenario),
       .ping = options.ping,
@@ -233,4 +202,4 @@ void add_arrivals_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

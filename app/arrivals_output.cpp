@@ -9,9 +9,9 @@
 
 #include "app/console.h"
 #include "core/units.h"
-#include "io/arrival_table.h"
+#include "io/ping/arrival_table.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using nlohmann::ordered_json;
@@ -196,4 +196,4 @@ void write_arrivals_file(OutputFile&& to, const ArrivalsResult& result) {
   output.finish();
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

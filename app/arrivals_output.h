@@ -6,7 +6,7 @@
 #include "app/output.h"
 #include "sonar/ping/ping_record.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// Eigenrays that were found, and for what.
 struct ArrivalsResult {
@@ -31,4 +31,4 @@ void write_arrivals_file(OutputFile&& to, const ArrivalsResult& result);
 /// What the columns mean, under the tables.
 [[nodiscard]] std::string arrivals_legend(double frequency);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

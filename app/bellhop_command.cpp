@@ -12,21 +12,21 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
-#include "app/provenance.h"
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
 #include "io/bellhop/results.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
+#include "io/ping/provenance.h"
 #include "raytrace/cases/beam_error_text.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 struct BellhopOptions {
   std::string root, output, dialect = "fortran";
-  bool like_bellhop = false, beams_as_written = false, quiet = false, force = false;
+  bool bellhop_emulation = false, beams_as_written = false, quiet = false, force = false;
   std::optional<int> threads;
 };
 
@@ -91,8 +91,8 @@ PropagationResult search(const bellhop::Input& input, const BellhopOptions& opti
     const MemoryBudget budget = MemoryBudget::without_key();
     PropagationResult result;
     until_interrupted([&] {
-      result = options.like_bellhop ? run_like_bellhop(input.run_case, progress, budget)
-                                    : run(input.run_case, progress, budget);
+      result = options.bellhop_emulation ? run_bellhop_emulation(input.run_case, progress, budget)
+                                         : run(input.run_case, progress, budget);
     });
     return result;
   } catch (const Interrupted&) {
@@ -149,15 +149,15 @@ void run_case(const BellhopOptions& options, const std::filesystem::path& root, 
   for (const std::string& leak : input.leaks) fmt::print(stderr, "asdic: note: {}\n", leak);
   report.line(input.echo);
   report.notes(input.notes);
-  report.line(options.like_bellhop ? "traced     as BELLHOP does it, step by step"
-                                   : "traced     by asdic's own tracer");
+  report.line(options.bellhop_emulation ? "traced     as BELLHOP does it, step by step"
+                                        : "traced     by asdic's own tracer");
 
   ResultFiles files(input.run_case.task, root, options.force);
   PropagationResult result = search(input, options);
   const double search_time = watch.lap();
   report.notes(result.notes);
   if (result.beams > 0) report.line(fmt::format("beams      {} a source", result.beams));
-  if (!options.like_bellhop && input.run_case.task == Task::field && result.beams > 0)
+  if (!options.bellhop_emulation && input.run_case.task == Task::field && result.beams > 0)
     report.line("error      " + beam_error_text(result.beam_error_db, result.beam_error_bounded));
   if (const double share = share_sure(result.beam_errors); !std::isnan(share))
     report.line("certain    " + certainty_text(share));
@@ -206,7 +206,7 @@ void add_bellhop_command(Program& program) {
         command.add_option("root", options->root, "name of the case, with or without .env")
             .type_name("ROOT")
             .required();
-        command.add_flag("--like-bellhop", options->like_bellhop,
+        command.add_flag("--like-bellhop", options->bellhop_emulation,
                          "with BELLHOP's own steps, beams and merging, to compare with its files");
         command.add_flag("--beams-as-written", options->beams_as_written,
                          "exactly the beams of the file, where fields take as many as they need");
@@ -229,4 +229,4 @@ void add_bellhop_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 Check check_of(CLI::Validator rule) {
@@ -30,6 +30,13 @@ std::optional<T> whole_text(const std::string& text) {
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, value);
   return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
+}
+
+/// "ABOVE 0 TO 0.5".
+std::string limits_of(const Quantity& q) {
+  std::string text = (q.above ? "ABOVE " : "") + to_text(q.low);
+  if (q.high < infinity) text += " TO " + to_text(q.high);
+  return text;
 }
 
 }  // namespace
@@ -68,12 +75,21 @@ Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun)
                    std::to_string(low) + " TO " + std::to_string(high)});
 }
 
+Check number_of(const Quantity& quantity) {
+  return check_of({[quantity](const std::string& text) {
+                     const auto value = whole_text<double>(text);
+                     return value && quantity.holds(*value)
+                                ? std::string()
+                                : "found " + text + ", expected " + quantity.expected();
+                   },
+                   limits_of(quantity)});
+}
+
 Option Option::required() const { return Option(option_->required()); }
 Option Option::type_name(const std::string& name) const { return Option(option_->type_name(name)); }
 Option Option::check(const Check& rule) const { return Option(option_->check(*rule)); }
-Option Option::one_of(std::initializer_list<std::string> words) const {
-  return Option(
-      option_->transform(CLI::IsMember(std::vector<std::string>(words), CLI::ignore_case)));
+Option Option::one_of(const std::vector<std::string>& words) const {
+  return Option(option_->transform(CLI::IsMember(words, CLI::ignore_case)));
 }
 Option Option::show_default() const { return Option(option_->capture_default_str()); }
 Option Option::delimiter(char mark) const { return Option(option_->delimiter(mark)); }
@@ -264,4 +280,4 @@ double parse_length(const std::string& name, const std::string& text) {
   throw wrong();
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

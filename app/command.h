@@ -1,12 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "core/quantity.h"
 
 // The command line as asdic's commands describe it. CLI11 stands behind it in command.cpp alone: it
 // takes seconds to compile.
@@ -16,7 +17,7 @@ class Option;
 class Validator;
 }  // namespace CLI
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// What the command line asked for. \return the exit status
 using Action = std::function<int()>;
@@ -36,6 +37,9 @@ using Check = std::shared_ptr<const CLI::Validator>;
 /// \param noun  "a port"
 [[nodiscard]] Check whole_number(std::int64_t low, std::int64_t high, const std::string& noun);
 
+/// A number of this kind: "found 0, expected a probability above 0 up to 0.5".
+[[nodiscard]] Check number_of(const Quantity& quantity);
+
 /// A handle of one option. Its methods say more about it, and return it.
 class Option {
  public:
@@ -46,7 +50,7 @@ class Option {
   Option type_name(const std::string& name) const;  ///< what help calls its word: "FILE.h5"
   Option check(const Check& rule) const;
   /// One of these words, in capitals or not; what is stored is the word as it stands here.
-  Option one_of(std::initializer_list<std::string> words) const;
+  Option one_of(const std::vector<std::string>& words) const;
   Option show_default() const;                     ///< in help
   Option delimiter(char mark) const;               ///< between the parts of one word: -5,0,5
   Option one_at_a_time() const;                    ///< may be repeated, takes one word each time
@@ -149,6 +153,7 @@ void add_study_command(Program& program);
 void add_merge_command(Program& program);
 void add_recover_command(Program& program);
 void add_serve_command(Program& program);
+void add_settings_command(Program& program);
 
 /// A scenario as the command line names it.
 struct ScenarioChoice {
@@ -168,4 +173,4 @@ void add_force_option(const Command& command, bool& force);
 /// Metres out of "60km", "500 m", "2.5e3". \throws InputError{where: `name`}
 [[nodiscard]] double parse_length(const std::string& name, const std::string& text);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

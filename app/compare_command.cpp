@@ -11,10 +11,10 @@
 #include "app/picture_source.h"
 #include "app/pictures.h"
 #include "core/error.h"
-#include "io/output/own_files.h"
-#include "io/result_file.h"
+#include "io/hdf5/own_files.h"
+#include "io/result/result_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 /// The largest difference that passes; none: not asked.
@@ -284,4 +284,4 @@ void add_compare_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -7,7 +7,7 @@
 
 #include "app/console.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using compare::Spread;
@@ -203,4 +203,4 @@ std::string comparison_json(const CompareResult& result) {
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -7,7 +7,7 @@
 #include "io/compare/fields.h"
 #include "io/compare/rays.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 using Comparison =
     std::variant<compare::FieldDifference, compare::ArrivalDifference, compare::RayDifference>;
@@ -25,4 +25,4 @@ struct CompareResult {
 [[nodiscard]] std::string comparison_table(const CompareResult& result);
 [[nodiscard]] std::string comparison_json(const CompareResult& result);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -15,7 +15,7 @@
 #include "core/memory_budget.h"
 #include "core/printable.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 /// How many columns UTF-8 text takes: one a code point, which is right for all that we print.
@@ -112,8 +112,4 @@ std::string duration(double seconds) {
 
 std::string byte_count(double bytes) { return bytes_text(bytes); }
 
-std::string count_of(std::size_t n, std::string_view thing) {
-  return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s");
-}
-
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -3,7 +3,9 @@
 #include <string_view>
 #include <vector>
 
-namespace asdic::app {
+#include "core/text.h"
+
+namespace asdic::detail::app {
 
 /// Whether people see what is written there.
 [[nodiscard]] bool stdout_is_terminal() noexcept;
@@ -42,7 +44,5 @@ class Table {
 [[nodiscard]] std::string duration(double seconds);
 /// 12.3 kB, 61.5 MB (powers of ten).
 [[nodiscard]] std::string byte_count(double bytes);
-/// "1 ping", "3 pings".
-[[nodiscard]] std::string count_of(std::size_t n, std::string_view thing);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -6,15 +6,15 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/output.h"
-#include "app/provenance.h"
 #include "core/error.h"
 #include "io/bellhop/case_writer.h"
-#include "io/output/own_files.h"
-#include "io/result_file.h"
+#include "io/hdf5/own_files.h"
+#include "io/ping/provenance.h"
+#include "io/result/result_file.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/writer.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ConvertOptions {
@@ -148,4 +148,4 @@ void add_convert_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

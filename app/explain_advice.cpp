@@ -6,7 +6,7 @@
 #include "app/console.h"
 #include "app/explanation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using compare::ArrivalDifference;
@@ -124,8 +124,8 @@ std::string about_file(const Explanation::OnDisk& old) {
     return old.file + " is asdic's own (its .prt says so): nothing here is about BELLHOP's file";
   std::string whose;
   if (old.writer == Writer::unknown) whose = " (taken for BELLHOP's: no .prt tells)";
-  if (old.writer == Writer::asdic_like_bellhop) whose = " (written by asdic --like-bellhop)";
-  if (same(old.like_bellhop))
+  if (old.writer == Writer::asdic_bellhop_emulation) whose = " (written by asdic --like-bellhop)";
+  if (same(old.bellhop_emulation))
     return old.file + whose + " is what BELLHOP makes of this input: all of this is true of it";
   return old.file + whose +
          " is not what BELLHOP (2022 in its repaired Fortran) makes of this input: another "
@@ -158,4 +158,4 @@ std::vector<std::string> advice_on(const Explanation& e) {
   return out;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

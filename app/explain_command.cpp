@@ -11,7 +11,7 @@
 #include "app/progress_bar.h"
 #include "core/error.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ExplainChoice {
@@ -65,7 +65,7 @@ void add_explain_command(Program& program) {
             .type_name("N")
             .check(between(1.0, 1e3));
         add_threads_option(command, options->threads);
-        command.add_flag("--json", options->json, "print JSON (docs/theory/like-bellhop.md)");
+        command.add_flag("--json", options->json, "print JSON (docs/theory/bellhop-emulation.md)");
         command.add_flag("-q,--quiet", options->quiet, "no progress on standard error");
         command.footer(
             "The table splits the difference into what BELLHOP's step, number of beams, merging "
@@ -78,4 +78,4 @@ void add_explain_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

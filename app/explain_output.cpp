@@ -5,7 +5,7 @@
 #include "app/console.h"
 #include "app/explanation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using compare::ArrivalDifference;
@@ -90,7 +90,7 @@ std::string explanation_table(const Explanation& e) {
   for (const Effect& effect : e.effects) add("  " + effect.name, effect.setting, effect.difference);
   if (e.rest) add("  " + e.rest->name, e.rest->setting, e.rest->difference);
   if (e.on_disk) {
-    add("file on disk", "-> BELLHOP run here", e.on_disk->like_bellhop);
+    add("file on disk", "-> BELLHOP run here", e.on_disk->bellhop_emulation);
     add("", "-> the truth", e.on_disk->truth);
   }
   text += table.text() + '\n';
@@ -116,7 +116,7 @@ std::string explanation_json(const Explanation& e) {
     all["on_disk"]["file"] = e.on_disk->file;
     constexpr const char* writers[] = {"unknown", "BELLHOP", "asdic", "asdic --like-bellhop"};
     all["on_disk"]["written_by"] = writers[static_cast<int>(e.on_disk->writer)];
-    all["on_disk"]["against_bellhop"] = json_of(e.on_disk->like_bellhop);
+    all["on_disk"]["against_bellhop"] = json_of(e.on_disk->bellhop_emulation);
     all["on_disk"]["against_truth"] = json_of(e.on_disk->truth);
   }
   all["advice"] = e.advice;
@@ -124,4 +124,4 @@ std::string explanation_json(const Explanation& e) {
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

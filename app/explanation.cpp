@@ -9,10 +9,10 @@
 
 #include "core/error.h"
 #include "io/bellhop/results.h"
-#include "io/input_file.h"
-#include "io/result_file.h"
+#include "io/files/input_file.h"
+#include "io/result/result_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using bellhop::ArrivalsFile;
@@ -102,8 +102,9 @@ class Runs {
   Runs(const PropagationCase& run_case, int count, const Progress& progress)
       : case_(run_case), count_(count), progress_(progress) {}
 
-  PropagationFile like_bellhop(const LikeBellhopOptions& options, std::size_t* beams = nullptr) {
-    const PropagationResult result = run_like_bellhop(case_, options, next());
+  PropagationFile bellhop_emulation(const BellhopEmulationOptions& options,
+                                    std::size_t* beams = nullptr) {
+    const PropagationResult result = run_bellhop_emulation(case_, options, next());
     if (beams != nullptr) *beams = result.beams;
     return file_of(case_, result);
   }
@@ -134,7 +135,7 @@ Explanation::OnDisk::Writer writer_of(const std::filesystem::path& prt) {
   if (!text.view().starts_with("asdic ")) return Writer::bellhop;
   for (std::string line; std::getline(text, line);)
     if (line.starts_with("traced") && line.find("as BELLHOP does") != std::string::npos)
-      return Writer::asdic_like_bellhop;
+      return Writer::asdic_bellhop_emulation;
   return Writer::asdic;
 }
 
@@ -150,11 +151,12 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
   const bool fan = c.task != Task::rays;
   Runs runs(c, 3 + (fan ? 1 : 0) + (has_rows ? 1 : 0) + (single ? 1 : 0) + 1, progress);
 
-  const PropagationFile asked = runs.like_bellhop({}, &e.beams);
-  LikeBellhopOptions best;
+  const PropagationFile asked = runs.bellhop_emulation({}, &e.beams);
+  BellhopEmulationOptions best;
   const auto improve = [&](const std::string& name, const std::string& setting,
-                           const LikeBellhopOptions& changed) {
-    e.effects.push_back({name, setting, compare_files(asked, runs.like_bellhop(changed), c.task)});
+                           const BellhopEmulationOptions& changed) {
+    e.effects.push_back(
+        {name, setting, compare_files(asked, runs.bellhop_emulation(changed), c.task)});
   };
   best.step = e.step / options.finer_step;
   improve("step", fmt::format("{:.4g} m -> {:.4g} m", e.step, *best.step), {.step = best.step});
@@ -171,7 +173,7 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
     best.single_precision = false;
     improve("single precision", "float32 -> float64", {.single_precision = false});
   }
-  const PropagationFile improved = runs.like_bellhop(best);
+  const PropagationFile improved = runs.bellhop_emulation(best);
   PropagationFile truth = improved;
   try {
     truth = runs.own();
@@ -208,4 +210,4 @@ Explanation explain(const bellhop::Input& input, const std::filesystem::path& ro
   return e;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

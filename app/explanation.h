@@ -6,9 +6,9 @@
 
 #include "app/compare_output.h"
 #include "io/bellhop/case_reader.h"
-#include "raytrace/like_bellhop/like_bellhop.h"
+#include "raytrace/bellhop_emulation/bellhop_emulation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// What one of BELLHOP's habits changes in its answer.
 struct Effect {
@@ -30,9 +30,9 @@ struct Explanation {
   struct OnDisk {
     std::string file;
     /// By what ROOT.prt beside it says; without one a file is taken for BELLHOP's.
-    enum class Writer { unknown, bellhop, asdic, asdic_like_bellhop } writer = Writer::unknown;
-    Comparison like_bellhop;  ///< the file against BELLHOP as asked, run here
-    Comparison truth;         ///< the file against the truth
+    enum class Writer { unknown, bellhop, asdic, asdic_bellhop_emulation } writer = Writer::unknown;
+    Comparison bellhop_emulation;  ///< the file against BELLHOP as asked, run here
+    Comparison truth;              ///< the file against the truth
   };
   std::optional<OnDisk> on_disk;
   std::vector<std::string> advice, notes;
@@ -55,4 +55,4 @@ struct ExplainOptions {
 [[nodiscard]] std::string explanation_table(const Explanation& explanation);
 [[nodiscard]] std::string explanation_json(const Explanation& explanation);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

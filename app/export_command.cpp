@@ -1,55 +1,55 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
 #include "app/command.h"
-#include "app/console.h"
+#include "app/file_exports.h"
 #include "core/error.h"
-#include "io/ping_file.h"
-#include "io/wav.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ExportOptions {
   std::string file, folder = ".";
-  bool wav = false, force = false;
+  std::array<bool, file_exports.size()> wanted{};
+  bool force = false;
   std::optional<int> ping;
 };
 
-int export_wav(const ExportOptions& options) {
+/// \throws UsageError if none is wanted
+void require_one(const ExportOptions& options) {
+  if (std::find(options.wanted.begin(), options.wanted.end(), true) != options.wanted.end()) return;
+  std::string names;
+  for (const AnyFileExport& one : file_exports)
+    names += (names.empty() ? "--" : " or --") + std::string(one.name);
+  throw UsageError(names + " is required; see asdic export --help");
+}
+
+int export_file(const ExportOptions& options) {
+  require_one(options);
   const PingFile file(options.file);
   if (options.ping && static_cast<std::size_t>(*options.ping) > file.pings())
     throw InputError({.where = "--ping",
                       .got = std::to_string(*options.ping),
                       .expected = fmt::format("a ping from 1 to {}", file.pings())});
-  if (file.is_complex())
-    throw InputError({.where = options.file,
-                      .got = "complex baseband",
-                      .expected = "pressure: pings.samples = \"pressure\" in the scenario"});
+  const std::size_t first = options.ping ? static_cast<std::size_t>(*options.ping) - 1 : 0;
+  const ExportChoice choice{.file = options.file,
+                            .folder = options.folder,
+                            .first = first,
+                            .end = options.ping ? first + 1 : file.pings(),
+                            .force = options.force};
+  for (std::size_t i = 0; i < file_exports.size(); ++i)
+    if (options.wanted[i]) file_exports[i].check(file, choice);
   if (file.pings() == 0)
     throw InputError({.where = options.file, .got = "no ping", .expected = "at least one"});
   std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
+  std::filesystem::create_directories(choice.folder, error);
   if (error) throw RunError(options.folder + ": " + error.message());
-  const std::string stem = std::filesystem::path(options.file).stem().string();
-  const std::size_t first = options.ping ? static_cast<std::size_t>(*options.ping) - 1 : 0;
-  const std::size_t end = options.ping ? first + 1 : file.pings();
-  for (std::size_t i = first; i < end; ++i) {
-    std::vector<float> pressure;
-    for (std::size_t channel = 0; channel < file.channels(); ++channel) {
-      const std::vector<float> phone = file.pressure(i, channel);
-      pressure.insert(pressure.end(), phone.begin(), phone.end());
-    }
-    const std::filesystem::path path =
-        std::filesystem::path(options.folder) / fmt::format("{}_ping{:03}.wav", stem, i + 1);
-    const WavScale scale =
-        write_wav(path, pressure, file.channels(), file.sample_rate(), {.force = options.force});
-    print(fmt::format("{}: {}, {} Hz, full scale {:.6g} Pa\n", path.string(),
-                      count_of(file.channels(), "channel"), scale.sample_rate,
-                      scale.pascal_per_unit));
-  }
+  for (std::size_t i = 0; i < file_exports.size(); ++i)
+    if (options.wanted[i]) file_exports[i].write(file, choice);
   return 0;
 }
 
@@ -61,12 +61,9 @@ void add_export_command(Program& program) {
         auto options = std::make_shared<ExportOptions>();
         command.add_option("FILE", options->file, "ping file (HDF5), written by asdic ping")
             .required();
-        command
-            .add_flag(
-                "--wav", options->wav,
-                "NAME_pingNNN.wav, 32-bit float, a channel a phone, and NAME_pingNNN.wav.json "
-                "with the scale in pascal")
-            .required();
+        for (std::size_t i = 0; i < file_exports.size(); ++i)
+          command.add_flag("--" + std::string(file_exports[i].name), options->wanted[i],
+                           std::string(file_exports[i].help));
         command.add_option("-o,--output", options->folder, "folder to write into; made if need be")
             .show_default()
             .type_name("DIR");
@@ -75,8 +72,8 @@ void add_export_command(Program& program) {
             .check(above_zero());
         add_force_option(command, options->force);
         command.footer("Example:  asdic export deep_ocean.h5 --wav -o sounds");
-        command.runs([options] { return export_wav(*options); });
+        command.runs([options] { return export_file(*options); });
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -19,14 +19,14 @@
 #include "io/text/csv_table.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct FieldOptions {
   ScenarioChoice scenario;
   std::string output;
   std::optional<int> threads;
-  bool like_bellhop = false, json = false, force = false, quiet = false;
+  bool bellhop_emulation = false, json = false, force = false, quiet = false;
 };
 
 bool is_shade_name(const std::filesystem::path& path) { return path.extension() == ".shd"; }
@@ -41,8 +41,8 @@ PropagationResult run_field_of(const PropagationCase& run_case, const FieldOptio
     const MemoryBudget budget = read_budget(options.scenario.path, options.scenario.overrides);
     PropagationResult result;
     until_interrupted([&] {
-      result = options.like_bellhop ? run_like_bellhop(run_case, progress, budget)
-                                    : run(run_case, progress, budget);
+      result = options.bellhop_emulation ? run_bellhop_emulation(run_case, progress, budget)
+                                         : run(run_case, progress, budget);
     });
     return result;
   } catch (const Interrupted&) {
@@ -60,7 +60,7 @@ int field(const FieldOptions& options) {
       read_propagation_case(options.scenario.path, options.scenario.overrides, warnings);
   if (asks_for_rays(options.scenario.path, options.scenario.overrides))
     throw InputError({.where = options.scenario.path + ": run.task",
-                      .got = '"' + std::string(name(result.run_case.task)) + '"',
+                      .got = '"' + std::string(word_of(result.run_case.task)) + '"',
                       .expected = "\"field\"; asdic rays does what this asks for, and --set "
                                   "run.task=field makes a field of it"});
   result.run_case.task = Task::field;
@@ -110,7 +110,7 @@ void add_field_command(Program& program) {
             .type_name("FILE");
         add_threads_option(command, options->threads);
         add_force_option(command, options->force);
-        command.add_flag("--like-bellhop", options->like_bellhop,
+        command.add_flag("--like-bellhop", options->bellhop_emulation,
                          "as BELLHOP does it, with its steps and beams; for comparison");
         command.add_flag("--json", options->json,
                          "print a summary as JSON (docs/formats/field.md)");
@@ -122,4 +122,4 @@ void add_field_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -8,11 +8,11 @@
 
 #include "app/console.h"
 #include "io/compare/statistics.h"
-#include "io/environment_group.h"
+#include "io/hdf5/environment_group.h"
 #include "io/scenario/propagation.h"
 #include "raytrace/cases/beam_error_text.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using nlohmann::ordered_json;
@@ -27,10 +27,10 @@ std::vector<double> losses(const std::vector<std::complex<float>>& pressure) {
   return all;
 }
 
-/// \param heard  of so many receivers
-double silent_pct(std::size_t receivers, std::size_t heard) {
+/// \param received  of so many receivers
+double silent_pct(std::size_t receivers, std::size_t received) {
   const auto all = static_cast<double>(receivers);
-  return all > 0.0 ? 100.0 * (all - static_cast<double>(heard)) / all : 0.0;
+  return all > 0.0 ? 100.0 * (all - static_cast<double>(received)) / all : 0.0;
 }
 
 std::string receivers_text(const ReceiverGrid& grid) {
@@ -57,12 +57,12 @@ FieldData field_data(const PropagationCase& run_case, PropagationResult&& result
           .source_depths = run_case.source_depths,
           .receivers = run_case.receivers,
           .pressure = std::move(result.field),
-          .beam_kind = std::string(name(run_case.beams.kind)),
+          .beam_kind = std::string(word_of(run_case.beams.kind)),
           .beams = result.beams,
           .beam_error_db = result.beam_error_db,
           .beam_error_bounded = result.beam_error_bounded,
           .beam_errors = std::move(result.beam_errors),
-          .solver = std::string(name(result.waves ? FieldSolver::waves : FieldSolver::beams))};
+          .solver = std::string(word_of(result.waves ? FieldSolver::waves : FieldSolver::beams))};
 }
 
 void write_field_file(OutputFile&& to, const FieldResult& result) {
@@ -81,13 +81,13 @@ std::string field_text(const FieldResult& result, double wall) {
   const FieldData& data = result.data;
   std::string text =
       emphasised(data.title.empty() ? result.origin.path : data.title) +
-      fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", name(data.kind), data.frequency,
-                  name(data.source), count_of(data.source_depths.size(), "depth"),
-                  receivers_text(data.receivers));
+      fmt::format("\nfield      {}, {:g} Hz, {} source, {}, {}\n", word_of(data.kind),
+                  data.frequency, word_of(data.source),
+                  count_of(data.source_depths.size(), "depth"), receivers_text(data.receivers));
   if (data.beams > 0)
     text += fmt::format("beams      {} of kind {}; {}\n", data.beams, data.beam_kind,
                         beam_error_text(data.beam_error_db, data.beam_error_bounded));
-  else if (data.solver == name(FieldSolver::waves))
+  else if (data.solver == word_of(FieldSolver::waves))
     text += "waves      no beams: the wave equation is solved\n";
   else
     text += "beams      none: the note tells why\n";
@@ -113,8 +113,8 @@ std::string field_json(const FieldResult& result) {
                             {"scenario", result.origin.path},
                             {"output", result.output.string()},
                             {"frequency_hz", data.frequency},
-                            {"field", name(data.kind)},
-                            {"source", name(data.source)},
+                            {"field", word_of(data.kind)},
+                            {"source", word_of(data.source)},
                             {"source_depths", data.source_depths.size()},
                             {"receivers", data.receivers.size()},
                             {"beam_kind", data.beam_kind},
@@ -131,4 +131,4 @@ std::string field_json(const FieldResult& result) {
   return all.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "app/output.h"
-#include "io/field_file.h"
+#include "io/result/field_file.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A field that was computed, and what of.
 struct FieldResult {
@@ -31,4 +31,4 @@ void write_field_file(OutputFile&& to, const FieldResult& result);
 [[nodiscard]] std::string field_text(const FieldResult& result, double wall);
 [[nodiscard]] std::string field_json(const FieldResult& result);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

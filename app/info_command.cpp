@@ -9,12 +9,12 @@
 #include "app/result_info.h"
 #include "app/study_info.h"
 #include "core/error.h"
-#include "io/file_check.h"
-#include "io/ping_file.h"
-#include "io/result_file.h"
+#include "io/hdf5/file_check.h"
+#include "io/ping/ping_file.h"
+#include "io/result/result_file.h"
 #include "study/runs/study_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct InfoOptions {
@@ -50,6 +50,17 @@ void check_kind_of_file(const std::string& path) {
                     .expected = "HDF5 of asdic ping, process, study, merge, field, arrivals or "
                                 "rays, or .shd, .arr, .ray, .wav (of a scenario asdic validate "
                                 "tells)"});
+}
+
+/// Who made it, when and with what.
+std::string makers(const PingFile& file) {
+  const auto run = [&](const std::string& key) { return attribute(file, "run", key); };
+  const std::string version = attribute(file, "", "program_version");
+  if (version.empty()) return "made         by a program that does not say when and with what\n";
+  return fmt::format("made         {} on {}, {}, {} threads\n", run("started"), run("host"),
+                     run("cpu"), run("threads")) +
+         fmt::format("by           asdic {}, {}\n", version, attribute(file, "", "build")) +
+         fmt::format("with         {}\n", run("library_versions"));
 }
 
 std::string completeness(const PingFile& file) {
@@ -93,11 +104,7 @@ int info(const std::string& path) {
   print(fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",
                     pulse("kind"), pulse("centre_frequency_hz"), pulse("duration_s"),
                     pulse("window"), pulse("bandwidth_hz"), pulse("source_level_db")));
-  print(fmt::format("made         {} on {}, {}, {} threads\n", attribute(file, "run", "started"),
-                    attribute(file, "run", "host"), attribute(file, "run", "cpu"),
-                    attribute(file, "run", "threads")));
-  print(fmt::format("by           asdic {}, {}\n", root("program_version"), root("build")));
-  print(fmt::format("with         {}\n", attribute(file, "run", "library_versions")));
+  print(makers(file));
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
   if (file.file().has_attribute("", "overrides"))
     print(fmt::format("changed by   {}\n", root("overrides")));
@@ -146,4 +153,4 @@ void add_info_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

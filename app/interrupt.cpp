@@ -11,7 +11,7 @@
 #include "app/console.h"
 #include "raytrace/parallel/stop.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 constexpr std::array<int, 3> stopping = {SIGINT, SIGTERM, SIGHUP};
@@ -75,4 +75,4 @@ void until_interrupted(const std::function<void()>& work) {
   until_stopped(interrupt.token(), work);
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP is noted, and the second ends the program at
 /// once. One that was ignored stays so: SIGINT of a shell's job in the background, SIGHUP under
@@ -44,4 +44,4 @@ class StopOnInterrupt {
 /// if it did
 void until_interrupted(const std::function<void()>& work);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 [[noreturn]] void give_up(const char* reason) {
@@ -36,10 +36,10 @@ int LazyLibrary::initialise(const char* initialiser, std::span<const Variable> v
   return status;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app
 
-ASDIC_LAZY_HIDDEN void asdic_lazy_find(asdic::app::LazyFunction* function);
-void asdic_lazy_find(asdic::app::LazyFunction* function) {
+ASDIC_LAZY_HIDDEN void asdic_lazy_find(asdic::detail::app::LazyFunction* function);
+void asdic_lazy_find(asdic::detail::app::LazyFunction* function) {
   const auto target = reinterpret_cast<void (*)()>(function->library->address(function->name));
   std::atomic_ref(function->target).store(target, std::memory_order_release);
 }

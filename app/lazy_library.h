@@ -7,7 +7,7 @@
 // bring sixty others with them (by libcurl), which take longer to load than `asdic bellhop` works.
 // cmake/LazyStubs.cmake writes a source file of the macros below: a function each that the program
 // calls, under its own name, which jumps to the one of the library. x86-64 alone.
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A shared library. `constinit`: functions may be called while other files' globals are made.
 class LazyLibrary {
@@ -44,24 +44,24 @@ struct LazyFunction {
   LazyLibrary* library;
 };
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app
 
 #define ASDIC_LAZY_HIDDEN extern "C" __attribute__((visibility("hidden")))
 
 /// Finds the function, then goes on into it with all arguments as they were.
 ASDIC_LAZY_HIDDEN void asdic_lazy_first_call();
 
-#define ASDIC_LAZY_FUNCTION(lazy_library, function)                                           \
-  ASDIC_LAZY_HIDDEN void asdic_first_##function();                                            \
-  ASDIC_LAZY_HIDDEN asdic::app::LazyFunction asdic_lazy_##function;                           \
-  constinit asdic::app::LazyFunction asdic_lazy_##function{asdic_first_##function, #function, \
-                                                           &(lazy_library)};                  \
-  asm(".text\n.globl " #function "\n.hidden " #function "\n.type " #function                  \
-      ", @function\n" #function ":\n  jmp *asdic_lazy_" #function "(%rip)\n.size " #function  \
-      ", .-" #function "\n.globl asdic_first_" #function "\n.hidden asdic_first_" #function   \
-      "\n.type asdic_first_" #function ", @function\nasdic_first_" #function                  \
-      ":\n  lea asdic_lazy_" #function                                                        \
-      "(%rip), %r11\n  jmp asdic_lazy_first_call\n.size "                                     \
+#define ASDIC_LAZY_FUNCTION(lazy_library, function)                                             \
+  ASDIC_LAZY_HIDDEN void asdic_first_##function();                                              \
+  ASDIC_LAZY_HIDDEN asdic::detail::app::LazyFunction asdic_lazy_##function;                     \
+  constinit asdic::detail::app::LazyFunction asdic_lazy_##function{asdic_first_##function,      \
+                                                                   #function, &(lazy_library)}; \
+  asm(".text\n.globl " #function "\n.hidden " #function "\n.type " #function                    \
+      ", @function\n" #function ":\n  jmp *asdic_lazy_" #function "(%rip)\n.size " #function    \
+      ", .-" #function "\n.globl asdic_first_" #function "\n.hidden asdic_first_" #function     \
+      "\n.type asdic_first_" #function ", @function\nasdic_first_" #function                    \
+      ":\n  lea asdic_lazy_" #function                                                          \
+      "(%rip), %r11\n  jmp asdic_lazy_first_call\n.size "                                       \
       "asdic_first_" #function ", .-asdic_first_" #function "\n");
 
 #define ASDIC_LAZY_VARIABLE(variable)      \

@@ -1,9 +1,9 @@
 #include "app/command.h"
 #include "app/program.h"
-#include "app/provenance.h"
+#include "io/ping/provenance.h"
 
 // asdic: every command.
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 int run(int argc, char** argv) {
@@ -32,12 +32,14 @@ int run(int argc, char** argv) {
   add_merge_command(program);
   add_recover_command(program);
   add_serve_command(program);
+  add_settings_command(program);
   return program.parse(argc, argv)();
 }
 
 }  // namespace
-}  // namespace asdic::app
+}  // namespace asdic::detail::app
 
 int main(int argc, char** argv) {
-  return asdic::app::run_program("asdic", [&] { return asdic::app::run(argc, argv); });
+  return asdic::detail::app::run_program("asdic",
+                                         [&] { return asdic::detail::app::run(argc, argv); });
 }

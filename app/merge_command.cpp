@@ -5,13 +5,13 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "core/error.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
 #include "io/scenario/embedded.h"
 #include "io/text/csv_table.h"
 #include "study/plan/study.h"
 #include "study/runs/merge.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct MergeOptions {
@@ -43,19 +43,20 @@ study::Study study_of(const MergeOptions& options) {
   const study::StudyFile part(options.parts.front());
   const std::filesystem::path path = find_study(options, part);
   if (options.study.empty()) {  // nothing but the part says so: it must not lead to other files
-    scenario::check_names(part.imprint().overrides, path.parent_path(), "--study names the study");
-    if (read_text_file(path, "a study file") != part.imprint().text)
+    scenario::check_names(part.fingerprint().overrides, path.parent_path(),
+                          "--study names the study");
+    if (read_text_file(path, "a study file") != part.fingerprint().text)
       throw InputError({.where = path.string(),
                         .got = "a file that has changed since the parts were made, if only in what "
                                "is made of the rows",
                         .expected = "as it was; --study " + path.string() + " takes it as it is"});
   }
-  study::Study study = study::read_study(path, part.imprint().overrides);
-  if (study::identity(study) != part.imprint().identity)
+  study::Study study = study::read_study(path, part.fingerprint().overrides);
+  if (study::identity(study) != part.fingerprint().identity)
     throw InputError({.where = path.string(),
                       .got = "another study (identity " + study::identity(study) + ")",
                       .expected = "that of " + part.path().string() + " (identity " +
-                                  part.imprint().identity + "); --study names another file"});
+                                  part.fingerprint().identity + "); --study names another file"});
   return study;
 }
 
@@ -66,8 +67,8 @@ void check_existing(const std::filesystem::path& output, const std::string& iden
   std::string got = "a file that is no study's";
   try {
     const study::StudyFile there(output);
-    if (there.imprint().identity == identity) return;
-    got = "results of another study (identity " + there.imprint().identity + ")";
+    if (there.fingerprint().identity == identity) return;
+    got = "results of another study (identity " + there.fingerprint().identity + ")";
   } catch (const InputError&) {
   }
   throw InputError({.where = output.string(),
@@ -85,7 +86,7 @@ int merge(const MergeOptions& options) {
   if (!options.study.empty()) how.text = study.text;
   const study::MergeReport report = study::merge(
       parts, output,
-      [&](const study::Imprint&, const study::Table& table) {
+      [&](const study::Fingerprint&, const study::Table& table) {
         return study::summary_of(study, table);
       },
       how);
@@ -127,4 +128,4 @@ void add_merge_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

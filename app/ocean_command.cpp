@@ -7,10 +7,10 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "core/error.h"
-#include "io/climatology.h"
-#include "io/output/own_files.h"
+#include "io/climatology/climatology.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct OceanOptions {
@@ -92,4 +92,4 @@ void add_ocean_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

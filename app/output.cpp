@@ -1,13 +1,13 @@
 #include "app/output.h"
 
-#include "app/provenance.h"
 #include "core/error.h"
-#include "io/digest.h"
+#include "io/files/digest.h"
+#include "io/hdf5/own_files.h"
 #include "io/hdf5/scale.h"
-#include "io/output/own_files.h"
-#include "io/result_file.h"
+#include "io/ping/provenance.h"
+#include "io/result/result_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 Hdf5Output::Hdf5Output(OutputFile&& output)
     : output_(std::move(output)), file_(Hdf5File::create(output_.part())) {}
 
@@ -66,4 +66,4 @@ void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin&
   describe(file, "scenario", "the scenario file, verbatim");
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

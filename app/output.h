@@ -3,11 +3,11 @@
 #include <string>
 #include <string_view>
 
-#include "io/hdf5_file.h"
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A small HDF5 file that gets its name when it is whole.
 class Hdf5Output {
@@ -43,4 +43,4 @@ void check_kind(const std::filesystem::path& path, std::string_view own);
 /// What every file of results tells of itself: filetype, version, title, program, and the scenario.
 void write_root(Hdf5File& file, const std::string& filetype, const ResultOrigin& origin);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

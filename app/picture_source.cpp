@@ -8,13 +8,13 @@
 
 #include "core/error.h"
 #include "io/bellhop/case_reader.h"
-#include "io/environment_group.h"
-#include "io/result_file.h"
+#include "io/hdf5/environment_group.h"
+#include "io/result/result_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
-/// The stretch that a result covers [m].
+/// The segment that a result covers [m].
 std::pair<double, double> extent(const PropagationFile& file) {
   double first = 0.0, last = 0.0;
   const auto include = [&](const std::vector<double>& ranges) {
@@ -72,4 +72,4 @@ std::filesystem::path picture_source(const std::filesystem::path& result,
   return path;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

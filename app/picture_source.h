@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A folder for files that nobody is to see; it goes with its owner.
 class TemporaryFolder {
@@ -24,4 +24,4 @@ class TemporaryFolder {
                                                    const TemporaryFolder& folder,
                                                    const std::string& name);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

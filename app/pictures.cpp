@@ -14,7 +14,7 @@
 #include "app/console.h"
 #include "core/error.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ int draw_pictures(const std::vector<std::string>& arguments) {
   return status;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -9,20 +9,20 @@
 
 #include "app/command.h"
 #include "app/console.h"
-#include "app/drawn_rays.h"
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/ping_report.h"
 #include "app/progress_bar.h"
-#include "app/provenance.h"
 #include "app/warn.h"
 #include "core/error.h"
+#include "io/ping/drawn_rays.h"
+#include "io/ping/provenance.h"
 #include "io/scenario/propagation.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct PingOptions {
@@ -173,4 +173,4 @@ void add_ping_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -10,7 +10,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 constexpr int most_lines = 200;  // of a long sequence; the file has them all
 }
@@ -110,4 +110,4 @@ std::string PingReport::text(double wall) const {
   return result;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -6,7 +6,7 @@
 #include "sonar/ping/ping_record.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// The columns of a line per ping and target, and that line.
 [[nodiscard]] std::vector<Table::Column> summary_columns();
@@ -33,4 +33,4 @@ class PingReport {
   Timings total_;
 };
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

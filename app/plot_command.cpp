@@ -8,11 +8,11 @@
 #include "app/study_info.h"
 #include "core/error.h"
 #include "io/hdf5/readable.h"
-#include "io/ping_file.h"
-#include "io/result_file.h"
+#include "io/ping/ping_file.h"
+#include "io/result/result_file.h"
 #include "study/runs/study_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct PlotOptions {
@@ -110,4 +110,4 @@ void add_plot_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

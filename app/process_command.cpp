@@ -2,7 +2,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include <charconv>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -12,103 +11,49 @@
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/process_report.h"
-#include "app/process_run.h"
 #include "app/progress_bar.h"
-#include "app/provenance.h"
+#include "app/settings_options.h"
 #include "app/warn.h"
 #include "core/error.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
+#include "io/ping/provenance.h"
+#include "io/processing/process_pings.h"
+#include "io/processing/recordings.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ProcessOptions {
   std::string file, output, scenario, csv;
   std::optional<int> ping, threads;
-  std::string beamformer = "conventional", shading = "none", normaliser = "split-window";
-  std::string elevations, track_start = "3/4";
-  double mvdr_loading_db = -10.0;
-  std::optional<double> from, until;
-  ProcessingSettings settings;
+  SettingsOptions receiver{
+      {{"elevations", {.type = "LOW:HIGH"}},
+       {"across_beams",
+        {.name = "!--time-only",
+         .help = "compare a peak with its own beam alone, not with the beams around"}},
+       {"track_start", {.type = "M/N"}}}};
   bool json = false, quiet = false, no_maps = false, no_file = false, force = false;
 };
 
-/// Two numbers with a sign between: "3/4", "-20:20".
-std::pair<double, double> two_numbers(const std::string& option, const std::string& text, char sign,
-                                      const std::string& expected) {
-  const auto wrong = [&] {
-    return InputError({.where = option, .got = '"' + text + '"', .expected = expected});
-  };
-  const auto at = text.find(sign, 1);
-  if (at == std::string::npos) throw wrong();
-  const auto number_of = [&](const char* begin, const char* end) {
-    double value = 0.0;
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    if (error != std::errc{} || rest != end || !std::isfinite(value)) throw wrong();
-    return value;
-  };
-  const char* const text_begin = text.data();
-  return {number_of(text_begin, text_begin + at),
-          number_of(text_begin + at + 1, text_begin + text.size())};
-}
-
-ProcessingSettings settings_of(const ProcessOptions& options, const std::vector<Replica>& replicas,
-                               double record_start) {
-  ProcessingSettings s = options.settings;
-  s.detector.beamformer =
-      options.beamformer == "mvdr" ? Beamformer::mvdr : Beamformer::conventional;
-  s.detector.hann_shading = options.shading == "hann";
-  s.detector.normaliser.method =
-      options.normaliser == "split-window" ? Normaliser::split_window : Normaliser::cell_averaging;
-  s.detector.mvdr.loading = power_from_db(options.mvdr_loading_db);
-  if (!options.elevations.empty()) {
-    const auto [low, high] = two_numbers("--elevations", options.elevations, ':',
-                                         "two angles such as -20:20, the lower first");
-    if (!(low <= high && low >= -90.0 && high <= 90.0))
-      throw InputError({.where = "--elevations",
-                        .got = '"' + options.elevations + '"',
-                        .expected = "two angles from -90 to 90 degrees, the lower first"});
-    s.detector.lowest_elevation = radians(low);
-    s.detector.highest_elevation = radians(high);
-  }
-  const auto [hits, pings] =
-      two_numbers("--track-start", options.track_start, '/', "hits/pings such as 3/4");
-  if (!(hits >= 1.0 && hits <= pings && pings <= 1000.0 && hits == std::floor(hits) &&
-        pings == std::floor(pings)))
-    throw InputError({.where = "--track-start",
-                      .got = '"' + options.track_start + '"',
-                      .expected = "hits/pings such as 3/4, no more hits than pings"});
-  s.tracker.start_hits = static_cast<int>(hits);
-  s.tracker.start_pings = static_cast<int>(pings);
+/// By default nothing is detected while the longest of the pulses is sent.
+ProcessingSettings settings_of(const ProcessOptions& options,
+                               const std::vector<Replica>& replicas) {
+  ProcessingSettings settings;
+  options.receiver.read(settings);
+  options.receiver.read(settings.tracker);
   double longest = 0.0;
   for (const Replica& replica : replicas) longest = std::max(longest, replica.duration());
-  s.detector.first_time = options.from.value_or(record_start + longest);
-  s.detector.last_time = options.until.value_or(infinity);
-  return s;
+  if (!settings.detector.first_time) settings.detector.first_time = longest;
+  return settings;
 }
 
 /// What was asked for, as the file tells it.
-std::vector<std::string> told(const ProcessOptions& o, const ProcessingSettings& s) {
-  std::vector<std::string> list{
-      "beamformer=" + o.beamformer,
-      "shading=" + o.shading,
-      "normaliser=" + o.normaliser,
-      fmt::format("across_beams={}", s.detector.normaliser.across_beams),
-      fmt::format("false_alarm_probability={}", s.detector.normaliser.false_alarm_probability),
-      fmt::format("guard_cells={}", s.detector.normaliser.guard_cells),
-      fmt::format("reference_cells={}", s.detector.normaliser.reference_cells),
-      fmt::format("max_speed={}", s.max_speed),
-      fmt::format("from={}", s.detector.first_time),
-      "track_start=" + o.track_start,
-      fmt::format("track_stop={}", s.tracker.stop_misses),
-      fmt::format("track_acceleration={}", s.tracker.acceleration)};
-  if (s.target_depth) list.push_back(fmt::format("target_depth={}", *s.target_depth));
-  if (s.range_speed) list.push_back(fmt::format("range_speed={}", *s.range_speed));
-  if (o.beamformer == "mvdr") list.push_back(fmt::format("mvdr_loading_db={}", o.mvdr_loading_db));
-  if (o.until) list.push_back(fmt::format("until={}", *o.until));
-  if (!o.elevations.empty()) list.push_back("elevations=" + o.elevations);
-  return list;
+std::vector<std::string> told(ProcessingSettings settings) {
+  SettingsInUse used;
+  used.add(settings);
+  used.add(settings.tracker);
+  return used.list();
 }
 
 /// A file of the folder of tables, which is made if need be.
@@ -149,14 +94,14 @@ int process(const ProcessOptions& options) {
   {
     const PingRecordings recordings(options.file, scenario);
     std::vector<Replica> replicas = recordings.replicas();
-    const ProcessingSettings settings = settings_of(options, replicas, 0.0);
+    const ProcessingSettings settings = settings_of(options, replicas);
     first = replicas.front();
     const PingProcessor processor(recordings.scenario(), std::move(replicas), settings);
     const int count = options.ping ? 1 : static_cast<int>(recordings.pings());
     try {
       ProgressBar bar("ping", count, !options.quiet);
       until_interrupted([&] {
-        run = process_file(
+        run = process_pings(
             recordings, processor, options.ping, [&](int done) { bar.done(done); },
             [] { return !Interrupt::requested(); });
       });
@@ -165,7 +110,7 @@ int process(const ProcessOptions& options) {
                      (output == options.file ? " is as it was" : " was not written"));
     }
     if (!options.quiet) warn(run.warnings);
-    run.options = told(options, settings);
+    run.options = told(settings);
     run.program_version = provenance(threads).program_version;
     run.maps = !options.no_maps;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
@@ -178,89 +123,6 @@ int process(const ProcessOptions& options) {
   if (tracks) tracks->write(tracks_csv(run));
   if (file) write_processed(options.file, std::move(*file), run, *first);
   return 0;
-}
-
-void add_detection_options(const Command& command, ProcessOptions& o) {
-  NormaliserSettings& normaliser = o.settings.detector.normaliser;
-  command.add_option("--beamformer", o.beamformer, "of the arrays")
-      .show_default()
-      .one_of({"conventional", "mvdr"});
-  command
-      .add_option("--mvdr-loading-db", o.mvdr_loading_db,
-                  "diagonal loading, re the mean power of a phone")
-      .show_default()
-      .type_name("DB")
-      .check(between(-120.0, 60.0));
-  command.add_option("--shading", o.shading, "of the phones, in conventional beams")
-      .show_default()
-      .one_of({"none", "hann"});
-  command
-      .add_option("--elevations", o.elevations,
-                  "looked at by arrays that tell elevation and bearing, e.g. -20:20 [deg]")
-      .type_name("LOW:HIGH");
-  command
-      .add_option("--max-speed", o.settings.max_speed,
-                  "closing or opening, that the Doppler filters reach [m/s]")
-      .show_default()
-      .type_name("MPS")
-      .check(between(0.0, 500.0));
-  command.add_option("--normaliser", o.normaliser, "estimate of the background")
-      .show_default()
-      .one_of({"cell-averaging", "split-window"});
-  command.add_flag("!--time-only", normaliser.across_beams,
-                   "compare a peak with its own beam alone, not with the beams around");
-  command.add_option("--guard-cells", normaliser.guard_cells, "left out on either side")
-      .show_default()
-      .type_name("N")
-      .check(between(0.0, 1e5));
-  command.add_option("--reference-cells", normaliser.reference_cells, "averaged on either side")
-      .show_default()
-      .type_name("N")
-      .check(between(1.0, 1e5));
-  command
-      .add_option("--false-alarm-probability", normaliser.false_alarm_probability,
-                  "of a cell of Rayleigh background")
-      .show_default()
-      .type_name("P")
-      .check(between(1e-30, 0.5));
-  command
-      .add_option("--from", o.from,
-                  "nothing is detected before, after the ping's start; default: the pulse's "
-                  "duration [s]")
-      .type_name("S")
-      .check(not_negative());
-  command.add_option("--until", o.until, "nor after [s]").type_name("S").check(not_negative());
-}
-
-void add_place_options(const Command& command, ProcessOptions& o) {
-  command.add_length(
-      "--target-depth", o.settings.target_depth,
-      "depth of what answers; default: where the ray came from if the array tells elevation, else "
-      "100 m");
-  command
-      .add_option("--range-speed", o.settings.range_speed,
-                  "straight rays of this speed, instead of the scenario's sound paths [m/s]")
-      .type_name("MPS")
-      .check(between(1000.0, 2000.0));
-  command.add_option("--track-start", o.track_start, "a track is believed after m hits in n pings")
-      .show_default()
-      .type_name("M/N");
-  command
-      .add_option("--track-stop", o.settings.tracker.stop_misses,
-                  "and ends after so many pings without a hit")
-      .show_default()
-      .type_name("N")
-      .check(between(1, 1000));
-  command
-      .add_option("--track-acceleration", o.settings.tracker.acceleration,
-                  "of targets, root of its density [m/s2 sqrt(s)]")
-      .show_default()
-      .type_name("A")
-      .check(above_zero());
-  command.add_option("--track-max-speed", o.settings.tracker.max_speed, "of targets [m/s]")
-      .show_default()
-      .type_name("MPS")
-      .check(above_zero());
 }
 
 }  // namespace
@@ -294,8 +156,9 @@ void add_process_command(Program& program) {
                 "where FILE's scenario was, if it names other files: they are looked for beside "
                 "it")
             .type_name("FILE.toml");
-        add_detection_options(command, *options);
-        add_place_options(command, *options);
+        ProcessingSettings defaults;
+        options->receiver.add(command, defaults);
+        options->receiver.add(command, defaults.tracker);
         add_threads_option(command, options->threads);
         add_force_option(command, options->force);
         command.add_flag("-q,--quiet", options->quiet, "print nothing unless something is wrong");
@@ -306,4 +169,4 @@ void add_process_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -8,7 +8,7 @@
 
 #include "app/console.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct Totals {
@@ -205,4 +205,4 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

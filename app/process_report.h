@@ -4,7 +4,7 @@
 #include "io/processing/results.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// What people want to know of a processed file. \param seconds  that it took
 [[nodiscard]] std::string process_report(const ProcessedRun& run, const Scenario& scenario,
@@ -13,4 +13,4 @@ namespace asdic::app {
 [[nodiscard]] std::string process_json(const ProcessedRun& run, const Scenario& scenario,
                                        const std::string& file);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

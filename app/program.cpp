@@ -15,9 +15,9 @@
 #include "core/error.h"
 #include "core/instruction_level.h"
 #include "core/printable.h"
-#include "io/output/files_read.h"
+#include "io/files/files_read.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -67,4 +67,4 @@ int run_program(const std::string& program, const std::function<int()>& act) {
   return fault;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

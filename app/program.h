@@ -3,7 +3,7 @@
 #include <string>
 
 // How a program of ours starts and ends: asdic, asdic-mpi.
-namespace asdic::app {
+namespace asdic::detail::app {
 
 enum ExitStatus : int { success = 0, failure = 1, bad_input = 2 };
 
@@ -20,4 +20,4 @@ void open_standard_streams();
 /// main() of a program: does it, says what went wrong. \return the exit status
 int run_program(const std::string& program, const std::function<int()>& act);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -7,7 +7,7 @@
 
 #include "app/console.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 std::string progress_line(const std::string& thing, int done, int total, double elapsed) {
   constexpr int width = 30;
@@ -30,4 +30,4 @@ ProgressBar::ProgressBar(std::string thing, int total, bool show)
         return progress_line(thing, done_, total, elapsed);
       }) {}
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

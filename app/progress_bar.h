@@ -4,7 +4,7 @@
 
 #include "app/progress_painter.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A line on standard error that says how far a run is (ProgressPainter).
 class ProgressBar {
@@ -23,4 +23,4 @@ class ProgressBar {
 [[nodiscard]] std::string progress_line(const std::string& thing, int done, int total,
                                         double elapsed);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

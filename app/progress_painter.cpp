@@ -7,7 +7,7 @@
 
 #include "app/console.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 void write(const std::string& text) {
@@ -53,4 +53,4 @@ ProgressPainter::ProgressPainter(bool show, Line line) {
 
 ProgressPainter::~ProgressPainter() = default;  // asked to stop, and joined
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

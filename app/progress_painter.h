@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// When a line of progress is shown first, and how often from then on.
 struct PaintTimes {
@@ -33,4 +33,4 @@ class ProgressPainter {
   std::jthread thread_;
 };
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -13,12 +13,12 @@
 #include "app/warn.h"
 #include "core/error.h"
 #include "io/scenario/propagation.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct RaysOptions {
@@ -240,4 +240,4 @@ void add_rays_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -11,10 +11,10 @@
 #include "app/console.h"
 #include "core/units.h"
 #include "io/bellhop/results.h"
-#include "io/environment_group.h"
+#include "io/hdf5/environment_group.h"
 #include "io/ping/growing_table.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 using nlohmann::ordered_json;
@@ -200,4 +200,4 @@ void write_rays_file(OutputFile&& to, const RaysResult& result) {
   output.finish();
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

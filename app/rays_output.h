@@ -7,7 +7,7 @@
 #include "raytrace/cases/propagation_case.h"
 #include "raytrace/paths/trace_ray.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// A fan that was traced, or eigenrays.
 struct RaysResult {
@@ -26,4 +26,4 @@ struct RaysResult {
 /// docs/formats/rays.md, or a .ray file, by the name's ending \throws RunError
 void write_rays_file(OutputFile&& to, const RaysResult& result);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

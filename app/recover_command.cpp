@@ -6,10 +6,10 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "core/error.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
 #include "io/ping/recovery.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct RecoverOptions {
@@ -76,4 +76,4 @@ void add_recover_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

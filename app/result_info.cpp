@@ -10,11 +10,11 @@
 
 #include "app/console.h"
 #include "app/field_output.h"
-#include "io/result_file.h"
-#include "io/wav.h"
+#include "io/result/result_file.h"
+#include "io/wav/wav.h"
 #include "raytrace/cases/beam_error_text.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -171,4 +171,4 @@ int wav_info(const std::string& path) {
   return 0;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

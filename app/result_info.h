@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// Whether a file is a result of the propagation model: HDF5 of `asdic field`, `arrivals` or
 /// `rays`, or BELLHOP's .shd, .arr or .ray.
@@ -13,4 +13,4 @@ int propagation_info(const std::string& path);
 /// The same of a WAV file of `asdic export`.
 int wav_info(const std::string& path);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

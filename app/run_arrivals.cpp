@@ -11,11 +11,11 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "io/bellhop/results.h"
-#include "io/result_file.h"
+#include "io/result/result_file.h"
 #include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 /// Calls see(source depth, receiver depth, range, arrivals) for every receiver, range fastest.
@@ -110,4 +110,4 @@ void write_run_arrivals(OutputFile&& to, const RunArrivals& all) {
   output.finish();
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

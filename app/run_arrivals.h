@@ -6,7 +6,7 @@
 #include "app/output.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// Arrivals of a run of the propagation model, at all of its receivers.
 struct RunArrivals {
@@ -25,4 +25,4 @@ struct RunArrivals {
 /// HDF5 (docs/formats/arrivals.md) or, by the name's ending, .arr. \throws RunError
 void write_run_arrivals(OutputFile&& to, const RunArrivals& arrivals);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

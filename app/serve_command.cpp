@@ -9,13 +9,13 @@
 
 #include "app/command.h"
 #include "app/interrupt.h"
-#include "app/provenance.h"
 #include "core/error.h"
+#include "io/ping/provenance.h"
 #include "io/text/csv_table.h"
 #include "serve/server.h"
 #include "serve/token.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 struct ServeOptions {
@@ -128,4 +128,4 @@ void add_serve_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -9,7 +9,7 @@
 #include "core/geometry.h"
 #include "sonar/noise/noise_spectrum.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 std::string position(const Vec3& p) {
@@ -57,26 +57,12 @@ std::string carried(const Scenario& s, std::string_view what, const Carried& one
 }
 
 std::string pulse_text(const Scenario& s, int transmitter) {
-  constexpr const char* kinds[] = {"CW", "LFM", "HFM", "from a file"};
   constexpr const char* windows[] = {"no window", "Hann window", "Tukey window"};
   const PulseSettings& settings = pulse_of(s, transmitter);
   const Pulse pulse(settings);
   return fmt::format("pulse      {}, {:g} Hz, {:g} s, {}, band {:g} Hz\n",
-                     kinds[static_cast<int>(settings.kind)], pulse.centre_frequency(),
-                     pulse.duration(), windows[static_cast<int>(settings.window)],
-                     pulse.bandwidth_40db());
-}
-
-/// Of a list of projectors or a table.
-std::string beam_text(const Transmitter& one) {
-  const std::string what = one.table
-                               ? fmt::format("beam by a table of {} and {}",
-                                             count_of(one.table->bearings.size(), "bearing"),
-                                             count_of(one.table->elevations.size(), "elevation"))
-                               : count_of(one.projectors.size(), "projector");
-  return fmt::format("{:g} dB, {}, {} {:g} deg from {}", one.source_level_db, what,
-                     one.table ? "turned to" : "steered to", compass_degrees(one.bearing),
-                     one.frame == BearingFrame::heading ? "the heading" : "north");
+                     title_of(settings.waveform), pulse.centre_frequency(), pulse.duration(),
+                     windows[static_cast<int>(settings.window)], pulse.bandwidth_40db());
 }
 
 /// ", 150 m deep" of what does not hang where its platform is; "" of what does.
@@ -93,19 +79,15 @@ std::string transmitter_text(const PingSimulator& simulator, std::size_t t) {
   const std::string who = carried(s, "projector", one, s.transmitters.size());
   const double depth = transmitter_at(s, static_cast<int>(t), 0.0).position.z();
   const std::string where = depth_text(s, one.platform, depth, depth) + "\n";
-  if (!one.projectors.empty() || one.table) return who + beam_text(one) + where;
-  if (one.taper == Taper::omnidirectional)
-    return who + fmt::format("{:g} dB, omnidirectional", one.source_level_db) + where;
   double elevation = one.elevation;
   for (int ping = 1; ping <= simulator.pings(); ++ping) {
     if (simulator.transmission(ping).transmitter != static_cast<int>(t)) continue;
     elevation = simulator.transmission(ping).elevation;  // of its first ping
     break;
   }
-  return who +
-         fmt::format("{:g} dB, elevation {:g} deg, beamwidth {:g} deg", one.source_level_db,
-                     degrees(elevation), degrees(one.beamwidth)) +
-         where;
+  const std::string beam =
+      std::visit([&](const auto& form) { return form.text(elevation); }, one.beam);
+  return who + fmt::format("{:g} dB, {}", one.source_level_db, beam) + where;
 }
 
 /// What the phones' electronics do, if they are not ideal.
@@ -173,27 +155,31 @@ std::string strength_text(const Target& target) {
   return text + fluctuations[static_cast<int>(target.fluctuation)];
 }
 
+std::string between_phones(NoiseCoherence coherence) {
+  switch (coherence) {
+    case NoiseCoherence::isotropic:
+      return ", isotropic";
+    case NoiseCoherence::surface:
+      return ", from a sheet under the surface";
+    case NoiseCoherence::profile:
+      return ", by a profile over elevation";
+    case NoiseCoherence::independent:
+      break;
+  }
+  return "";
+}
+
 /// Which spectrum, and what it comes to at the pulse; between the phones.
 std::string noise_text(const PingSimulator& simulator) {
   const NoiseSettings& noise = simulator.scenario().noise;
   if (!noise.any()) return "noise      none\n";
   const double f = simulator.pulse().centre_frequency();
-  std::string text = "noise      ";
-  if (!noise.law) text += fmt::format("{:g} dB re 1 µPa²/Hz", *noise.spectral_level_db);
-  if (noise.law) {
-    if (const auto* wenz = std::get_if<WenzNoise>(&*noise.law))
-      text += fmt::format("Wenz, shipping {:g}, wind {:g} m/s", wenz->shipping, wenz->wind_speed);
-    else if (const auto* knudsen = std::get_if<KnudsenNoise>(&*noise.law))
-      text += fmt::format("Knudsen, sea state {:.2g}", knudsen->sea_state);
-    else
-      text += "by a table";
-  }
+  std::string text =
+      "noise      " + std::visit([](const auto& law) { return law.text(); }, *noise.law);
   if (noise.thermal) text += ", thermal";
-  if (noise.law || noise.thermal)
+  if (!noise.flat_level_db())
     text += fmt::format(": {:.1f} dB re 1 µPa²/Hz at {:g} Hz", noise_level_db(noise, f), f);
-  constexpr const char* between[] = {"", ", isotropic", ", from a sheet under the surface",
-                                     ", by a profile over elevation"};
-  return text + between[static_cast<int>(noise.coherence)] + "\n";
+  return text + between_phones(noise.coherence) + "\n";
 }
 
 }  // namespace
@@ -231,4 +217,4 @@ std::string sonar_text(const PingSimulator& simulator) {
   return text;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

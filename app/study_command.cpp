@@ -15,7 +15,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 int study_run(const StudyOptions& options) {
@@ -39,7 +39,7 @@ int study_run(const StudyOptions& options) {
     }
     return std::move(*made);
   }();
-  if (!options.quiet) warn(work.imprint.warnings);
+  if (!options.quiet) warn(work.fingerprint.warnings);
   study::StudyOutcome outcome;
   {
     StudyProgress progress(!options.quiet);
@@ -82,4 +82,4 @@ void add_study_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "app/console.h"
-#include "io/result_file.h"
+#include "io/result/result_file.h"
 #include "study/runs/study_file.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 /// "12.3", "1.23e-05"
@@ -66,24 +66,24 @@ bool is_study_file(const std::string& path) { return filetype_of(path) == "asdic
 int study_info(const std::string& path) {
   const study::StudyFile file(path);
   file.check_parts();
-  const study::Imprint& imprint = file.imprint();
+  const study::Fingerprint& fingerprint = file.fingerprint();
   const study::Table table = file.table();
   const auto valid =
       static_cast<std::size_t>(std::count(table.valid.begin(), table.valid.end(), 1));
-  print(emphasised(imprint.title.empty() ? path : imprint.title) + '\n');
+  print(emphasised(fingerprint.title.empty() ? path : fingerprint.title) + '\n');
   print(fmt::format("file         {}, {}, {}\n", path,
                     byte_count(static_cast<double>(std::filesystem::file_size(path))),
                     file.complete() ? "complete" : "not complete"));
   print(fmt::format("holds        {}, {} of {}", count_of(table.index.size(), "realisation"),
-                    study::index_text(file.range()), imprint.realisations));
+                    study::index_text(file.range()), fingerprint.realisations));
   if (valid < table.index.size()) print(fmt::format("; {} skipped", table.index.size() - valid));
   if (const auto kept = file.series_index(); !kept.empty())
     print(fmt::format("; {} time series", kept.size()));
   print(file.stopped_by().empty() ? "\n" : "; stopped by " + file.stopped_by() + "\n");
   print(origin_of(file));
-  print(fmt::format("study        identity {}, design {}, seed {}\n", imprint.identity,
-                    imprint.design, imprint.seed));
-  if (!imprint.overrides.empty())
+  print(fmt::format("study        identity {}, design {}, seed {}\n", fingerprint.identity,
+                    fingerprint.design, fingerprint.seed));
+  if (!fingerprint.overrides.empty())
     print(fmt::format("changed by   {}\n", file.file().attribute_text("", "overrides")));
   print(columns_of(table));
   file.verify();  // last: it reads everything; what differs is an error
@@ -91,4 +91,4 @@ int study_info(const std::string& path) {
   return 0;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

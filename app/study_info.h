@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// Whether a file is of `asdic study` or `asdic merge`.
 [[nodiscard]] bool is_study_file(const std::string& path);
@@ -9,4 +9,4 @@ namespace asdic::app {
 /// What it holds, on standard output. \return the exit status
 int study_info(const std::string& path);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

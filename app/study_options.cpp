@@ -9,12 +9,12 @@
 
 #include "app/console.h"
 #include "app/output.h"
-#include "app/provenance.h"
 #include "app/study_progress.h"
 #include "core/error.h"
+#include "io/ping/provenance.h"
 #include "study/sampling/shard.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 std::optional<std::string> environment(const std::string& name) {
@@ -165,4 +165,4 @@ int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool qui
   return 0;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -9,7 +9,7 @@
 #include "study/runs/run_study.h"
 
 // What `asdic study` and `asdic-mpi study` have in common.
-namespace asdic::app {
+namespace asdic::detail::app {
 
 struct StudyOptions {
   std::string path, output, range, shard;
@@ -37,4 +37,4 @@ struct StudyOrder {
 /// Says what came of it. \return the exit status \throws RunError if it was interrupted
 int report(const StudyOrder& order, const study::StudyOutcome& outcome, bool quiet, double seconds);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

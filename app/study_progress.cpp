@@ -7,7 +7,7 @@
 
 #include "app/console.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 std::string estimate_text(const study::Estimate& e) {
   // Two digits of the interval's half-width.
@@ -47,4 +47,4 @@ void StudyProgress::update(const study::Progress& progress) {
   progress_ = progress;
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -5,7 +5,7 @@
 #include "app/progress_painter.h"
 #include "study/runs/run_study.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 /// How far a study is, on standard error (ProgressPainter).
 class StudyProgress {
@@ -26,4 +26,4 @@ class StudyProgress {
 /// "pd 0.83 (0.80 to 0.86 at 95 %)", with the digits that mean something.
 [[nodiscard]] std::string estimate_text(const study::Estimate& estimate);
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

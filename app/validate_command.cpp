@@ -10,14 +10,14 @@
 #include "app/sonar_text.h"
 #include "core/units.h"
 #include "io/scenario/propagation.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/material_text.h"
 #include "raytrace/cases/memory.h"
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stream.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 /// Lowest and highest speed in the water: of a section's samples, or looked at in 5000 depths.
@@ -125,7 +125,7 @@ std::string axis_text(const std::vector<double>& values, double unit) {
 
 std::string run_text(const PropagationCase& run) {
   std::string text =
-      fmt::format("source     {}, {:g} Hz, at depths [m]: {}\n", name(run.beams.source),
+      fmt::format("source     {}, {:g} Hz, at depths [m]: {}\n", word_of(run.beams.source),
                   run.frequency, axis_text(run.source_depths, 1.0));
   if (run.receivers.size() > 0)
     text +=
@@ -134,9 +134,9 @@ std::string run_text(const PropagationCase& run) {
                     axis_text(run.receivers.depths, 1.0), axis_text(run.receivers.ranges, 1000.0));
   text += fmt::format("fan        {:g} to {:g} deg\n", degrees(run.beams.lowest),
                       degrees(run.beams.highest));
-  text += fmt::format("task       {}", name(run.task));
+  text += fmt::format("task       {}", word_of(run.task));
   if (run.task == Task::field)
-    text += fmt::format(", {}, {} beams", name(run.field), name(run.beams.kind));
+    text += fmt::format(", {}, {} beams", word_of(run.field), word_of(run.beams.kind));
   return text + "\n";
 }
 
@@ -191,4 +191,4 @@ void add_validate_command(Program& program) {
       });
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

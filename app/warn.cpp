@@ -4,10 +4,10 @@
 
 #include <cstdio>
 
-namespace asdic::app {
+namespace asdic::detail::app {
 
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& one : warnings) fmt::print(stderr, "asdic: warning: {}\n", one);
 }
 
-}  // namespace asdic::app
+}  // namespace asdic::detail::app

@@ -4,7 +4,7 @@ string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" flags)
 set(build "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}, ")
 string(APPEND build ""
   "$<JOIN:$<TARGET_PROPERTY:asdic_any_level_options,INTERFACE_COMPILE_OPTIONS>, > ${flags}")  # by name: options may hold commas
-set_property(SOURCE app/provenance.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+set_property(SOURCE io/ping/provenance.cpp APPEND PROPERTY COMPILE_DEFINITIONS
   ASDIC_VERSION="${PROJECT_VERSION}" ASDIC_BUILD="${build}"
   ASDIC_LIBRARIES="HDF5 ${hdf5_hdf5_VERSION}, FFTW ${fftw3_fftw3_fftw3_VERSION}, netCDF ${netcdf_netcdf_VERSION}")
 set_property(SOURCE app/pictures.cpp APPEND PROPERTY COMPILE_DEFINITIONS ASDIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

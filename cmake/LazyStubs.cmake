@@ -29,7 +29,7 @@ foreach(library IN LISTS LIBRARIES)
     endif()
   endforeach()
   list(REMOVE_ITEM called ${functions} ${variables})
-  string(APPEND text "\nstatic constinit asdic::app::LazyLibrary ${name}(\"${soname}\");\n")
+  string(APPEND text "\nstatic constinit asdic::detail::app::LazyLibrary ${name}(\"${soname}\");\n")
   if(variables)  # HDF5's types: known when H5open() has been called, which its headers do before they name one
     list(REMOVE_ITEM functions H5open)
     set(table "")
@@ -37,7 +37,7 @@ foreach(library IN LISTS LIBRARIES)
       string(APPEND text "ASDIC_LAZY_VARIABLE(${variable})\n")
       string(APPEND table "  {\"${variable}\", &${variable}},\n")
     endforeach()
-    string(APPEND text "static constexpr asdic::app::LazyLibrary::Variable ${name}_variables[] = {\n${table}};\n"
+    string(APPEND text "static constexpr asdic::detail::app::LazyLibrary::Variable ${name}_variables[] = {\n${table}};\n"
       "ASDIC_LAZY_INITIALISER(${name}, H5open, ${name}_variables)\n")
   endif()
   foreach(function IN LISTS functions)

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One end of a ray: how the thing there moves, and the ray's slowness vector there, its direction
 /// of travel over the local speed of sound. Same frame for both (x east, y north, z down).
@@ -10,9 +10,9 @@ struct MovingEnd {
   Vec3 slowness = Vec3::Zero();  ///< [s/m]
 };
 
-/// Frequency heard over frequency sent on one leg, (1 − v_R·s_R)/(1 − v_S·s_S): exact for constant
-/// velocities, with the speed of sound where it happens. In a stratified sea the horizontal part of
-/// s is the ray's Snell invariant. Source: docs/theory/doppler.md, eq. (1)
+/// Frequency received over frequency sent on one leg, (1 − v_R·s_R)/(1 − v_S·s_S): exact for
+/// constant velocities, with the speed of sound where it happens. In a stratified sea the
+/// horizontal part of s is the ray's Snell invariant. Source: docs/theory/doppler.md, eq. (1)
 [[nodiscard]] inline double leg_doppler(const MovingEnd& sender,
                                         const MovingEnd& receiver) noexcept {
   return (1.0 - receiver.velocity.dot(receiver.slowness)) /
@@ -25,4 +25,4 @@ struct MovingEnd {
 [[nodiscard]] double echo_doppler(const MovingEnd& source, const MovingEnd& target_in,
                                   const MovingEnd& target_out, const MovingEnd& receiver) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

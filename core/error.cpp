@@ -4,7 +4,7 @@
 
 #include "core/printable.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 // What it says is printable: control characters out of a file are escaped.
 InputError::InputError(InputFault fault)
@@ -18,4 +18,4 @@ InputError InputError::inside(const std::string& outer) const {
   return InputError(std::move(fault));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is wrong with an input, in the three parts that every message of ours has.
 struct InputFault {
@@ -34,4 +34,4 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

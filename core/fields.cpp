@@ -1,6 +1,6 @@
 #include "core/fields.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 Fields::~Fields() = default;  // here and not in every file: the table of virtual functions with it
 
@@ -35,4 +35,4 @@ bool Fields::takes(Ways& ways, std::span<const std::string_view> keys, bool is, 
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -15,7 +15,7 @@
 #include "core/quantity.h"
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 class Fields;
 class Only;
@@ -25,8 +25,10 @@ struct SettingKey {
   std::string_view name;
   bool required = false;  ///< it has no default
   bool live = false;      ///< a running server takes changes of it
+  bool seldom = false;    ///< files are written without it where it is false, 0 or empty
   std::string_view inherits =
-      {};  ///< a known setting that is its default: "environment.wind_speed"
+      {};                      ///< a known setting that is its default: "environment.wind_speed"
+  std::string_view word = {};  ///< stands for "none" of what may be absent: "auto"
 
   constexpr SettingKey(const char* text) : name(text) {}       // NOLINT: a text is a key
   constexpr SettingKey(std::string_view text) : name(text) {}  // NOLINT
@@ -39,6 +41,14 @@ constexpr SettingKey live(SettingKey key) {
   key.live = true;
   return key;
 }
+constexpr SettingKey seldom(SettingKey key) {
+  key.seldom = true;
+  return key;
+}
+constexpr SettingKey or_word(SettingKey key, std::string_view word) {
+  key.word = word;
+  return key;
+}
 constexpr SettingKey inherited(SettingKey key, std::string_view from) {
   key.inherits = from;
   return key;
@@ -48,6 +58,12 @@ constexpr SettingKey inherited(SettingKey key, std::string_view from) {
 template <class T>
 concept Described = requires(T& object, Fields& field) {
   object.describe(field);
+};
+
+/// An element of a list that is held against the one before it: null for the first.
+template <class T>
+concept DescribedAfter = requires(T& object, Fields& field, const T* before) {
+  object.describe(field, before);
 };
 
 /// An enumeration whose values are 0, 1, 2 … and have words: `words(E)` beside it, in its order.
@@ -134,10 +150,20 @@ class Fields {
         : key(k), values(&v), quantity(q) {}
     Column(std::string_view k, std::vector<double>& radians, const AngleQuantity& q)
         : key(k), values(&radians), quantity(q.in_degrees()), angle(true) {}
+    [[nodiscard]] Quantity in_radians() const {
+      return AngleQuantity{quantity.noun, quantity.low, quantity.high}.in_radians();
+    }
   };
   struct ColumnRules {
     bool increasing = true;  ///< the first column
     bool file = false;       ///< or the columns of the CSV that the key `file` names
+    bool steps = false;      ///< the first column does not fall: two equal values are a step
+  };
+  /// Samples of a sound, which files keep in a file of their own.
+  struct Sound {
+    std::string* file;
+    std::vector<double>* samples;
+    double* sample_rate;  ///< [Hz]
   };
   /// Which of several ways to say one thing has been found.
   struct Ways {
@@ -169,6 +195,11 @@ class Fields {
   void operator()(SettingKey key, std::vector<double>& radians, const AngleQuantity& q,
                   std::string_view help) {
     angles({key, help}, q, radians);
+  }
+  /// Rows of numbers, each as long as the first.
+  void operator()(SettingKey key, std::vector<std::vector<double>>& values, const Quantity& q,
+                  std::string_view help) {
+    rows({key, help}, q, values);
   }
   void operator()(SettingKey key, Vec3& value, const Quantity& q, std::string_view help,
                   std::string_view axes = "[east, north, depth]") {
@@ -210,26 +241,29 @@ class Fields {
   }
   template <Described T>
   void operator()(SettingKey key, std::optional<T>& value, std::string_view help) {
-    using O = std::optional<T>;
-    perhaps({key, help}, {.optional = &value,
-                          .present = value.has_value(),
-                          .emplace = [](void* o) { static_cast<O*>(o)->emplace(); },
-                          .reset = [](void* o) { static_cast<O*>(o)->reset(); },
-                          .value = [](void* o) { return structure(**static_cast<O*>(o)); }});
+    perhaps({key, help}, possible(value));
   }
+  /// A number, or a table in its place: the number then stays as it is.
   template <Described T>
-  void operator()(SettingKey key, std::vector<T>& value, std::string_view help,
-                  const ListRules& rules) {
+  void operator()(SettingKey key, double& value, const Quantity& q, std::optional<T>& instead,
+                  std::string_view help) {
+    number_or_table({key, help}, q, value, possible(instead));
+  }
+  template <class T>
+  requires(Described<T> || DescribedAfter<T>) void operator()(SettingKey key, std::vector<T>& value,
+                                                              std::string_view help,
+                                                              const ListRules& rules) {
     using V = std::vector<T>;
     tables({key, help},
            {.list = &value,
             .size_of = [](void* l) { return static_cast<V*>(l)->size(); },
             .resize_to = [](void* l, std::size_t n) { static_cast<V*>(l)->resize(n); },
-            .element = [](void* l, std::size_t i) { return structure((*static_cast<V*>(l))[i]); }},
+            .element = [](void* l, std::size_t i) { return element(*static_cast<V*>(l), i); }},
            rules);
   }
-  template <Described T>
-  void operator()(SettingKey key, std::vector<T>& value, std::string_view help) {
+  template <class T>
+  requires(Described<T> || DescribedAfter<T>) void operator()(SettingKey key, std::vector<T>& value,
+                                                              std::string_view help) {
     (*this)(key, value, help, ListRules{});
   }
   /// A word, `T::name`, and in the same table the settings of the struct that it chooses.
@@ -249,9 +283,20 @@ class Fields {
                                .emplace = emplace,
                                .value = chosen});
   }
+  /// Numbers along an axis: one, a list, or evenly spaced ones, { first, last, count }.
+  virtual void axis(SettingKey key, std::vector<double>& values, const Quantity& q,
+                    std::string_view help) = 0;
+  /// A file that is there, by its path. \param what  it is: "a WAV or CSV file of the pulse"
+  virtual void file(SettingKey key, std::string& path, std::string_view what,
+                    std::string_view help) = 0;
   /// Lists of numbers that belong together, row by row.
   virtual void columns(std::initializer_list<Column> all, const ColumnRules& rules,
                        std::string_view help) = 0;
+  /// A sound in a WAV or CSV file. \param what  "the pulse"
+  virtual void sound(SettingKey key, const Sound& sound, std::string_view what) = 0;
+  /// Keys that no file has beside what it has said. \param beside  "a vertical line"
+  virtual void excludes(std::string_view /*beside*/,
+                        std::initializer_list<std::string_view> /*keys*/) {}
   /// The name that a list's element has for others (ListRules::named).
   virtual void name(std::string& value, std::string_view help) = 0;
   /// One of a list that was shown before, by its name there: its index.
@@ -268,12 +313,19 @@ class Fields {
   [[nodiscard]] Only way(Ways& ways, std::initializer_list<std::string_view> keys, bool is);
   [[nodiscard]] Only otherwise(Ways& ways, std::initializer_list<std::string_view> keys);
 
+  /// For people who read a written file: a comment at this place.
+  virtual void remark(std::string_view /*text*/) {}
+
   [[nodiscard]] virtual bool reads() const { return false; }       ///< sets what it is shown
   [[nodiscard]] virtual bool checks() const { return false; }      ///< looks for faults
   [[nodiscard]] virtual bool exhaustive() const { return false; }  ///< lists all that may be
   /// Where it checks(): \throws InputError at a key. \param got  by default what stands there
   virtual void fault(std::string_view /*key*/, const std::string& /*expected*/,
                      std::optional<std::string> /*got*/ = std::nullopt) {}
+  /// Where it reads: whether a key is there, for settings that depend on others' being there.
+  [[nodiscard]] virtual bool finds(std::string_view /*key*/) const { return false; }
+  /// What the user should know of the values: "noise.wind_speed: …".
+  virtual void note(const std::string& /*text*/) {}
   /// Numbers that settings further on refer to: "environment.wind_speed", "frequency".
   virtual void know(std::string_view /*setting*/, double /*value*/) {}
   [[nodiscard]] virtual double known(std::string_view /*setting*/) const { return 0.0; }
@@ -281,6 +333,28 @@ class Fields {
   template <Described T>
   [[nodiscard]] static Structure structure(T& object) {
     return {&object, [](void* o, Fields& field) { static_cast<T*>(o)->describe(field); }};
+  }
+  template <Described T>
+  [[nodiscard]] static Structure element(std::vector<T>& list, std::size_t i) {
+    return structure(list[i]);
+  }
+  template <DescribedAfter T>
+  [[nodiscard]] static Structure element(std::vector<T>& list, std::size_t i) {
+    const auto first = [](void* o, Fields& field) { static_cast<T*>(o)->describe(field, nullptr); };
+    const auto other = [](void* o, Fields& field) {
+      static_cast<T*>(o)->describe(field, static_cast<T*>(o) - 1);
+    };
+    if (i == 0) return {&list[i], first};
+    return {&list[i], other};
+  }
+  template <Described T>
+  [[nodiscard]] static Perhaps possible(std::optional<T>& value) {
+    using O = std::optional<T>;
+    return {.optional = &value,
+            .present = value.has_value(),
+            .emplace = [](void* o) { static_cast<O*>(o)->emplace(); },
+            .reset = [](void* o) { static_cast<O*>(o)->reset(); },
+            .value = [](void* o) { return structure(**static_cast<O*>(o)); }};
   }
 
  protected:
@@ -294,6 +368,7 @@ class Fields {
   virtual void text(const Setting&, std::string& value) = 0;
   virtual void numbers(const Setting&, const Quantity&, std::vector<double>& values) = 0;
   virtual void angles(const Setting&, const AngleQuantity&, std::vector<double>& radians) = 0;
+  virtual void rows(const Setting&, const Quantity&, std::vector<std::vector<double>>& values) = 0;
   virtual void vector(const Setting&, const Quantity&, std::span<double> value,
                       std::string_view axes) = 0;
   virtual void vectors(const Setting&, const Quantity&, std::vector<Vec3>& values) = 0;
@@ -301,6 +376,7 @@ class Fields {
                       std::size_t& index) = 0;
   virtual void table(const Setting&, const Structure&) = 0;
   virtual void perhaps(const Setting&, const Perhaps&) = 0;
+  virtual void number_or_table(const Setting&, const Quantity&, double& value, const Perhaps&) = 0;
   virtual void tables(const Setting&, const List&, const ListRules&) = 0;
   virtual void alternatives(const Setting&, const OneOf&) = 0;
   /// Whether settings of one way come now. \param last  of the ways
@@ -334,10 +410,16 @@ Only Fields::only(std::string_view key, E is, E wanted) {
   return Only(*this, is == wanted || exhaustive(), key, word_of(wanted));
 }
 
+/// The name in files of the struct that there is, of a closed list.
+template <class... T>
+[[nodiscard]] std::string_view name_of(const std::variant<T...>& one_of) noexcept {
+  return std::visit([](const auto& one) { return std::string_view(one.name); }, one_of);
+}
+
 /// Shows a struct that stays as it is. \param walker  which does not read()
 template <Described T>
 void look(const T& object, Fields& walker) {
   const_cast<T&>(object).describe(walker);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,6 @@
 #include "core/fields_viewer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 FieldsViewer::~FieldsViewer() = default;
 
@@ -10,10 +10,18 @@ void FieldsViewer::perhaps(const Setting&, const Perhaps& inner) {
   if (inner.present) inner.get().describe(*this);
 }
 
+void FieldsViewer::number_or_table(const Setting& s, const Quantity& q, double& value,
+                                   const Perhaps& instead) {
+  if (instead.present)
+    table(s, instead.get());
+  else
+    number(s, q, value, nullptr);
+}
+
 void FieldsViewer::tables(const Setting&, const List& list, const ListRules&) {
   for (std::size_t i = 0; i < list.size(); ++i) list.at(i).describe(*this);
 }
 
 void FieldsViewer::alternatives(const Setting&, const OneOf& one) { one.chosen().describe(*this); }
 
-}  // namespace asdic
+}  // namespace asdic::detail

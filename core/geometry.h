@@ -3,7 +3,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where one thing lies from another, in the horizontal.
 struct Separation {
@@ -23,4 +23,4 @@ struct Separation {
           -std::sin(elevation)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

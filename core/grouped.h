@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Elements by group: a counting sort.
 struct Grouped {
@@ -27,4 +27,4 @@ struct Grouped {
   return made;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace asdic {
+namespace asdic::detail {
 
 void prefer_huge_pages(void* begin, std::size_t bytes) noexcept {
   constexpr std::uintptr_t page = std::uintptr_t{1} << 21U;
@@ -15,4 +15,4 @@ void prefer_huge_pages(void* begin, std::size_t bytes) noexcept {
   static_cast<void>(::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

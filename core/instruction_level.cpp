@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::string_view names[] = {"x86-64-v2", "x86-64-v3", "x86-64-v4"};
@@ -75,10 +75,10 @@ void check_instruction_level() {
 #endif
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail
 
 extern "C" void asdic_choose_level(void** slots, void* const* alternatives,
                                    std::size_t count) noexcept {
-  const auto level = static_cast<std::size_t>(asdic::instruction_level());
+  const auto level = static_cast<std::size_t>(asdic::detail::instruction_level());
   std::copy_n(alternatives + (level - 2) * count, count, slots);
 }

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// x86-64's micro-architecture levels: v2 has SSE4.2, v3 AVX2 and FMA, v4 AVX-512. Hot functions
 /// are compiled for each (cmake/AsdicLevels.cmake); which of them run is chosen when the program
@@ -19,7 +19,7 @@ enum class InstructionLevel { v2 = 2, v3 = 3, v4 = 4 };
 /// \throws InputError if ASDIC_LEVEL names no level, or one that this processor does not have
 void check_instruction_level();
 
-}  // namespace asdic
+}  // namespace asdic::detail
 
 /// What the jump table of a library calls before main (cmake/level_objects.cmake): every slot gets
 /// the address of its function at the level that runs. \param alternatives  [3 × count], v2 first

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where something is, and how it moves.
 struct Kinematics {
@@ -9,4 +9,4 @@ struct Kinematics {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <optional>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ void MemoryBudget::take(MemoryNeed need) {
       taken_);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

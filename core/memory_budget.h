@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// "1.5 GB": powers of 1000, one digit behind the point.
 [[nodiscard]] std::string bytes_text(double bytes);
@@ -73,4 +73,4 @@ class MemoryBudget {
   std::vector<MemoryNeed> needs_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t lanes = 16;         // Philox blocks side by side
@@ -167,4 +167,4 @@ void fill_normal(std::span<float> values, std::uint64_t seed, Draw purpose,
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

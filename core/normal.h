@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Many independent normals (mean 0, variance 1) at once, of the stream (seed, purpose,
 /// realisation, entity): Philox blocks and Box–Muller, sixteen blocks to a step, no library calls
@@ -17,4 +17,4 @@ namespace asdic {
 void fill_normal(std::span<float> values, std::uint64_t seed, Draw purpose,
                  std::uint32_t realisation, std::uint64_t entity, std::uint64_t first = 0);
 
-}  // namespace asdic
+}  // namespace asdic::detail

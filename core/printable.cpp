@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 struct Character {
@@ -77,4 +77,4 @@ std::string printable(std::string_view text, bool lines) {
 std::string printable(std::string_view text) { return printable(text, false); }
 std::string printable_lines(std::string_view text) { return printable(text, true); }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Text that came out of a file, for a terminal: control characters (of C0, C1 and DEL), marks that
 /// turn the direction of writing, and bytes that are no UTF-8 are told as "\n", "\t", "\x1b",
@@ -13,4 +13,4 @@ namespace asdic {
 /// The same for text of several lines: line ends and tabs stay.
 [[nodiscard]] std::string printable_lines(std::string_view text);
 
-}  // namespace asdic
+}  // namespace asdic::detail

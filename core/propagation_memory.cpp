@@ -1,6 +1,6 @@
 #include "core/propagation_memory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::size_t ExactKey::hash() const noexcept {
   std::uint64_t h = 0;
@@ -62,4 +62,4 @@ void PropagationMemory::forget() {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

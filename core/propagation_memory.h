@@ -13,7 +13,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is kept: the first word of its keys. One kind, one type.
 enum class Kept : std::uint64_t {
@@ -82,16 +82,24 @@ class PropagationMemory {
 
   void next_ping();
 
-  /// Null if it is not there, or no more. \param key  whose kind says the type
-  template <class T>
-  [[nodiscard]] std::shared_ptr<T> find(const ExactKey& key) {
-    return std::static_pointer_cast<T>(recall(key));
+  /// What a pure function of the key's numbers gives: as it is kept, or made now and kept. Of two
+  /// that are made at once the first stays.
+  /// \param key   whose kind says the type   \param make  → std::shared_ptr<T>
+  /// \param bytes  that a T takes   \param known  is told whether it was there; null: nobody is
+  template <class Make, class Bytes>
+  auto remember(const ExactKey& key, const Make& make, const Bytes& bytes, bool* known = nullptr) {
+    using T = typename decltype(make())::element_type;
+    auto kept = std::static_pointer_cast<T>(recall(key));
+    if (known != nullptr) *known = kept != nullptr;
+    if (kept) return kept;
+    auto made = make();
+    const std::size_t size = bytes(*made);
+    return std::static_pointer_cast<T>(store(key, std::move(made), size));
   }
-  /// \param bytes  that the value takes   \return what is kept: of two that were brought at once
-  /// the first
-  template <class T>
-  std::shared_ptr<T> keep(const ExactKey& key, std::shared_ptr<T> value, std::size_t bytes) {
-    return std::static_pointer_cast<T>(store(key, std::move(value), bytes));
+  /// The same of what tells how many bytes() it takes.
+  template <class Make>
+  auto remember(const ExactKey& key, const Make& make) {
+    return remember(key, make, [](const auto& value) { return value.bytes(); });
   }
   /// Corrects what a value takes, where that was not known when it was kept.
   void charge(const ExactKey& key, std::size_t bytes);
@@ -122,4 +130,4 @@ class PropagationMemory {
   std::uint64_t ping_ = 0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "core/quantity.h"
 
 /// The quantities that more than one setting is of.
-namespace asdic::quantity {
+namespace asdic::detail::quantity {
 
 inline constexpr Quantity coordinate{.noun = "coordinate", .unit = "m", .low = -1e7, .high = 1e7};
 /// Of what swims, below the mean surface.
@@ -36,4 +36,4 @@ inline constexpr AngleQuantity bearing{.noun = "bearing", .low_deg = -360.0, .hi
 inline constexpr AngleQuantity elevation{.noun = "elevation", .low_deg = -90.0, .high_deg = 90.0};
 inline constexpr AngleQuantity grazing{.noun = "grazing angle", .low_deg = 0.0, .high_deg = 90.0};
 
-}  // namespace asdic::quantity
+}  // namespace asdic::detail::quantity

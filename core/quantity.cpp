@@ -4,7 +4,7 @@
 
 #include "core/text.h"
 
-namespace asdic {
+namespace asdic::detail {
 bool Quantity::holds(double value) const {
   return std::isfinite(value) && (above ? value > low : value >= low) && value <= high;
 }
@@ -27,4 +27,4 @@ std::string Quantity::expected() const {
   return text;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a number must be: "a speed above 0 m/s".
 struct Quantity {
@@ -22,13 +22,18 @@ struct Quantity {
 struct AngleQuantity {
   std::string_view noun;
   double low_deg, high_deg;
+  bool above = false;  ///< `low_deg` itself is not allowed
 
   [[nodiscard]] constexpr Quantity in_degrees() const {
-    return {.noun = noun, .unit = "degrees", .low = low_deg, .high = high_deg};
+    return {.noun = noun, .unit = "degrees", .low = low_deg, .high = high_deg, .above = above};
   }
   [[nodiscard]] constexpr Quantity in_radians() const {
-    return {.noun = noun, .unit = "radians", .low = radians(low_deg), .high = radians(high_deg)};
+    return {.noun = noun,
+            .unit = "radians",
+            .low = radians(low_deg),
+            .high = radians(high_deg),
+            .above = above};
   }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

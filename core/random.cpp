@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::array<std::uint32_t, 2> random_key(std::uint64_t seed, Draw purpose) noexcept {
   // The 64-bit seed is folded with the purpose into the 64-bit key by one bijective multiply-xor,
@@ -58,4 +58,4 @@ std::complex<double> RandomStream::complex_normal() {
   return std::complex<double>(real, normal()) * std::numbers::sqrt2 * 0.5;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <complex>
 #include <cstdint>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a random number is for: streams with different purposes never share a draw.
 enum class Draw : std::uint32_t {
@@ -64,4 +64,4 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

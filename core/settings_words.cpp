@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace asdic {
+namespace asdic::detail {
 
 void SettingsWords::add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
 
@@ -20,6 +20,10 @@ bool SettingsWords::adds(const bool* given) {
 void SettingsWords::columns(std::initializer_list<Column> all, const ColumnRules&,
                             std::string_view) {
   for (const Column& column : all) add(*column.values);
+}
+void SettingsWords::sound(SettingKey, const Sound& sound, std::string_view) {
+  add(*sound.sample_rate);
+  add(*sound.samples);
 }
 void SettingsWords::reference(SettingKey, int& index, std::string_view, std::string_view) {
   add(static_cast<std::uint64_t>(index));
@@ -43,6 +47,11 @@ void SettingsWords::numbers(const Setting&, const Quantity&, std::vector<double>
 void SettingsWords::angles(const Setting&, const AngleQuantity&, std::vector<double>& radians) {
   add(radians);
 }
+void SettingsWords::rows(const Setting&, const Quantity&,
+                         std::vector<std::vector<double>>& values) {
+  add(std::uint64_t{values.size()});
+  for (const std::vector<double>& row : values) add(row);
+}
 void SettingsWords::vector(const Setting&, const Quantity&, std::span<double> value,
                            std::string_view) {
   add(std::span<const double>(value));
@@ -58,6 +67,13 @@ void SettingsWords::table(const Setting&, const Structure& inner) { inner.descri
 void SettingsWords::perhaps(const Setting&, const Perhaps& inner) {
   if (adds(&inner.present)) inner.get().describe(*this);
 }
+void SettingsWords::number_or_table(const Setting&, const Quantity&, double& value,
+                                    const Perhaps& instead) {
+  if (adds(&instead.present))
+    instead.get().describe(*this);
+  else
+    add(value);
+}
 void SettingsWords::tables(const Setting&, const List& list, const ListRules&) {
   add(std::uint64_t{list.size()});
   for (std::size_t i = 0; i < list.size(); ++i) list.at(i).describe(*this);
@@ -66,5 +82,10 @@ void SettingsWords::alternatives(const Setting&, const OneOf& one) {
   add(std::uint64_t{one.index});
   one.chosen().describe(*this);
 }
+bool SettingsWords::takes(Ways& ways, std::span<const std::string_view> keys, bool is, bool last) {
+  const bool taken = Fields::takes(ways, keys, is, last);
+  add(std::uint64_t{taken});
+  return taken;
+}
 
-}  // namespace asdic
+}  // namespace asdic::detail

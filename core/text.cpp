@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Letters to put in, take out, replace, or swap with the next one: Damerau's distance (Commun. ACM
@@ -54,6 +54,10 @@ std::string in_quotes(std::string_view text) {
   return result;
 }
 
+std::string count_of(std::size_t n, std::string_view thing) {
+  return std::to_string(n).append(" ").append(thing).append(n == 1 ? "" : "s");
+}
+
 std::string nearest_name(std::string_view typed, std::span<const std::string> names) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
@@ -67,4 +71,4 @@ std::string nearest_name(std::string_view typed, std::span<const std::string> na
   return best;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,10 +1,11 @@
 #pragma once
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 
 /// How values and words are told in messages.
-namespace asdic {
+namespace asdic::detail {
 
 /// The shortest decimal that reads back as the same number.
 [[nodiscard]] std::string to_text(double number);
@@ -15,7 +16,10 @@ namespace asdic {
 /// A word of the user's: "word", with its quotes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// "1 phone", "2 phones".
+[[nodiscard]] std::string count_of(std::size_t n, std::string_view thing);
+
 /// The nearest of `names` to a mistyped one, or "" when none is near.
 [[nodiscard]] std::string nearest_name(std::string_view typed, std::span<const std::string> names);
 
-}  // namespace asdic
+}  // namespace asdic::detail

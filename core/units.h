@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A small matrix that lies in memory alike whatever instructions a file is compiled for: Eigen's
 /// own alignment grows with them.
@@ -36,4 +36,4 @@ inline double amplitude_from_db(double db) { return std::pow(10.0, db / 20.0); }
 inline double db_from_power(double ratio) { return 10.0 * std::log10(ratio); }
 inline double db_from_amplitude(double ratio) { return 20.0 * std::log10(ratio); }
 
-}  // namespace asdic
+}  // namespace asdic::detail

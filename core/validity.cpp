@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::string number(double value) {
@@ -32,4 +32,4 @@ std::string outside(const Validity& validity, std::span<const Asked> asked) {
   return "";
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

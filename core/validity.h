@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One quantity, and between which values of it a law's source vouches for the law.
 struct ValidRange {
@@ -31,4 +31,4 @@ struct Asked {
 /// that the law knows no range of is passed over.
 [[nodiscard]] std::string outside(const Validity& validity, std::span<const Asked> asked);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// In even noise false alarms come where the background is found at half its value and the beams
@@ -19,7 +19,7 @@ AcrossBeams::AcrossBeams(const ArrayShape& shape, std::span<const Vec3> phones,
       looks_(looks.begin(), looks.end()),
       wavenumber_(2.0 * pi / wavelength),
       around_(shape, looks, wavelength),
-      heard_(filters, looks.size(), samples, cell) {}
+      received_(filters, looks.size(), samples, cell) {}
 
 const OwnLeak& AcrossBeams::leak_of(std::size_t beam) {
   if (const auto known = leaks_.find(beam); known != leaks_.end()) return known->second;
@@ -31,12 +31,12 @@ const OwnLeak& AcrossBeams::leak_of(std::size_t beam) {
 
 float AcrossBeams::background(std::size_t filter, std::size_t beam, std::size_t sample,
                               double power, float over_time) {
-  const auto heard = [&](const OwnLeak& leak) {
-    return heard_.background(around_, filter, beam, sample, power, leak, scratch_);
+  const auto received = [&](const OwnLeak& leak) {
+    return received_.background(around_, filter, beam, sample, power, leak, scratch_);
   };
-  if (!(heard({}) > louder * over_time)) return over_time;  // mostly: no need to know the leak
-  const float around = heard(leak_of(beam));
+  if (!(received({}) > louder * over_time)) return over_time;  // mostly: no need to know the leak
+  const float around = received(leak_of(beam));
   return around > louder * over_time ? around : over_time;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,10 +6,10 @@
 #include "processing/array_shape.h"
 #include "processing/beam_surroundings.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Corrects a background over time by what the beams around hear, where that is louder by more than
-/// even noise ever makes it. docs/theory/processing.md, "Across the beams"
+/// Corrects a background over time by what the beams around receive, where that is louder by more
+/// than even noise ever makes it. docs/theory/processing.md, "Across the beams"
 class AcrossBeams {
  public:
   /// \param phones, weights  must outlive it   \param looks  of the beams   \param cell  of time,
@@ -20,7 +20,7 @@ class AcrossBeams {
 
   /// \param power  [samples] of one beam's filter; any thread, each beam once
   void set(std::size_t filter, std::size_t beam, std::span<const float> power) noexcept {
-    heard_.set(filter, beam, power);
+    received_.set(filter, beam, power);
   }
 
   /// \param at  with beam, filter, sample, power, background and threshold, the last two corrected
@@ -41,9 +41,9 @@ class AcrossBeams {
   std::vector<Vec3> looks_;
   double wavenumber_;
   BeamSurroundings around_;
-  CellPowers heard_;
+  CellPowers received_;
   std::map<std::size_t, OwnLeak> leaks_;  // of beams, as they are asked for
   std::vector<float> scratch_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

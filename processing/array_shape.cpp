@@ -7,7 +7,7 @@
 
 #include "core/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Extent across a line, in wavelengths, from which on a shape tells elevation. About the
@@ -221,4 +221,4 @@ Vec3 refine_direction(std::span<const std::complex<double>> snapshot, std::span<
   return direction(bearing, elevation);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What an array can tell of a direction.
 enum class ArrayKind {
@@ -91,4 +91,4 @@ struct BeamGrid {
 /// line allows, north of an upright one. \param cosine  of the angle with the axis, −1 … 1
 [[nodiscard]] Vec3 on_cone(const Vec3& axis, double cosine);
 
-}  // namespace asdic
+}  // namespace asdic::detail

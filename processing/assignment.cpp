@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<int> assign(std::span<const double> cost, int rows, int columns) {
   // A square problem: what is not allowed, and what has no partner, costs more than all else.
@@ -72,4 +72,4 @@ std::vector<int> assign(std::span<const double> cost, int rows, int columns) {
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

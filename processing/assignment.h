@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The cheapest way to give each row at most one column: as many pairs as possible without any of
 /// infinite cost, and of those the least sum (Hungarian method; Kuhn, Nav. Res. Log. Q. 2, 83
@@ -10,4 +10,4 @@ namespace asdic {
 /// \return [rows] column, −1: none
 [[nodiscard]] std::vector<int> assign(std::span<const double> cost, int rows, int columns);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 struct Cells {
@@ -116,18 +116,18 @@ float CellPowers::background(const BeamSurroundings& surroundings, std::size_t f
   };
   const std::size_t cell =
       std::min(cells_ - 1, static_cast<std::size_t>(static_cast<double>(sample) / cell_));
-  std::array<float, 6> heard{};
-  auto* next = heard.begin();
+  std::array<float, 6> received{};
+  auto* next = received.begin();
   for (const std::size_t side : {0, 1}) {
     const auto beams = surroundings.on_side(side, beam);
     *next++ = median(beams, cell) - static_cast<float>(leak.side[side] * power);
     *next++ = cell >= off ? median(beams, cell - off) : 0.0F;
     *next++ = cell + off < cells_ ? median(beams, cell + off) : 0.0F;
   }
-  std::nth_element(heard.begin(), heard.begin() + 1, heard.end(), std::greater<>());
+  std::nth_element(received.begin(), received.begin() + 1, received.end(), std::greater<>());
   const float beside =
       median(surroundings.beside(beam), cell) - static_cast<float>(leak.beside * power);
-  return std::max({beside, heard[1], 0.0F});
+  return std::max({beside, received[1], 0.0F});
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,16 +7,16 @@
 
 #include "processing/array_shape.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// What the beams around a beam hear: the background of what is loud at many bearings but not for
-/// long, to which the beam's surroundings in time are silent.
+/// What the beams around a beam receive: the background of what is loud at many bearings but not
+/// for long, to which the beam's surroundings in time are silent.
 ///
-/// Those *beside* are 2 to 6 resolution cells (λ/extent) away on either side: what they hear at the
-/// same time (the sea answering from right above or below). Those *on a side* are 1.5 to 4 cells
-/// away, further along the array's axis or less far: what they hear then, before and after (a patch
-/// of sea whose edge this is, in time or in bearing). Each time the median of their powers is
-/// taken, nearly their mean (0.9 of it where each is the mean of three exponential cells); a few
+/// Those *beside* are 2 to 6 resolution cells (λ/extent) away on either side: what they receive at
+/// the same time (the sea answering from right above or below). Those *on a side* are 1.5 to 4
+/// cells away, further along the array's axis or less far: what they receive then, before and after
+/// (a patch of sea whose edge this is, in time or in bearing). Each time the median of their powers
+/// is taken, nearly their mean (0.9 of it where each is the mean of three exponential cells); a few
 /// loud ones among them, another echo, do not count: an ordered-statistic CFAR over bearing;
 /// Rohling, IEEE Trans. AES 19, 608 (1983). docs/theory/processing.md, "Background and threshold"
 class BeamSurroundings {
@@ -48,7 +48,7 @@ class BeamSurroundings {
 };
 
 /// What a plane wave of power 1 out of a beam's look leaves in the beams around: medians, as of
-/// what is heard there. A sparse array hears an echo everywhere at about 1/N.
+/// what is received there. A sparse array receives an echo everywhere at about 1/N.
 struct OwnLeak {
   double beside = 0.0;
   std::array<double, 2> side{};
@@ -59,7 +59,7 @@ struct OwnLeak {
           const std::function<double(std::size_t)>& pattern);
 };
 
-/// The filters' mean power in every cell of time: what a whole ping's beams hear, in brief.
+/// The filters' mean power in every cell of time: what a whole ping's beams receive, in brief.
 class CellPowers {
  public:
   /// \param cell  samples of a cell, may be a fraction
@@ -68,10 +68,10 @@ class CellPowers {
   void set(std::size_t filter, std::size_t beam, std::span<const float> power) noexcept;
   /// Mean power there in a cell and the one on either side.
   [[nodiscard]] float mean(std::size_t filter, std::size_t beam, std::size_t cell) const noexcept;
-  /// The background by the beams around one: what those beside it hear in that cell and the next,
-  /// or, if more, the second greatest of what either side hears then, and in the cells before and
-  /// after: one more echo in all that is forgiven. What the peak in question leaks there at its own
-  /// time is taken off. 0 where there are no such beams. \param power  of the peak
+  /// The background by the beams around one: what those beside it receive in that cell and the
+  /// next, or, if more, the second greatest of what either side receives then, and in the cells
+  /// before and after: one more echo in all that is forgiven. What the peak in question leaks there
+  /// at its own time is taken off. 0 where there are no such beams. \param power  of the peak
   /// \param scratch  any
   [[nodiscard]] float background(const BeamSurroundings& around, std::size_t filter,
                                  std::size_t beam, std::size_t sample, double power,
@@ -83,4 +83,4 @@ class CellPowers {
   std::vector<float> mean_;  // [filters × beams × cells]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/complex_product.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 BeamSpectra channel_spectra(const Baseband& baseband) {
   BeamSpectra result{.beams = baseband.channels,
@@ -52,12 +52,12 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
         for (std::size_t begin = first; begin < last; begin += 64) {
           const double f =
               baseband.carrier + frequency + spacing * static_cast<double>(begin - first);
-          std::complex<float> turn(
+          std::complex<float> rotation(
               std::polar(weights[c], std::remainder(-2.0 * pi * f * delay, 2.0 * pi)));
           const std::size_t end = std::min(begin + 64, last);
           for (std::size_t k = begin; k < end; ++k) {
-            beam[k] += finite_product(turn, row[k]);
-            turn = finite_product(turn, step);
+            beam[k] += finite_product(rotation, row[k]);
+            rotation = finite_product(rotation, step);
           }
         }
       };
@@ -69,4 +69,4 @@ BeamSpectra conventional_beams(const BeamSpectra& channels, const Baseband& base
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "sonar/signal/fft.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Spectra of beams, bin by bin as the transform of a baseband's row gives them.
 struct BeamSpectra {
@@ -35,4 +35,4 @@ struct BeamSpectra {
                                              std::span<const Vec3> looks, double sound_speed,
                                              std::span<const double> weights);
 
-}  // namespace asdic
+}  // namespace asdic::detail

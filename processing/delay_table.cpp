@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace asdic {
+namespace asdic::detail {
 
 PathHistory history_of(const Arrival& path) noexcept {
   return {.surface_bounces = path.surface_bounces,
@@ -63,4 +63,4 @@ std::optional<DelayTable::Node> DelayTable::at(const Branch& branch, double rang
               .amplitude = blend(a.amplitude, b.amplitude)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/paths/eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What tells one kind of path between two depths from the others, whatever the range.
 struct PathHistory {
@@ -53,4 +53,4 @@ class DelayTable {
   double step_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 
 #include "sonar/paths/enough_bounces.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t most_tables = 256;
@@ -21,7 +21,7 @@ double DelayTables::longest(double delay, double apart) noexcept {
 /// With as many bounces as there is sound in at any of the ranges, or as many as are asked for.
 DelayTable DelayTables::made(const Plane& plane, double platform_depth, double depth,
                              double longest) {
-  constexpr std::size_t stretches = 32;  // of range
+  constexpr std::size_t segments = 32;  // of range
   std::vector<double> ranges(ranges_);
   for (std::size_t i = 0; i < ranges_; ++i)
     ranges[i] = longest * static_cast<double>(i + 1) / static_cast<double>(ranges_);
@@ -31,15 +31,15 @@ DelayTable DelayTables::made(const Plane& plane, double platform_depth, double d
   };
   if (in_numbers(settings_)) return {ranges, find(limits_of(settings_)), limits_of(settings_)};
   std::vector<Arrivals> found;
-  Bounces enough = search_bounces(
-      settings_, {.most = 2 * most_bounces, .stretches = stretches, .latest = longest},
-      [&](const PathLimits& limits, HeardBounces& heard) {
-        found = find(limits);
-        for (std::size_t i = 0; i < ranges_; ++i)
-          for (const Arrival& path : found[i])
-            heard.add(ranges[i], path.surface_bounces, path.bottom_bounces,
-                      std::norm(path.amplitude) + path.scattered);
-      });
+  Bounces enough =
+      search_bounces(settings_, {.most = 2 * most_bounces, .segments = segments, .latest = longest},
+                     [&](const PathLimits& limits, ReceivedBounces& received) {
+                       found = find(limits);
+                       for (std::size_t i = 0; i < ranges_; ++i)
+                         for (const Arrival& path : found[i])
+                           received.add(ranges[i], path.surface_bounces, path.bottom_bounces,
+                                        std::norm(path.amplitude) + path.scattered);
+                     });
   if (std::max(enough.surface, enough.bottom) > most_bounces) lack_bounces_ = true;
   enough.surface = std::min(enough.surface, most_bounces);
   enough.bottom = std::min(enough.bottom, most_bounces);
@@ -63,4 +63,4 @@ std::shared_ptr<const DelayTable> DelayTables::from(const Vec3& platform, double
   return made_.emplace(key, std::move(table)).first->second;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

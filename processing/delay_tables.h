@@ -9,7 +9,7 @@
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The delay tables that detections ask for, kept for those that come after. Shared by threads;
 /// what comes out does not depend on what is kept.
@@ -48,4 +48,4 @@ class DelayTables {
   std::atomic<bool> lack_bounces_ = false;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

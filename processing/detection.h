@@ -6,12 +6,12 @@
 #include "core/units.h"
 #include "processing/array_shape.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where and how a thing may be that answers like this, by the paths of sound.
 struct Location {
   Vec3 position = Vec3::Zero();  ///< when the sound struck it [m]
-  double range = 0.0;            ///< horizontal, from the array when it heard it [m]
+  double range = 0.0;            ///< horizontal, from the array when it received it [m]
   double bearing = 0.0;     ///< from there, clockwise from north; NaN if the array tells none [rad]
   double elevation = 0.0;   ///< look elevation of the returning path, positive up [rad]
   double range_rate = 0.0;  ///< of half the horizontal way there and back [m/s]; from the Doppler
@@ -39,7 +39,7 @@ enum class Unplaced {
 };
 [[nodiscard]] std::string_view words_for(Unplaced reason) noexcept;
 
-/// One thing heard that is not background.
+/// One thing received that is not background.
 struct Detection {
   int ping = 1;
   int array = 0;
@@ -55,10 +55,10 @@ struct Detection {
   double snr_db = 0.0;     ///< |peak|² over the mean square of the envelope around it [dB]
   double excess_db = 0.0;  ///< peak over threshold [dB]
   double level_db = 0.0;   ///< of an echo from `look`, peak envelope/√2 [dB re 1 µPa]
-  /// One; two where left and right cannot be told apart (right of the line's axis first, or the two
+  /// One; two where left and right cannot be resolved (right of the line's axis first, or the two
   /// mirror images of a plane); none where no path fits.
   std::vector<Location> locations;
   Unplaced unplaced = Unplaced::no;  ///< why, if there is none
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 double detection_probability(double snr, double false_alarm_probability, double cells) {
   const bool known = !std::isfinite(cells);
@@ -36,4 +36,4 @@ double detection_threshold_db(double false_alarm_probability, double cells, doub
   return high;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Probability that a steady echo is detected whose matched filter's power is compared with its
 /// background.
@@ -21,4 +21,4 @@ namespace asdic {
 [[nodiscard]] double detection_threshold_db(double false_alarm_probability, double cells,
                                             double probability = 0.5);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -16,7 +16,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/propagation.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Offset of a parabola's top through three logarithms of power, within half a step.
@@ -73,7 +73,7 @@ class Search {
         grid_(within_memory(
             beam_grid(shape_, wavelength_, settings.lowest_elevation, settings.highest_elevation),
             baseband, dopplers.size(), settings)),
-        weights_(shading(phones_, settings.hann_shading)),
+        weights_(shading(phones_, settings.shading == Shading::hann)),
         bank_(replica, dopplers, baseband),
         estimator_(settings.normaliser, bank_.sample_rate() / replica.noise_bandwidth()),
         channels_(channel_spectra(baseband)),
@@ -118,7 +118,7 @@ class Search {
     const auto beam_leak = [&](std::size_t kept, std::size_t beam) {
       const auto [at, fresh] = known.try_emplace({kept, beam}, 0.0);
       if (fresh) {
-        // Phones that stray a little from their line or plane hear its other side a little
+        // Phones that stray a little from their line or plane receive its other side a little
         // otherwise.
         const Vec3& to = grid_.looks[beam];
         at->second =
@@ -151,7 +151,8 @@ class Search {
     std::vector<float> doppler_time;  // [filters × columns]
   };
 
-  /// By how much the middle hears what comes from there before the point that delays refer to [s]
+  /// By how much the middle receives what comes from there before the point that delays refer to
+  /// [s]
   double lead(const Vec3& look) const { return look.dot(middle_) / sound_speed_; }
 
   /// \return level of an echo of power |y|² [dB re 1 µPa]
@@ -224,9 +225,9 @@ class Search {
     return peaks;
   }
 
-  /// Background and threshold of the samples that a look hears with all phones: one at x hears
-  /// u·x/c before the middle, so that the ends of a long line begin and end their record too late
-  /// or too early. Elsewhere there is no background, and nothing to find.
+  /// Background and threshold of the samples that a look receives with all phones: one at x
+  /// receives u·x/c before the middle, so that the ends of a long line begin and end their record
+  /// too late or too early. Elsewhere there is no background, and nothing to find.
   void compare_over_time(const Vec3& look, Work& work) const {
     const auto samples = static_cast<double>(work.power.size());
     double first = 0.0, end = samples;
@@ -247,12 +248,14 @@ class Search {
 
   void pick(std::size_t beam, std::size_t filter, const Work& work, std::vector<Peak>& into) const {
     const std::size_t n = work.power.size();
+    const double first = settings_.first_time.value_or(0.0),
+                 last = settings_.last_time.value_or(infinity);
     for (std::size_t i = 0; i < n; ++i) {
       const float p = work.power[i];
       if (!(p > work.threshold[i])) continue;
       if ((i > 0 && work.power[i - 1] > p) || (i + 1 < n && work.power[i + 1] >= p)) continue;
       const double time = bank_.time(static_cast<double>(i)) + lead(grid_.looks[beam]);
-      if (time < settings_.first_time || time > settings_.last_time) continue;
+      if (time < first || time > last) continue;
       into.push_back({.beam = beam,
                       .filter = filter,
                       .sample = i,
@@ -344,4 +347,4 @@ DetectorResult detect(const Baseband& baseband, std::span<const Vec3> phones, do
   return Search(baseband, phones, sound_speed, replica, dopplers, settings).run(probes, proceed);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,5 +1,8 @@
 #pragma once
 #include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "processing/array_shape.h"
@@ -9,7 +12,7 @@
 #include "processing/mvdr.h"
 #include "processing/normaliser.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A cell of time, Doppler factor and direction whose threshold is asked for.
 struct Probe {
@@ -18,15 +21,23 @@ struct Probe {
 };
 
 enum class Beamformer { conventional, mvdr };
+inline constexpr std::string_view beamformer_words[] = {"conventional", "mvdr"};
+constexpr std::span<const std::string_view> words(Beamformer /*any*/) { return beamformer_words; }
 
+/// Of the phones, in conventional beams.
+enum class Shading { none, hann };
+inline constexpr std::string_view shading_words[] = {"none", "hann"};
+constexpr std::span<const std::string_view> words(Shading /*any*/) { return shading_words; }
+
+/// ProcessingSettings describes them.
 struct DetectorSettings {
   Beamformer beamformer = Beamformer::conventional;
-  bool hann_shading = false;
+  Shading shading = Shading::none;
   MvdrSettings mvdr;
   NormaliserSettings normaliser;
   double lowest_elevation = -0.5 * pi, highest_elevation = 0.5 * pi;  ///< of planes, volumes [rad]
-  double first_time = 0.0;      ///< nothing is detected before [s]
-  double last_time = infinity;  ///< nor after
+  std::optional<double> first_time;  ///< nothing is detected before [s]; none: all of the record
+  std::optional<double> last_time;   ///< nor after; none: to the end
   double leak_margin_db = 6.0;  ///< what a loud echo leaks into other cells is taken so much louder
   std::size_t most_detections = 1000;  ///< the loudest of a ping
   std::size_t map_columns = 600;       ///< of the maps
@@ -79,4 +90,4 @@ struct DetectorResult {
                                     std::span<const Probe> probes = {},
                                     const std::function<bool()>& proceed = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

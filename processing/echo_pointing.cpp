@@ -6,7 +6,7 @@
 
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {}  // namespace
 
 EchoPointing::EchoPointing(const Baseband& baseband, std::span<const Vec3> phones,
@@ -56,15 +56,16 @@ std::vector<std::complex<double>> EchoPointing::snapshot(double time, double dop
     // From bin to bin the phase of the delay turns by a constant step.
     const double lag = time - baseband_.start - static_cast<double>(first_sample) / rate -
                        look.dot(phones_[n]) / sound_speed_;  // [s]
-    const double turns = spacing * lag;
-    const std::complex<double> step = std::polar(1.0, 2.0 * pi * turns);
-    std::complex<double> turn =
-        std::polar(1.0, 2.0 * pi * std::remainder(turns * static_cast<double>(first), 1.0));
+    const double cycles = spacing * lag;
+    const std::complex<double> step = std::polar(1.0, 2.0 * pi * cycles);
+    std::complex<double> rotation =
+        std::polar(1.0, 2.0 * pi * std::remainder(cycles * static_cast<double>(first), 1.0));
     std::complex<double> sum = 0.0;
     for (std::ptrdiff_t k = first; k <= last; ++k) {
       const auto at = static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(cut_) : k);
-      sum += weights[static_cast<std::size_t>(k - first)] * std::complex<double>(work[at]) * turn;
-      turn *= step;
+      sum +=
+          weights[static_cast<std::size_t>(k - first)] * std::complex<double>(work[at]) * rotation;
+      rotation *= step;
     }
     sums.push_back(sum * scale);
   }
@@ -111,4 +112,4 @@ void EchoPointing::point(Detection& d, const Vec3& beam) const {
     d.elevation = elevation;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "processing/replica.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where an echo comes from, by the phones' own filter outputs at its time and Doppler factor: the
 /// maximum-likelihood direction of one plane wave in white noise. What it refers to must outlive
@@ -21,7 +21,7 @@ class EchoPointing {
                const Replica& replica, const ArrayShape& shape, std::span<const double> weights,
                double spacing, double lowest_doppler);
 
-  /// Sets the direction (look, cosine, bearing, elevation) of what a beam hears at d.time and
+  /// Sets the direction (look, cosine, bearing, elevation) of what a beam receives at d.time and
   /// d.doppler. \param beam  its look
   void point(Detection& d, const Vec3& beam) const;
   /// |y|² of the conventional beam exactly there.
@@ -29,7 +29,7 @@ class EchoPointing {
 
  private:
   /// The phones' own outputs at a time and factor, delays taken out as the beam does. Only the
-  /// stretch of the record that the replica covers is transformed: the rest would add nothing.
+  /// segment of the record that the replica covers is transformed: the rest would add nothing.
   [[nodiscard]] std::vector<std::complex<double>> snapshot(double time, double doppler,
                                                            const Vec3& look) const;
 
@@ -43,4 +43,4 @@ class EchoPointing {
   std::size_t cut_;  // samples of baseband that a snapshot looks at
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

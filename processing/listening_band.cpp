@@ -12,7 +12,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double edge = 0.1;      // of the width, on either side
@@ -74,7 +74,7 @@ struct BandPlan {
 
   /// One phone: the kept bins of its spectrum to its envelope.
   template <class BinAt>
-  void envelope(const BinAt& bin_at, std::complex<float> turn, double scale,
+  void envelope(const BinAt& bin_at, std::complex<float> rotation, double scale,
                 FftBuffer<std::complex<float>>& work, std::complex<float>* out) const {
     std::fill_n(work.data(), length, 0.0F);
     const auto n = static_cast<std::ptrdiff_t>(length);
@@ -83,12 +83,12 @@ struct BandPlan {
           bin_at(k + centre) *
           (static_cast<float>(scale) * gains[static_cast<std::size_t>(k - first)]);
     ComplexFft<float>(length).inverse(work.data());
-    for (std::size_t i = 0; i < length; ++i) out[i] = work[i] * turn;
+    for (std::size_t i = 0; i < length; ++i) out[i] = work[i] * rotation;
   }
 };
 
 /// The transform counts its phase from the first sample, the carrier from t = 0.
-std::complex<float> carrier_turn(const Baseband& b, double recorded_carrier, double start) {
+std::complex<float> carrier_rotation(const Baseband& b, double recorded_carrier, double start) {
   return std::complex<float>(std::polar(
       1.0, std::remainder(-2.0 * pi * (b.carrier - recorded_carrier) * start, 2.0 * pi)));
 }
@@ -102,7 +102,7 @@ Baseband to_baseband(std::span<const float> pressure, std::size_t channels, doub
   Baseband result = plan.empty(channels, samples, sample_rate, 0.0, start);
   const RealFft<float> fft(plan.padded);
   static_cast<void>(ComplexFft<float>(plan.length));  // made before the tasks begin
-  const std::complex<float> turn = carrier_turn(result, 0.0, start);
+  const std::complex<float> rotation = carrier_rotation(result, 0.0, start);
   struct Work {
     FftBuffer<float> real;
     FftBuffer<std::complex<float>> bins, envelope;
@@ -116,8 +116,8 @@ Baseband to_baseband(std::span<const float> pressure, std::size_t channels, doub
     std::copy_n(pressure.data() + c * samples, samples, work.real.data());
     std::fill(work.real.data() + samples, work.real.data() + plan.padded, 0.0F);
     fft.forward(work.real.data(), work.bins.data());
-    plan.envelope([&](std::ptrdiff_t k) { return work.bins[static_cast<std::size_t>(k)]; }, turn,
-                  2.0 / static_cast<double>(plan.padded), work.envelope,
+    plan.envelope([&](std::ptrdiff_t k) { return work.bins[static_cast<std::size_t>(k)]; },
+                  rotation, 2.0 / static_cast<double>(plan.padded), work.envelope,
                   result.values.data() + c * plan.length);
   });
   return result;
@@ -132,7 +132,7 @@ Baseband to_baseband(std::span<const std::complex<float>> envelope, std::size_t 
   Baseband result = plan.empty(channels, samples, sample_rate, carrier, start);
   const ComplexFft<float> fft(plan.padded);
   static_cast<void>(ComplexFft<float>(plan.length));
-  const std::complex<float> turn = carrier_turn(result, carrier, start);
+  const std::complex<float> rotation = carrier_rotation(result, carrier, start);
   struct Work {
     FftBuffer<std::complex<float>> bins, envelope;
   };
@@ -147,10 +147,10 @@ Baseband to_baseband(std::span<const std::complex<float>> envelope, std::size_t 
     const auto n = static_cast<std::ptrdiff_t>(plan.padded);
     plan.envelope(
         [&](std::ptrdiff_t k) { return work.bins[static_cast<std::size_t>(k < 0 ? k + n : k)]; },
-        turn, 1.0 / static_cast<double>(plan.padded), work.envelope,
+        rotation, 1.0 / static_cast<double>(plan.padded), work.envelope,
         result.values.data() + c * plan.length);
   });
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

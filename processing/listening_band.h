@@ -5,7 +5,7 @@
 
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a receiver keeps of the spectrum.
 struct ListeningBand {
@@ -36,4 +36,4 @@ struct ListeningBand {
                                    std::size_t channels, double sample_rate, double carrier,
                                    double start, const ListeningBand& band, double silence);
 
-}  // namespace asdic
+}  // namespace asdic::detail

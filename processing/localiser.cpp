@@ -9,7 +9,7 @@
 #include "raytrace/paths/trace_ray.h"
 #include "sonar/paths/enough_bounces.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The path of a kind among eigenrays; of two, the one nearer in angle.
@@ -23,14 +23,14 @@ const Arrival* of_kind(const Arrivals& paths, const PathHistory& history, double
   return best;
 }
 
-Vec3 heard_at(const Detection& detection, const SonarPlaces& places) {
+Vec3 received_at(const Detection& detection, const SonarPlaces& places) {
   return places.array.at(detection.time).position;
 }
 
 /// Without a bearing a pair that lies apart puts it on an ellipse, not at a range.
 bool on_ellipse(const Detection& detection, const SonarPlaces& places) {
   const bool bearing_known = places.shape.kind != ArrayKind::point && !places.shape.upright();
-  const double apart = separation(places.source.position, heard_at(detection, places)).range;
+  const double apart = separation(places.source.position, received_at(detection, places)).range;
   return !bearing_known && apart > farthest_apart * detection.time;
 }
 
@@ -69,7 +69,7 @@ Unplaced Localiser::reason(const Detection& detection, const SonarPlaces& places
 struct Localiser::Query {
   const Detection& detection;
   const SonarPlaces& places;
-  Vec3 heard_at = Vec3::Zero();  ///< the array when the echo came
+  Vec3 received_at = Vec3::Zero();  ///< the array when the echo came
   double bearing = 0.0;
   std::optional<double> elevation;  ///< measured
   double elevation_sigma = 0.0;
@@ -91,7 +91,7 @@ Arrivals Localiser::like(const PathHistory& wanted, const Vec3& from, const Vec3
 }
 
 std::optional<Location> Localiser::at_depth(const Query& query, double depth) const {
-  const Vec3 from = query.places.source.position, back = query.heard_at;
+  const Vec3 from = query.places.source.position, back = query.received_at;
   const Vec3 across = direction(query.bearing, 0.0);
   const auto point = [&](double range) {
     Vec3 p = back + range * across;
@@ -208,19 +208,19 @@ std::optional<Location> Localiser::at_depth(const Query& query, double depth) co
 }
 
 std::optional<Location> Localiser::along_ray(const Query& query) const {
-  // Out and back by the same ray from where the echo was heard: the point at half the delay, and
+  // Out and back by the same ray from where the echo was received: the point at half the delay, and
   // then, at that depth, as at_depth() does it with both ends where they are.
   const Environment& ocean = paths_.along_transect().environment();
   double depth = 0.0;
   if (settings_.speed) {
-    depth = query.heard_at.z() -
+    depth = query.received_at.z() -
             0.5 * *settings_.speed * query.detection.time * std::sin(*query.elevation);
   } else {
-    const Plane plane = paths_.plane(query.heard_at, query.bearing);
+    const Plane plane = paths_.plane(query.received_at, query.bearing);
     const double reach = 800.0 * query.detection.time + 1.0;
     const RayPath ray = paths_.layered()
-                            ? trace_ray(ocean, query.heard_at.z(), *query.elevation, reach, 5.0)
-                            : trace_ray(paths_.solver(plane)->environment(), query.heard_at.z(),
+                            ? trace_ray(ocean, query.received_at.z(), *query.elevation, reach, 5.0)
+                            : trace_ray(paths_.solver(plane)->environment(), query.received_at.z(),
                                         *query.elevation, reach, 5.0);
     const double half = 0.5 * query.detection.time;
     const auto after = std::find_if(ray.points.begin(), ray.points.end(),
@@ -230,7 +230,8 @@ std::optional<Location> Localiser::along_ray(const Query& query) const {
     const double t = b.time > a.time ? (half - a.time) / (b.time - a.time) : 0.0;
     depth = a.depth + t * (b.depth - a.depth);
   }
-  const Vec3 there = query.heard_at + 750.0 * query.detection.time * direction(query.bearing, 0.0);
+  const Vec3 there =
+      query.received_at + 750.0 * query.detection.time * direction(query.bearing, 0.0);
   const double top = paths_.surface_depth(there) + 1.0, bottom = paths_.bottom_depth(there) - 1.0;
   return at_depth(query, std::clamp(depth, std::min(top, bottom), bottom));
 }
@@ -248,7 +249,8 @@ std::optional<Location> Localiser::towards(Query query, std::optional<double> be
 std::vector<Location> Localiser::locate(const Detection& detection, const SonarPlaces& places,
                                         double elevation_sigma) const {
   const ArrayShape& shape = places.shape;
-  Query query{.detection = detection, .places = places, .heard_at = heard_at(detection, places)};
+  Query query{
+      .detection = detection, .places = places, .received_at = received_at(detection, places)};
   std::vector<Location> result;
   const auto keep = [&](std::optional<Location> found) {
     if (found) result.push_back(*found);
@@ -290,4 +292,4 @@ std::vector<Location> Localiser::locate(const Detection& detection, const SonarP
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "sonar/scenario/track.h"
 #include "sonar/scenario/transmitter.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 struct LocaliserSettings {
   double frequency = 4000.0;        ///< sets losses, by which one pair of paths is preferred [Hz]
@@ -26,11 +26,11 @@ struct LocaliserSettings {
 /// Ends of a pair that counts as one place are this far apart at most, per delay [m/s].
 inline constexpr double farthest_apart = 30.0;
 
-/// Who sent and who heard one ping. Times count from the ping's start.
+/// Who sent and who received one ping. Times count from the ping's start.
 struct SonarPlaces {
   Kinematics source;                         ///< when the ping starts
   Track array;                               ///< of the array's reference point, from then on
-  const TransmitPattern* pattern = nullptr;  ///< of the transmitter; none: all round
+  const TransmitPattern* pattern = nullptr;  ///< of the transmitter; none: azimuthally symmetric
   ArrayShape shape;                          ///< of the array
 };
 
@@ -76,4 +76,4 @@ class Localiser {
   mutable DelayTables tables_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/complex_product.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double oversampling = 2.0;  // of the output: half a sample off a peak loses 0.9 dB
@@ -34,11 +34,11 @@ struct CrossSpectrum {
   }
   /// ∫ … e^{i2πfτ} df, without a common phase
   [[nodiscard]] std::complex<double> at(double delay) const {
-    std::complex<double> sum = 0.0, turn = 1.0;
+    std::complex<double> sum = 0.0, rotation = 1.0;
     const std::complex<double> step = std::polar(1.0, 2.0 * pi * spacing * delay);
     for (const auto& bin : bins) {
-      sum += bin * turn;
-      turn *= step;
+      sum += bin * rotation;
+      rotation *= step;
     }
     return sum * spacing;
   }
@@ -187,4 +187,54 @@ void MatchedFilterBank::filter(std::size_t k, const std::complex<float>* spectru
   ComplexFft<float>(length_).inverse(out);
 }
 
-}  // namespace asdic
+MatchedFilterAt::MatchedFilterAt(const Recording& whole, const Pulse& pulse, double doppler,
+                                 std::vector<Phone> phones)
+    : whole_(whole), phones_(std::move(phones)) {
+  const Recording& r = whole_;
+  length_ = static_cast<std::ptrdiff_t>(std::ceil(pulse.duration() / doppler * r.sample_rate)) + 1;
+  weights_.resize(phones_.size() * static_cast<std::size_t>(length_));
+  for (std::size_t n = 0; n < phones_.size(); ++n) {
+    // The first sample at or after this phone's leading edge.
+    const double edge = (phones_[n].delay - r.start) * r.sample_rate;
+    first_.push_back(static_cast<std::ptrdiff_t>(std::ceil(edge)));
+    for (std::ptrdiff_t k = 0; k < length_; ++k) {
+      const double t = r.start + static_cast<double>(first_[n] + k) / r.sample_rate;
+      std::complex<double> w = std::conj(pulse.analytic(doppler * (t - phones_[n].delay)));
+      if (r.is_complex()) w *= std::polar(1.0, 2.0 * pi * r.carrier * (t + r.epoch));
+      weights_[n * static_cast<std::size_t>(length_) + static_cast<std::size_t>(k)] = w;
+      energy_ += std::norm(w);
+    }
+  }
+}
+
+std::ptrdiff_t MatchedFilterAt::first() const noexcept {
+  return *std::min_element(first_.begin(), first_.end());
+}
+
+std::ptrdiff_t MatchedFilterAt::end() const noexcept {
+  return *std::max_element(first_.begin(), first_.end()) + length_;
+}
+
+double MatchedFilterAt::answer(std::span<const float> pressure, std::size_t samples,
+                               std::ptrdiff_t from, std::ptrdiff_t later) const {
+  std::complex<double> sum = 0.0;
+  for (std::size_t n = 0; n < first_.size(); ++n) {
+    const std::ptrdiff_t begin = first_[n] + later - from;
+    const std::complex<double>* w = weights_.data() + n * static_cast<std::size_t>(length_);
+    const float* p =
+        pressure.data() +
+        (phones_[n].channel * samples + static_cast<std::size_t>(begin)) * whole_.components();
+    for (std::ptrdiff_t k = 0; k < length_; ++k)
+      sum += whole_.is_complex()
+                 ? w[k] * std::complex<double>(static_cast<double>(p[2 * k]),
+                                               static_cast<double>(p[2 * k + 1]))
+                 : 2.0 * w[k] * static_cast<double>(p[k]);  // p₊ = 2p, its negative half aside
+  }
+  return std::norm(sum) / (energy_ * energy_);
+}
+
+double MatchedFilterAt::noise(double density) const noexcept {
+  return 2.0 * density * whole_.sample_rate / energy_;
+}
+
+}  // namespace asdic::detail

@@ -5,9 +5,11 @@
 
 #include "processing/replica.h"
 #include "sonar/signal/fft.h"
+#include "sonar/signal/pulse.h"
+#include "sonar/signal/recording.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What the filter matched to η = 1 makes of an echo of another Doppler factor.
 struct DopplerAnswer {
@@ -65,4 +67,42 @@ class MatchedFilterBank {
   double rate_ = 0.0, start_ = 0.0;
 };
 
-}  // namespace asdic
+/// The same filter in its plain form: the integral as a sum over a record's samples in time, in
+/// double, for one factor and one delay of each of several phones (a beam steered at what is
+/// listened for), and for as many samples later or earlier as are asked for.
+///
+/// y = Σ_n ∫ p₊ s₊*(η(t − τ_n)) dt / Σ_n ∫|s₊(ηt)|² dt
+class MatchedFilterAt {
+ public:
+  /// When one phone receives the echo.
+  struct Phone {
+    std::size_t channel = 0;  ///< of the record
+    double delay = 0.0;       ///< τ_n [s]
+  };
+  /// \param whole  record, from whose start samples count   \param doppler  η
+  MatchedFilterAt(const Recording& whole, const Pulse& pulse, double doppler,
+                  std::vector<Phone> phones);
+
+  // The samples of the whole record that it needs are first() … end() − 1, and as many later.
+  [[nodiscard]] std::ptrdiff_t first() const noexcept;
+  [[nodiscard]] std::ptrdiff_t end() const noexcept;
+  [[nodiscard]] const std::vector<Phone>& phones() const noexcept { return phones_; }
+
+  /// |y|² so many samples after the delays. \param pressure [channels × samples × components] of
+  /// the record or of a part of it [Pa]   \param samples  of each channel   \param from  its first
+  /// sample; what first() and end() say, `later`, lies within
+  [[nodiscard]] double answer(std::span<const float> pressure, std::size_t samples,
+                              std::ptrdiff_t from, std::ptrdiff_t later) const;
+  /// E|y|² of white noise that is independent from phone to phone. \param density [Pa²/Hz]
+  [[nodiscard]] double noise(double density) const noexcept;
+
+ private:
+  Recording whole_;
+  std::vector<Phone> phones_;
+  std::ptrdiff_t length_ = 0;
+  std::vector<std::ptrdiff_t> first_;          // [phones]
+  std::vector<std::complex<double>> weights_;  // [phones × length] s₊*, as the record has it
+  double energy_ = 0.0;                        // Σ|w|²
+};
+
+}  // namespace asdic::detail

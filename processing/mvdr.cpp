@@ -7,7 +7,7 @@
 
 #include "raytrace/parallel/parallel.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Matrix = Eigen::MatrixXcd;
@@ -33,8 +33,8 @@ class ConstrainedWeights {
 
   void operator()(const Vector& steering, Vector& w) {
     const auto n = static_cast<double>(steering.size());
-    turned_.noalias() = principal_.eigenvectors().adjoint() * steering;
-    spread_ = turned_.cwiseAbs2();
+    rotated_.noalias() = principal_.eigenvectors().adjoint() * steering;
+    spread_ = rotated_.cwiseAbs2();
     // |w|² = Σ|b|²/(λ + μ)² / (Σ|b|²/(λ + μ))², b = Vᴴa, falls with μ towards 1/N.
     const Eigen::ArrayXd& power = spread_;
     const Eigen::ArrayXd lambda = principal_.eigenvalues().array();
@@ -52,15 +52,15 @@ class ConstrainedWeights {
       mu = std::exp(high);
     }
     const double sum = (power / (lambda + mu)).sum();
-    turned_.array() /= (lambda + mu) * sum;
-    w.noalias() = principal_.eigenvectors() * turned_;
+    rotated_.array() /= (lambda + mu) * sum;
+    w.noalias() = principal_.eigenvectors() * rotated_;
   }
 
  private:
   Eigen::SelfAdjointEigenSolver<Matrix> principal_;
   double most_;
   Eigen::ArrayXd spread_;
-  Vector turned_;
+  Vector rotated_;
 };
 
 /// The record as blocks: [channels × blocks × bins].
@@ -126,6 +126,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
                        std::span<const Vec3> looks, double sound_speed,
                        const MvdrSettings& settings) {
   const std::size_t n = phones.size(), beams = looks.size();
+  const double loading = power_from_db(settings.loading_db);
   const Blocks blocks(baseband, transit_time(phones, sound_speed));
   // Blocks that share weights, and those around them that the covariance is averaged over.
   const auto snapshots = std::max<std::size_t>(
@@ -139,7 +140,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
                      .values = {}};
   result.values = FftBuffer<std::complex<float>>(beams * result.stride);
   // Spectra of the beams' blocks: [beams × count × length].
-  std::vector<std::complex<float>> heard(beams * blocks.count * blocks.length);
+  std::vector<std::complex<float>> received(beams * blocks.count * blocks.length);
   in_parallel(groups, [&](std::size_t g) {
     const std::size_t begin = g * group, end = std::min(begin + group, blocks.count);
     const std::size_t wing = (snapshots - group) / 2;
@@ -155,7 +156,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
         covariance.selfadjointView<Eigen::Lower>().rankUpdate(snapshot);
       }
       covariance /= static_cast<double>(to - from);
-      load(covariance, settings.loading);
+      load(covariance, loading);
       ConstrainedWeights weights(covariance, power_from_db(settings.most_noise_db));
       const double bin = k < (blocks.length + 1) / 2
                              ? static_cast<double>(k)
@@ -172,7 +173,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
           std::complex<double> sum = 0.0;
           for (std::size_t c = 0; c < n; ++c)
             sum += std::conj(w[static_cast<Eigen::Index>(c)]) * blocks.at(c, j, k);
-          heard[(b * blocks.count + j) * blocks.length + k] = std::complex<float>(sum);
+          received[(b * blocks.count + j) * blocks.length + k] = std::complex<float>(sum);
         }
       }
     }
@@ -182,7 +183,7 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
     FftBuffer<std::complex<float>> work(blocks.length);
     std::complex<float>* row = result.beam(b);
     for (std::size_t j = 0; j < blocks.count; ++j) {
-      std::copy_n(heard.data() + (b * blocks.count + j) * blocks.length, blocks.length,
+      std::copy_n(received.data() + (b * blocks.count + j) * blocks.length, blocks.length,
                   work.data());
       back.inverse(work.data());
       for (std::size_t i = 0; i < blocks.length; ++i) {
@@ -196,4 +197,4 @@ BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

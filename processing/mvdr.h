@@ -5,7 +5,7 @@
 
 #include "processing/beams.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Adaptive weights that pass a plane wave unchanged and let through as little else as can be:
 /// w = R⁻¹a/(aᴴR⁻¹a), R the phones' covariance E[x xᴴ] with δ·tr(R)/N added to its diagonal; the
@@ -16,21 +16,25 @@ namespace asdic {
     std::span<const std::complex<double>> covariance,
     std::span<const std::complex<double>> steering, double loading);
 
+class Fields;
+
 struct MvdrSettings {
-  double loading = 0.1;              ///< δ, of the mean power of a phone
+  double loading_db = -10.0;         ///< 10 lg δ, re the mean power of a phone [dB]
   double snapshots_per_phone = 3.0;  ///< that a covariance is averaged over
   /// White noise that a beam may let through over the conventional one's 1/N. An echo is in the
   /// covariance itself: a beam a little off its direction would null it, however loud it is.
   double most_noise_db = 1.0;
+
+  void describe(Fields& field);
 };
 
-/// The beams of conventional_beams(), adapted to what is heard: the record is cut into overlapping
-/// blocks (root-Hann windows, so that they add up to the record again) that are narrow in frequency
-/// for the time sound takes across the array, and in every block and bin the weights follow from
-/// the covariance of the blocks around it, its loading raised where that keeps the beam's white
-/// noise gain (Cox, Zeskind & Owen 1987, docs/theory/processing.md, eq. (6a)).
+/// The beams of conventional_beams(), adapted to what is received: the record is cut into
+/// overlapping blocks (root-Hann windows, so that they add up to the record again) that are narrow
+/// in frequency for the time sound takes across the array, and in every block and bin the weights
+/// follow from the covariance of the blocks around it, its loading raised where that keeps the
+/// beam's white noise gain (Cox, Zeskind & Owen 1987, docs/theory/processing.md, eq. (6a)).
 [[nodiscard]] BeamSpectra mvdr_beams(const Baseband& baseband, std::span<const Vec3> phones,
                                      std::span<const Vec3> looks, double sound_speed,
                                      const MvdrSettings& settings);
 
-}  // namespace asdic
+}  // namespace asdic::detail

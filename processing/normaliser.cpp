@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double outstanding = 4.0;  // over the last mean: put back to it
@@ -92,4 +92,4 @@ void BackgroundEstimator::operator()(std::span<const float> power, std::span<flo
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,15 +1,27 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
-namespace asdic {
+#include "core/quantity.h"
+
+namespace asdic::detail {
 
 /// How the background around a cell is estimated.
 enum class Normaliser {
   cell_averaging,  ///< the mean of the reference cells on both sides (CA-CFAR)
   split_window,  ///< the same, and twice again with what stands out of the last mean put back to it
 };
+
+inline constexpr std::string_view normaliser_words[] = {"cell-averaging", "split-window"};
+constexpr std::span<const std::string_view> words(Normaliser /*any*/) { return normaliser_words; }
+
+/// Of a cell of Rayleigh background.
+inline constexpr Quantity false_alarm_probability_of_cell{
+    .noun = "probability", .low = 0.0, .high = 0.5, .above = true};
+
+class Fields;
 
 /// A cell is 1/noise bandwidth of the matched filter: values so far apart are independent.
 struct NormaliserSettings {
@@ -18,6 +30,8 @@ struct NormaliserSettings {
   double reference_cells = 12.0;          ///< averaged on either side
   double false_alarm_probability = 1e-6;  ///< of a cell
   bool across_beams = true;  ///< compared with the beams around as well (BeamSurroundings)
+
+  void describe(Fields& field);
 };
 
 /// Threshold over the mean of `cells` independent exponential cells (Rayleigh envelope) for a
@@ -49,4 +63,4 @@ class BackgroundEstimator {
   std::vector<float> multiplier_;  // [1 + 2·reference_] by number of reference samples
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 
 #include "raytrace/parallel/parallel.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Echoes are not as clean as the pulse: nothing this much weaker beside a loud one is believed.
@@ -100,4 +100,4 @@ std::vector<std::size_t> independent_peaks(
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

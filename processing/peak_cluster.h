@@ -5,7 +5,7 @@
 
 #include "processing/matched_filter.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A maximum over time of one beam and filter that stands over its threshold.
 struct Peak {
@@ -41,4 +41,4 @@ class LeakTable {
     const std::function<double(std::size_t kept, std::size_t beam)>& beam_leak, double margin,
     std::size_t most);
 
-}  // namespace asdic
+}  // namespace asdic::detail

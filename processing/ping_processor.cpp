@@ -12,7 +12,7 @@
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/transmission.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The pulse's band with room for its flanks, stretched by all Doppler factors.
@@ -26,13 +26,13 @@ ListeningBand listening_band(const Replica& replica, std::span<const double> dop
 }
 
 /// The factors whose echoes lie within a recorded baseband; always one.
-std::span<const double> heard_factors(const Replica& replica, std::span<const double> all,
-                                      double carrier, double rate) {
-  const auto heard = [&](double factor) {
+std::span<const double> received_factors(const Replica& replica, std::span<const double> all,
+                                         double carrier, double rate) {
+  const auto received = [&](double factor) {
     return std::abs(replica.centre_frequency() * factor - carrier) < 0.45 * rate;
   };
-  const auto first = std::find_if(all.begin(), all.end(), heard);
-  const auto last = std::find_if_not(first, all.end(), heard);
+  const auto first = std::find_if(all.begin(), all.end(), received);
+  const auto last = std::find_if_not(first, all.end(), received);
   if (first == all.end())
     throw InputError(
         {.where = "replica",
@@ -47,17 +47,17 @@ double chord_bearing(std::span<const Vec3> phones) {
   return std::atan2(chord.x(), chord.y());
 }
 
-/// Turns what was heard, and the array that heard it, clockwise by an angle [rad].
-void turn(Detection& d, ArrayShape& shape, double angle) {
-  const auto turned = [&](const Vec3& v) {
+/// Turns what was received, and the array that received it, clockwise by an angle [rad].
+void rotate(Detection& d, ArrayShape& shape, double angle) {
+  const auto rotated = [&](const Vec3& v) {
     const double c = std::cos(angle), s = std::sin(angle);
     return Vec3(c * v.x() + s * v.y(), c * v.y() - s * v.x(), v.z());
   };
-  d.look = turned(d.look);
+  d.look = rotated(d.look);
   d.bearing = std::remainder(d.bearing + angle, 2.0 * pi);
-  shape.axis = turned(shape.axis);
-  shape.across = turned(shape.across);
-  shape.normal = turned(shape.normal);
+  shape.axis = rotated(shape.axis);
+  shape.across = rotated(shape.across);
+  shape.normal = rotated(shape.normal);
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   const Replica& pulse = replica(recording.transmitter);
   std::span<const double> factors = dopplers(recording.transmitter);
   if (recording.carrier)
-    factors = heard_factors(pulse, factors, *recording.carrier, recording.sample_rate);
+    factors = received_factors(pulse, factors, *recording.carrier, recording.sample_rate);
   const std::size_t channels = recording.phones.size();
   const double top = recording.carrier ? *recording.carrier + 0.5 * recording.sample_rate
                                        : 0.5 * recording.sample_rate;
@@ -146,7 +146,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   }
   const double heading = chord_bearing(phones);
   // How far the line has turned from the shape that its beams are formed for [rad].
-  const auto turned_by = [&](double time) {
+  const auto rotated_by = [&](double time) {
     if (!deforms(scenario_, recording.array)) return 0.0;
     return chord_bearing(phones_at(scenario_, recording.array, recording.ping,
                                    recording.ping_time + time + 0.5 * pulse.duration())) -
@@ -158,7 +158,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
   done.elevation_sigma = 0.25 * wavelength / std::max(done.shape.height, 0.25 * wavelength);
 
   DetectorSettings detector = settings_.detector;
-  detector.first_time = std::max(detector.first_time, recording.start);
+  detector.first_time = std::max(detector.first_time.value_or(0.0), recording.start);
   std::vector<Probe> probes;
   for (const TrueEcho& echo : echoes)
     probes.push_back({.time = echo.time,
@@ -185,7 +185,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
     d.ping = recording.ping;
     d.array = recording.array;
     SonarPlaces then = places;
-    if (const double angle = turned_by(d.time); angle != 0.0) turn(d, then.shape, angle);
+    if (const double angle = rotated_by(d.time); angle != 0.0) rotate(d, then.shape, angle);
     d.locations = localiser.locate(d, then, done.elevation_sigma);
     if (d.locations.empty()) d.unplaced = localiser.reason(d, places);
   });
@@ -275,9 +275,9 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
                           std::sqrt(wavelength / processed.shape.length));
       c.bearing_sigma = sigma_of(wavelength / (processed.shape.breadth * across), snr);
       c.range_per_bearing = place.bearing_slope;
-      const Kinematics heard = processed.places.array.at(d.time);
-      c.array = heard.position.head<2>();
-      c.array_velocity = heard.velocity.head<2>();
+      const Kinematics received = processed.places.array.at(d.time);
+      c.array = received.position.head<2>();
+      c.array_velocity = received.velocity.head<2>();
       c.source = processed.places.source.position.head<2>();
       c.source_velocity = processed.places.source.velocity.head<2>();
     }
@@ -286,4 +286,4 @@ std::vector<Contact> PingProcessor::contacts(const ProcessedArray& processed, do
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

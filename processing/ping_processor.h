@@ -13,8 +13,9 @@
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
+/// What a receiver of files and of studies is told.
 struct ProcessingSettings {
   DetectorSettings detector;
   double max_speed = 15.0;     ///< closing or opening, the Doppler filters reach so far [m/s]
@@ -22,6 +23,9 @@ struct ProcessingSettings {
   std::optional<double> target_depth;  ///< as LocaliserSettings::depth [m]
   std::optional<double> range_speed;   ///< as LocaliserSettings::speed [m/s]
   TrackerSettings tracker;
+
+  /// What one ping needs; tracker, which needs several, describes itself.
+  void describe(Fields& field);
 };
 
 /// What one array recorded of one ping.
@@ -105,4 +109,4 @@ class PingProcessor {
   std::vector<std::unique_ptr<Localiser>> localisers_;  // [replicas]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

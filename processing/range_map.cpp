@@ -6,7 +6,7 @@
 #include "core/geometry.h"
 #include "processing/localiser.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<double> Localiser::ranges(double bearing, std::span<const double> times,
                                       const SonarPlaces& places) const {
@@ -15,8 +15,8 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   const double depth = settings_.depth.value_or(settings_.shallow);
   const Vec3 from = places.source.position, across = direction(bearing, 0.0);
   const Vec3 at_ping = places.array.at(0.0).position;
-  const Vec3 heard = places.array.at(times.back()).position;
-  const double apart = std::max(separation(from, at_ping).range, separation(from, heard).range);
+  const Vec3 received = places.array.at(times.back()).position;
+  const double apart = std::max(separation(from, at_ping).range, separation(from, received).range);
   const double longest = DelayTables::longest(times.back(), apart);
   // The place at a range, from where the array is when its echo comes (to a straight ray's delay).
   const auto point = [&](double range) {
@@ -50,7 +50,7 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
     }
     return found;
   }
-  const auto home = tables_.from(heard, bearing, depth, longest);
+  const auto home = tables_.from(received, bearing, depth, longest);
   const Vec3 middle = point(0.5 * 750.0 * times.back());
   const auto out =
       tables_.from(from, apart < 1.0 ? bearing : separation(from, middle).bearing, depth, longest);
@@ -77,4 +77,4 @@ std::vector<double> Localiser::ranges(double bearing, std::span<const double> ti
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

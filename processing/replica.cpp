@@ -8,7 +8,7 @@
 #include "core/units.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 // The spectrum of a pulse of length T, its middle at 0, is a signal "of band ±T/2" over frequency;
@@ -91,4 +91,4 @@ std::complex<double> Replica::spectrum(double frequency, double doppler) const n
   return spectrum_.at(f) / doppler * std::polar(1.0, std::remainder(-pi * f * duration_, 2.0 * pi));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

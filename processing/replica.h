@@ -5,7 +5,7 @@
 
 #include "sonar/signal/sampled_signal.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The transmitted pulse as the receiver knows it: stored samples, made analytic, at any Doppler
 /// factor.
@@ -46,4 +46,4 @@ class Replica {
          noise_bandwidth_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

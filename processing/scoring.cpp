@@ -6,7 +6,7 @@
 
 #include "core/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// How far a direction is from where an echo comes from, in what the array can tell.
@@ -97,14 +97,14 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
     if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
       const Detection& own = detections[static_cast<std::size_t>(row.detection)];
-      const Vec3 heard_at = array.at(own.time).position;
-      const Separation truth = separation(heard_at, target.position);
+      const Vec3 received_at = array.at(own.time).position;
+      const Separation truth = separation(received_at, target.position);
       for (const Location& place : own.locations) {
         const Vec3 off = place.position - target.position;
         const double error = std::isnan(place.bearing) ? std::abs(place.range - truth.range)
                                                        : std::hypot(off.x(), off.y());
         if (!std::isnan(row.position_error) && error >= row.position_error) continue;
-        const Separation seen = separation(heard_at, place.position);
+        const Separation seen = separation(received_at, place.position);
         row.position_error = std::isnan(place.bearing) ? std::nan("") : error;
         row.range_error = (std::isnan(place.bearing) ? place.range : seen.range) - truth.range;
         row.bearing_error = std::isnan(place.bearing)
@@ -117,4 +117,4 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
   return score;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

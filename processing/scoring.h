@@ -8,7 +8,7 @@
 #include "processing/detection.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// In the place of a target: the transmitter's own sound, straight to the array.
 inline constexpr int direct_sound = -2;
@@ -69,7 +69,7 @@ struct PingScore {
 /// between) that can be so loud: whose target's pairs within a cell, all in phase, are no more than
 /// 10 dB below it or below the threshold. It belongs to the one whose echo is loudest there. A
 /// target is audible if its pairs within a cell have together, as powers, the level that they need.
-/// Ranges and bearings are those from where the array was when it heard the detection.
+/// Ranges and bearings are those from where the array was when it received the detection.
 /// \param array  from when the ping was sent on [m]   \param first, last  time that is searched
 /// [s]
 [[nodiscard]] PingScore score_detections(std::span<const Detection> detections,
@@ -78,4 +78,4 @@ struct PingScore {
                                          const ArrayShape& shape, const Track& array,
                                          const Resolution& resolution, double first, double last);
 
-}  // namespace asdic
+}  // namespace asdic::detail

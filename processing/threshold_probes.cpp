@@ -4,7 +4,7 @@
 
 #include "raytrace/propagation.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<PlacedProbe> place_probes(std::span<const Probe> probes, const MatchedFilterBank& bank,
                                       double doppler_cell, const BeamGrid& grid,
@@ -20,8 +20,8 @@ std::vector<PlacedProbe> place_probes(std::span<const Probe> probes, const Match
     if (placed.inside) placed.sample = static_cast<std::size_t>(sample);
     double most = -1.0, least = infinity;
     for (std::size_t b = 0; b < grid.looks.size(); ++b) {
-      const double heard = beam_pattern(phones, weights, grid.looks[b], probe.look, wavenumber);
-      if (heard > most) most = heard, placed.beam = b;
+      const double received = beam_pattern(phones, weights, grid.looks[b], probe.look, wavenumber);
+      if (received > most) most = received, placed.beam = b;
     }
     for (std::size_t f = 0; f < bank.filters(); ++f)
       if (const double off = std::abs(bank.doppler(f) - probe.doppler); off < least)
@@ -33,4 +33,4 @@ std::vector<PlacedProbe> place_probes(std::span<const Probe> probes, const Match
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

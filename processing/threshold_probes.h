@@ -7,9 +7,10 @@
 #include "processing/detector.h"
 #include "processing/matched_filter.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A probe in the detector's own cells: the beam that hears it best, the nearest filter and sample.
+/// A probe in the detector's own cells: the beam that receives it best, the nearest filter and
+/// sample.
 struct PlacedProbe {
   std::size_t beam = 0, filter = 0, sample = 0;
   bool inside = false;  ///< of what is searched
@@ -26,4 +27,4 @@ struct PlacedProbe {
                                                     std::span<const double> weights,
                                                     double wavenumber);
 
-}  // namespace asdic
+}  // namespace asdic::detail

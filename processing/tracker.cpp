@@ -7,7 +7,7 @@
 
 #include "processing/assignment.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What a contact would be if the target were there.
@@ -92,7 +92,7 @@ class Tracker {
     for (std::size_t i = 0; i < open_.size(); ++i)
       if (hit_[i] == 0) miss(open_[i], index, time);
     std::erase_if(open_, [&](Candidate& c) { return ends(c); });
-    drop_twins();
+    drop_duplicates();
     for (std::size_t j = 0; j < contacts.size(); ++j)
       if (taken[j] == 0 && !belongs(contacts[j])) begin(index, contacts[j], static_cast<int>(j));
   }
@@ -165,7 +165,7 @@ class Tracker {
   }
 
   /// Two candidates that agree are one: the older, or the one with more hits, stays.
-  void drop_twins() {
+  void drop_duplicates() {
     for (std::size_t i = 0; i < open_.size(); ++i)
       for (std::size_t j = i + 1; j < open_.size();) {
         const SmallMatrix<4, 1> off = open_[i].state.mean - open_[j].state.mean;
@@ -304,4 +304,4 @@ std::vector<ContactTrack> track_contacts(std::span<const std::vector<Contact>> p
   return tracker.finish();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A located detection, as a tracker takes it.
 struct Contact {
@@ -20,9 +20,11 @@ struct Contact {
   /// bearing, along the ellipse of its delay [m/rad].
   double range_per_rate = 0.0, range_per_bearing = 0.0;
   bool bearing_known = true;  ///< false: along one line, `bearing`, which it never leaves
-  Vec2 array = Vec2::Zero(), array_velocity = Vec2::Zero();    ///< when it heard (east, north)
+  Vec2 array = Vec2::Zero(), array_velocity = Vec2::Zero();    ///< when it received (east, north)
   Vec2 source = Vec2::Zero(), source_velocity = Vec2::Zero();  ///< when it sent
 };
+
+class Fields;
 
 struct TrackerSettings {
   int start_hits = 3, start_pings = 4;  ///< a track is believed after m hits in its first n pings
@@ -30,6 +32,8 @@ struct TrackerSettings {
   double gate = 16.0;          ///< largest squared Mahalanobis distance of a hit (χ², 3 degrees)
   double acceleration = 0.02;  ///< of a target, root of its density over a second [m/s²]
   double max_speed = 15.0;     ///< of a target [m/s]
+
+  void describe(Fields& field);
 };
 
 struct TrackPoint {
@@ -82,4 +86,4 @@ struct TrackState {
                                                        std::span<const double> ping_times,
                                                        const TrackerSettings& settings);
 
-}  // namespace asdic
+}  // namespace asdic::detail

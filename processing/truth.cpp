@@ -2,22 +2,22 @@
 
 #include <algorithm>
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<TrueEcho> true_echoes(const PingRecord& record, int array) {
   std::vector<TrueEcho> echoes;
   int phones = 0;
   for (const EchoPath& echo : record.echoes)
-    if (echo.array == array) phones = std::max(phones, echo.heard.channel + 1);
+    if (echo.array == array) phones = std::max(phones, echo.received.channel + 1);
   // Where every phone has its own paths, the middle one's stand for all.
   for (const EchoPath& echo : record.echoes)
-    if (echo.array == array && (echo.heard.channel < 0 || echo.heard.channel == phones / 2))
+    if (echo.array == array && (echo.received.channel < 0 || echo.received.channel == phones / 2))
       echoes.push_back({.target = echo.target,
-                        .time = echo.heard.delay,
+                        .time = echo.received.delay,
                         .struck = echo.struck,
-                        .doppler = echo.heard.doppler,
+                        .doppler = echo.received.doppler,
                         .level_db = echo.level_db,
-                        .travel = echo.heard.slowness.normalized()});
+                        .travel = echo.received.slowness.normalized()});
   return echoes;
 }
 
@@ -40,4 +40,4 @@ std::vector<TrueTarget> true_targets(const Scenario& scenario, int ping, double 
   return targets;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

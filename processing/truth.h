@@ -6,9 +6,9 @@
 #include "sonar/ping/ping_record.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// The echoes of a ping that an array hears, as the simulation knows them.
+/// The echoes of a ping that an array receives, as the simulation knows them.
 [[nodiscard]] std::vector<TrueEcho> true_echoes(const PingRecord& record, int array);
 
 /// The targets of a ping, each where it was when the loudest of its echoes struck it (without an
@@ -17,4 +17,4 @@ namespace asdic {
                                                    double start_time,
                                                    std::span<const TrueEcho> echoes);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "raytrace/runs/field_run.h"
 #include "raytrace/runs/rays_run.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Every receiver lies farther away, or deeper, than rays go: a unit slip, most likely.
@@ -93,4 +93,4 @@ PropagationResult run(const PropagationCase& run_case, const Progress& progress,
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "raytrace/cases/propagation_result.h"
 #include "raytrace/parallel/progress.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Runs a case with asdic's own tracer. Results do not depend on the number of threads.
 /// \param budget  that the run keeps within
@@ -14,9 +14,9 @@ namespace asdic {
                                     const MemoryBudget& budget = {});
 
 /// The same case as BELLHOP does it: its own steps, landing rules, beam formulas and merging, for
-/// comparison (docs/theory/like-bellhop.md). The field has asdic's sign.
-[[nodiscard]] PropagationResult run_like_bellhop(const PropagationCase& run_case,
-                                                 const Progress& progress = {},
-                                                 const MemoryBudget& budget = {});
+/// comparison (docs/theory/bellhop-emulation.md). The field has asdic's sign.
+[[nodiscard]] PropagationResult run_bellhop_emulation(const PropagationCase& run_case,
+                                                      const Progress& progress = {},
+                                                      const MemoryBudget& budget = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

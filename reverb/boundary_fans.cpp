@@ -9,28 +9,28 @@
 
 #include "raytrace/parallel/parallel.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// How each cell's facet lies. A slope h′ along the transect is h′·cos β in the plane: the angle to
 /// the facet is that to its line in the plane, corrected for the part of its normal that sticks out
 /// of the plane.
-std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const GroundPaths& paths) {
+std::vector<CellTilt> tilts(const Boundary& boundary, double cos_beta, const BoundaryPaths& paths) {
   std::vector<CellTilt> tilt;
   if (!boundary.shape || cos_beta == 0.0) return tilt;
   for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
     const double in_plane = boundary.shape->at(paths.range(cell)).slope;
-    const double stretch = std::hypot(1.0, in_plane / cos_beta);  // √(1 + h′²)
-    tilt.push_back({.grazing = std::hypot(1.0, in_plane) / stretch, .area = stretch});
+    const double segment = std::hypot(1.0, in_plane / cos_beta);  // √(1 + h′²)
+    tilt.push_back({.grazing = std::hypot(1.0, in_plane) / segment, .area = segment});
   }
   return tilt;
 }
 
 /// \param speed  of sound at the fan's source [m/s]
-std::vector<PathEnds> ends_of(const GroundPaths& paths, double speed) {
+std::vector<PathEnds> ends_of(const BoundaryPaths& paths, double speed) {
   std::vector<PathEnds> ends;
   ends.reserve(paths.size());
-  for (const GroundPath& p : paths.all()) {
+  for (const BoundaryPath& p : paths.all()) {
     const double sine = std::sin(p.grazing), cosine = std::cos(p.grazing);
     ends.push_back({.launch_level = std::cos(p.launch_elevation) / speed,
                     .launch_down = -std::sin(p.launch_elevation) / speed,
@@ -89,9 +89,9 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
   key.add(limits.max_vertices).add(limits.faintest);
   key.add(limits.max_delay).add(limits.home_slowness);
   PropagationMemory& memory = paths_.memory();
-  auto entry = memory.find<Entry>(key);
-  if (known != nullptr) *known = entry != nullptr;
-  if (!entry) entry = memory.keep(key, std::make_shared<Entry>(), sizeof(Entry));
+  const auto entry = memory.remember(
+      key, [] { return std::make_shared<Entry>(); }, [](const Entry&) { return sizeof(Entry); },
+      known);
   const StopPoint stop;
   tbb::collaborative_call_once(entry->traced, [&] {
     entry->fan = trace(place, level, settings, stop);
@@ -103,7 +103,7 @@ std::shared_ptr<const BoundaryFan> BoundaryFans::around(const Vec3& place, const
 
 MemoryNeed BoundaryFans::need(const Settings& settings) const {
   // As they are found and as they are kept; then their ends.
-  constexpr double a_path = 2.0 * sizeof(GroundPath) + sizeof(PathEnds);
+  constexpr double a_path = 2.0 * sizeof(BoundaryPath) + sizeof(PathEnds);
   const PathLimits& limits = settings.limits;
   const int bounces = std::max(limits.max_surface_bounces, limits.max_bottom_bounces);
   const double planes = paths_.layered() ? 1.0 : 0.5 * (settings.sectors + 1),
@@ -121,9 +121,9 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
 BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                                 const Settings& settings, const StopPoint& stop) const {
   const auto ground = [&](const EigenraySolver& solver) {
-    return std::make_shared<const GroundPaths>(
-        ground_paths(solver, place.z(), level, grid_of(settings), settings.max_range,
-                     settings.frequency, settings.limits, stop));
+    return std::make_shared<const BoundaryPaths>(
+        boundary_paths(solver, place.z(), level, grid_of(settings), settings.max_range,
+                       settings.frequency, settings.limits, stop));
   };
   const double speed = paths_.speed_at(place);
   if (paths_.layered()) {
@@ -150,4 +150,4 @@ BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
   return fan;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

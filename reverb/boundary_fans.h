@@ -4,16 +4,16 @@
 #include <vector>
 
 #include "core/memory_budget.h"
-#include "raytrace/paths/ground_paths.h"
+#include "raytrace/paths/boundary_paths.h"
 #include "raytrace/places/propagation_paths.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How a cell of a boundary that is not level answers, against the same cell seen in the plane of
 /// the rays alone.
 struct CellTilt {
   double grazing = 1.0;  ///< sin of the angle to the surface over sin of the angle to its line in
-                         ///< the plane (GroundPath::grazing): √(1 + h′²cos²β)/√(1 + h′²)
+                         ///< the plane (BoundaryPath::grazing): √(1 + h′²cos²β)/√(1 + h′²)
   double area = 1.0;  ///< of the sloping facet over its horizontal projection: √(1 + h′²)
 };
 
@@ -28,7 +28,7 @@ struct PathEnds {
 
 /// The paths to a boundary in one vertical plane.
 struct FanPlane {
-  std::shared_ptr<const GroundPaths> paths;
+  std::shared_ptr<const BoundaryPaths> paths;
   std::vector<PathEnds> ends;  ///< [paths->all()]
   std::vector<CellTilt> tilt;  ///< [cells], empty where the boundary is level
 };
@@ -84,4 +84,4 @@ class BoundaryFans {
   const PropagationPaths& paths_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

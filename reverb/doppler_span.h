@@ -1,10 +1,10 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A stretch of Doppler factors.
+/// A segment of Doppler factors.
 struct DopplerSpan {
   double lowest = 1.0, highest = 1.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

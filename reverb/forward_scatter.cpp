@@ -8,7 +8,7 @@
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering/motion.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double sea_gravity = 9.81;  // [m/s²]
@@ -280,4 +280,4 @@ std::vector<ScatteredPart> forward_scatter(const Environment& ocean,
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One way of the sound between two ends, along one path.
 struct ScatteredLeg {
@@ -57,4 +57,4 @@ struct ScatteredPart {
 /// A number that names a path from ping to ping: how often it met what, and how it began.
 [[nodiscard]] std::uint64_t scatter_history(const Arrival& path) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Spacing of the rings of a grid of scatterers [m]: the two-way delay from ring to ring is 1/(2B),
 /// B the full bandwidth that holds 99 % of the pulse's energy, so that two rings fall into what a
@@ -12,4 +12,4 @@ namespace asdic {
   return surface_sound_speed / (4.0 * bandwidth);  // delay 2Δr/c = 1/(2B)
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

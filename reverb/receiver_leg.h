@@ -4,16 +4,16 @@
 
 #include "core/kinematics.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A straight stretch of a receiver's track: what is heard on it is heard as if the receiver had
-/// always been on it.
+/// A straight segment of a receiver's track: what is received on it is received as if the receiver
+/// had always been on it.
 struct ReceiverLeg {
-  double until = 0.0;  ///< leading edges of a smaller delay since the ping are heard on it [s]
+  double until = 0.0;  ///< leading edges of a smaller delay since the ping are received on it [s]
   Kinematics line;     ///< where it would have been at the ping's start
 };
 
-/// The leg on which a leading edge of that delay is heard. \param legs  at least one
+/// The leg on which a leading edge of that delay is received. \param legs  at least one
 [[nodiscard]] inline const ReceiverLeg& leg_at(const std::vector<ReceiverLeg>& legs,
                                                double delay) noexcept {
   const auto after =
@@ -22,4 +22,4 @@ struct ReceiverLeg {
   return *after;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,13 +8,15 @@
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering/models.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What scatters from a boundary or a layer, apart from the law: how its scatterers move and how
 /// their weights are drawn.
 struct ScattererField {
   ScattererMotion motion;
   ScattererStatistics statistics;
+
+  void describe(Fields& field);
 };
 
 /// A layer of the water that scatters: bubbles, fish, plankton.
@@ -23,6 +25,8 @@ struct VolumeLayer {
   double strength_db = -80.0;        ///< S_v [dB re 1 m⁻¹]
   std::optional<int> sheets;         ///< that stand for it; by default one for every 50 m
   ScattererField field;
+
+  void describe(Fields& setting);
 };
 
 /// How the sound of scatterers is made.
@@ -55,6 +59,8 @@ struct ReverberationSettings {
   ScattererSynthesis synthesis = ScattererSynthesis::automatic;
   std::size_t most_returns =
       4'000'000;  ///< of a ping at one array; beyond, sectors are synthesised
+
+  void describe(Fields& field);
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

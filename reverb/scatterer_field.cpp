@@ -6,7 +6,7 @@
 #include "core/fields.h"
 #include "core/quantities.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double strip = 0.1;  // in which one anchor's sea goes over into the next, of a pitch
@@ -173,4 +173,4 @@ std::vector<Anchor> anchors_of(const Vec2& first, const Vec2& now, double time, 
   return anchors;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 class Fields;
 
@@ -115,24 +115,23 @@ class ScattererWeights {
 [[nodiscard]] double texture_amplitude(const ScattererStatistics& statistics, const Vec2& place,
                                        std::uint64_t boundary, std::uint64_t seed) noexcept;
 
-/// A place that a field of scatterers is laid around, and how much of that field is heard.
+/// A place that a field of scatterers is laid around, and how much of that field is received.
 struct Anchor {
   Vec2 place = Vec2::Zero();   ///< now [m]
   std::uint64_t identity = 0;  ///< of the place in the water
   double share = 1.0;  ///< of its field's pressure; Σ share² = 1 over the anchors of a pair
 };
 
-/// The anchors of the field that two ends hear: the points of a square lattice in the frame of the
-/// water, which drifts with the current, next to the ends' middle. Between points, in a strip a
-/// tenth of a pitch wide, one sea goes over into the other: both are heard, with the shares cos α
-/// and sin α, α from 0 to π/2 across the strip (four where strips cross). So two pairs of ends d
-/// apart share the correlation cos(½π·d/strip) at least, wherever they are, and no step is heard.
-/// docs/theory/reverberation.md, "Identity"
-/// \param first  the middle at time 0, a point of the lattice   \param now  at `time`
-/// \param pitch  above 0 [m]   \param blended  false: the nearest point alone
-/// \return the nearest first
+/// The anchors of the field that two ends receive: the points of a square lattice in the frame of
+/// the water, which drifts with the current, next to the ends' middle. Between points, in a strip a
+/// tenth of a pitch wide, one sea goes over into the other: both are received, with the shares cos
+/// α and sin α, α from 0 to π/2 across the strip (four where strips cross). So two pairs of ends d
+/// apart share the correlation cos(½π·d/strip) at least, wherever they are, and no step is
+/// received. docs/theory/reverberation.md, "Identity" \param first  the middle at time 0, a point
+/// of the lattice   \param now  at `time` \param pitch  above 0 [m]   \param blended  false: the
+/// nearest point alone \return the nearest first
 [[nodiscard]] std::vector<Anchor> anchors_of(const Vec2& first, const Vec2& now, double time,
                                              const Vec2& current, double pitch,
                                              std::uint64_t boundary, bool blended);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 double ScatteringField::ring_area(std::uint32_t ring) const noexcept {
   return 2.0 * pi * (ring + 0.5) * grid.spacing * grid.spacing;
@@ -18,9 +18,9 @@ Vec2 ScatteringField::centre(std::uint32_t ring, int sector) const noexcept {
   return grid.anchor + (ring + 0.5) * grid.spacing * Vec2(std::sin(towards), std::cos(towards));
 }
 
-bool ScatteringField::all_round() const noexcept {
+bool ScatteringField::azimuthally_symmetric() const noexcept {
   const Vec2 source = sheet.ends().source.position.head<2>();
-  return sheet.all_round() && (source - grid.anchor).norm() < 0.5 * grid.spacing;
+  return sheet.azimuthally_symmetric() && (source - grid.anchor).norm() < 0.5 * grid.spacing;
 }
 
 std::uint32_t ScatteringField::copies_of(std::uint32_t ring, int sector) const {
@@ -34,9 +34,9 @@ std::uint32_t ScatteringField::copies_of(std::uint32_t ring, int sector) const {
 
 std::vector<int> ScatteringField::sample_sectors() const {
   // All round one sector is enough, unless each tells of one choice out of many paths.
-  if (all_round() && sheet.bundled())
+  if (azimuthally_symmetric() && sheet.bundled())
     return {0, grid.azimuths / 4, grid.azimuths / 2, 3 * grid.azimuths / 4};
-  if (all_round()) return {0};
+  if (azimuthally_symmetric()) return {0};
   const auto rings = static_cast<int>(std::max(1U, grid.rings));
   const int n = std::min(std::clamp(400'000 / rings, 12, 36), grid.azimuths);
   std::vector<int> sectors;
@@ -45,4 +45,4 @@ std::vector<int> ScatteringField::sample_sectors() const {
   return sectors;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

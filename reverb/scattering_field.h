@@ -7,13 +7,13 @@
 #include "reverb/scatterer_field.h"
 #include "reverb/scattering_sheet.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// No water carries sound so slowly [m/s].
 inline constexpr double slowest_sea = 1400.0;
 
 /// How the sound of a field's scatterers is made.
-enum class HeardBy {
+enum class ReceivedBy {
   scatterers,  ///< one after the other
   covariance,  ///< drawn from their covariance (sonar/reverberation/reverberation_covariance.h)
   streams      ///< as streams of noise (sonar/reverberation/reverberation_streams.h)
@@ -28,15 +28,15 @@ struct ScatteringField {
   std::uint64_t boundary = 0;
   double depth = 0.0;      ///< near the ends [m]
   double thickness = 0.0;  ///< of a sheet of the volume [m]
-  HeardBy heard_by = HeardBy::scatterers;
+  ReceivedBy received_by = ReceivedBy::scatterers;
   int bearings = 36;                ///< that its covariance looks at, at least
   double divided_below = infinity;  ///< cells beyond this range from the anchor are whole [m]
   Bounces bounces = {};             ///< that were followed
-  double share = 1.0;  ///< of its pressure that is heard; the rest is of other anchors' fields
+  double share = 1.0;  ///< of its pressure that is received; the rest is of other anchors' fields
 
   [[nodiscard]] double ring_area(std::uint32_t ring) const noexcept;  ///< [m²]
-  /// That area as it counts in what is heard: times share² [m²].
-  [[nodiscard]] double heard_area(std::uint32_t ring) const noexcept {
+  /// That area as it counts in what is received: times share² [m²].
+  [[nodiscard]] double received_area(std::uint32_t ring) const noexcept {
     return share * share * ring_area(ring);
   }
   /// Of a sector's middle, clockwise from north [rad].
@@ -45,7 +45,7 @@ struct ScatteringField {
   [[nodiscard]] Vec2 centre(std::uint32_t ring, int sector) const noexcept;
   /// The same at every bearing: not where a platform has left the anchor behind, since rings around
   /// it are not hers then.
-  [[nodiscard]] bool all_round() const noexcept;
+  [[nodiscard]] bool azimuthally_symmetric() const noexcept;
   /// Scatterers of a cell. It is seen from source and receiver under no more than twice the angle
   /// of a sector: near them, far from the anchor, it is divided.
   [[nodiscard]] std::uint32_t copies_of(std::uint32_t ring, int sector) const;
@@ -53,4 +53,4 @@ struct ScatteringField {
   [[nodiscard]] std::vector<int> sample_sectors() const;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -17,7 +17,7 @@
 #include "reverb/scattering/models.h"
 #include "reverb/transmit_pattern.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One of the frequencies at which amplitudes are known where one is not enough.
 struct BandPoint {
@@ -28,23 +28,23 @@ struct BandPoint {
 
 /// A way for sound to take from the source to a scatterer and on to the receiver.
 struct PathPair {
-  const GroundPath* out = nullptr;
-  const GroundPath* back = nullptr;             ///< as launched from the receiver
+  const BoundaryPath* out = nullptr;
+  const BoundaryPath* back = nullptr;           ///< as launched from the receiver
   std::uint32_t out_index = 0, back_index = 0;  ///< among the paths of their cells
   const PathEnds* out_ends = nullptr;
   const PathEnds* back_ends = nullptr;
-  double delay = 0.0;                    ///< of the leading edge when it is heard [s]
+  double delay = 0.0;                    ///< of the leading edge when it is received [s]
   std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
   double power = 0.0;                    ///< |amplitude|², the largest in the band
   double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
   double grazing_in = 0.0, grazing_out = 0.0;  ///< to the boundary itself [rad]
   double area = 1.0;                           ///< of the boundary over its horizontal projection
   Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
-  Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it hears
-  const Kinematics* receiver = nullptr;  ///< the straight way on which it hears: of the sheet
+  Vec2 coming = Vec2::Zero();  ///< unit vector from the scatterer to the receiver, as it receives
+  const Kinematics* receiver = nullptr;  ///< the straight way on which it receives: of the sheet
   bool of_many = false;  ///< it stands for the pairs of a bundle, whose sounds add by energy
-  /// Of such a pair: power of what is heard over its own, 2 where the same way back is taken in the
-  /// opposite direction with the same phase.
+  /// Of such a pair: power of what is received over its own, 2 where the same way back is taken in
+  /// the opposite direction with the same phase.
   double reciprocal = 1.0;
 };
 
@@ -66,7 +66,7 @@ class ScatteringSheet;
 struct PathPairs {
   std::vector<PathPair> found;
   std::vector<std::complex<double>>
-      colours;  ///< [found × points of the band] as PathPair::amplitude
+      responses;  ///< [found × points of the band] as PathPair::amplitude
 
  private:
   friend class ScatteringSheet;
@@ -78,19 +78,19 @@ struct PathPairs {
       sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
 };
 
-/// What is too faint to be heard: in every stretch of delay, the power up to which a pair through a
-/// whole ring is left out.
+/// What is too faint to be received: in every segment of delay, the power up to which a pair
+/// through a whole ring is left out.
 struct AudibleLimits {
-  double stretch = 1.0;       ///< length [s]
-  std::vector<double> least;  ///< [stretches] [1]
+  double segment = 1.0;       ///< length [s]
+  std::vector<double> least;  ///< [segments] [1]
 
   [[nodiscard]] double at(double delay) const noexcept {
-    const auto i = static_cast<std::size_t>(std::max(0.0, delay) / stretch);
+    const auto i = static_cast<std::size_t>(std::max(0.0, delay) / segment);
     return i < least.size() ? least[i] : 0.0;
   }
 };
 
-/// A law over the ends of one ping: which the boundary is, who sends and who hears.
+/// A law over the ends of one ping: which the boundary is, who sends and who receives.
 struct SheetEnds {
   Kinematics source, receiver;                            ///< at the ping's start
   std::vector<ReceiverLeg> legs = {};                     ///< none: it keeps its velocity
@@ -99,7 +99,7 @@ struct SheetEnds {
   double latest = infinity;                               ///< end of the record [s]
   std::span<const BandPoint> band = {};  ///< where one frequency is not enough; outlives the sheet
 
-  /// Where the receiver is when a leading edge of that delay is heard [m].
+  /// Where the receiver is when a leading edge of that delay is received [m].
   [[nodiscard]] Vec3 receiver_at(double delay) const noexcept {
     const Kinematics& way = legs.empty() ? receiver : leg_at(legs, delay).line;
     return way.position + way.velocity * delay;
@@ -119,19 +119,19 @@ class ScatteringSheet {
   ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
                   Law law, const SheetEnds& ends, const TransmitPattern& pattern);
 
-  /// All pairs of paths through a place, in the order of the tables, heard before the record ends.
-  /// \param limits  pairs that are fainter are
-  /// left out; null: none   \param ring  area of the whole ring around [m²]
-  /// \param below  the sheet's level [m]: shifts the delays by the vertical slownesses
-  /// \param chance  of this place: which path stands for each bundle where there are very many
+  /// All pairs of paths through a place, in the order of the tables, received before the record
+  /// ends. \param limits  pairs that are fainter are left out; null: none   \param ring  area of
+  /// the whole ring around [m²] \param below  the sheet's level [m]: shifts the delays by the
+  /// vertical slownesses \param chance  of this place: which path stands for each bundle where
+  /// there are very many
   void pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits = nullptr,
                 double ring = 0.0, double below = 0.0, std::uint64_t chance = 0) const;
 
-  /// Frequency heard over frequency sent. \param motion, velocity of the scatterer (the current
+  /// Frequency received over frequency sent. \param motion, velocity of the scatterer (the current
   /// included)   \param bragg  −1, 0 or +1: the wave that scatters goes away, is none, or comes
   [[nodiscard]] double doppler(const PathPair& pair, const Vec3& velocity,
                                double bragg) const noexcept;
-  /// Stretches that hold every factor that doppler() gives with scatterers that move so.
+  /// Segments that hold every factor that doppler() gives with scatterers that move so.
   [[nodiscard]] std::vector<DopplerSpan> dopplers(const ScattererMotion& motion) const;
   /// Sum of the speeds with which source and receiver go along at most, by which Doppler factors
   /// change with the bearing [m/s].
@@ -149,12 +149,12 @@ class ScatteringSheet {
   /// Somewhere there are very many paths.
   [[nodiscard]] bool bundled() const noexcept;
   /// The same at every bearing around the grid's middle.
-  [[nodiscard]] bool all_round() const noexcept;
+  [[nodiscard]] bool azimuthally_symmetric() const noexcept;
 
  private:
   /// One leg at one place.
   struct Leg {
-    std::span<const GroundPath> paths;
+    std::span<const BoundaryPath> paths;
     std::span<const PathBundle> bundles;
     const PathEnds* ends = nullptr;  // [paths]
     const CellTilt* tilt = nullptr;
@@ -166,30 +166,30 @@ class ScatteringSheet {
   };
   [[nodiscard]] std::complex<double> beam(const Leg& out, std::size_t path,
                                           std::size_t point) const noexcept;
-  /// σ of the paths that out and back are at a place. \param point  0: the centre, then those of
-  /// the band
-  [[nodiscard]] double cross_section(const ScatterGeometry& geometry, const ScatterSines& sines,
-                                     std::size_t point) const noexcept;
+  /// σ of the paths that out and back are at a place. \param sigma  [1 + points]: at the centre,
+  /// then at those of the band [1/sr]
+  void cross_sections(const ScatterSines& sines, double* sigma) const noexcept;
   [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
                         bool bearing) const noexcept;
-  /// When a receiver that changes its velocity hears what comes along a path.
-  struct Hearing {
+  /// When a receiver that changes its velocity receives what comes along a path.
+  struct Reception {
     double delay = 0.0;                    // of the leading edge [s]
-    const Kinematics* receiver = nullptr;  // the leg on which it hears, at the ping's start
+    const Kinematics* receiver = nullptr;  // the leg on which it receives, at the ping's start
   };
-  [[nodiscard]] Hearing heard_under_way(const Leg& back, std::size_t path, double heard,
-                                        double unmoved) const noexcept;
+  [[nodiscard]] Reception received_under_way(const Leg& back, std::size_t path, double received,
+                                             double unmoved) const noexcept;
 
   std::shared_ptr<const BoundaryFan> out_, back_;
   Law law_;
   SheetEnds ends_;
-  std::vector<NrlSurface::At> nrl_;  // at the centre and each point of the band; of that law alone
-  std::optional<Lambert::At> lambert_;  // of that law alone
+  AtFrequencies<Law> at_;  // the centre and each point of the band
   const TransmitPattern& pattern_;
-  bool all_round_pattern_, receiver_moves_, moving_, one_place_;
-  bool in_phase_;  // so close together and at rest that a pair and its reciprocal are heard as one
-  // Of every outgoing path, if the same all round: at the centre, then at each point of the band.
+  bool azimuthally_symmetric_pattern_, receiver_moves_, moving_, one_place_;
+  bool in_phase_;  // so close together and at rest that a pair and its reciprocal are received as
+                   // one
+  // Of every outgoing path, if azimuthally symmetric: at the centre, then at each point of the
+  // band.
   std::vector<std::complex<double>> beam_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,8 +1,7 @@
-#include "core/propagation_memory.h"
-#include "core/settings_words.h"
+#include "core/settings_key.h"
 #include "reverb/scattering_sheet.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void add(ExactKey& key, const Kinematics& end) {
@@ -14,11 +13,7 @@ void add(ExactKey& key, const Kinematics& end) {
 
 bool ScatteringSheet::add_to(ExactKey& key) const {
   key.add_all(out_->identity, back_->identity, law_.index());
-  std::visit(
-      [&](const auto& law) {
-        for (const std::uint64_t word : settings_words(law)) key.add(word);
-      },
-      law_);
+  std::visit([&](const auto& law) { add_settings(key, law); }, law_);
   const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
       ends_;
   add(key, source);
@@ -36,4 +31,4 @@ bool ScatteringSheet::add_to(ExactKey& key) const {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <complex>
 
-namespace asdic {
+namespace asdic::detail {
 
 class ExactKey;
 
@@ -14,10 +14,10 @@ class TransmitPattern {
   [[nodiscard]] virtual std::complex<double> towards(double bearing,
                                                      double elevation) const noexcept = 0;
   /// The same at every bearing: then it is asked once per elevation.
-  [[nodiscard]] virtual bool all_round() const noexcept { return false; }
+  [[nodiscard]] virtual bool azimuthally_symmetric() const noexcept { return false; }
   /// Adds all that it depends on to a key of what is kept. \return whether it did; what depends on
   /// one that does not is never kept
   [[nodiscard]] virtual bool add_to(ExactKey& /*key*/) const { return false; }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A draw out of 64 random bits (mixed() of reverb/scatterer_field.h), 53 of which it takes:
 /// uniform in (0, 1), up to rounding (1 comes once in 2⁵³).
@@ -9,4 +9,4 @@ namespace asdic {
   return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The folders include one another in one direction only, so do the rooms in them, and each borrowed library stays where it belongs.
 
-core <- raytrace <- reverb <- sonar <- processing <- io <- study, serve <- app. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
+core <- raytrace <- reverb <- sonar <- processing <- io <- study, serve <- app, library. library implements include/asdic, which includes
+itself and the standard library alone. HDF5, netCDF, TOML and libsndfile in io/*.cpp; SQLite and MPI in
 study/; Asio in serve/; FFTW in one file of sonar/; TBB in .cpp files; public headers show Eigen and the standard library only.
 Parallel loops are raytrace/parallel/parallel.h's, which are left when the realisation they belong to is called off. What depends on the
 instruction level (core/level_namespace.h) is included by sources that are compiled once a level (LEVELS in CMakeLists.txt) alone.
@@ -10,18 +11,20 @@ import pathlib
 import re
 import sys
 
-ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"]
+ORDER = ["core", "raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app", "library"]
+PUBLIC = "asdic"  # include/asdic
 ROOMS = {  # in the folders named here every file lies in a room, and a room includes itself and those before it
+    "io": ["files", "isolated", "text", "hdf5", "wav", "settings", "scenario", "climatology", "bellhop", "compare", "ping", "result", "processing"],
     "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
-    "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "places", "like_bellhop", "runs", "warnings", ""],
+    "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "places", "bellhop_emulation", "runs", "warnings", ""],
     "reverb": ["scattering", ""],
-    "sonar": ["signal", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
+    "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 HOMES = {  # header prefix -> (folders whose .cpp files may include it)
     "sqlite3": ["study"], "mpi.h": ["study"], "asio": ["serve"], "hdf5": ["io"], "netcdf": ["io"], "toml++": ["io"], "sndfile": ["io"], "openssl": ["io", "study"],
-    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "processing", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "processing", "study", "serve", "app"],
+    "fftw3": ["sonar"], "tbb/": ["raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"], "oneapi/tbb": ["raytrace", "reverb", "sonar", "processing", "io", "study", "serve", "app"],
     "Random123": ["core"], "nlohmann": ["io", "study", "serve", "app"], "CLI": ["app"], "fmt/": ["app"],
 }
 
@@ -35,6 +38,8 @@ def faults():
             name = path.relative_to(ROOT)
             for quote, header in INCLUDE.findall(path.read_text()):
                 top = header.split("/")[0]
+                if quote == '"' and top == PUBLIC and folder == "library":
+                    continue
                 if quote == '"':
                     if top not in ORDER:
                         yield f'{name}: "{header}" must be written from the top, as "folder/file.h"'
@@ -50,6 +55,11 @@ def faults():
                         yield f"{name}: <{header}> belongs in .cpp files of {', '.join(homes)}"
                 if header.startswith("fftw3"):
                     fftw_files.add(str(name))
+    for path in sorted((ROOT / "include").rglob("*.h")):
+        for quote, header in INCLUDE.findall(path.read_text()):
+            inside = (ROOT / "include" / header).exists() and header.startswith(PUBLIC + "/")
+            if (quote == '"') != inside or (quote == "<" and ("/" in header or "." in header)):
+                yield f"{path.relative_to(ROOT)}: includes {header}; public headers include one another and the standard library alone"
     if len(fftw_files) > 1:
         yield f"FFTW belongs in one file, found in {', '.join(sorted(fftw_files))}"
 

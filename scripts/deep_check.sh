@@ -55,7 +55,7 @@ if [ -z "${ASDIC:-}" ]; then
 fi
 export ASDIC
 
-if said=$(bash tests/validation/cli_interrupt.sh 2>&1); then
+if said=$(bash tests/app/validation/cli_interrupt.sh 2>&1); then
   verdict interrupt good "$(grep -c . <<<"$said") checks of Ctrl-C, SIGTERM and kill -9"
 else
   verdict interrupt FAILED "$(tail -n 1 <<<"$said")"
@@ -113,7 +113,7 @@ fi
 
 # Studies: the same bits by threads, parts and ranks, with 20 kills; memory flat over 10⁵ realisations.
 cd "$root"
-if said=$(/usr/bin/python3 tests/validation/study_runs.py 20 2>&1); then
+if said=$(/usr/bin/python3 tests/study/validation/study_runs.py 20 2>&1); then
   verdict studies good "$(grep killed <<<"$said" | head -n 1)"
 else
   verdict studies FAILED "$(tail -n 1 <<<"$said")"
@@ -128,7 +128,7 @@ fi
 
 # 10 000 served updates and pings: none lost, no more memory after them.
 cd "$root"
-if said=$(/usr/bin/python3 tests/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then
+if said=$(/usr/bin/python3 tests/serve/validation/serve.py "${ASDIC_SERVED_PINGS:-10000}" 2>&1); then
   verdict serve good "$(head -n 1 <<<"$said")"
 else
   verdict serve FAILED "$(tail -n 1 <<<"$said")"

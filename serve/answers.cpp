@@ -6,7 +6,7 @@
 
 #include "sonar/scenario/sampling.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
@@ -119,7 +119,7 @@ std::string ping_line(const ServedPing& served, const PingRecord& record,
   }
   line["targets"] = targets(record);
   double first = infinity;
-  for (const EchoPath& echo : record.echoes) first = std::min(first, echo.heard.delay);
+  for (const EchoPath& echo : record.echoes) first = std::min(first, echo.received.delay);
   line["first_echo"] = first;  // null where there is none
   line["reused"] = {{"ocean", record.reuse.ocean},
                     {"legs", record.reuse.legs_reused},
@@ -166,7 +166,8 @@ std::string state_line(const std::string& id, const Scenario& scenario, double n
 
 std::string limits_line(const std::string& id, const SessionLimits& limits) {
   OrderedJson line = answer(id, true);
-  for (const LimitName& one : limit_names()) line["limits"][one.name] = limits.*one.value;
+  for (const NamedLimit& one : limits_by_name(limits))
+    line["limits"][std::string(one.name)] = one.value;
   return text(line);
 }
 
@@ -184,4 +185,4 @@ std::string refusal_line(const std::string& id, const std::string& code,
   return text(line);
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -7,7 +7,7 @@
 #include "sonar/ping/ping_record.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// How a ping was served, beside its record.
 struct ServedPing {
@@ -34,4 +34,4 @@ struct ServedPing {
 [[nodiscard]] std::string refusal_line(const std::string& id, const std::string& code,
                                        const std::string& message);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

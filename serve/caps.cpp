@@ -8,7 +8,7 @@
 #include "sonar/ping/ping_memory.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 void cap(const std::string& what, double got, std::size_t most) {
@@ -31,4 +31,4 @@ void check_caps(const Scenario& scenario, const SessionLimits& limits) {
       limits.memory_bytes);
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 /// Sections of a scenario, and what commands call them (docs/formats/serve.md).
@@ -113,4 +113,4 @@ ClientKey client_key(const std::string& key, const TomlValue& fields, const Toml
   return {.name = key};
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

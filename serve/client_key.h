@@ -3,7 +3,7 @@
 
 #include "io/text/toml_value.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// A key of the scenario as a client knows it.
 struct ClientKey {
@@ -19,4 +19,4 @@ struct ClientKey {
 [[nodiscard]] ClientKey client_key(const std::string& key, const TomlValue& fields,
                                    const TomlValue& document);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

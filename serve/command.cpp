@@ -1,7 +1,6 @@
 #include "serve/command.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,12 +9,11 @@
 #include "core/text.h"
 #include "serve/refusal.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 5> kinds{"ping", "update", "state", "limits", "quit"};
 constexpr std::size_t longest_id = 128;  // bytes of JSON
 constexpr std::size_t longest_name = 64;
 constexpr const char* one_object = "one JSON object a line";
@@ -129,34 +127,40 @@ std::string checked_id(const Json& all) {
   return id;
 }
 
-CommandKind checked_kind(const Json& all) {
-  const std::string expected = "\"ping\", \"update\", \"state\", \"limits\" or \"quit\"";
+/// "a", "b" or "c".
+std::string one_of(std::span<const std::string_view> names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + in_quotes(names[i]);
+  return text;
+}
+
+std::string_view checked_name(const Json& all, std::span<const std::string_view> names) {
   const auto found = all.find("command");
   if (found == all.end() || !found->is_string())
     throw Refusal(
         "command",
         refusal_text("command", found == all.end() ? "nothing" : std::string(found->type_name()),
-                     expected));
-  const auto& name = found->get_ref<const std::string&>();
-  for (std::size_t i = 0; i < kinds.size(); ++i)
-    if (kinds[i] == name) return static_cast<CommandKind>(i);
-  throw Refusal("command", refusal_text("command", "an unknown one", expected));
+                     one_of(names)));
+  const auto known = std::find(names.begin(), names.end(), found->get_ref<const std::string&>());
+  if (known == names.end())
+    throw Refusal("command", refusal_text("command", "an unknown one", one_of(names)));
+  return *known;
 }
 
 }  // namespace
 
-std::string_view name_of(CommandKind kind) { return kinds[static_cast<std::size_t>(kind)]; }
-
-Command read_command(std::string_view line, const SessionLimits& limits) {
+Command read_command(std::string_view line, const SessionLimits& limits,
+                     std::span<const std::string_view> names) {
   const Json all = parse(line, limits);
   Command command;
   command.id = checked_id(all);
-  command.kind = checked_kind(all);
+  command.name = checked_name(all, names);
   TomlValue::Table fields;
   for (const auto& [key, value] : all.items())
     if (key != "id" && key != "command" && !value.is_null())
       fields.push_back({key, to_toml(value)});
-  command.fields = {.data = std::move(fields), .origin = std::string(name_of(command.kind))};
+  command.fields = {.data = std::move(fields), .origin = std::string(command.name)};
   return command;
 }
 
@@ -244,4 +248,4 @@ Handshake read_handshake(std::string_view line) {
   return shake;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -1,17 +1,16 @@
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "io/text/toml_value.h"
 #include "serve/session_limits.h"
 
-namespace asdic::serve {
-
-enum class CommandKind { ping, update, state, limits, quit };
+namespace asdic::detail::serve {
 
 /// One line of a client: what it wants, and the values that come with it.
 struct Command {
-  CommandKind kind = CommandKind::state;
+  std::string_view name;    ///< one of those that it was read with
   std::string id = "null";  ///< JSON, echoed in the answer
   TomlValue fields;         ///< a table of all keys but "command" and "id"
   double received = 0.0;    ///< on the server's clock [s]
@@ -23,10 +22,15 @@ struct Handshake {
   bool waits = false;  ///< when the queue is full, reading stops; else commands are answered "busy"
 };
 
+/// The names of all commands (serve/commands/commands.h).
+[[nodiscard]] std::span<const std::string_view> command_names();
+
 /// Reads a command (docs/formats/serve.md). Nesting is counted while it is read, a key may stand
 /// once, numbers are finite, text is UTF-8.
+/// \param names  of the commands that there are; they outlive what is read
 /// \throws Refusal ("json", "limit", "command")
-[[nodiscard]] Command read_command(std::string_view line, const SessionLimits& limits);
+[[nodiscard]] Command read_command(std::string_view line, const SessionLimits& limits,
+                                   std::span<const std::string_view> names = command_names());
 
 /// \throws Refusal ("handshake") whose message says nothing of the line
 [[nodiscard]] Handshake read_handshake(std::string_view line);
@@ -35,6 +39,4 @@ struct Handshake {
 /// there, or two.
 [[nodiscard]] std::string id_of(std::string_view line, const SessionLimits& limits);
 
-[[nodiscard]] std::string_view name_of(CommandKind kind);
-
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

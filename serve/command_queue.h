@@ -7,7 +7,7 @@
 
 #include "serve/command.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Commands on their way from a connection's reader to its session: so many, and no more.
 class CommandQueue {
@@ -53,4 +53,4 @@ class CommandQueue {
   bool closed_ = false;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -11,7 +11,7 @@
 #include "serve/outbox.h"
 #include "serve/refusal.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 namespace {
 
@@ -295,4 +295,4 @@ void Connection::turn_away(const std::string& code, const std::string& message) 
 void Connection::stop() { impl_->stop(); }
 const std::string& Connection::refused() const noexcept { return impl_->refused(); }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

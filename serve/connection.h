@@ -9,7 +9,7 @@ namespace asio {
 class io_context;
 }
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// One client: bytes in, bytes out, and a session with a thread of its own.
 ///
@@ -42,4 +42,4 @@ class Connection {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -3,7 +3,7 @@
 #include "serve/refusal.h"
 #include "serve/token.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 Handshake checked_handshake(const std::string& line, const std::string& token) {
   Handshake shake = read_handshake(line);
@@ -45,4 +45,4 @@ Answer idle_too_long(const SessionLimits& limits) {
   return too_late("idle", "command", limits.idle_seconds);
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

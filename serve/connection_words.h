@@ -5,7 +5,7 @@
 #include "serve/session.h"
 
 // What a connection says by itself, without its session.
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// The handshake of a first line. \param token  that it must have; empty: none
 /// \throws Refusal ("handshake", "token")
@@ -16,4 +16,4 @@ namespace asdic::serve {
 [[nodiscard]] Answer handshake_too_late(const SessionLimits& limits);
 [[nodiscard]] Answer idle_too_long(const SessionLimits& limits);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -6,7 +6,7 @@
 #include "core/text.h"
 #include "serve/refusal.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 DataFolder::DataFolder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -43,4 +43,4 @@ std::filesystem::path DataFolder::file(const std::string& name, const std::strin
   return real;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// The folder that commands may name files of (--data-dir), and nothing outside of it.
 class DataFolder {
@@ -23,4 +23,4 @@ class DataFolder {
   std::filesystem::path folder_;  // canonical; empty: none
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

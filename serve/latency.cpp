@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 void LatencyLog::add(double seconds) noexcept {
   latest_[count_ % latest_.size()] = seconds;
@@ -23,4 +23,4 @@ double LatencyLog::percentile(double p) const {
   return *at;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

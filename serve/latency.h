@@ -2,7 +2,7 @@
 #include <array>
 #include <cstddef>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// How long answers took: of the latest thousand, and of all. Memory does not grow.
 class LatencyLog {
@@ -20,4 +20,4 @@ class LatencyLog {
   double longest_ = 0.0;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Lines out of bytes that come in pieces of any size. Memory is bounded: of a line that is too
 /// long nothing is kept.
@@ -55,4 +55,4 @@ class LineSplitter {
   bool too_long_ = false;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

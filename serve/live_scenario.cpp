@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "io/scenario/document.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
 #include "serve/client_key.h"
 #include "serve/update.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 constexpr const char* other_contents = "other contents";
@@ -187,4 +187,4 @@ Refusal refusal_of(const InputError& error, const std::string& scenario, const T
   return {"scenario", refusal_text(there.name, told ? fault.got : own, fault.expected)};
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -12,7 +12,7 @@
 #include "serve/session_limits.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// A scenario file as it was when the server started.
 struct ScenarioSource {
@@ -94,4 +94,4 @@ class LiveScenario {
 [[nodiscard]] Refusal refusal_of(const InputError& error, const std::string& scenario,
                                  const TomlValue& fields, const TomlValue& document);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

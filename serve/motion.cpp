@@ -8,7 +8,7 @@
 #include "io/text/toml_value.h"
 #include "serve/places.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 constexpr Quantity moment{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
@@ -100,4 +100,4 @@ void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& tab
   set_kinematics(state, time, table);
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

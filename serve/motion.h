@@ -2,7 +2,7 @@
 #include "io/text/toml_table.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Whether a command says how something moves: position, velocity, heading_deg, speed, waypoints.
 [[nodiscard]] bool has_motion(TomlTable& wanted);
@@ -17,4 +17,4 @@ void set_kinematics(const Kinematics& state, double time, TomlValue& table);
 
 [[nodiscard]] TomlValue toml_vector(const Vec3& v);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

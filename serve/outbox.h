@@ -9,7 +9,7 @@
 
 #include "serve/session.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 static_assert(std::endian::native == std::endian::little, "samples go out as they lie in memory");
 
@@ -64,4 +64,4 @@ class Outbox {
   std::atomic<std::size_t> bytes_ = 0;  // with those that are expected
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 Pace parse_pace(const std::string& text) {
   if (text == "real") return {.factor = 1.0};
@@ -26,4 +26,4 @@ std::string name_of(const Pace& pace) {
   return *pace.factor == 1.0 ? "real" : to_text(*pace.factor);
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

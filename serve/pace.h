@@ -2,7 +2,7 @@
 #include <optional>
 #include <string>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// How the scenario's time goes: by the clock, so many times as fast, or not at all.
 struct Pace {
@@ -15,4 +15,4 @@ struct Pace {
 [[nodiscard]] Pace parse_pace(const std::string& text);
 [[nodiscard]] std::string name_of(const Pace& pace);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -4,11 +4,12 @@
 
 #include "core/quantities.h"
 #include "io/scenario/sections.h"
+#include "io/settings/reader.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
 #include "serve/update.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 int transmitter_of(TomlTable& reader, const Scenario& scenario) {
@@ -25,15 +26,10 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
   TomlTable reader(fields);
   PingRequest ping;
   if (reader.has("transmitter")) ping.transmitter = transmitter_of(reader, live.state().scenario);
-  if (reader.has("time"))
-    ping.time = reader.number("time", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9});
-  if (reader.has("elevation_deg"))
-    ping.elevation = radians(reader.number("elevation_deg", quantity::elevation.in_degrees()));
-  if (reader.has("source_level_db"))
-    ping.changes.source_level_db = reader.number("source_level_db", quantity::level);
-  if (reader.has("beamwidth_deg"))
-    ping.changes.beamwidth_deg = reader.number(
-        "beamwidth_deg", {.noun = "beamwidth", .unit = "degrees", .low = 0.01, .high = 179.0});
+  ping.deliver = usual;
+  KnownSettings known;
+  TomlReader walker(reader, known);
+  ping.describe(walker);
   if (reader.has("waveform")) {
     TomlTable waveform = reader.table("waveform");
     ping.changes.waveform = *fields.find("waveform");
@@ -44,11 +40,6 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
                live.data().file(waveform.text("file"), "waveform.file", limits.file_bytes).string(),
            .origin = ""});
   }
-  const std::vector<std::string> names{"file", "samples", "none"};
-  const std::string deliver =
-      reader.choice("deliver", names, names[static_cast<std::size_t>(usual)]);
-  ping.deliver =
-      static_cast<Delivery>(std::find(names.begin(), names.end(), deliver) - names.begin());
   if (ping.deliver == Delivery::file && usual != Delivery::file)
     throw reader.fault("deliver", "\"samples\" or \"none\": the server has no --output-dir");
   reader.finish();
@@ -56,6 +47,16 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
 }
 
 }  // namespace
+
+void PingRequest::describe(Fields& field) {
+  field("time", time, time_of_command, "of the scenario; default: the schedule's, or the clock's");
+  field("elevation", elevation, quantity::elevation,
+        "of the beam, positive up; default: the scenario's");
+  field("source_level_db", changes.source_level_db, quantity::level, "of this ping alone");
+  field("beamwidth_deg", changes.beamwidth_deg,
+        {.noun = "beamwidth", .unit = "degrees", .low = 0.01, .high = 179.0}, "of this ping alone");
+  field("deliver", deliver, "where the samples go; default: a file, if the server writes any");
+}
 
 PingRequest read_ping(const TomlValue& fields, const LiveScenario& live,
                       const SessionLimits& limits, Delivery usual) {
@@ -66,4 +67,4 @@ PingRequest read_ping(const TomlValue& fields, const LiveScenario& live,
   }
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -1,12 +1,17 @@
 #pragma once
 #include <optional>
+#include <span>
+#include <string_view>
 
+#include "core/fields.h"
 #include "serve/live_scenario.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Where a ping's samples go.
 enum class Delivery { file, samples, none };
+inline constexpr std::string_view delivery_words[] = {"file", "samples", "none"};
+constexpr std::span<const std::string_view> words(Delivery /*any*/) { return delivery_words; }
 
 /// The command `ping`.
 struct PingRequest {
@@ -15,10 +20,13 @@ struct PingRequest {
   std::optional<double> elevation;  ///< of the beam, positive up [rad]
   PingChanges changes;              ///< its transmitter is set when that is known
   Delivery deliver = Delivery::none;
+
+  /// But for `transmitter` and `waveform`, which the client's scenario has a say in.
+  void describe(Fields& field);
 };
 
 /// \param usual  delivery where the command does not say \throws Refusal ("value", "file")
 [[nodiscard]] PingRequest read_ping(const TomlValue& fields, const LiveScenario& live,
                                     const SessionLimits& limits, Delivery usual);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

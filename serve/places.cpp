@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "serve/refusal.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 /// When a track is looked at: its waypoints and, over a sea floor or a surface with a shape, places
@@ -84,4 +84,4 @@ void check_places(const Scenario& scenario, int ping, int transmitter, double ti
           called("interferer", scenario.interferers, i));
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

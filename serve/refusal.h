@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Why a command was not done, in words that may go to a client: where, found, expected, as every
 /// message of ours; never what stands in a file, in the scenario, or where files lie.
@@ -33,4 +33,4 @@ class Refusal : public std::runtime_error {
          "expected " + expected;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

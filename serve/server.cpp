@@ -13,7 +13,7 @@
 #include "serve/refusal.h"
 #include "serve/unix_socket.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 using Local = asio::local::stream_protocol;
@@ -193,4 +193,4 @@ Server::~Server() = default;
 
 void Server::run(const std::stop_token& stop) { impl_->run(stop); }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

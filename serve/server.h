@@ -8,7 +8,7 @@
 
 #include "serve/session.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Where a server is reached. With neither socket nor port: on standard input and output, until
 /// that ends.
@@ -38,4 +38,4 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -1,40 +1,69 @@
 #include "serve/session_limits.h"
 
-#include <array>
 #include <charconv>
+#include <limits>
 
 #include "core/error.h"
+#include "core/fields_viewer.h"
 #include "core/text.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
+namespace {
 
-std::span<const LimitName> limit_names() {
-  using L = SessionLimits;
-  static const std::array names{
-      LimitName{"line_bytes", &L::line_bytes},
-      LimitName{"nesting", &L::nesting},
-      LimitName{"samples", &L::samples},
-      LimitName{"channels", &L::channels},
-      LimitName{"targets", &L::targets},
-      LimitName{"patches", &L::patches},
-      LimitName{"memory_bytes", &L::memory_bytes},
-      LimitName{"file_bytes", &L::file_bytes},
-      LimitName{"kept_bytes", &L::kept_bytes},
-      LimitName{"queued_pings", &L::queued_pings},
-      LimitName{"connections", &L::connections},
-      LimitName{"answer_bytes", &L::answer_bytes},
-      LimitName{"handshake_seconds", &L::handshake_seconds},
-      LimitName{"idle_seconds", &L::idle_seconds},
-  };
-  return names;
+/// Lists the limits, or sets one.
+class LimitWalk final : public FieldsViewer {
+ public:
+  LimitWalk() = default;
+  LimitWalk(std::string_view name, std::size_t value) : name_(name), value_(value) {}
+  [[nodiscard]] bool reads() const override { return !name_.empty(); }
+
+  std::vector<NamedLimit> all;
+
+ private:
+  void integer(const Setting& s, std::int64_t, std::int64_t, std::int64_t& value, bool*) override {
+    all.push_back({.name = s.key.name, .value = static_cast<std::size_t>(value)});
+    if (s.key.name == name_) value = static_cast<std::int64_t>(value_);
+  }
+  std::string_view name_;
+  std::size_t value_ = 0;
+};
+
+}  // namespace
+
+void SessionLimits::describe(Fields& field) {
+  constexpr auto most = std::numeric_limits<std::int64_t>::max();
+  field("line_bytes", line_bytes, 1, most, "of a line; a longer one is refused and skipped");
+  field("nesting", nesting, 1, most, "levels of its JSON, counted while it is read");
+  field("samples", samples, 1, most, "of a phone");
+  field("channels", channels, 1, most, "of all arrays");
+  field("targets", targets, 1, most, "of the scenario");
+  field("patches", patches, 1, most, "`reverberation.most_returns` of the scenario");
+  field("memory_bytes", memory_bytes, 1, most,
+        "that a ping may need, estimated before it is begun; no more than "
+        "[run.memory](scenario.md#memory)");
+  field("file_bytes", file_bytes, 1, most, "of a file that a command names");
+  field("kept_bytes", kept_bytes, 1, most, "of sound paths that a session keeps for later pings");
+  field("queued_pings", queued_pings, 1, most, "commands of a connection that wait");
+  field("connections", connections, 1, most, "at a time, of the Unix socket and of TCP each");
+  field("answer_bytes", answer_bytes, 1, most,
+        "of answers that a slow reader has not taken; then its commands wait, and no more is read "
+        "from it");
+  field("handshake_seconds", handshake_seconds, 1, most, "for the first line of a socket's client");
+  field("idle_seconds", idle_seconds, 1, most, "after which a silent socket is closed");
+}
+
+std::vector<NamedLimit> limits_by_name(const SessionLimits& limits) {
+  LimitWalk walk;
+  look(limits, walk);
+  return std::move(walk.all);
 }
 
 void set_limit(SessionLimits& limits, const std::string& assignment) {
   const auto equals = assignment.find('=');
   const std::string name = assignment.substr(0, equals);
   std::string known;
-  for (const LimitName& one : limit_names()) {
-    known += (known.empty() ? "" : ", ") + one.name;
+  for (const NamedLimit& one : limits_by_name(limits)) {
+    known += (known.empty() ? "" : ", ") + std::string(one.name);
     if (one.name != name || equals == std::string::npos) continue;
     const char *first = assignment.data() + equals + 1,
                *last = assignment.data() + assignment.size();
@@ -44,7 +73,8 @@ void set_limit(SessionLimits& limits, const std::string& assignment) {
       throw InputError({.where = "--limit " + name,
                         .got = in_quotes(std::string(first, last)),
                         .expected = "a whole number of at least 1"});
-    limits.*one.value = value;
+    LimitWalk setter(name, value);
+    limits.describe(setter);
     return;
   }
   throw InputError({.where = "--limit",
@@ -52,4 +82,4 @@ void set_limit(SessionLimits& limits, const std::string& assignment) {
                     .expected = "NAME=VALUE, with a name of " + known});
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

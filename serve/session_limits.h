@@ -1,9 +1,14 @@
 #pragma once
 #include <cstddef>
-#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
-namespace asdic::serve {
+namespace asdic::detail {
+class Fields;
+}
+
+namespace asdic::detail::serve {
 
 /// What one client may ask for; past a limit a command is refused by a message.
 struct SessionLimits {
@@ -21,16 +26,18 @@ struct SessionLimits {
   std::size_t answer_bytes = 256U << 20;  ///< that wait for a slow reader
   std::size_t handshake_seconds = 10;     ///< for the first line of a socket's client
   std::size_t idle_seconds = 600;         ///< after which a silent socket is closed
+
+  void describe(Fields& field);
 };
 
-/// The limits by name, as `--limit NAME=VALUE` and the command `limits` have them.
-struct LimitName {
-  std::string name;
-  std::size_t SessionLimits::*value;
+/// A limit by its name, as `--limit NAME=VALUE` and the command `limits` have it.
+struct NamedLimit {
+  std::string_view name;
+  std::size_t value;
 };
-[[nodiscard]] std::span<const LimitName> limit_names();
+[[nodiscard]] std::vector<NamedLimit> limits_by_name(const SessionLimits& limits);
 
 /// Sets one limit by "NAME=VALUE". \throws InputError{where: "--limit"}
 void set_limit(SessionLimits& limits, const std::string& assignment);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

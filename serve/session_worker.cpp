@@ -5,7 +5,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 constexpr std::chrono::seconds grace(1);  // for the command in hand when the server is stopped
@@ -102,4 +102,4 @@ bool SessionWorker::wait_for_the_reader() {
   return !stopping_;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

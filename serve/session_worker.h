@@ -9,7 +9,7 @@
 #include "serve/command_queue.h"
 #include "serve/session.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// What the connections of a server share.
 struct Engine {
@@ -64,4 +64,4 @@ class SessionWorker {
   std::jthread thread_;  // last: it uses all the others
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 bool same_secret(std::string_view a, std::string_view b) noexcept {
   if (b.empty()) return false;
@@ -64,4 +64,4 @@ std::string read_token(const std::filesystem::path& path) {
   return token;
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Whether two secrets are the same, in a time that does not tell where they differ.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b) noexcept;
@@ -18,4 +18,4 @@ namespace asdic::serve {
 /// \throws InputError naming `where` if a token is too short to keep a secret
 void check_token(const std::string& token, const std::string& where);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

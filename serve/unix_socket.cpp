@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 void make_room_for_socket(const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& got, const std::string& expected) {
@@ -51,4 +51,4 @@ SocketName::~SocketName() {
     ::unlink(path_.c_str());
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

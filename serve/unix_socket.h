@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// Sees to it that a socket can take a name: it is free, or a server that is gone has left a socket
 /// there, which is removed.
@@ -21,4 +21,4 @@ class SocketName {
   unsigned long device_ = 0, node_ = 0;
 };
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

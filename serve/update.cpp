@@ -11,7 +11,7 @@
 #include "io/text/toml_value.h"
 #include "serve/motion.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 namespace {
 
 /// The tables of a section that stands once, [x], or several times, [[x]].
@@ -181,8 +181,7 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
                                     TomlValue& document) {
   TomlTable reader(fields);
   std::vector<std::string> changed;
-  const double time =
-      reader.number("time", {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9}, context.now);
+  const double time = reader.number("time", time_of_command, context.now);
   if (reader.has("platform")) {
     fix_targets(context.scenario, document, changed);
     update_platforms(reader, context, time, document);
@@ -197,8 +196,7 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
     changed.emplace_back("target");
   }
   if (reader.has("wind_speed")) {
-    static_cast<void>(reader.number(
-        "wind_speed", {.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0}));
+    static_cast<void>(reader.number("wind_speed", quantity::wind_speed));
     set_key(table_in(document, "environment"), "wind_speed", *fields.find("wind_speed"));
     changed.emplace_back("environment.wind_speed");
   }
@@ -273,4 +271,4 @@ Refusal refusal_of_value(const InputError& error) {
   return {"value", refusal_text(key, fault.got, fault.expected)};
 }
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

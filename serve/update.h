@@ -2,13 +2,14 @@
 #include <string>
 #include <vector>
 
+#include "core/quantity.h"
 #include "io/text/toml_value.h"
 #include "serve/data_folder.h"
 #include "serve/live_scenario.h"
 #include "serve/session_limits.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic::serve {
+namespace asdic::detail::serve {
 
 /// What an update is applied to.
 struct UpdateContext {
@@ -32,7 +33,10 @@ std::vector<std::string> apply_ping_changes(const PingChanges& wanted, const Sce
 /// A value of the tree by its path of names; it is there.
 [[nodiscard]] const TomlValue* find_section(const TomlValue& document, const std::string& path);
 
+/// When a command is meant, on the scenario's clock.
+inline constexpr Quantity time_of_command{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
+
 /// A fault of a command's own value: key, found, expected.
 [[nodiscard]] Refusal refusal_of_value(const InputError& error);
 
-}  // namespace asdic::serve
+}  // namespace asdic::detail::serve

@@ -8,15 +8,15 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/program.h"
-#include "app/provenance.h"
 #include "app/study_options.h"
 #include "app/study_progress.h"
 #include "app/warn.h"
 #include "core/error.h"
+#include "io/ping/provenance.h"
 #include "study/mpi/driver.h"
 
 // `asdic-mpi study`: the same study by all ranks of an MPI job. docs/guide/cluster.md
-namespace asdic::app {
+namespace asdic::detail::app {
 namespace {
 
 constexpr const char* program_name = "asdic-mpi";
@@ -65,12 +65,12 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   });
   if (status != success) return status;
   order->ranks = session.size();
-  const std::string identity = session.shared(work.imprint.identity);
+  const std::string identity = session.shared(work.fingerprint.identity);
   status = together(session, [&] {
-    if (identity != work.imprint.identity)
+    if (identity != work.fingerprint.identity)
       throw InputError({.where = options.path,
                         .got = "another study at rank " + std::to_string(session.rank()) +
-                               " (identity " + work.imprint.identity + ")",
+                               " (identity " + work.fingerprint.identity + ")",
                         .expected = "the same files at all ranks (identity " + identity + ")"});
   });
   if (status != success) return status;
@@ -81,7 +81,7 @@ int study_run(const StudyOptions& options, double silence, const study::mpi::Ses
   order->run.stop = interrupt.token();
   order->run.silence = std::chrono::duration<double>(silence);
   const StopTeller teller(session, order->run);
-  if (!options.quiet && session.rank() == 0) warn(work.imprint.warnings);
+  if (!options.quiet && session.rank() == 0) warn(work.fingerprint.warnings);
   study::StudyOutcome outcome;
   std::string said;
   {
@@ -129,9 +129,9 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace asdic::app
+}  // namespace asdic::detail::app
 
 int main(int argc, char** argv) {
-  using namespace asdic::app;
+  using namespace asdic::detail::app;
   return run_program(program_name, [&] { return run(argc, argv); });
 }

@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 std::optional<AttenuationUnit> attenuation_unit(char letter) noexcept {
   switch (letter) {
@@ -53,4 +53,4 @@ double true_speed(double speed, double db_per_wavelength) noexcept {
   return speed * (1.0 + delta * delta);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// The units in which a BELLHOP case gives attenuation.
 enum class AttenuationUnit {
@@ -30,4 +30,4 @@ inline constexpr double db_per_neper = 8.6858896;  // BELLHOP's; 4e-9 from 20·l
 /// iδ): the same k belongs to c·(1 + δ²) and the same loss per wavelength.
 [[nodiscard]] double true_speed(double speed, double db_per_wavelength) noexcept;
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

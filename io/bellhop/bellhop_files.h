@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
 
 /// The files that BELLHOP writes, as plain data. Layouts: docs/formats/bellhop.md. In these structs
 /// as in the files: metres, seconds, Hz, degrees, angles positive down (declination).
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// Which numbers of a header are float64: Fortran BELLHOP writes float32, the toolbox since 2024
 /// and its C++ port float64.
@@ -81,4 +81,4 @@ void write_shade_file(OutputFile&& output, const ShadeFile& file);
 void write_arrivals_file(OutputFile&& output, const ArrivalsFile& file);
 void write_ray_file(OutputFile&& output, const RayFile& file);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

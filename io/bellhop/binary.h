@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// Little-endian numbers in a file's bytes; every look is checked.
 class BinaryView {
@@ -49,4 +49,4 @@ void put(std::string& bytes, T value) {
   bytes.append(raw, sizeof(T));
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -5,11 +5,11 @@
 #include "core/quantities.h"
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 #include "io/scenario/sections.h"
 #include "raytrace/ocean/strongest_reflection.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr std::int64_t most_nodes = 10'000'000;  // memory is taken as rows are read, not before
@@ -194,4 +194,4 @@ SourcePattern read_source_pattern(CaseReading& reading) {
   return pattern;
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

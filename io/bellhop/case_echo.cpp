@@ -5,7 +5,7 @@
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 /// Lines of text, each as printf makes it.
@@ -185,4 +185,4 @@ std::string echo(const CaseReading& reading) {
   return std::move(lines).text();
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

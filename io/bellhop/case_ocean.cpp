@@ -6,7 +6,7 @@
 #include "io/bellhop/case_parts.h"
 #include "io/scenario/sections.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr std::size_t most_rows = 100'001;
@@ -207,4 +207,4 @@ void read_profile(CaseReading& reading) {
   }
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -2,7 +2,7 @@
 
 #include "io/bellhop/case_parts.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 void read_letters(CaseReading& reading, std::string letters) {
@@ -141,4 +141,4 @@ void read_bottom_options(CaseReading& reading) {
   reading.ocean().bottom.material = read_material(reading, options.bottom, false);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

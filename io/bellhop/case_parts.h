@@ -9,7 +9,7 @@
 #include "io/bellhop/list_reader.h"
 
 /// The parts of a case as they are read one after another; for case_reader.cpp alone.
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// A row of the profile, a half space, a node of a long boundary file: values left out are those of
 /// the row before, whatever it was for.
@@ -103,4 +103,4 @@ struct GivenVector {
 /// The input in words. case_echo.cpp
 [[nodiscard]] std::string echo(const CaseReading& reading);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -2,10 +2,10 @@
 
 #include "core/error.h"
 #include "io/bellhop/case_parts.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr const char* companion_kinds[] = {".bty", ".ati", ".ssp", ".brc", ".trc", ".sbp"};
@@ -61,4 +61,4 @@ Input read_case(const std::filesystem::path& root) {
   return read_case(texts, stem.string());
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// A case as read, and what the reader did that the user should know (a source moved into the
 /// water, a value left out and taken from the row before, letters that mean nothing …).
@@ -38,4 +38,4 @@ struct Texts {
 };
 [[nodiscard]] Input read_case(const Texts& texts, const std::string& root_name);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -4,7 +4,7 @@
 #include "core/units.h"
 #include "io/bellhop/case_parts.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr std::int64_t most_beams = 10'000'000;
@@ -278,4 +278,4 @@ void read_run(CaseReading& reading) {
     reading.run_case().beams.cerveny = read_cerveny(reading);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

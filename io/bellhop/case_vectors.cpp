@@ -3,7 +3,7 @@
 
 #include "io/bellhop/case_parts.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr std::int64_t most_values = 1'000'000;
@@ -80,4 +80,4 @@ void read_receivers(CaseReading& reading) {
       single_precision(read_vector(env, n, "receiver ranges"), 1000.0F, reading.receivers_sorted);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -7,9 +7,9 @@
 #include "io/bellhop/attenuation.h"
 #include "io/bellhop/case_writer_parts.h"
 #include "io/bellhop/decimal.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 std::string quoted(std::string text) {
@@ -204,4 +204,4 @@ void write_case_files(const std::filesystem::path& root, const Texts& texts,
   for (auto& [file, text] : files) file.write(*text);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

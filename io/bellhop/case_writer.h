@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "io/bellhop/case_reader.h"
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// A case as BELLHOP's files.
 struct Written {
@@ -24,4 +24,4 @@ struct Written {
 void write_case_files(const std::filesystem::path& root, const Texts& texts,
                       const OutputRules& rules = {});
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

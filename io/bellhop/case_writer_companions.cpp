@@ -8,7 +8,7 @@
 #include "io/bellhop/decimal.h"
 #include "io/bellhop/list_reader.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 double from_thousands(double x) { return 1000.0 * x; }
@@ -122,4 +122,4 @@ void write_source_pattern(CaseWriting& writing, const SourcePattern& pattern) {
   writing.companion(".sbp", std::move(text));
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

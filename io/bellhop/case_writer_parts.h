@@ -2,7 +2,7 @@
 #include "io/bellhop/case_writer.h"
 
 /// The parts of a case as they are written; for case_writer.cpp alone.
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// A case that is being written, and what all parts must know.
 struct CaseWriting {
@@ -32,4 +32,4 @@ void write_source_pattern(CaseWriting& writing, const SourcePattern& pattern);
 /// Sources, receivers, run type, fan, step, box: the last lines of the .env file.
 [[nodiscard]] std::string run_text(CaseWriting& writing, bool binary_arrivals);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -6,7 +6,7 @@
 #include "io/bellhop/case_writer_parts.h"
 #include "io/bellhop/decimal.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 /// A count and a vector: its ends if it is evenly spaced as the reader spaces it, else all of it.
@@ -151,4 +151,4 @@ std::string run_text(CaseWriting& writing, bool binary_arrivals) {
   return text;
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// The shortest text of a number that reads back as it.
 inline std::string decimal(double value) {
@@ -42,4 +42,4 @@ std::string decimal_read_as(double wanted, double guess, Read read) {
   return nearest;
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 constexpr double powers_of_ten[] = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
@@ -60,4 +60,4 @@ void append_integer(std::string& text, std::int64_t value) {
   text.append(length < 11 ? 12 - length : 1, ' ').append(buffer, length);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
@@ -224,4 +224,4 @@ std::int64_t ListReader::need_integer(std::string_view item, std::int64_t least,
   return value;
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

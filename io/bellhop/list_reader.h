@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// A number as Fortran writes it: "1", "-.5", "1.5D3", "2.5E-3", "1.5+3". Nothing if it is not one,
 /// or not finite.
@@ -72,4 +72,4 @@ class ListReader {
 [[nodiscard]] std::string shown(std::string_view text);
 [[nodiscard]] std::string shown(double value);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "io/bellhop/list_reader.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 bool parts(char c) noexcept { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ','; }
@@ -94,4 +94,4 @@ std::string_view NumberStream::rest_of_line() {
   return text_.substr(start, end - start);
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

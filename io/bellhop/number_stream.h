@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// No file says of anything that it has more: what would not fit in an int is no count.
 inline constexpr std::int64_t most_of_a_count = 2'000'000'000;
@@ -41,4 +41,4 @@ class NumberStream {
 /// A word without the quotes around it.
 [[nodiscard]] std::string_view unquoted(std::string_view word) noexcept;
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -4,10 +4,10 @@
 #include "io/bellhop/fortran_format.h"
 #include "io/bellhop/list_reader.h"
 #include "io/bellhop/number_stream.h"
-#include "io/input_file.h"
-#include "io/output/own_files.h"
+#include "io/files/input_file.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 /// The first line without its quotes and the blanks around.
@@ -98,4 +98,4 @@ void write_ray_file(OutputFile&& output, const RayFile& file) {
   output.write(ray_file_bytes(file));
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/units.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 std::string title_of(const PropagationCase& run_case) { return "BELLHOP- " + run_case.title; }
@@ -113,4 +113,4 @@ RayFile ray_file(const PropagationCase& run_case, const PropagationResult& resul
   return file;
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

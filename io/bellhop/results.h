@@ -3,7 +3,7 @@
 #include "raytrace/propagation.h"
 
 /// Answers of a run as the files of BELLHOP hold them.
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 
 /// The field. A point source's coherent pressure has the other sign there than here (−1/√r against
 /// the sum of the arrivals), and so have the roots of its intensities.
@@ -21,4 +21,4 @@ namespace asdic::bellhop {
 /// The rays, source by source, by increasing declination.
 [[nodiscard]] RayFile ray_file(const PropagationCase& run_case, const PropagationResult& result);
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

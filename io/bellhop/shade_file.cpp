@@ -3,12 +3,12 @@
 
 #include "io/bellhop/bellhop_files.h"
 #include "io/bellhop/binary.h"
+#include "io/bellhop/finite_field.h"
 #include "io/bellhop/list_reader.h"
-#include "io/finite_field.h"
-#include "io/input_file.h"
-#include "io/output/own_files.h"
+#include "io/files/input_file.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::bellhop {
+namespace asdic::detail::bellhop {
 namespace {
 
 std::string trimmed(std::string_view text) {
@@ -194,4 +194,4 @@ void write_shade_file(OutputFile&& output, const ShadeFile& file) {
   output.write(shade_file_bytes(file));
 }
 
-}  // namespace asdic::bellhop
+}  // namespace asdic::detail::bellhop

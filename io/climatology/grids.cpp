@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::climatology {
+namespace asdic::detail::climatology {
 namespace {
 
 const std::vector<std::string> temperature_names{
@@ -112,4 +112,4 @@ Column Hydrography::at(double latitude, double longitude) const {
   return column;
 }
 
-}  // namespace asdic::climatology
+}  // namespace asdic::detail::climatology

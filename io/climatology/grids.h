@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "io/netcdf_grid.h"
+#include "io/climatology/netcdf_grid.h"
 
 // The grids of climatologies, by what they hold.
-namespace asdic::climatology {
+namespace asdic::detail::climatology {
 
 inline constexpr double earth_radius = 6.371e6;  // [m]
 
@@ -87,4 +87,4 @@ class Hydrography {
   double zero_ = 0.0;
 };
 
-}  // namespace asdic::climatology
+}  // namespace asdic::detail::climatology

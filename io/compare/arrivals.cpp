@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/units.h"
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 namespace {
 
 using bellhop::ArrivalRow;
@@ -269,4 +269,4 @@ ArrivalDifference compare_arrivals(const bellhop::ArrivalsFile& a, const bellhop
   return gatherer.finish();
 }
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

@@ -4,7 +4,7 @@
 #include "io/bellhop/bellhop_files.h"
 #include "io/compare/statistics.h"
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 
 struct ArrivalOptions {
   double max_delay_difference = 2e-3;  ///< of a pair [s]
@@ -58,4 +58,4 @@ struct ArrivalDifference {
                                                  const bellhop::ArrivalsFile& b,
                                                  const ArrivalOptions& options = {});
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/units.h"
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 namespace {
 
 using Complex = std::complex<double>;
@@ -164,4 +164,4 @@ FieldDifference compare_fields(const bellhop::ShadeFile& a, const bellhop::Shade
   return compare_fields(align(a, b, options.resample), options);
 }
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

@@ -7,7 +7,7 @@
 #include "io/bellhop/bellhop_files.h"
 #include "io/compare/statistics.h"
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 
 struct FieldOptions {
   double floor_db = 120.0;  ///< cells are compared where both transmission losses are below this
@@ -59,4 +59,4 @@ struct AlignedFields {
                                              const bellhop::ShadeFile& b,
                                              const FieldOptions& options = {});
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 namespace {
 
 using Ray = bellhop::RayFile::Ray;
@@ -178,4 +178,4 @@ RayDifference compare_rays(const bellhop::RayFile& a, const bellhop::RayFile& b,
   return result;
 }
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

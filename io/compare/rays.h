@@ -6,7 +6,7 @@
 #include "io/bellhop/bellhop_files.h"
 #include "io/compare/statistics.h"
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 
 struct RayOptions {
   double angle_deg = 1e-6;  ///< rays of a pair differ by no more in launch angle
@@ -60,4 +60,4 @@ class Polyline {
   std::size_t last_ = 0;                        ///< segment where the last point was
 };
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

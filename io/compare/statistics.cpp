@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 
 double share_pct(std::size_t part, std::size_t all) noexcept {
   return all == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
@@ -32,4 +32,4 @@ Spread spread_of(std::vector<double> differences) {
   return result;
 }
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

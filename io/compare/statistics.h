@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace asdic::compare {
+namespace asdic::detail::compare {
 
 /// How large differences are: of their magnitudes but for the mean.
 struct Spread {
@@ -21,4 +21,4 @@ struct Spread {
 /// usual definition of numpy and of R's type 7). \param sorted  not empty   \param share  0..1
 [[nodiscard]] double quantile(const std::vector<double>& sorted, double share);
 
-}  // namespace asdic::compare
+}  // namespace asdic::detail::compare

@@ -8,7 +8,7 @@
 #include "io/hdf5/elements.h"
 #include "io/hdf5/remote.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using hdf5::Handle;
@@ -270,4 +270,4 @@ std::string Hdf5File::attribute_or(const std::string& object, const std::string&
                                                    : std::string(otherwise);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "io/hdf5/handles.h"
 
 // What the .cpp files of Hdf5File that write datasets share (hdf5_file.cpp).
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 
 /// HDF5's name for an element of Hdf5File in this machine's memory.
 template <class T>
@@ -40,7 +40,7 @@ std::int64_t native_type<double>();
 /// Link creation that makes the groups on the way.
 [[nodiscard]] Handle make_parents();
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5
 
 /// Instantiates a template for every type of element: INSTANTIATE(type) for each.
 #define ASDIC_HDF5_ELEMENTS(INSTANTIATE) \

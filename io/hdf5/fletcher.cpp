@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 namespace {
 
 /// A sum modulo 65535 in 16 bits: 2¹⁶ is 1. Of a sum of anything but zeros it is never 0.
@@ -17,13 +17,13 @@ constexpr std::size_t lanes = 8;
 
 /// Sums of words as they stand in memory, in lanes side by side: word l of each row of eight goes
 /// to lane l.
-struct LaneSums {
+struct SimdSums {
   static constexpr std::size_t most_rows = 256;  // 256 · 257 / 2 · 65535 < 2³²
   std::uint32_t first[lanes];                    ///< Σ w_k, of the rows k
   std::uint32_t second[lanes];  ///< Σ (rows − k) w_k: of the sums so far, after every row
 };
 
-LaneSums sums_of(const std::byte* bytes, std::size_t rows) {
+SimdSums sums_of(const std::byte* bytes, std::size_t rows) {
   using Words [[gnu::vector_size(8)]] = std::uint16_t;
   using Sums [[gnu::vector_size(16)]] = std::uint32_t;
   Sums first[2] = {}, second[2] = {};
@@ -35,7 +35,7 @@ LaneSums sums_of(const std::byte* bytes, std::size_t rows) {
     second[0] += first[0];
     second[1] += first[1];
   }
-  LaneSums sums;
+  SimdSums sums;
   std::memcpy(sums.first, first, sizeof first);
   std::memcpy(sums.second, second, sizeof second);
   return sums;
@@ -53,8 +53,8 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
   const std::size_t all = bytes.size() / 2;
   std::size_t at = 0;
   while (all - at >= lanes) {
-    const std::size_t rows = std::min((all - at) / lanes, LaneSums::most_rows);
-    const LaneSums sums = sums_of(bytes.data() + 2 * at, rows);
+    const std::size_t rows = std::min((all - at) / lanes, SimdSums::most_rows);
+    const SimdSums sums = sums_of(bytes.data() + 2 * at, rows);
     const std::size_t n = rows * lanes;
     // Of the n words the i-th counts n − i times, and i = 8k + l: 8(rows − k) − l.
     second += n * first;
@@ -75,4 +75,4 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
   return static_cast<std::uint32_t>(swapped(second) << 16U | swapped(first));
 }
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

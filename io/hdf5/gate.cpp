@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/files/input_file.h"
 #include "io/hdf5/handles.h"
-#include "io/input_file.h"
 
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ void check_sources(std::int64_t dataset, const fs::path& path) {
                       .expected = "a whole catalogue"});
 }
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

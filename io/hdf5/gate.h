@@ -4,7 +4,7 @@
 #include <vector>
 
 // What a file of HDF5 must not have if it is to be read.
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 
 /// Looks at every link and dataset of an open file. None may lead to another file: no external or
 /// user-defined link, no data in other files, no virtual dataset but in a catalogue of a study; and
@@ -25,4 +25,4 @@ void check_sources(std::int64_t dataset, const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::filesystem::path> virtual_sources(std::int64_t properties,
                                                                  const std::filesystem::path& path);
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

@@ -8,7 +8,7 @@
 #include "io/hdf5/fletcher.h"
 #include "io/hdf5/remote.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using hdf5::dims;
@@ -184,4 +184,4 @@ bool Hdf5File::has_checksums(const std::string& dataset) const {
 ASDIC_HDF5_ELEMENTS(ASDIC_HDF5_ELEMENT)
 #undef ASDIC_HDF5_ELEMENT
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "io/isolated/child.h"
 
 // Inside of Hdf5File, for its own .cpp files; hid_t is std::int64_t in HDF5 1.10 and later.
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 
 /// An HDF5 identifier with its closing function.
 class Handle {
@@ -44,9 +44,9 @@ class Handle {
 /// terminal, and its hands off at exit.
 void prepare();
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5
 
-namespace asdic {
+namespace asdic::detail {
 
 struct Hdf5File::Impl {
   std::filesystem::path path;
@@ -69,4 +69,4 @@ struct Hdf5File::Impl {
   [[nodiscard]] Shape shape_of(std::int64_t dataset_id, const std::string& dataset) const;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "io/hdf5/elements.h"
 #include "io/hdf5/handles.h"
 
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 
 void prepare() {
   // Once a write has failed (disk full), HDF5 1.10 crashes when it closes the file, at exit too if
@@ -79,4 +79,4 @@ void fail(const std::filesystem::path& file, const std::string& object, const st
   throw RunError(text + action + " failed: " + last_message());
 }
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void read_attributes(const Hdf5File& file, const std::string& object) {
@@ -39,4 +39,4 @@ void check_readable(const Hdf5File& file) {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

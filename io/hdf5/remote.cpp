@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <tuple>
 
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 namespace {
 
 template <class R, class... A>
@@ -30,4 +30,4 @@ std::string answer(const Hdf5File& file, std::string_view question) {
   return answer(AllQuestions{}, file, question);
 }
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

@@ -10,7 +10,7 @@
 
 // Reading in a child process: questions about a file are calls of Hdf5File's own methods, which the
 // child carries out on the file that it has open.
-namespace asdic {
+namespace asdic::detail {
 
 template <class Visit>
 void fields(DatasetInfo& info, Visit visit) {
@@ -19,9 +19,9 @@ void fields(DatasetInfo& info, Visit visit) {
   visit(info.shape);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail
 
-namespace asdic::hdf5 {
+namespace asdic::detail::hdf5 {
 
 template <class T>
 inline constexpr std::vector<T> (Hdf5File::*read_all)(const std::string&) const =
@@ -71,4 +71,4 @@ auto ask(isolated::Child& child, const Arguments&... arguments) {
 /// What the child says to such a question about a file that it has open itself.
 [[nodiscard]] std::string answer(const Hdf5File& file, std::string_view question);
 
-}  // namespace asdic::hdf5
+}  // namespace asdic::detail::hdf5

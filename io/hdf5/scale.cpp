@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace asdic {
+namespace asdic::detail {
 
 void write_filetype(Hdf5File& file, const std::string& filetype, const std::string& version) {
   file.set_attribute("", "Conventions", cf::version);
@@ -52,4 +52,4 @@ double time_of_first(const Hdf5File& file, const std::string& dataset,
              : file.read<double>(coordinate, {0}, {1}).front();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,11 +3,11 @@
 #include <string_view>
 #include <vector>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 
 // How every file of ours names itself, its datasets and axes: by the Climate and Forecast
 // conventions (CF 1.10, https://cfconventions.org), so that their readers know what they see.
-namespace asdic {
+namespace asdic::detail {
 
 /// What a dataset is to CF, where that has a word for it. What is empty is not written.
 struct Meaning {
@@ -74,4 +74,4 @@ void write_times(Hdf5File& file, const std::string& dataset, const TimeAxis& axi
 [[nodiscard]] double time_of_first(const Hdf5File& file, const std::string& dataset,
                                    const std::string& coordinate);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "io/hdf5/gate.h"
 #include "io/hdf5/remote.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using hdf5::dims;
@@ -66,4 +66,4 @@ std::vector<std::filesystem::path> Hdf5File::virtual_files(const std::string& da
 ASDIC_HDF5_ELEMENTS(ASDIC_HDF5_ELEMENT)
 #undef ASDIC_HDF5_ELEMENT
 
-}  // namespace asdic
+}  // namespace asdic::detail

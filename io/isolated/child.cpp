@@ -21,7 +21,7 @@
 #include "core/error.h"
 #include "io/isolated/pack.h"
 
-namespace asdic::isolated {
+namespace asdic::detail::isolated {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -303,4 +303,4 @@ void run(const std::filesystem::path& file, const std::string& library,
       limits);
 }
 
-}  // namespace asdic::isolated
+}  // namespace asdic::detail::isolated

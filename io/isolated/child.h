@@ -8,7 +8,7 @@
 
 #include <sys/types.h>
 
-namespace asdic::isolated {
+namespace asdic::detail::isolated {
 
 /// What a child may use before it is given up.
 struct Limits {
@@ -74,4 +74,4 @@ inline constexpr Limits patience{
 void run(const std::filesystem::path& file, const std::string& library,
          const std::function<void()>& work, const Limits& limits);
 
-}  // namespace asdic::isolated
+}  // namespace asdic::detail::isolated

@@ -10,7 +10,7 @@
 #include <vector>
 
 // Values as bytes and back, between a process and its child: the same program on both sides.
-namespace asdic::isolated {
+namespace asdic::detail::isolated {
 
 /// A number, a truth value or an enumerator.
 template <class T>
@@ -103,4 +103,4 @@ class Unpacked {
   std::string_view bytes_;
 };
 
-}  // namespace asdic::isolated
+}  // namespace asdic::detail::isolated

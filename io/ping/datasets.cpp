@@ -2,7 +2,7 @@
 #include "io/ping/writer.h"
 #include "sonar/ping/stream.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 void PingFileWriter::Impl::create_ping_datasets() {
   file.create_growing<std::int32_t>("ping", {}, std::size_t{64});
@@ -117,4 +117,4 @@ void PingFileWriter::Impl::create_sampled_datasets(const PingRecord& record) {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

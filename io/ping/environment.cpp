@@ -9,7 +9,7 @@
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/transmitter.h"
 
-namespace asdic::ping_file {
+namespace asdic::detail::ping_file {
 namespace {
 
 /// Writes the numbers of described structs as attributes of a group, as they are in the structs.
@@ -136,4 +136,4 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
                      BeamPattern(scenario.transmitters[0], wavelength).line_length());
 }
 
-}  // namespace asdic::ping_file
+}  // namespace asdic::detail::ping_file

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace asdic {
+namespace asdic::detail {
 
 GrowingTable::GrowingTable(Hdf5File& file, const std::string& group, const std::string& dimension,
                            std::vector<Column> columns)
@@ -53,4 +53,4 @@ void GrowingTable::write() {
   written_ = rows_;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

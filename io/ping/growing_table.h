@@ -4,7 +4,7 @@
 
 #include "io/hdf5/scale.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A table of a ping file: a group of 1-D columns that grow together, with an index as the scale of
 /// their dimension.
@@ -33,4 +33,4 @@ class GrowingTable {
   std::size_t rows_ = 0, written_ = 0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

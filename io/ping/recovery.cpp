@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/file_check.h"
+#include "io/hdf5/file_check.h"
 #include "io/isolated/child.h"
-#include "io/ping_file.h"
+#include "io/ping/ping_file.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// How many rows of a growing dataset belong to the whole pings. \param last  number of the last
@@ -66,4 +66,4 @@ Recovery recover_ping_file(const std::filesystem::path& part, OutputFile&& outpu
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What was found in the part of a run that did not end.
 struct Recovery {
@@ -18,4 +18,4 @@ struct Recovery {
 /// InputError for a file that is no ping file, holds no whole ping, or is damaged; RunError
 Recovery recover_ping_file(const std::filesystem::path& part, OutputFile&& output);
 
-}  // namespace asdic
+}  // namespace asdic::detail

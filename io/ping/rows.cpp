@@ -9,7 +9,7 @@
 
 #include "io/ping/writer.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -75,12 +75,12 @@ void PingFileWriter::Impl::append_geometry(const PingRecord& record) {
 void PingFileWriter::Impl::append_tables(const PingRecord& record) {
   for (const Leg& leg : record.legs) arrivals.add(record.ping, leg);
   for (const EchoPath& echo : record.echoes) {
-    const Vec3& s = echo.heard.slowness;  // along the direction of travel, z down
+    const Vec3& s = echo.received.slowness;  // along the direction of travel, z down
     const double elevation = std::atan2(-s.z(), std::hypot(s.x(), s.y()));
     const double bearing = compass_degrees(std::atan2(s.x(), s.y()));
     echoes.row({double(record.ping), double(echo.target), double(echo.array),
-                double(echo.heard.channel), double(echo.highlight), double(echo.outgoing),
-                double(echo.returning), echo.heard.delay, echo.struck, echo.heard.doppler,
+                double(echo.received.channel), double(echo.highlight), double(echo.outgoing),
+                double(echo.returning), echo.received.delay, echo.struck, echo.received.doppler,
                 echo.level_db, degrees(elevation), bearing});
   }
   const std::size_t step = (record.patches.size() + most_patches - 1) / most_patches;
@@ -92,7 +92,7 @@ void PingFileWriter::Impl::append_tables(const PingRecord& record) {
                  degrees(p.launch_elevation), degrees(p.arrival_elevation),
                  p.scattering_strength_db, p.level_db});
   }
-  for (const HeardPath& p : record.interference)
+  for (const ReceivedPath& p : record.interference)
     interference->row({double(record.ping), double(p.interferer), double(p.array), p.delay,
                        p.doppler, p.range, compass_degrees(p.bearing),
                        degrees(p.path.launch_elevation), degrees(p.path.arrival_elevation),
@@ -114,16 +114,16 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
   std::vector<double> time, level, reverberation, noise, peak, excess;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const TargetSummary row = i < record.summary.size() ? record.summary[i] : TargetSummary{};
-    const bool heard = row.present && row.paths > 0;
+    const bool received = row.present && row.paths > 0;
     present.push_back(row.present ? 1 : 0);
-    array.push_back(heard ? row.array : -1);
+    array.push_back(received ? row.array : -1);
     paths.push_back(row.paths);
-    time.push_back(heard ? row.echo_time : missing);
-    level.push_back(heard ? row.echo_level_db : missing);
-    reverberation.push_back(heard ? row.reverberation_db : missing);
-    noise.push_back(heard ? row.noise_db : missing);
-    peak.push_back(heard ? row.echo_peak_db : missing);
-    excess.push_back(heard ? row.signal_excess_db : missing);
+    time.push_back(received ? row.echo_time : missing);
+    level.push_back(received ? row.echo_level_db : missing);
+    reverberation.push_back(received ? row.reverberation_db : missing);
+    noise.push_back(received ? row.noise_db : missing);
+    peak.push_back(received ? row.echo_peak_db : missing);
+    excess.push_back(received ? row.signal_excess_db : missing);
   }
   file.append<std::int8_t>("summary/present", present);
   file.append<std::int32_t>("summary/array", array);
@@ -137,4 +137,4 @@ void PingFileWriter::Impl::append_summary(const PingRecord& record) {
     file.append<double>(std::string("summary/") + name, excess);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

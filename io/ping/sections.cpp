@@ -6,11 +6,12 @@
 #include <numeric>
 
 #include "core/fields.h"
-#include "io/digest.h"
+#include "io/files/digest.h"
 #include "io/ping/growing_table.h"
+#include "io/scenario/writer.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic::ping_file {
+namespace asdic::detail::ping_file {
 namespace {
 
 /// A boundary in the plane of the rays.
@@ -28,19 +29,21 @@ void write_line(Hdf5File& file, const std::string& side, const RayPaths::Line& l
 }  // namespace
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance) {
-  write_filetype(file, "asdic ping", "2.0");
+  write_filetype(file, "asdic ping", "2.1");
   file.set_attribute("", "title", scenario.title);
   file.set_attribute("", "program_version", provenance.program_version);
   file.set_attribute("", "build", provenance.build);
   file.set_attribute("", "seed", static_cast<std::int64_t>(scenario.seed));
-  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  // One that was not read from a file is written as one.
+  const std::string text = scenario.text.empty() ? to_toml(scenario) : scenario.text;
+  file.set_attribute("", "scenario_sha256", sha256(text));
   file.set_attribute(
       "", "pings_requested",
       static_cast<std::int64_t>(scenario.pings.count) * std::ssize(scenario.transmitters));
   file.set_attribute("", "complete", std::int64_t{0});
   if (!scenario.overrides.empty()) file.set_attribute("", "overrides", scenario.overrides);
   if (!scenario.notes.empty()) file.set_attribute("", "warnings", scenario.notes);
-  file.write_text("scenario", scenario.text);
+  file.write_text("scenario", text);
   describe(file, "scenario", "the scenario file, verbatim");
 
   std::vector<std::int32_t> channels(channels_of(scenario));
@@ -107,9 +110,13 @@ void write_replica(Hdf5File& file, const Scenario& scenario, int transmitter, Sa
            "1");
   file.attach_scales(name, scales);
   write_times(file, name, axis);
-  file.set_attribute(name, "kind", word_of(settings.kind));
+  file.set_attribute(name, "kind", name_of(settings.waveform));
   file.set_attribute(name, "centre_frequency_hz", pulse.centre_frequency());
   file.set_attribute(name, "bandwidth_hz", pulse.bandwidth_40db());
+  const auto through = frequencies_of(settings.waveform);
+  file.set_attribute(
+      name, "sweep_hz",
+      through ? through->highest - through->lowest : std::numeric_limits<double>::quiet_NaN());
   file.set_attribute(name, "duration_s", pulse.duration());
   file.set_attribute(name, "window", word_of(settings.window));
   file.set_attribute(name, "source_level_db",
@@ -168,4 +175,4 @@ void write_rays(Hdf5File& file, const RayPaths& rays) {
   file.attach_scales("rays/hit_range", {"rays/hit"});
 }
 
-}  // namespace asdic::ping_file
+}  // namespace asdic::detail::ping_file

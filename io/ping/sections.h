@@ -1,12 +1,12 @@
 #pragma once
 #include <string>
 
-#include "io/hdf5_file.h"
-#include "io/ping_file.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/ping/ping_file.h"
 #include "sonar/scenario/scenario.h"
 
 // The parts of a ping file that are written once (docs/formats/ping.md).
-namespace asdic::ping_file {
+namespace asdic::detail::ping_file {
 
 void write_root(Hdf5File& file, const Scenario& scenario, const Provenance& provenance);
 /// replica, replica_1, …: one per transmitter.
@@ -14,4 +14,4 @@ void write_replicas(Hdf5File& file, const Scenario& scenario, SampleTimes times)
 void write_environment(Hdf5File& file, const Scenario& scenario);
 void write_rays(Hdf5File& file, const RayPaths& rays);
 
-}  // namespace asdic::ping_file
+}  // namespace asdic::detail::ping_file

@@ -1,6 +1,6 @@
 #include "io/ping/tables.h"
 
-namespace asdic::ping_file {
+namespace asdic::detail::ping_file {
 namespace {
 
 using Type = ElementType;
@@ -60,4 +60,4 @@ std::vector<GrowingTable::Column> interference_columns() {
           {"bottom_bounces", "reflections at the bottom", "", Type::int32}};
 }
 
-}  // namespace asdic::ping_file
+}  // namespace asdic::detail::ping_file

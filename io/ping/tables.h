@@ -4,10 +4,10 @@
 #include "io/ping/growing_table.h"
 
 // The columns of a ping file's tables (docs/formats/ping.md).
-namespace asdic::ping_file {
+namespace asdic::detail::ping_file {
 
 [[nodiscard]] std::vector<GrowingTable::Column> echo_columns();
 [[nodiscard]] std::vector<GrowingTable::Column> patch_columns();
 [[nodiscard]] std::vector<GrowingTable::Column> interference_columns();
 
-}  // namespace asdic::ping_file
+}  // namespace asdic::detail::ping_file

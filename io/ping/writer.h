@@ -1,16 +1,16 @@
 #pragma once
 #include <optional>
 
-#include "io/arrival_table.h"
 #include "io/hdf5/scale.h"
+#include "io/ping/arrival_table.h"
 #include "io/ping/growing_table.h"
+#include "io/ping/ping_file.h"
 #include "io/ping/sections.h"
 #include "io/ping/tables.h"
-#include "io/ping_file.h"
 #include "sonar/reverberation/phone_groups.h"
 
 // Inside of PingFileWriter, for its own .cpp files.
-namespace asdic {
+namespace asdic::detail {
 
 struct PingFileWriter::Impl {
   OutputFile output;
@@ -62,4 +62,4 @@ struct PingFileWriter::Impl {
   void append_summary(const PingRecord& record);
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,11 +9,11 @@
 #include "core/memory_budget.h"
 #include "io/hdf5/scale.h"
 #include "io/scenario/embedded.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "processing/truth.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 Scenario scenario_of(const Hdf5File& file, const std::filesystem::path& path,
@@ -264,7 +264,7 @@ std::vector<TrueEcho> PingRecordings::echoes(std::size_t row, int array) const {
     }
     if (!continuous_) continue;
     // The other pings of a continuous record: their echoes, if they are of the same transmitter,
-    // and their direct sound, which is loud enough to be heard through the filters of another
+    // and their direct sound, which is loud enough to be received through the filters of another
     // pulse.
     const auto other = std::find(numbers_.begin(), numbers_.end(), echo_ping_[i]);
     if (other == numbers_.end()) continue;
@@ -283,4 +283,4 @@ std::vector<TrueTarget> PingRecordings::targets(std::size_t row,
   return true_targets(scenario_, numbers_[row], times_[row], echoes);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,12 +5,12 @@
 #include <map>
 
 #include "core/error.h"
+#include "io/hdf5/hdf5_file.h"
 #include "io/hdf5/scale.h"
-#include "io/hdf5_file.h"
 #include "io/isolated/child.h"
 #include "io/processing/table.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using processing::Table;
@@ -174,4 +174,4 @@ void write_processed(const std::filesystem::path& input, OutputFile&& output,
   output.finish();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
 #include "processing/ping_processor.h"
 #include "processing/scoring.h"
 #include "processing/tracker.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One array's part of one ping, done.
 struct ProcessedPing {
@@ -55,4 +55,4 @@ void write_processed(const std::filesystem::path& input, OutputFile&& output,
 [[nodiscard]] std::string detections_csv(const ProcessedRun& run);
 [[nodiscard]] std::string tracks_csv(const ProcessedRun& run);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-namespace asdic {
+namespace asdic::detail {
 namespace processing {
 namespace {
 
@@ -180,4 +180,4 @@ std::string tracks_csv(const ProcessedRun& run) {
   return processing::csv(processing::tracks_table(run));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "io/ping/growing_table.h"
 #include "io/processing/results.h"
 
-namespace asdic::processing {
+namespace asdic::detail::processing {
 
 /// A table of results, for HDF5 and CSV alike.
 struct Table {
@@ -17,4 +17,4 @@ struct Table {
 [[nodiscard]] Table tracks_table(const ProcessedRun& run);
 [[nodiscard]] Table targets_table(const ProcessedRun& run);
 
-}  // namespace asdic::processing
+}  // namespace asdic::detail::processing

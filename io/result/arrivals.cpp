@@ -9,7 +9,7 @@
 #include "io/ping/growing_table.h"
 #include "io/result/tables.h"
 
-namespace asdic::result_tables {
+namespace asdic::detail::result_tables {
 namespace {
 
 using bellhop::ArrivalRow;
@@ -189,4 +189,4 @@ ArrivalsFile read_arrivals(const Hdf5File& file) {
   return result;
 }
 
-}  // namespace asdic::result_tables
+}  // namespace asdic::detail::result_tables

@@ -8,7 +8,7 @@
 #include "io/hdf5/scale.h"
 #include "io/result/tables.h"
 
-namespace asdic::result_tables {
+namespace asdic::detail::result_tables {
 namespace {
 
 using bellhop::RayFile;
@@ -116,4 +116,4 @@ RayFile read_rays(const Hdf5File& file) {
   return result;
 }
 
-}  // namespace asdic::result_tables
+}  // namespace asdic::detail::result_tables

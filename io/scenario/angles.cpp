@@ -3,7 +3,7 @@
 #include "core/text.h"
 #include "core/units.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
 bool is_in_radians(const std::string& key) { return key.ends_with("_rad"); }
@@ -40,4 +40,4 @@ std::vector<double> read_angles(TomlTable& table, const std::string& name,
   return angles;
 }
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

@@ -5,7 +5,7 @@
 
 #include "io/text/toml_table.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 
 // Angles of a scenario are degrees, "lowest_deg"; "lowest_rad" is taken as well, since not every
 // angle of a program has a decimal number of degrees that reads back as the same bits.
@@ -23,4 +23,4 @@ namespace asdic::scenario {
 /// Which of the two keys is there; "…_deg" where neither is.
 [[nodiscard]] std::string angle_key(TomlTable& table, const std::string& name);
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

@@ -1,15 +1,18 @@
-#include <array>
-
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
+#include "io/settings/columns.h"
+#include "io/settings/reader.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
 constexpr Quantity bottom_depth{
     .noun = "depth", .unit = "m", .low = 0.0, .high = 12000.0, .above = true};
+
+enum class Bubbles { none, apl_uw };
+constexpr std::string_view bubbles_words[] = {"none", "apl-uw"};
+constexpr std::span<const std::string_view> words(Bubbles) { return bubbles_words; }
 
 /// `transect` is what this table was called while only its first depth was used.
 std::string shape_key(TomlTable& boundary) {
@@ -17,22 +20,29 @@ std::string shape_key(TomlTable& boundary) {
   return boundary.has("shape") || !older ? "shape" : "transect";
 }
 
-ShapeInterpolation read_interpolation(TomlTable& table) {
-  const std::array all = {ShapeInterpolation::piecewise_linear, ShapeInterpolation::smooth,
-                          ShapeInterpolation::curvilinear};
-  std::vector<std::string> names;
-  for (const auto kind : all) names.emplace_back(name(kind));
-  const std::string chosen = table.choice("interpolation", names, names[0]);
-  for (const auto kind : all)
-    if (chosen == name(kind)) return kind;
-  return all[0];
-}
+/// [….shape]: the nodes of a boundary that is not flat.
+struct ShapeTable {
+  ShapeInterpolation interpolation = ShapeInterpolation::piecewise_linear;
+  std::vector<double> range = {}, depth = {};
+
+  void describe(Fields& field) {
+    field("interpolation", interpolation, "how the boundary runs between its nodes");
+    field.columns({{"range", range, quantity::range}, {"depth", depth, quantity::water_depth}},
+                  {.file = true}, "of the nodes, along the transect");
+  }
+};
 
 BoundaryShape read_shape(TomlTable& table, const OceanReading& reading) {
-  const Columns columns = read_columns(
-      table, reading.folder, {{"range", quantity::range}, {"depth", quantity::water_depth}});
-  require_increasing(columns);
-  return {columns.values[0], columns.values[1], read_interpolation(table)};
+  KnownSettings known{.folder = reading.folder};
+  ShapeTable settings;
+  TomlReader reader(table, known);
+  settings.describe(reader);
+  return {settings.range, settings.depth, settings.interpolation};
+}
+
+void describe_depth(Fields& field, bool surface, double& depth) {
+  field(surface ? "depth" : required("depth"), depth,
+        surface ? quantity::water_depth : bottom_depth, "where it is flat");
 }
 
 WaterAtBoundary water_at(const Environment& ocean, double range, double depth) {
@@ -82,7 +92,7 @@ std::vector<BoundaryMaterial> read_materials(TomlTable& table, const OceanReadin
     throw table.fault("material", "one for each of the " + std::to_string(n) + " nodes");
   for (std::size_t i = 0; i < n; ++i) {
     const auto water = water_at(ocean, shape.ranges()[i], shape.depths()[i]);
-    materials.push_back(read_material(tables[i], reading, water, std::nullopt));
+    materials.push_back(read_material(tables[i], reading, water, false));
     tables[i].finish();
   }
   return materials;
@@ -93,8 +103,11 @@ std::vector<BoundaryMaterial> read_materials(TomlTable& table, const OceanReadin
 Boundary read_boundary_place(TomlTable& table, const OceanReading& reading, bool surface) {
   const std::string key = shape_key(table);
   if (!table.has(key)) {
-    if (surface) return {.depth = table.number("depth", quantity::water_depth, 0.0)};
-    return {.depth = table.number("depth", bottom_depth)};
+    KnownSettings known;
+    TomlReader reader(table, known);
+    Boundary flat{.depth = 0.0};
+    describe_depth(reader, surface, flat.depth);
+    return flat;
   }
   if (table.has("depth"))
     throw table.fault("depth", "no \"depth\" beside \"" + key + "\", which says it");
@@ -105,8 +118,7 @@ Boundary read_boundary_place(TomlTable& table, const OceanReading& reading, bool
 }
 
 void read_boundary_materials(TomlTable& table, const OceanReading& reading,
-                             const Environment& ocean, std::optional<std::string> fallback,
-                             Boundary& boundary) {
+                             const Environment& ocean, bool surface, Boundary& boundary) {
   if (boundary.shape) {
     TomlTable shape = table.table(shape_key(table));
     for (const char* key : {"range", "depth", "file", "interpolation", "note"})
@@ -122,8 +134,100 @@ void read_boundary_materials(TomlTable& table, const OceanReading& reading,
       if (!of_its_own) return;
     }
   }
-  boundary.material =
-      read_material(table, reading, water_at(ocean, 0.0, boundary.depth), std::move(fallback));
+  boundary.material = read_material(table, reading, water_at(ocean, 0.0, boundary.depth), surface);
 }
 
-}  // namespace asdic::scenario
+namespace {
+
+/// `roughness` [m], or "wind": the wind's sea; its spectrum is known. `bubbles`: under it.
+struct RoughnessTable {
+  Roughness rough = {};
+  bool surface = false;
+
+  void describe(Fields& field) {
+    Fields::Ways ways;
+    if (const auto way = field.way(ways, {"roughness", "roughness_wind", "roughness_floor_db"},
+                                   rough.rms_height > 0.0))
+      describe_height(field);
+    if (surface) describe_bubbles(field);
+  }
+
+ private:
+  void describe_height(Fields& field) {
+    constexpr Quantity height{.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0};
+    constexpr Quantity floor{.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0};
+    std::optional<double> given = rough.rms_height;
+    field(surface ? or_word("roughness", "wind") : "roughness", given, height,
+          "standard deviation of the boundary; \"wind\": of the wind's sea");
+    if (given) {
+      rough.rms_height = *given;
+      field(seldom("roughness_wind"), rough.sea_wind, quantity::wind_speed,
+            "over the sea that it is");
+    } else {
+      rough.sea_wind = field.known("environment.wind_speed");
+      rough.rms_height = pierson_moskowitz_height(rough.sea_wind);
+    }
+    if (field.reads()) rough.floor_db = floor.low;  // what leaves the mean field is not lost
+    field("roughness_floor_db", rough.floor_db, floor,
+          "the least that a bounce leaves of the mean");
+  }
+  void describe_bubbles(Fields& field) {
+    Bubbles bubbles = rough.bubble_wind > 0.0 ? Bubbles::apl_uw : Bubbles::none;
+    field(seldom("bubbles"), bubbles, "what bubbles under the surface take");
+    if (const auto only = field.only("bubbles", bubbles, Bubbles::apl_uw))
+      field(inherited("bubbles_wind", "environment.wind_speed"), rough.bubble_wind,
+            quantity::wind_speed, "over the bubbles");
+  }
+};
+
+/// A boundary for a walker that does not read.
+struct BoundaryTable {
+  const Boundary& boundary;
+  bool surface;
+
+  void describe(Fields& field) const {
+    double depth = boundary.depth;
+    if (!boundary.shape) describe_depth(field, surface, depth);
+    describe_material(field, boundary.material);
+    RoughnessTable{boundary.roughness, surface}.describe(field);
+    if (!boundary.shape) return;
+    ShownShape shape{*boundary.shape};
+    field("shape", shape, "where it is not flat");
+  }
+
+ private:
+  struct ShownMaterial {
+    const BoundaryMaterial* material = nullptr;
+    void describe(Fields& field) const { describe_material(field, *material); }
+  };
+  struct ShownShape {
+    const BoundaryShape& shape;
+
+    void describe(Fields& field) const {
+      ShapeTable nodes{shape.interpolation(),
+                       {shape.ranges().begin(), shape.ranges().end()},
+                       {shape.depths().begin(), shape.depths().end()}};
+      nodes.describe(field);
+      std::vector<ShownMaterial> materials;
+      for (const BoundaryMaterial& one : shape.materials()) materials.push_back({&one});
+      field("material", materials, "behind the boundary, from node to node");
+    }
+  };
+};
+
+}  // namespace
+
+void read_roughness(TomlTable& table, double wind_speed, bool surface, Roughness& roughness) {
+  KnownSettings known{.numbers = {{"environment.wind_speed", wind_speed}}};
+  RoughnessTable settings{roughness, surface};
+  TomlReader reader(table, known);
+  settings.describe(reader);
+  roughness = settings.rough;
+}
+
+void describe_boundary(Fields& field, bool surface, const Boundary& boundary) {
+  BoundaryTable settings{boundary, surface};
+  field(surface ? "surface" : "bottom", settings, surface ? "above the water" : "below the water");
+}
+
+}  // namespace asdic::detail::scenario

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/fields.h"
 #include "core/text.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/sections.h"
@@ -11,7 +12,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
 /// One moment of a track that could be its worst.
@@ -227,7 +228,7 @@ void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettin
   const double rate = recorded_rate(scenario);
   TomlTable pings = root.table("pings");
   if (scenario.pings.samples == Samples::baseband) {
-    const Band band = heard_band(scenario, Pulse(settings));
+    const Band band = received_band(scenario, Pulse(settings));
     const double carrier = recorded_carrier(scenario);
     const double needed = 2.0 * std::max(band.highest - carrier, carrier - band.lowest);
     if (rate < needed)
@@ -238,13 +239,10 @@ void check_sampling(TomlTable& root, const Scenario& scenario, const PulseSettin
                         to_text(rate) + " Hz");
     return;
   }
-  double highest = settings.kind == PulseKind::cw ? settings.frequency
-                   : settings.kind == PulseKind::file
-                       ? 0.0
-                       : std::max(settings.start_frequency, settings.end_frequency);
-  highest *= 1.0 + doppler_bound(scenario);
+  const auto through = frequencies_of(settings.waveform);
+  double highest = through ? through->highest * (1.0 + doppler_bound(scenario)) : 0.0;
   if (rate > 2.0 * highest)  // else it is too slow without a spectrum
-    highest = heard_band(scenario, Pulse(settings)).highest;
+    highest = received_band(scenario, Pulse(settings)).highest;
   if (!(rate > 2.0 * highest))
     throw pings.fault("sample_rate",
                       "a sample rate above " + to_text(std::ceil(2.0 * highest)) +
@@ -288,6 +286,18 @@ void check_fathometer(TomlTable& root, const Scenario& scenario) {
 
 }  // namespace
 
+void check_coherence(const TomlTable& noise, const Scenario& scenario) {
+  constexpr std::size_t most_phones = 256;  // the factors of more are gigabytes
+  const NoiseCoherence coherence = scenario.noise.coherence;
+  if (coherence == NoiseCoherence::independent) return;
+  for (const ReceiverArray& array : scenario.arrays)
+    if (array.phones.size() > most_phones)
+      throw noise.fault(
+          "coherence",
+          "\"independent\" for an array of more than " + std::to_string(most_phones) + " phones",
+          in_quotes(word_of(coherence)) + " for " + std::to_string(array.phones.size()));
+}
+
 void check_scenario(TomlTable& root, const Scenario& scenario) {
   check_platforms(root, scenario);
   check_targets(root, scenario);
@@ -299,4 +309,4 @@ void check_scenario(TomlTable& root, const Scenario& scenario) {
     check_sampling(root, scenario, pulse_of(scenario, static_cast<int>(t)));
 }
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

@@ -5,7 +5,7 @@
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
 /// A file named anywhere in a fragment is relative to the fragment.
@@ -58,4 +58,4 @@ TomlValue read_document(std::string_view text, const std::filesystem::path& path
   return document;
 }
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

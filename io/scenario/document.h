@@ -6,11 +6,11 @@
 
 #include "io/text/toml_value.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 
 /// The tree of a scenario file with its `include` merged in and `--set` overrides applied.
 /// \param path  named in messages; an included file is relative to its folder \throws InputError
 [[nodiscard]] TomlValue read_document(std::string_view text, const std::filesystem::path& path,
                                       std::span<const std::string> overrides);
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

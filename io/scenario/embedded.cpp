@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ void check_names(std::span<const std::string> overrides, const fs::path& folder,
   }
 }
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

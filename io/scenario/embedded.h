@@ -8,7 +8,7 @@
 #include "sonar/scenario/scenario.h"
 
 // Scenarios that came inside of a file of results: somebody else may have written them.
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 
 /// Every file that a tree names must lie in a folder or below it, links followed: what stands in
 /// other files is nobody's business, and messages quote what they find.
@@ -22,9 +22,9 @@ void check_names(const TomlValue& tree, const std::filesystem::path& folder,
 void check_names(std::span<const std::string> overrides, const std::filesystem::path& folder,
                  const std::string& remedy);
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario
 
-namespace asdic {
+namespace asdic::detail {
 
 /// parse_scenario() for text that came inside of a file of results, with its overrides: files that
 /// it names must lie in the folder of `path`, or below.
@@ -32,4 +32,4 @@ namespace asdic {
                                                const std::filesystem::path& path,
                                                std::span<const std::string> overrides);
 
-}  // namespace asdic
+}  // namespace asdic::detail

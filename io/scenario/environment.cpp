@@ -1,22 +1,20 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario/angles.h"
 #include "io/scenario/ocean.h"
 #include "io/scenario/sections.h"
+#include "io/settings/reader.h"
 
-namespace asdic {
-
-std::string_view name(Spreading spreading) noexcept {
-  return spreading == Spreading::plane ? "plane" : "cylindrical";
-}
+namespace asdic::detail {
 
 namespace scenario {
 namespace {
 
-const double default_wind_speed = Scenario{}.wind_speed;
+/// Of a scenario that says nothing [m/s].
+double default_wind_speed() { return std::make_unique<const Scenario>()->wind_speed; }
 
 /// Ranges at which two boundaries can be nearest: all nodes, and places between where one is
 /// curved.
@@ -51,38 +49,26 @@ void check_water(TomlTable& bottom, const Environment& ocean) {
                        "none");
 }
 
-/// `roughness` [m], or "wind": the wind's sea; its spectrum is known. `bubbles`: under it.
-void read_roughness(TomlTable& table, double wind_speed, bool surface, Boundary& boundary) {
-  Roughness& rough = boundary.roughness;
-  if (surface && table.is_text("roughness")) {
-    table.choice("roughness", {"wind"});
-    rough.rms_height = pierson_moskowitz_height(wind_speed);
-    rough.sea_wind = wind_speed;
-  } else {
-    rough.rms_height = table.number(
-        "roughness", {.noun = "rms height", .unit = "m", .low = 0.0, .high = 20.0}, 0.0);
-    if (table.has("roughness"))
-      rough.sea_wind = table.number("roughness_wind", quantity::wind_speed, rough.sea_wind);
-  }
-  constexpr Quantity floor{.noun = "floor", .unit = "dB", .low = -300.0, .high = 0.0};
-  if (table.has("roughness"))  // what leaves the mean field is not lost: no floor is wanted
-    rough.floor_db = table.number("roughness_floor_db", floor, floor.low);
-  if (surface && table.choice("bubbles", {"none", "apl-uw"}, "none") == "apl-uw")
-    rough.bubble_wind = table.number("bubbles_wind", quantity::wind_speed, wind_speed);
-}
+/// [environment.transect]
+struct TransectTable {
+  Transect transect = {};
 
-Transect read_transect(TomlTable table) {
-  Transect transect;
-  if (table.has("origin")) {
-    const auto origin = table.numbers("origin", quantity::coordinate);
-    if (origin.size() != 2) throw table.fault("origin", "[east, north] in m");
+  void describe(Fields& field) {
+    std::vector<double> origin = {transect.x, transect.y};
+    field("origin", origin, quantity::coordinate, "of range 0 on the map");
+    if (field.checks() && origin.size() != 2) field.fault("origin", "[east, north] in m");
     transect.x = origin[0];
     transect.y = origin[1];
+    field("bearing", transect.bearing, quantity::bearing, "of growing range");
   }
-  transect.bearing =
-      read_angle(table, "bearing", {.noun = "bearing", .low_deg = -360.0, .high_deg = 360.0}, 0.0);
-  table.finish();
-  return transect;
+};
+
+void describe_wind(Fields& field, double& wind_speed) {
+  field("wind_speed", wind_speed, quantity::wind_speed, "at 10 m height");
+}
+
+void describe_spreading(Fields& field, Spreading& spreading) {
+  field("spreading", spreading, "what the sea is beside the plane");
 }
 
 }  // namespace
@@ -93,29 +79,67 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
   ocean.bottom = read_boundary_place(bottom, reading, false);
   ocean.surface = read_boundary_place(surface, reading, true);
   check_water(bottom, ocean);
-  read_water_losses(table, reading, ocean);
+  KnownSettings known{.folder = reading.folder};
+  TomlReader reader(table, known);
+  describe_density(reader, ocean);
+  describe_losses(reader, ocean);
   read_sound_speed(table.table("sound_speed"), reading, ocean);
-  read_boundary_materials(bottom, reading, ocean, std::nullopt, ocean.bottom);
-  const double wind = table.number("wind_speed", quantity::wind_speed, default_wind_speed);
-  read_roughness(bottom, wind, false, ocean.bottom);
+  read_boundary_materials(bottom, reading, ocean, false, ocean.bottom);
+  double wind = default_wind_speed();
+  describe_wind(reader, wind);
+  read_roughness(bottom, wind, false, ocean.bottom.roughness);
   bottom.finish();
-  read_boundary_materials(surface, reading, ocean, std::string(Vacuum::name), ocean.surface);
-  read_roughness(surface, wind, true, ocean.surface);
+  read_boundary_materials(surface, reading, ocean, true, ocean.surface);
+  read_roughness(surface, wind, true, ocean.surface.roughness);
   surface.finish();
-  const std::string cylindrical(name(Spreading::cylindrical)), plane(name(Spreading::plane));
-  if (table.choice("spreading", {plane, cylindrical}, plane) == cylindrical)
-    ocean.spreading = Spreading::cylindrical;
+  describe_spreading(reader, ocean.spreading);
   return ocean;
+}
+
+void OceanTable::describe(Fields& field) const {
+  Environment shown = ocean;
+  if (varies_with_range(ocean)) describe_spreading(field, shown.spreading);
+  describe_density(field, shown);
+  describe_sound_speed(field, ocean);
+  describe_losses(field, shown);
+  describe_boundary(field, true, ocean.surface);
+  describe_boundary(field, false, ocean.bottom);
+}
+
+namespace {
+
+/// [environment] with what only a sonar needs.
+struct SonarOcean {
+  const Scenario& scenario;
+
+  void describe(Fields& field) const {
+    double wind_speed = scenario.wind_speed;
+    describe_wind(field, wind_speed);
+    TransectTable transect{scenario.transect};
+    field("transect", transect, "where the ocean's range axis lies on the map");
+    OceanTable{scenario.environment}.describe(field);
+  }
+};
+
+}  // namespace
+
+void describe_environment(Fields& field, const Scenario& scenario) {
+  SonarOcean environment{scenario};
+  field("environment", environment, "the water and its boundaries");
 }
 
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario) {
-  scenario.wind_speed = table.number("wind_speed", quantity::wind_speed, scenario.wind_speed);
-  scenario.transect = read_transect(table.table("transect"));
+  KnownSettings known;
+  TomlReader reader(table, known);
+  describe_wind(reader, scenario.wind_speed);
+  TransectTable transect;
+  reader("transect", transect, "where the ocean's range axis lies on the map");
+  scenario.transect = transect.transect;
   scenario.environment =
       read_ocean(table, {.folder = folder, .frequency = frequency, .notes = scenario.notes});
   table.finish();
 }
 
 }  // namespace scenario
-}  // namespace asdic
+}  // namespace asdic::detail

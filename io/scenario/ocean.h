@@ -1,17 +1,21 @@
 #pragma once
 #include <filesystem>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/fields.h"
 #include "io/text/toml_table.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// How it is called in a file.
-[[nodiscard]] std::string_view name(Spreading spreading) noexcept;
+// How they are called in a file.
+inline constexpr std::string_view spreading_words[] = {"plane", "cylindrical"};
+constexpr std::span<const std::string_view> words(Spreading) { return spreading_words; }
+[[nodiscard]] std::span<const std::string_view> words(Interpolation);
+[[nodiscard]] std::span<const std::string_view> words(ShapeInterpolation);
 
 /// The parts of [environment] (docs/formats/scenario.md), one function per table.
 namespace scenario {
@@ -23,29 +27,45 @@ struct OceanReading {
   std::vector<std::string>& notes;  ///< grows by what the user should know
 };
 
+// The settings of each table are described once, in the .cpp of its reader: read_…() reads them
+// and makes of them what they say, describe_…() shows to a walker that reads nothing what says it
+// bit for bit.
+
 /// `kind` and its keys. \param water  beside it, which grain sizes refer to
-/// \param fallback  the kind where none is given; none: it is required
+/// \param vacuum_unless_given  else the kind is required
 [[nodiscard]] BoundaryMaterial read_material(TomlTable& table, const OceanReading& reading,
                                              const WaterAtBoundary& water,
-                                             std::optional<std::string> fallback);
+                                             bool vacuum_unless_given);
+void describe_material(Fields& field, const BoundaryMaterial& material);
 
 /// Where a boundary is, of [environment.surface] or [environment.bottom]: `depth`, or `shape`.
 [[nodiscard]] Boundary read_boundary_place(TomlTable& table, const OceanReading& reading,
                                            bool surface);
 /// What is behind it, when its place and the water are known.
 void read_boundary_materials(TomlTable& table, const OceanReading& reading,
-                             const Environment& ocean, std::optional<std::string> fallback,
-                             Boundary& boundary);
+                             const Environment& ocean, bool surface, Boundary& boundary);
+/// How rough it is. \param wind_speed  of the sea that "wind" asks for [m/s]
+void read_roughness(TomlTable& table, double wind_speed, bool surface, Roughness& roughness);
+void describe_boundary(Fields& field, bool surface, const Boundary& boundary);
 
 /// `kind` and its keys: a profile, or a section. The boundaries are in their places already.
 void read_sound_speed(TomlTable table, const OceanReading& reading, Environment& ocean);
+void describe_sound_speed(Fields& field, const Environment& ocean);
 
-/// [environment.absorption], [[environment.biology]], [environment.attenuation], water_density.
-void read_water_losses(TomlTable& table, const OceanReading& reading, Environment& ocean);
+/// water_density, of all walkers.
+void describe_density(Fields& field, Environment& ocean);
+/// [environment.absorption], [[environment.biology]], [environment.attenuation], of all walkers.
+void describe_losses(Fields& field, Environment& ocean);
+
+/// [environment] for a walker that does not read, without what only a sonar needs.
+struct OceanTable {
+  const Environment& ocean;
+  void describe(Fields& field) const;
+};
 
 /// All of [environment] but what only a sonar needs (wind_speed, transect): the caller asks for
 /// those keys, and finishes the table.
 [[nodiscard]] Environment read_ocean(TomlTable& table, const OceanReading& reading);
 
 }  // namespace scenario
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,12 +2,12 @@
 
 #include "io/scenario/document.h"
 #include "io/scenario/ocean.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What the propagation model is to do. \throws InputError where nothing says so
@@ -82,8 +82,11 @@ MemoryBudget budget_of(const TomlValue& document, MemoryBudget otherwise) {
 }
 
 bool has_sonar(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  const TomlValue document =
-      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
+  return has_sonar(
+      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides));
+}
+
+bool has_sonar(const TomlValue& document) {
   return document.find("platform") != nullptr || document.find("run") == nullptr;
 }
 
@@ -94,12 +97,19 @@ bool asks_for_rays(const std::filesystem::path& path, std::span<const std::strin
   const TomlValue* task = run == nullptr ? nullptr : run->find("task");
   if (task == nullptr) return false;
   const auto* text = std::get_if<std::string>(&task->data);
-  return text != nullptr && (*text == name(Task::rays) || *text == name(Task::eigenrays) ||
-                             *text == name(Task::eigenrays_and_arrivals));
+  return text != nullptr && (*text == word_of(Task::rays) || *text == word_of(Task::eigenrays) ||
+                             *text == word_of(Task::eigenrays_and_arrivals));
 }
 
 InputError told_of_scenario(const InputError& error, const std::filesystem::path& path,
                             std::span<const std::string> overrides) {
+  return told_of_scenario(
+      error, scenario::read_document(read_text_file(path, "a scenario file"), path, overrides),
+      path);
+}
+
+InputError told_of_scenario(const InputError& error, const TomlValue& document,
+                            const std::filesystem::path& path) {
   InputFault fault = error.fault();
   const std::pair<std::string_view, std::string_view> names[] = {
       {"beams.highest", "run.fan.highest"},
@@ -117,8 +127,6 @@ InputError told_of_scenario(const InputError& error, const std::filesystem::path
       fault.where.replace(0, ours.size(), theirs);
       break;
     }
-  const TomlValue document =
-      scenario::read_document(read_text_file(path, "a scenario file"), path, overrides);
   std::string origin = path.string();
   const TomlValue* value = &document;  // as deep as the file goes
   for (std::string_view rest = fault.where; !rest.empty();) {
@@ -141,10 +149,14 @@ InputError told_of_scenario(const InputError& error, const std::filesystem::path
 PropagationCase parse_propagation_case(std::string_view text, const std::filesystem::path& path,
                                        std::span<const std::string> overrides,
                                        std::vector<std::string>& notes) {
-  const TomlValue document = scenario::read_document(text, path, overrides);
+  return propagation_case_of(scenario::read_document(text, path, overrides), path, notes);
+}
+
+PropagationCase propagation_case_of(const TomlValue& document, const std::filesystem::path& path,
+                                    std::vector<std::string>& notes) {
   if (document.find("platform") != nullptr)
-    return of_sonar(document, parse_scenario(text, path, overrides), notes);
+    return of_sonar(document, scenario_of(document, path), notes);
   return of_ocean_and_run(document, path.parent_path(), notes);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/fields.h"
 #include "core/memory_budget.h"
 #include "io/text/toml_table.h"
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A run of the propagation model as a scenario file describes it: [environment] and [run]
 /// (docs/formats/scenario.md). A whole sonar scenario will do: its ocean is used, in the plane that
@@ -29,6 +30,11 @@ namespace asdic {
                                                      std::span<const std::string> overrides,
                                                      std::vector<std::string>& notes);
 
+/// The same of a tree that was read before, with its includes and overrides in it.
+[[nodiscard]] PropagationCase propagation_case_of(const TomlValue& document,
+                                                  const std::filesystem::path& path,
+                                                  std::vector<std::string>& notes);
+
 /// The budget that run.memory of a file, sonar's or not, sets; the default where it says nothing.
 [[nodiscard]] MemoryBudget read_budget(const std::filesystem::path& path,
                                        std::span<const std::string> overrides);
@@ -38,6 +44,9 @@ namespace asdic {
 /// Whether a file describes a sonar: it has a [platform], or no [run] either.
 [[nodiscard]] bool has_sonar(const std::filesystem::path& path,
                              std::span<const std::string> overrides);
+
+/// The same of a tree that was read before.
+[[nodiscard]] bool has_sonar(const TomlValue& document);
 
 /// Whether [run] of a file asks for rays or eigenrays: it names that task.
 [[nodiscard]] bool asks_for_rays(const std::filesystem::path& path,
@@ -49,27 +58,54 @@ namespace asdic {
                                           const std::filesystem::path& path,
                                           std::span<const std::string> overrides);
 
-/// How a task, a kind of field, beam or source is called in a file and in messages.
-[[nodiscard]] std::string_view name(Task task) noexcept;
-[[nodiscard]] std::string_view name(FieldKind kind) noexcept;
-[[nodiscard]] std::string_view name(FieldSolver solver) noexcept;
-[[nodiscard]] std::string_view name(BeamKind kind) noexcept;
-[[nodiscard]] std::string_view name(SourceKind kind) noexcept;
-[[nodiscard]] std::string_view name(CervenyBeams::Width width) noexcept;
-[[nodiscard]] std::string_view name(CervenyBeams::Curvature curvature) noexcept;
-[[nodiscard]] std::string_view name(CervenyBeams::Component component) noexcept;
+/// The same of a tree that was read before, of a file at `path`.
+[[nodiscard]] InputError told_of_scenario(const InputError& error, const TomlValue& document,
+                                          const std::filesystem::path& path);
+
+// How a task, a kind of field, beam or source is called in a file and in messages.
+inline constexpr std::string_view task_words[] = {"rays", "eigenrays", "arrivals",
+                                                  "eigenrays-and-arrivals", "field"};
+inline constexpr std::string_view field_kind_words[] = {"coherent", "incoherent", "semi-coherent"};
+inline constexpr std::string_view field_solver_words[] = {"auto", "beams", "waves"};
+inline constexpr std::string_view beam_kind_words[] = {"hat",
+                                                       "gaussian",
+                                                       "ray-centred-hat",
+                                                       "ray-centred-gaussian",
+                                                       "simple-gaussian",
+                                                       "cerveny-cartesian",
+                                                       "cerveny-ray-centred"};
+inline constexpr std::string_view source_kind_words[] = {"point", "line"};
+inline constexpr std::string_view width_words[] = {"space-filling", "minimum", "wkb", "cerveny"};
+inline constexpr std::string_view curvature_words[] = {"standard", "doubled", "zero"};
+inline constexpr std::string_view component_words[] = {"pressure", "vertical", "horizontal"};
+
+constexpr std::span<const std::string_view> words(Task) { return task_words; }
+constexpr std::span<const std::string_view> words(FieldKind) { return field_kind_words; }
+constexpr std::span<const std::string_view> words(FieldSolver) { return field_solver_words; }
+constexpr std::span<const std::string_view> words(BeamKind) { return beam_kind_words; }
+constexpr std::span<const std::string_view> words(SourceKind) { return source_kind_words; }
+constexpr std::span<const std::string_view> words(CervenyBeams::Width) { return width_words; }
+constexpr std::span<const std::string_view> words(CervenyBeams::Curvature) {
+  return curvature_words;
+}
+constexpr std::span<const std::string_view> words(CervenyBeams::Component) {
+  return component_words;
+}
 
 namespace scenario {
-
-/// `count` values from first to last, both included: what { first, last, count } stands for.
-[[nodiscard]] std::vector<double> evenly_spaced(double first, double last, std::size_t count);
 
 /// run.memory: bytes, or a text such as "4 GB" or "512 MiB"; 0 where it is not given.
 [[nodiscard]] double read_memory(TomlTable& table);
 
-/// [run] and its tables. `run_case` brings the environment, and a frequency and source depths for
-/// where none are given (a frequency of 0, no depths: they are required).
+/// [run] and its tables: all of a case but its title and its ocean. The case brings the ocean, and
+/// a frequency and source depths for where none are given (no depths: they are required).
+struct RunTable {
+  PropagationCase& run;
+  void describe(Fields& field);
+};
+
+/// A RunTable out of a file, with run.memory, which is of the process and not of the run.
 void read_run(TomlTable table, PropagationCase& run_case);
 
 }  // namespace scenario
-}  // namespace asdic
+}  // namespace asdic::detail

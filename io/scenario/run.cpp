@@ -1,200 +1,182 @@
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <string>
 
 #include "core/text.h"
-#include "io/scenario/angles.h"
 #include "io/scenario/propagation.h"
+#include "io/settings/reader.h"
 
-namespace asdic {
-
-std::string_view name(Task task) noexcept {
-  constexpr std::string_view names[] = {"rays", "eigenrays", "arrivals", "eigenrays-and-arrivals",
-                                        "field"};
-  return names[static_cast<int>(task)];
-}
-
-std::string_view name(FieldKind kind) noexcept {
-  constexpr std::string_view names[] = {"coherent", "incoherent", "semi-coherent"};
-  return names[static_cast<int>(kind)];
-}
-
-std::string_view name(FieldSolver solver) noexcept {
-  constexpr std::string_view names[] = {"auto", "beams", "waves"};
-  return names[static_cast<int>(solver)];
-}
-
-std::string_view name(BeamKind kind) noexcept {
-  constexpr std::string_view names[] = {"hat",
-                                        "gaussian",
-                                        "ray-centred-hat",
-                                        "ray-centred-gaussian",
-                                        "simple-gaussian",
-                                        "cerveny-cartesian",
-                                        "cerveny-ray-centred"};
-  return names[static_cast<int>(kind)];
-}
-
-std::string_view name(SourceKind kind) noexcept {
-  return kind == SourceKind::point ? "point" : "line";
-}
-
-std::string_view name(CervenyBeams::Width width) noexcept {
-  constexpr std::string_view names[] = {"space-filling", "minimum", "wkb", "cerveny"};
-  return names[static_cast<int>(width)];
-}
-
-std::string_view name(CervenyBeams::Curvature curvature) noexcept {
-  constexpr std::string_view names[] = {"standard", "doubled", "zero"};
-  return names[static_cast<int>(curvature)];
-}
-
-std::string_view name(CervenyBeams::Component component) noexcept {
-  constexpr std::string_view names[] = {"pressure", "vertical", "horizontal"};
-  return names[static_cast<int>(component)];
-}
-
-namespace scenario {
+namespace asdic::detail::scenario {
 namespace {
 
-constexpr AngleQuantity elevation{.noun = "elevation", .low_deg = -360.0, .high_deg = 360.0};
+constexpr AngleQuantity launch_elevation{.noun = "elevation", .low_deg = -360.0, .high_deg = 360.0};
 constexpr Quantity receiver_depth{.noun = "depth", .unit = "m", .low = -1e6, .high = 1e6};
 constexpr Quantity receiver_range{.noun = "range", .unit = "m", .low = -1e10, .high = 1e10};
 constexpr Quantity limit{.noun = "limit", .unit = "m", .low = 0.0, .high = 1e10};
+constexpr Quantity case_frequency{
+    .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true};
 constexpr std::int64_t most_beams = 10'000'000;
 
-/// One of the first `count` values of an enumeration, by its name; the fallback's where absent.
-template <class Enum>
-Enum one_of(TomlTable& table, const std::string& key, int count, Enum fallback) {
-  std::vector<std::string> names;
-  for (int i = 0; i < count; ++i) names.emplace_back(name(static_cast<Enum>(i)));
-  const std::string chosen = table.choice(key, names, std::string(name(fallback)));
-  const auto found = std::find(names.begin(), names.end(), chosen) - names.begin();
-  return static_cast<Enum>(found);
+/// Where a list first falls, or does not rise. \return its element: "range[3]"; "" if nowhere
+std::string out_of_order(const std::string& key, const std::vector<double>& values, bool rising) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] < values[i - 1] || (rising && values[i] == values[i - 1]))
+      return key + "[" + std::to_string(i) + "]";
+  return "";
 }
 
-/// A number, an array of numbers, or evenly spaced ones: { first, last, count }.
-std::vector<double> read_axis(TomlTable& table, const std::string& key, const Quantity& quantity) {
-  if (table.is_array(key)) return table.numbers(key, quantity);
-  if (!table.is_table(key)) return {table.number(key, quantity)};
-  TomlTable even = table.table(key);
-  const double first = even.number("first", quantity), last = even.number("last", quantity);
-  const auto count = even.integer("count", 1, 10'000'000);
-  even.finish();
-  return evenly_spaced(first, last, static_cast<std::size_t>(count));
-}
-
-void require_order(const TomlTable& table, const std::string& key,
-                   const std::vector<double>& values) {
+void require_not_falling(Fields& field, const std::string& key, const std::vector<double>& values) {
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] < values[i - 1])
-      throw table.fault(key + "[" + std::to_string(i) + "]",
-                        "a value not below the one before it, " + to_text(values[i - 1]) + " m");
+      field.fault(key + "[" + std::to_string(i) + "]",
+                  "a value not below the one before it, " + to_text(values[i - 1]) + " m");
 }
 
 /// Level over launch angle: `amplitude`, or `level_db` = 20·log₁₀ of it.
-SourcePattern read_pattern(TomlTable table) {
+struct PatternTable {
   SourcePattern pattern;
-  pattern.elevation = read_angles(table, "elevation", elevation);
-  const bool in_db = table.has("level_db");
-  const std::string key = in_db ? "level_db" : "amplitude";
-  if (in_db && table.has("amplitude"))
-    throw table.fault("amplitude", "no \"amplitude\" beside level_db");
-  pattern.amplitude = table.numbers(key, {.noun = in_db ? "level" : "amplitude",
-                                          .low = in_db ? -1000.0 : 0.0,
-                                          .high = in_db ? 1000.0 : 1e50});
-  if (in_db)
-    for (double& x : pattern.amplitude) x = amplitude_from_db(x);
-  if (pattern.amplitude.size() != pattern.elevation.size())
-    throw table.fault(key,
-                      "as many values as elevations, " + std::to_string(pattern.elevation.size()));
-  for (std::size_t i = 1; i < pattern.elevation.size(); ++i)
-    if (pattern.elevation[i] <= pattern.elevation[i - 1])
-      throw table.fault(angle_key(table, "elevation") + "[" + std::to_string(i) + "]",
-                        "an elevation above the one before it");
-  table.finish();
-  return pattern;
-}
 
-void read_source(TomlTable table, PropagationCase& run) {
-  if (table.has("depth") || run.source_depths.empty())
-    run.source_depths = read_axis(table, "depth", receiver_depth);
-  run.beams.source = one_of(table, "kind", 2, run.beams.source);
-  if (table.has("pattern")) run.beams.pattern = read_pattern(table.table("pattern"));
-  table.finish();
-}
-
-void read_receivers(TomlTable table, PropagationCase& run) {
-  ReceiverGrid& grid = run.receivers;
-  grid.irregular = table.flag("irregular", false);
-  const bool has_depth = table.has("depth"), has_range = table.has("range");
-  if (run.task != Task::rays || has_depth || has_range) {  // rays need none
-    grid.depths = read_axis(table, "depth", receiver_depth);
-    grid.ranges = read_axis(table, "range", receiver_range);
+  void describe(Fields& field) {
+    field(required("elevation"), pattern.elevation, launch_elevation,
+          "at which the pattern is given");
+    Fields::Ways ways;
+    if (const auto way = field.way(ways, {"level_db"}, false)) {
+      std::vector<double> level;
+      field(required("level_db"), level, {.noun = "level", .low = -1000.0, .high = 1000.0},
+            "re that of a source without a pattern, in dB");
+      if (field.reads()) pattern.amplitude.assign(level.size(), 0.0);
+      if (field.reads())
+        std::transform(level.begin(), level.end(), pattern.amplitude.begin(), amplitude_from_db);
+    }
+    if (const auto way = field.otherwise(ways, {"amplitude"}))
+      field(required("amplitude"), pattern.amplitude,
+            {.noun = "amplitude", .low = 0.0, .high = 1e50},
+            "re that of a source without a pattern; straight between elevations");
+    if (field.checks()) check(field, std::string(ways.chosen.front()));
   }
-  if (grid.irregular) {
-    if (grid.depths.size() != grid.ranges.size())
-      throw table.fault("depth", "one for each of the " + std::to_string(grid.ranges.size()) +
-                                     " ranges of an irregular set");
-  } else {
-    require_order(table, "depth", grid.depths);
-    require_order(table, "range", grid.ranges);
+  void check(Fields& field, const std::string& strength) const {
+    if (pattern.amplitude.size() != pattern.elevation.size())
+      field.fault(strength,
+                  "as many values as elevations, " + std::to_string(pattern.elevation.size()));
+    const std::string at = out_of_order("elevation_deg", pattern.elevation, true);
+    if (!at.empty()) field.fault(at, "an elevation above the one before it");
+  }
+};
+
+struct SourceTable {
+  PropagationCase& run;
+
+  void describe(Fields& field) {
+    field.axis(run.source_depths.empty() ? required("depth") : "depth", run.source_depths,
+               receiver_depth, "of the sources");
+    field("kind", run.beams.source, "a point's sound spreads across the plane, a line's does not");
+    std::optional<PatternTable> pattern;
+    if (run.beams.pattern) pattern = PatternTable{*run.beams.pattern};
+    field("pattern", pattern, "its strength over launch elevation");
+    if (!field.reads()) return;
+    run.beams.pattern.reset();
+    if (pattern) run.beams.pattern = pattern->pattern;
+  }
+};
+
+struct ReceiversTable {
+  ReceiverGrid& grid;
+  bool wanted;  ///< rays need none
+
+  void describe(Fields& field) {
+    field(seldom("irregular"), grid.irregular,
+          "receiver i is at the i-th range and depth; else they are at all ranges and depths");
+    field.axis(wanted ? required("depth") : "depth", grid.depths, receiver_depth, "of receivers");
+    field.axis(wanted || !grid.depths.empty() ? required("range") : "range", grid.ranges,
+               receiver_range, "of receivers from the source");
+    if (field.checks()) check(field);
+  }
+  void check(Fields& field) const {
+    if (grid.depths.empty() && !grid.ranges.empty())
+      field.fault("depth", receiver_depth.expected());
+    if (grid.irregular) {
+      if (grid.depths.size() != grid.ranges.size())
+        field.fault("depth", "one for each of the " + std::to_string(grid.ranges.size()) +
+                                 " ranges of an irregular set");
+      return;
+    }
+    require_not_falling(field, "depth", grid.depths);
+    require_not_falling(field, "range", grid.ranges);
     if (double(grid.depths.size()) * double(grid.ranges.size()) > 1e9)
-      throw table.fault("range", "at most 1e9 receivers");
+      field.fault("range", "at most 1e9 receivers");
   }
-  table.finish();
-}
+};
 
-void read_fan(TomlTable table, BeamSettings& beams) {
-  if (has_angle(table, "elevations")) {
-    beams.elevations = read_angles(table, "elevations", elevation);
-    const std::string key = angle_key(table, "elevations");
-    for (std::size_t i = 1; i < beams.elevations.size(); ++i)
-      if (beams.elevations[i] < beams.elevations[i - 1])
-        throw table.fault(key + "[" + std::to_string(i) + "]",
-                          "an elevation not below the one before it");
-    beams.lowest = beams.elevations.front();
-    beams.highest = beams.elevations.back();
+struct FanTable {
+  BeamSettings& beams;
+
+  void describe(Fields& field) {
+    field("elevations", beams.elevations, launch_elevation, "exactly these rays, positive up");
+    if (field.reads() && !beams.elevations.empty()) {
+      const std::string at = out_of_order("elevations_deg", beams.elevations, false);
+      if (!at.empty()) field.fault(at, "an elevation not below the one before it");
+      beams.lowest = beams.elevations.front();
+      beams.highest = beams.elevations.back();
+    }
+    field("lowest", beams.lowest, launch_elevation, "at which the source shines");
+    field("highest", beams.highest, launch_elevation, "at which the source shines");
+    if (field.checks() && beams.highest < beams.lowest)
+      field.fault("highest_deg", "not below the lowest elevation");
+    field("count", beams.count, 0, most_beams,
+          "rays of a ray run, the least number of beams otherwise; 0: by our own rule");
   }
-  beams.lowest = read_angle(table, "lowest", elevation, beams.lowest);
-  beams.highest = read_angle(table, "highest", elevation, beams.highest);
-  if (beams.highest < beams.lowest)
-    throw table.fault(angle_key(table, "highest"), "not below the lowest elevation");
-  beams.count = static_cast<int>(table.integer("count", 0, most_beams, beams.count));
-  table.finish();
-}
+};
 
-CervenyBeams read_cerveny(TomlTable table) {
+struct CervenyTable {
   CervenyBeams beams;
-  beams.width = one_of(table, "width", 4, beams.width);
-  beams.curvature = one_of(table, "curvature", 3, beams.curvature);
-  beams.component = one_of(table, "component", 3, beams.component);
-  beams.width_multiplier = table.number(
-      "width_multiplier", {.noun = "factor", .low = -1e9, .high = 1e9}, beams.width_multiplier);
-  beams.loop_range = table.number("loop_range", receiver_range, beams.loop_range);
-  beams.images = static_cast<int>(table.integer("images", 1, 3, beams.images));
-  beams.window = static_cast<int>(table.integer("window", 0, 1'000'000, beams.window));
-  table.finish();
-  return beams;
-}
 
-void read_beams(TomlTable table, BeamSettings& beams) {
-  beams.kind = one_of(table, "kind", 7, beams.kind);
-  beams.displacement = table.flag("displacement", beams.displacement);
-  const bool cerveny =
-      beams.kind == BeamKind::cerveny_cartesian || beams.kind == BeamKind::cerveny_ray_centred;
-  if (table.has("cerveny") || cerveny) beams.cerveny = read_cerveny(table.table("cerveny"));
-  table.finish();
-}
+  void describe(Fields& field) {
+    field("width", beams.width, "how wide a beam begins");
+    field("curvature", beams.curvature, "of the jump of p at a reflection");
+    field("component", beams.component, "of the field that is computed");
+    field("width_multiplier", beams.width_multiplier, {.noun = "factor", .low = -1e9, .high = 1e9},
+          "on the width");
+    field("loop_range", beams.loop_range, receiver_range,
+          "where a minimum-width beam is narrowest");
+    field("images", beams.images, 1, 3,
+          "1: the ray; 2: and over the surface; 3: and under the bottom");
+    field("window", beams.window, 0, 1'000'000, "half-width of the beam, in its own widths");
+  }
+};
 
-void read_literal(TomlTable table, LiteralSettings& literal) {
-  literal.step = table.number("step", limit, literal.step);
-  literal.beams = static_cast<int>(table.integer("beams", 0, most_beams, literal.beams));
-  if (table.has("single_beam"))
-    literal.single_beam = static_cast<int>(table.integer("single_beam", 1, most_beams));
-  table.finish();
-}
+struct BeamsTable {
+  BeamSettings& beams;
+
+  void describe(Fields& field) {
+    field("kind", beams.kind, "shape of a beam across its ray");
+    field(seldom("displacement"), beams.displacement,
+          "whether beams are displaced along the boundary at a reflection");
+    std::optional<CervenyTable> cerveny;
+    if (beams.cerveny) cerveny = CervenyTable{*beams.cerveny};
+    const bool of_them =
+        beams.kind == BeamKind::cerveny_cartesian || beams.kind == BeamKind::cerveny_ray_centred;
+    if (field.reads() && of_them && !cerveny) cerveny.emplace();
+    if (of_them && cerveny)
+      field("cerveny", *cerveny, "what only Cerveny beams know");
+    else
+      field("cerveny", cerveny, "what only Cerveny beams know");
+    if (!field.reads()) return;
+    beams.cerveny.reset();
+    if (cerveny) beams.cerveny = cerveny->beams;
+  }
+};
+
+struct LiteralTable {
+  LiteralSettings& literal;
+
+  void describe(Fields& field) {
+    field.remark("obeyed by --like-bellhop alone");
+    field("step", literal.step, limit, "of the marching; 0: a tenth of the depth");
+    field("beams", literal.beams, 0, most_beams, "0: by BELLHOP's rule");
+    field("single_beam", literal.single_beam, 1, most_beams, "trace this one only, counted from 1");
+  }
+};
 
 /// Where rays need not be followed any further: a little behind the last receiver, or, where the
 /// bottom goes on to rise behind it and sound may turn round there, where it ends to rise, at twice
@@ -210,26 +192,38 @@ double usual_box_range(const Boundary& bottom, double furthest) {
 }
 
 /// Rays end at a range of their own, and under the deepest bottom.
-void set_box(TomlTable& table, PropagationCase& run) {
+void describe_box(Fields& field, PropagationCase& run) {
   double furthest = 0.0;
   for (const double r : run.receivers.ranges) furthest = std::max(furthest, std::abs(r));
-  const Boundary& bottom = run.environment.bottom;
-  const double deepest = bottom.shape ? bottom.shape->deepest() : bottom.depth;
-  const bool known = furthest > 0.0;
-  run.box_range = known ? table.number("box_range", limit, usual_box_range(bottom, furthest))
-                        : table.number("box_range", limit);
-  run.box_depth = table.number("box_depth", limit, 1.01 * std::abs(deepest) + 1.0);
+  if (field.reads()) {
+    const Boundary& bottom = run.environment.bottom;
+    const double deepest = bottom.shape ? bottom.shape->deepest() : bottom.depth;
+    run.box_range = usual_box_range(bottom, furthest);
+    run.box_depth = 1.01 * std::abs(deepest) + 1.0;
+  }
+  field(furthest > 0.0 ? "box_range" : required("box_range"), run.box_range, limit,
+        "rays end at this distance from the source");
+  field("box_depth", run.box_depth, limit, "rays end this far below and above depth 0");
 }
 
 }  // namespace
 
-std::vector<double> evenly_spaced(double first, double last, std::size_t count) {
-  std::vector<double> values(count, first);
-  for (std::size_t i = 1; i < count; ++i)
-    values[i] = i + 1 == count ? last
-                               : first + (last - first) * static_cast<double>(i) /
-                                             static_cast<double>(count - 1);
-  return values;
+void RunTable::describe(Fields& field) {
+  field("task", run.task, "what is computed");
+  field("field", run.field, "how a field adds its beams");
+  field("solver", run.solver, "what a coherent field is made of");
+  field("frequency", run.frequency, case_frequency, "of the sound");
+  SourceTable source{run};
+  ReceiversTable receivers{run.receivers, run.task != Task::rays};
+  FanTable fan{run.beams};
+  BeamsTable beams{run.beams};
+  LiteralTable literal{run.literal};
+  field("source", source, "where the sound comes from");
+  field("receivers", receivers, "where the field is wanted");
+  field("fan", fan, "the rays that leave the source");
+  field("beams", beams, "what is around them");
+  field("literal", literal, "what an input file of BELLHOP says and only a literal run obeys");
+  describe_box(field, run);
 }
 
 double read_memory(TomlTable& table) {
@@ -250,20 +244,10 @@ double read_memory(TomlTable& table) {
 
 void read_run(TomlTable table, PropagationCase& run) {
   static_cast<void>(read_memory(table));  // of the process, not of the run: budget_of()
-  run.task = one_of(table, "task", 5, run.task);
-  run.field = one_of(table, "field", 3, run.field);
-  run.solver = one_of(table, "solver", 3, FieldSolver::automatic);
-  constexpr Quantity frequency{
-      .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e8, .above = true};
-  run.frequency = table.number("frequency", frequency, run.frequency);
-  read_source(table.table("source"), run);
-  read_receivers(table.table("receivers"), run);
-  read_fan(table.table("fan"), run.beams);
-  read_beams(table.table("beams"), run.beams);
-  read_literal(table.table("literal"), run.literal);
-  set_box(table, run);
-  table.finish();
+  run.solver = FieldSolver::automatic;
+  KnownSettings known;
+  RunTable settings{run};
+  read_settings(std::move(table), settings, known);
 }
 
-}  // namespace scenario
-}  // namespace asdic
+}  // namespace asdic::detail::scenario

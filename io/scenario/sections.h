@@ -4,28 +4,25 @@
 #include "io/text/toml_table.h"
 #include "sonar/scenario/scenario.h"
 
-/// The parts of a scenario file, one function per table (docs/formats/scenario.md). Each checks
-/// types and ranges of its own keys; check_scenario() holds the parts against one another. All
-/// throw InputError.
-namespace asdic::scenario {
+/// The parts of a scenario file that do not describe themselves (docs/develop/settings.md), one
+/// function per table. Each checks types and ranges of its own keys; check_scenario() holds the
+/// parts against one another. All throw InputError.
+namespace asdic::detail::scenario {
+
+// The tables of a sonar, in the order in which they are read. Between them: [pulse] and
+// [environment]; and after describe_bodies() what checks the noise.
+void describe_head(Fields& field, Scenario& scenario);    ///< title and seed
+void describe_bodies(Fields& field, Scenario& scenario);  ///< from platforms to noise
+void describe_sound(Fields& field, Scenario& scenario);   ///< from reverberation to pings
+/// [environment], for a walker that does not read.
+void describe_environment(Fields& field, const Scenario& scenario);
 
 /// \param frequency  at which attenuations per metre are meant [Hz]
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario);
-[[nodiscard]] PulseSettings read_pulse(TomlTable table, const std::filesystem::path& folder);
-void read_platforms(std::vector<TomlTable> tables, Scenario& scenario);
-/// After the platforms, which they name.
-void read_transmitters(std::vector<TomlTable> tables, const std::filesystem::path& folder,
-                       Scenario& scenario);
-void read_arrays(std::vector<TomlTable> tables, Scenario& scenario);
-void read_interferers(std::vector<TomlTable> tables, const std::filesystem::path& folder,
-                      Scenario& scenario);
-void read_targets(std::vector<TomlTable> tables, Scenario& scenario);
-void read_noise(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
-void read_reverberation(TomlTable table, Scenario& scenario);
-void read_propagation(TomlTable table, Scenario& scenario);
-void read_pings(TomlTable table, bool transmitter_has_elevation, Scenario& scenario);
 
+/// \throws InputError where noise is coherent between more phones than there is memory for
+void check_coherence(const TomlTable& noise, const Scenario& scenario);
 /// \throws InputError where a transmitter would send a pulse before its last one has ended
 void check_intervals(TomlTable& root, const Scenario& scenario);
 
@@ -33,4 +30,4 @@ void check_intervals(TomlTable& root, const Scenario& scenario);
 /// a ping fits in memory. \param root  the document, for the places of faults
 void check_scenario(TomlTable& root, const Scenario& scenario);
 
-}  // namespace asdic::scenario
+}  // namespace asdic::detail::scenario

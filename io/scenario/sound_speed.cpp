@@ -5,13 +5,41 @@
 
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
-#include "io/scenario/sections.h"
+#include "io/settings/columns.h"
+#include "io/settings/reader.h"
 #include "raytrace/ocean/seawater.h"
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::scenario {
+namespace asdic::detail {
+namespace {
+
+/// The names of the first `count` values of an enumeration.
+template <class Enum, std::size_t count>
+std::array<std::string_view, count> names_of() {
+  std::array<std::string_view, count> names;
+  for (std::size_t i = 0; i < count; ++i) names[i] = name(static_cast<Enum>(i));
+  return names;
+}
+
+}  // namespace
+
+std::span<const std::string_view> words(Interpolation) {
+  static const auto all = names_of<Interpolation, 5>();
+  return all;
+}
+
+std::span<const std::string_view> words(ShapeInterpolation) {
+  static const auto all = names_of<ShapeInterpolation, 3>();
+  return all;
+}
+
+static std::span<const std::string_view> words(SeawaterEquation) {
+  static const auto all = names_of<SeawaterEquation, 3>();
+  return all;
+}
+
+namespace scenario {
 namespace {
 
 /// A fault of the samples together (a spline that swings too far) is told at the table's key.
@@ -45,37 +73,152 @@ void check_reach(const TomlTable& table, const std::string& key, std::span<const
     }
 }
 
-void read_table(TomlTable& table, const OceanReading& reading, Interpolation interpolation,
-                Environment& ocean) {
-  const Columns columns = read_columns(
-      table, reading.folder, {{"depth", quantity::water_depth}, {"speed", quantity::sound_speed}});
-  require_increasing(columns);
-  ocean.water = profile_of(table, columns.values[0], columns.values[1], interpolation);
-  check_reach(table, table.has("file") ? "file" : "depth", columns.values[0], columns.values[1],
-              ocean);
-}
+constexpr Quantity munk_scale{.noun = "depth", .unit = "m", .low = 10.0, .high = 1e5};
+constexpr Quantity latitude_quantity{
+    .noun = "latitude", .unit = "degrees north", .low = -90.0, .high = 90.0};
 
-/// `range`, `depth` and rows of `speed`; or a CSV file with a line for every point of the grid.
-SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
-  if (!table.has("file")) {
-    const std::vector<double> range = table.numbers("range", quantity::range);
-    const std::vector<double> depth = table.numbers("depth", quantity::water_depth);
-    const auto rows = table.rows("speed", quantity::sound_speed);
-    if (rows.size() != range.size())
-      throw table.fault("speed",
-                        "a row for each of the " + std::to_string(range.size()) + " ranges",
-                        std::to_string(rows.size()) + " rows");
-    if (rows[0].size() != depth.size())
-      throw table.fault("speed[0]",
-                        "a speed for each of the " + std::to_string(depth.size()) + " depths");
-    std::vector<double> speed;
-    for (const auto& row : rows) speed.insert(speed.end(), row.begin(), row.end());
-    try {
-      return SoundSpeedSection(range, depth, speed);
-    } catch (const InputError& error) {
-      throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
+/// Samples of speed over depth.
+struct SpeedTable {
+  static constexpr std::string_view name = "table";
+  Interpolation interpolation = Interpolation::c_linear;
+  std::vector<double> depth = {}, speed = {};
+
+  void describe(Fields& field) {
+    field("interpolation", interpolation, "how the speed runs between the samples");
+    field.columns(
+        {{"depth", depth, quantity::water_depth}, {"speed", speed, quantity::sound_speed}},
+        {.file = true}, "of the samples");
+  }
+};
+
+struct MunkTable {
+  static constexpr std::string_view name = "munk";
+  MunkParameters munk = {};
+
+  void describe(Fields& field) {
+    field("axis_speed", munk.axis_speed, quantity::sound_speed, "on the channel's axis");
+    field("axis_depth", munk.axis_depth, quantity::depth, "of the channel's axis");
+    field("scale_depth", munk.scale_depth, munk_scale, "of the law");
+    field("perturbation", munk.perturbation, {.low = 0.0, .high = 0.1}, "of the law");
+  }
+};
+
+struct IsovelocityTable {
+  static constexpr std::string_view name = "isovelocity";
+  double speed = 1500.0;
+
+  void describe(Fields& field) {
+    field(required("speed"), speed, quantity::sound_speed, "everywhere");
+  }
+};
+
+/// What a probe measures: the speed follows by an equation.
+struct ProbeTable {
+  static constexpr std::string_view name = "temperature-salinity";
+  Interpolation interpolation = Interpolation::c_linear;
+  SeawaterEquation equation = SeawaterEquation::chen_millero;
+  double latitude_deg = 45.0;
+  std::vector<double> depth = {}, temperature = {}, salinity = {};
+
+  void describe(Fields& field) {
+    field("interpolation", interpolation, "how the speed runs between the levels");
+    field("equation", equation, "of sea water");
+    field("latitude_deg", latitude_deg, latitude_quantity, "for the pressure at a depth");
+    field.columns({{"depth", depth, quantity::depth},
+                   {"temperature", temperature, quantity::temperature},
+                   {"salinity", salinity, quantity::salinity}},
+                  {.file = true}, "of the levels");
+  }
+};
+
+/// Speeds on a grid of ranges and depths.
+struct SectionTable {
+  static constexpr std::string_view name = "section";
+  std::string file = {};  ///< a line for every point of the grid, in any order
+  std::vector<double> range = {}, depth = {};
+  std::vector<std::vector<double>> speed = {};
+
+  void describe(Fields& field) {
+    Fields::Ways ways;
+    if (const auto way = field.way(ways, {"file"}, false))
+      field.file(required("file"), file, "a readable CSV file",
+                 "columns range, depth, speed: a line for every point of the grid");
+    if (const auto way = field.otherwise(ways, {"range"})) {
+      field(required("range"), range, quantity::range, "of the grid");
+      field(required("depth"), depth, quantity::water_depth, "of the grid");
+      field(required("speed"), speed, quantity::sound_speed, "a row for each range");
+      if (field.checks()) check(field);
     }
   }
+  void check(Fields& field) const {
+    if (speed.size() != range.size())
+      field.fault("speed", "a row for each of the " + std::to_string(range.size()) + " ranges",
+                  std::to_string(speed.size()) + " rows");
+    if (speed[0].size() != depth.size())
+      field.fault("speed[0]",
+                  "a speed for each of the " + std::to_string(depth.size()) + " depths");
+  }
+};
+
+/// [environment.sound_speed]
+struct SoundSpeedTable {
+  std::variant<SpeedTable, MunkTable, IsovelocityTable, ProbeTable, SectionTable> form = {};
+
+  void describe(Fields& field) {
+    field.one_of(required("kind"), form, "how the speed of sound is given");
+  }
+};
+
+/// The form that has the water's bits.
+SoundSpeedTable form_of_water(const Environment& ocean) {
+  const auto copied = [](std::span<const double> values) {
+    return std::vector<double>(values.begin(), values.end());
+  };
+  if (ocean.section) {
+    SectionTable form{.range = copied(ocean.section->ranges()),
+                      .depth = copied(ocean.section->depths())};
+    const auto speeds = ocean.section->speeds();
+    for (std::size_t i = 0; i < form.range.size(); ++i)
+      form.speed.push_back(copied(speeds.subspan(i * form.depth.size(), form.depth.size())));
+    return {form};
+  }
+  if (const auto& munk = ocean.water.munk_parameters()) return {MunkTable{*munk}};
+  return {SpeedTable{.interpolation = ocean.water.interpolation(),
+                     .depth = copied(ocean.water.depths()),
+                     .speed = copied(ocean.water.speeds())}};
+}
+
+/// Where a form was read, and the water that it makes.
+struct WaterToMake {
+  TomlTable& table;
+  const OceanReading& reading;
+  Environment& ocean;
+};
+
+void make_water(const SpeedTable& form, const WaterToMake& to) {
+  to.ocean.water = profile_of(to.table, form.depth, form.speed, form.interpolation);
+  check_reach(to.table, to.table.has("file") ? "file" : "depth", form.depth, form.speed, to.ocean);
+}
+
+void make_water(const MunkTable& form, const WaterToMake& to) {
+  to.ocean.water = SoundSpeedProfile::munk(form.munk);
+}
+
+void make_water(const IsovelocityTable& form, const WaterToMake& to) {
+  to.ocean.water = SoundSpeedProfile::isovelocity(form.speed);
+}
+
+SoundSpeedSection grid_of_lists(const SectionTable& form, const TomlTable& table) {
+  std::vector<double> speed;
+  for (const auto& row : form.speed) speed.insert(speed.end(), row.begin(), row.end());
+  try {
+    return SoundSpeedSection(form.range, form.depth, speed);
+  } catch (const InputError& error) {
+    throw table.fault(error.fault().where, error.fault().expected, error.fault().got);
+  }
+}
+
+SoundSpeedSection grid_of_file(TomlTable& table, const OceanReading& reading) {
   const Columns columns = read_columns(table, reading.folder,
                                        {{"range", quantity::range},
                                         {"depth", quantity::water_depth},
@@ -116,13 +259,16 @@ SoundSpeedSection read_grid(TomlTable& table, const OceanReading& reading) {
   return {range, depth, speed};
 }
 
-void read_section(TomlTable& table, const OceanReading& reading, Environment& ocean) {
-  ocean.section = read_grid(table, reading);
+void make_water(const SectionTable& form, const WaterToMake& to) {
+  Environment& ocean = to.ocean;
+  ocean.section =
+      form.file.empty() ? grid_of_lists(form, to.table) : grid_of_file(to.table, to.reading);
   const auto depth = ocean.section->depths();
   std::vector<double> at_start;
   for (const double z : depth) at_start.push_back(ocean.section->at(0.0, z).c);
   ocean.water = SoundSpeedProfile::table(depth, at_start, Interpolation::c_linear);
-  check_reach(table, table.has("file") ? "file" : "depth", depth, ocean.section->speeds(), ocean);
+  check_reach(to.table, form.file.empty() ? "depth" : "file", depth, ocean.section->speeds(),
+              ocean);
 }
 
 /// A warning when an equation is asked about water that it was not measured in: temperature,
@@ -143,82 +289,46 @@ void note_range(SeawaterEquation equation, std::span<const double> depth,
   }
 }
 
-SoundSpeedProfile read_temperature_salinity(TomlTable& table, const OceanReading& reading,
-                                            Interpolation interpolation, const Environment& ocean) {
-  const double bottom_depth =
-      ocean.bottom.shape ? ocean.bottom.shape->deepest() : ocean.bottom.depth;
-  static const std::array<std::pair<std::string, SeawaterEquation>, 3> equations{
-      {{"chen-millero", SeawaterEquation::chen_millero},
-       {"mackenzie", SeawaterEquation::mackenzie},
-       {"del-grosso", SeawaterEquation::del_grosso}}};
-  const std::string name = table.choice(
-      "equation", {equations[0].first, equations[1].first, equations[2].first}, "chen-millero");
-  const SeawaterEquation equation =
-      std::find_if(equations.begin(), equations.end(), [&](const auto& e) {
-        return e.first == name;
-      })->second;
-  const double latitude =
-      table.number("latitude_deg",
-                   {.noun = "latitude", .unit = "degrees north", .low = -90.0, .high = 90.0}, 45.0);
-  const Columns columns = read_columns(table, reading.folder,
-                                       {{"depth", quantity::depth},
-                                        {"temperature", quantity::temperature},
-                                        {"salinity", quantity::salinity}});
-  require_increasing(columns);
-  note_range(equation, columns.values[0], columns.values[1], columns.values[2], latitude,
-             reading.notes);
-  add_warnings({checks::profile_reach(columns.values[0].front(), columns.values[0].back(), ocean,
+void make_water(const ProbeTable& form, const WaterToMake& to) {
+  const Boundary& bottom = to.ocean.bottom;
+  const double bottom_depth = bottom.shape ? bottom.shape->deepest() : bottom.depth;
+  note_range(form.equation, form.depth, form.temperature, form.salinity, form.latitude_deg,
+             to.reading.notes);
+  add_warnings({checks::profile_reach(form.depth.front(), form.depth.back(), to.ocean,
                                       "the water is like that at the first and last")},
-               reading.notes);
+               to.reading.notes);
   std::vector<double> depth, speed;
   const auto add = [&](double z, std::size_t level) {
     depth.push_back(z);
-    speed.push_back(
-        sound_speed(equation, columns.values[1][level], columns.values[2][level], z, latitude));
+    speed.push_back(sound_speed(form.equation, form.temperature[level], form.salinity[level], z,
+                                form.latitude_deg));
   };
   // Water above the first and below the last level is like that level, but under its own pressure:
   // levels at most 250 m apart keep the pressure's part of the gradient.
-  const std::vector<double>& given = columns.values[0];
+  const std::vector<double>& given = form.depth;
   if (given.front() > 0.0) add(0.0, 0);
   for (std::size_t level = 0; level < given.size(); ++level) add(given[level], level);
   const double rest = std::max(0.0, bottom_depth - given.back());
   const auto extra = static_cast<int>(std::ceil(rest / 250.0));
   for (int i = 1; i <= extra; ++i) add(given.back() + rest * i / extra, given.size() - 1);
-  return profile_of(table, depth, speed, interpolation);
+  to.ocean.water = profile_of(to.table, depth, speed, form.interpolation);
 }
 
 }  // namespace
 
 void read_sound_speed(TomlTable table, const OceanReading& reading, Environment& ocean) {
-  const std::string kind =
-      table.choice("kind", {"table", "munk", "isovelocity", "temperature-salinity", "section"});
-  Interpolation interpolation = Interpolation::c_linear;
-  if (kind == "table" || kind == "temperature-salinity") {
-    const std::string law = table.choice(
-        "interpolation", {"c-linear", "n2-linear", "spline", "pchip", "pchip-spline-slopes"},
-        "c-linear");
-    for (const Interpolation rule : {Interpolation::n2_linear, Interpolation::spline,
-                                     Interpolation::pchip, Interpolation::pchip_spline_slopes})
-      if (law == name(rule)) interpolation = rule;
-  }
-  if (kind == "table") {
-    read_table(table, reading, interpolation, ocean);
-  } else if (kind == "temperature-salinity") {
-    ocean.water = read_temperature_salinity(table, reading, interpolation, ocean);
-  } else if (kind == "section") {
-    read_section(table, reading, ocean);
-  } else if (kind == "isovelocity") {
-    ocean.water = SoundSpeedProfile::isovelocity(table.number("speed", quantity::sound_speed));
-  } else {
-    MunkParameters munk;
-    munk.axis_speed = table.number("axis_speed", quantity::sound_speed, munk.axis_speed);
-    munk.axis_depth = table.number("axis_depth", quantity::depth, munk.axis_depth);
-    munk.scale_depth = table.number(
-        "scale_depth", {.noun = "depth", .unit = "m", .low = 10.0, .high = 1e5}, munk.scale_depth);
-    munk.perturbation = table.number("perturbation", {.low = 0.0, .high = 0.1}, munk.perturbation);
-    ocean.water = SoundSpeedProfile::munk(munk);
-  }
+  KnownSettings known{.folder = reading.folder};
+  SoundSpeedTable settings;
+  TomlReader reader(table, known);
+  settings.describe(reader);
+  std::visit([&](const auto& form) { make_water(form, {table, reading, ocean}); }, settings.form);
   table.finish();
 }
 
-}  // namespace asdic::scenario
+void describe_sound_speed(Fields& field, const Environment& ocean) {
+  SoundSpeedTable settings = form_of_water(ocean);
+  field("sound_speed", settings, "of the water");
+}
+
+}  // namespace scenario
+}  // namespace asdic::detail

@@ -1,84 +1,143 @@
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario/columns.h"
 #include "io/scenario/ocean.h"
-#include "io/scenario/sections.h"
+#include "io/settings/reader.h"
 
-namespace asdic::scenario {
+namespace asdic::detail::scenario {
 namespace {
 
-/// Of a law that knows the water.
+/// A law that knows nothing of the water.
 template <class Law>
-Law read_law_of_water(TomlTable& table) {
-  Law law;
-  law.temperature = table.number("temperature", quantity::temperature, law.temperature);
-  law.salinity = table.number("salinity", quantity::salinity, law.salinity);
-  law.ph = table.number("ph", {.noun = "pH", .low = 6.0, .high = 9.0}, law.ph);
-  law.depth = table.number("depth", quantity::depth, law.depth);
-  return law;
+struct PlainLaw {
+  static constexpr std::string_view name = Law::name;
+  Law law = {};
+  void describe(Fields&) {}
+};
+
+/// A law that knows the water.
+template <class Law>
+struct LawOfWater {
+  static constexpr std::string_view name = Law::name;
+  Law law = {};
+
+  void describe(Fields& field) {
+    field("temperature", law.temperature, quantity::temperature, "of the water");
+    field("salinity", law.salinity, quantity::salinity, "of the water");
+    field("ph", law.ph, {.noun = "pH", .low = 6.0, .high = 9.0}, "of the water");
+    field("depth", law.depth, quantity::depth, "at which the law is evaluated");
+  }
+};
+
+/// [environment.absorption], as it is where nothing is said.
+struct AbsorptionTable {
+  std::variant<PlainLaw<NoAbsorption>, PlainLaw<Thorp>, LawOfWater<FrancoisGarrison>,
+               LawOfWater<AinslieMcColm>>
+      law = PlainLaw<Thorp>{};
+
+  void describe(Fields& field) { field.one_of("kind", law, "the law of what sea water absorbs"); }
+
+  [[nodiscard]] Absorption build() const {
+    return std::visit([](const auto& one) -> Absorption { return one.law; }, law);
+  }
+};
+
+AbsorptionTable form_of_law(const NoAbsorption& law) { return {PlainLaw<NoAbsorption>{law}}; }
+AbsorptionTable form_of_law(const Thorp& law) { return {PlainLaw<Thorp>{law}}; }
+AbsorptionTable form_of_law(const FrancoisGarrison& law) {
+  return {LawOfWater<FrancoisGarrison>{law}};
+}
+AbsorptionTable form_of_law(const AinslieMcColm& law) { return {LawOfWater<AinslieMcColm>{law}}; }
+
+/// [[environment.biology]]
+struct BiologyTable {
+  BiologicalLayer layer = {};
+
+  void describe(Fields& field) {
+    field(required("top"), layer.top, quantity::water_depth, "of the layer");
+    field(required("bottom"), layer.bottom, quantity::water_depth, "of the layer");
+    if (field.checks() && !(layer.bottom > layer.top))
+      field.fault("bottom", "a depth below the layer's top, " + to_text(layer.top) + " m");
+    field(required("resonance"), layer.resonance, quantity::frequency, "of the swim bladders");
+    field(required("quality_factor"), layer.quality,
+          {.noun = "quality factor", .low = 0.0, .high = 1e4, .above = true}, "of the resonance");
+    field(required("strength_db_per_km"), layer.strength,
+          {.noun = "strength", .unit = "dB/km", .low = 0.0, .high = 1e6}, "that is absorbed");
+  }
+};
+
+using Samples = std::vector<double>;
+
+std::optional<DepthFunction> depth_function(const Samples& depth, const Samples& value) {
+  if (depth.empty()) return std::nullopt;
+  return DepthFunction::table(depth, value);
 }
 
-Absorption read_absorption(TomlTable table) {
-  const std::string kind =
-      table.choice("kind", {"none", "thorp", "francois-garrison", "ainslie-mccolm"}, "thorp");
-  Absorption absorption = NoAbsorption{};
-  if (kind == Thorp::name) absorption = Thorp{};
-  if (kind == FrancoisGarrison::name) absorption = read_law_of_water<FrancoisGarrison>(table);
-  if (kind == AinslieMcColm::name) absorption = read_law_of_water<AinslieMcColm>(table);
-  table.finish();
-  return absorption;
-}
+Samples samples_of(std::span<const double> values) { return {values.begin(), values.end()}; }
 
-/// A number, or a table of `depth` and `name`: straight lines, two equal depths are a step.
-DepthFunction read_depth_function(TomlTable& table, const OceanReading& reading,
-                                  const std::string& name, const Quantity& quantity) {
-  const Columns columns =
-      read_columns(table, reading.folder, {{"depth", quantity::water_depth}, {name, quantity}});
-  for (std::size_t i = 1; i < columns.rows(); ++i)
-    if (columns.values[0][i] < columns.values[0][i - 1])
-      throw columns.fault(
-          0, i, "a depth not above the one before it, " + to_text(columns.values[0][i - 1]) + " m",
-          "m");
-  return DepthFunction::table(columns.values[0], columns.values[1]);
-}
+/// water_density where it is a table: straight lines, two equal depths are a step.
+struct DensityTable {
+  Samples depth = {}, density = {};
+  void describe(Fields& field) {
+    field.columns(
+        {{"depth", depth, quantity::water_depth}, {"density", density, quantity::density}},
+        {.file = true, .steps = true}, "of the water");
+  }
+};
 
-BiologicalLayer read_layer(TomlTable& table) {
-  BiologicalLayer layer;
-  layer.top = table.number("top", quantity::water_depth);
-  layer.bottom = table.number("bottom", quantity::water_depth);
-  if (!(layer.bottom > layer.top))
-    throw table.fault("bottom", "a depth below the layer's top, " + to_text(layer.top) + " m");
-  layer.resonance = table.number("resonance", quantity::frequency);
-  layer.quality = table.number("quality_factor",
-                               {.noun = "quality factor", .low = 0.0, .high = 1e4, .above = true});
-  layer.strength = table.number("strength_db_per_km",
-                                {.noun = "strength", .unit = "dB/km", .low = 0.0, .high = 1e6});
-  table.finish();
-  return layer;
-}
+/// [environment.attenuation]: a number, or a table of `depth` and numbers.
+struct AttenuationTable {
+  double constant = 0.0;
+  Samples depth = {}, value = {};
+
+  void describe(Fields& field) {
+    constexpr Quantity loss{.noun = "attenuation", .unit = "dB/km", .low = 0.0, .high = 1e6};
+    const auto table = [&] {
+      field.columns({{"depth", depth, quantity::water_depth}, {"db_per_km", value, loss}},
+                    {.file = true, .steps = true}, "of the water, beside its absorption");
+    };
+    Fields::Ways ways;
+    if (const auto way = field.way(ways, {"file", "depth", "db_per_km"}, false)) table();
+    if (const auto way = field.way(ways, {"depth", "db_per_km"}, !depth.empty())) table();
+    if (const auto way = field.otherwise(ways, {"db_per_km"}))
+      field(seldom("db_per_km"), constant, loss, "of the water, beside its absorption");
+  }
+};
 
 }  // namespace
 
-void read_water_losses(TomlTable& table, const OceanReading& reading, Environment& ocean) {
-  if (table.is_table("water_density")) {
-    TomlTable columns = table.table("water_density");
-    ocean.water_density = read_depth_function(columns, reading, "density", quantity::density);
-    columns.finish();
-  } else {
-    ocean.water_density =
-        table.number("water_density", quantity::density, ocean.water_density.at(0.0));
-  }
-  ocean.absorption = read_absorption(table.table("absorption"));
-  for (TomlTable& layer : table.tables("biology")) ocean.biology.push_back(read_layer(layer));
-
-  constexpr Quantity loss{.noun = "attenuation", .unit = "dB/km", .low = 0.0, .high = 1e6};
-  TomlTable attenuation = table.table("attenuation");
-  const bool has_depth = attenuation.has("depth"), has_file = attenuation.has("file");
-  if (has_depth || has_file)
-    ocean.attenuation_db_per_km = read_depth_function(attenuation, reading, "db_per_km", loss);
-  else
-    ocean.attenuation_db_per_km = attenuation.number("db_per_km", loss, 0.0);
-  attenuation.finish();
+void describe_density(Fields& field, Environment& ocean) {
+  const DepthFunction& before = ocean.water_density;
+  double constant = before.at(0.0);
+  std::optional<DensityTable> table;
+  if (!before.is_constant())
+    table = DensityTable{samples_of(before.depths()), samples_of(before.values())};
+  field("water_density", constant, quantity::density, table, "a number, or a table over depth");
+  if (!field.reads()) return;
+  ocean.water_density = constant;
+  if (table) ocean.water_density = DepthFunction::table(table->depth, table->density);
 }
 
-}  // namespace asdic::scenario
+void describe_losses(Fields& field, Environment& ocean) {
+  AbsorptionTable absorption;
+  if (!field.reads())
+    absorption = std::visit([](const auto& law) { return form_of_law(law); }, ocean.absorption);
+  field("absorption", absorption, "what sea water takes out of sound");
+
+  std::vector<BiologyTable> biology;
+  for (const BiologicalLayer& layer : ocean.biology) biology.push_back({layer});
+  field("biology", biology, "layers of fish with swim bladders");
+
+  const DepthFunction& before = ocean.attenuation_db_per_km;
+  AttenuationTable attenuation{.constant = before.is_constant() ? before.at(0.0) : 0.0,
+                               .depth = samples_of(before.depths()),
+                               .value = samples_of(before.values())};
+  field("attenuation", attenuation, "what else the water takes out of sound");
+  if (!field.reads()) return;
+  ocean.absorption = absorption.build();
+  ocean.biology.clear();
+  for (const BiologyTable& one : biology) ocean.biology.push_back(one.layer);
+  ocean.attenuation_db_per_km = depth_function(attenuation.depth, attenuation.value)
+                                    .value_or(DepthFunction(attenuation.constant));
+}
+
+}  // namespace asdic::detail::scenario

@@ -5,14 +5,31 @@
 #include <utility>
 
 #include "core/text.h"
-#include "io/scenario/columns.h"
+#include "io/settings/axis.h"
+#include "io/settings/columns.h"
+#include "io/wav/wav.h"
 
-namespace asdic {
+namespace asdic::detail {
+
+/// The key of a setting as the file has it: an angle's in degrees or radians. \param key  "a[3]",
+/// "heading" or "heading_deg"
+std::string TomlReader::written_key(std::string_view key) const {
+  const auto bracket = std::min(key.find('['), key.size());
+  std::string name(key.substr(0, bracket));
+  const std::string place(key.substr(bracket));
+  const std::string as_given = name + place;
+  if (name.ends_with("_deg")) name.resize(name.size() - 4);
+  for (const char* unit : {"", "_deg", "_rad"})
+    if (table_->has_quietly(name + unit)) return name + unit + place;
+  return as_given;
+}
 
 void TomlReader::fault(std::string_view key, const std::string& expected,
                        std::optional<std::string> got) {
-  throw table_->fault(std::string(key), expected, std::move(got));
+  throw table_->fault(written_key(key), expected, std::move(got));
 }
+
+bool TomlReader::finds(std::string_view key) const { return table_->has(std::string(key)); }
 
 void TomlReader::know(std::string_view setting, double value) {
   known_.numbers.insert_or_assign(std::string(setting), value);
@@ -24,9 +41,23 @@ double TomlReader::known(std::string_view setting) const {
   return found->second;
 }
 
+/// Whether the word that says "none" of a setting stands there.
+bool TomlReader::is_word(const SettingKey& key) {
+  const std::string name(key.name);
+  if (key.word.empty() || !table_->is_text(name)) return false;
+  static_cast<void>(table_->choice(name, {std::string(key.word)}));
+  return true;
+}
+
 /// Whether a setting stays as it is, since the file has none and need not. \param given  as
 /// number()
 bool TomlReader::absent(const SettingKey& key, const std::string& name, bool* given) {
+  if (!key.word.empty()) {  // what is not there stays as it is
+    assert(given != nullptr);
+    if (!table_->has(name)) return true;
+    *given = !is_word(key);
+    return !*given;
+  }
   const bool here = (given != nullptr || !key.required) && table_->has(name);
   if (given != nullptr) *given = here;
   return !here && (given != nullptr || !key.required);
@@ -82,6 +113,38 @@ void TomlReader::angles(const Setting& s, const AngleQuantity& q, std::vector<do
   if (!ready) std::transform(values.begin(), values.end(), values.begin(), radians);
 }
 
+void TomlReader::rows(const Setting& s, const Quantity& q,
+                      std::vector<std::vector<double>>& values) {
+  const std::string key(s.key.name);
+  if (!absent(s.key, key, nullptr)) values = table_->rows(key, q);
+}
+
+void TomlReader::axis(SettingKey key, std::vector<double>& values, const Quantity& q,
+                      std::string_view) {
+  const std::string name(key.name);
+  if (absent(key, name, nullptr)) return;
+  if (table_->is_array(name)) {
+    values = table_->numbers(name, q);
+  } else if (!table_->is_table(name)) {
+    values = {table_->number(name, q)};
+  } else {
+    TomlTable even = table_->table(name);
+    const double first = even.number("first", q), last = even.number("last", q);
+    const auto count = even.integer("count", 1, 10'000'000);
+    even.finish();
+    values = evenly_spaced(first, last, static_cast<std::size_t>(count));
+  }
+}
+
+void TomlReader::file(SettingKey key, std::string& path, std::string_view what, std::string_view) {
+  const std::string name(key.name);
+  if (absent(key, name, nullptr)) return;
+  const std::filesystem::path found = known_.folder / table_->text(name);
+  if (!std::filesystem::exists(found))
+    throw table_->fault(name, std::string(what), "no such file " + in_quotes(found.string()));
+  path = found.string();
+}
+
 void TomlReader::vector(const Setting& s, const Quantity& q, std::span<double> value,
                         std::string_view axes) {
   const std::string key(s.key.name);
@@ -114,18 +177,56 @@ void TomlReader::reference(SettingKey key, int& index, std::string_view list, st
 
 void TomlReader::columns(std::initializer_list<Column> all, const ColumnRules& rules,
                          std::string_view) {
+  const bool of_file = rules.file && table_->has("file");
   std::vector<std::pair<std::string, Quantity>> wanted;
-  for (const Column& column : all)
-    wanted.emplace_back(std::string(column.key) + (column.angle ? "_deg" : ""), column.quantity);
-  scenario::Columns found = rules.file ? scenario::read_columns(*table_, known_.folder, wanted)
-                                       : scenario::read_lists(*table_, wanted);
-  if (rules.increasing) scenario::require_increasing(found);
+  for (const Column& column : all) {
+    std::string name(column.key);
+    if (column.angle) name = of_file ? name + "_deg" : angle_key(name);
+    const bool ready = column.angle && name.ends_with("_rad");
+    wanted.emplace_back(name, ready ? column.in_radians() : column.quantity);
+  }
+  scenario::Columns found = of_file ? scenario::read_columns(*table_, known_.folder, wanted)
+                                    : scenario::read_lists(*table_, wanted);
+  if (rules.steps)
+    scenario::require_not_falling(found);
+  else if (rules.increasing)
+    scenario::require_increasing(found);
   auto values = found.values.begin();
+  auto name = found.names.begin();
   for (const Column& column : all) {
     *column.values = std::move(*values++);
-    if (column.angle)
+    const bool degrees = (name++)->ends_with("_deg");
+    if (column.angle && degrees)
       for (double& angle : *column.values) angle = radians(angle);
   }
+}
+
+void TomlReader::sound(SettingKey key, const Sound& sound, std::string_view what) {
+  const std::string name(key.name);
+  if (table_->has_quietly("samples")) {  // of a sound that was made and not recorded
+    *sound.samples = table_->numbers("samples", {.noun = "pressure", .low = -1e300, .high = 1e300});
+    *sound.sample_rate = table_->number(
+        "sample_rate",
+        {.noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e9, .above = true});
+    sound.file->clear();
+    return;
+  }
+  if (absent(key, name, nullptr)) return;
+  const std::filesystem::path path = known_.folder / table_->text(name);
+  if (!std::filesystem::exists(path))
+    throw table_->fault(name, "a WAV or CSV file of " + std::string(what),
+                        "no such file " + in_quotes(path.string()));
+  SampledPulse read = read_pulse_file(path);
+  *sound.file = path.string();
+  *sound.samples = std::move(read.samples);
+  *sound.sample_rate = read.sample_rate;
+}
+
+void TomlReader::excludes(std::string_view beside, std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys)
+    if (table_->has(std::string(key)))
+      throw table_->fault(std::string(key),
+                          "no " + in_quotes(key) + " beside " + std::string(beside));
 }
 
 void TomlReader::read(TomlTable& table, const Structure& inner) {
@@ -146,6 +247,13 @@ void TomlReader::perhaps(const Setting& s, const Perhaps& inner) {
   inner.make();
   TomlTable there = table_->table(key);
   read(there, inner.get());
+}
+
+void TomlReader::number_or_table(const Setting& s, const Quantity& q, double& value,
+                                 const Perhaps& instead) {
+  if (table_->is_table(std::string(s.key.name))) return perhaps(s, instead);
+  instead.clear();
+  number(s, q, value, nullptr);
 }
 
 void TomlReader::tables(const Setting& s, const List& list, const ListRules& rules) {
@@ -206,4 +314,4 @@ bool TomlReader::takes(Ways& ways, std::span<const std::string_view> keys, bool,
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,23 +1,14 @@
 #pragma once
-#include <filesystem>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/fields.h"
+#include "io/settings/known_settings.h"
 #include "io/text/toml_table.h"
 
-namespace asdic {
-
-/// What has been read of a file, and settings further on refer to.
-struct KnownSettings {
-  std::map<std::string, double, std::less<>> numbers = {};  ///< "environment.wind_speed"
-  std::map<std::string, std::vector<std::string>, std::less<>> names = {};  ///< of "platform"
-  std::filesystem::path folder = {};  ///< that files named by settings are relative to
-};
+namespace asdic::detail {
 
 /// Reads described structs out of TOML: every setting has the type and the range that its struct
 /// says, angles stand in degrees (or as NAME_rad in radians), and no key is there that is not read.
@@ -31,11 +22,19 @@ class TomlReader final : public Fields {
   [[nodiscard]] bool checks() const override { return true; }
   void fault(std::string_view key, const std::string& expected,
              std::optional<std::string> got) override;
+  [[nodiscard]] bool finds(std::string_view key) const override;
+  void note(const std::string& text) override { known_.notes.push_back(text); }
   void know(std::string_view setting, double value) override;
   [[nodiscard]] double known(std::string_view setting) const override;
 
+  void axis(SettingKey key, std::vector<double>& values, const Quantity& q,
+            std::string_view help) override;
+  void file(SettingKey key, std::string& path, std::string_view what,
+            std::string_view help) override;
   void columns(std::initializer_list<Column> all, const ColumnRules& rules,
                std::string_view help) override;
+  void sound(SettingKey key, const Sound& sound, std::string_view what) override;
+  void excludes(std::string_view beside, std::initializer_list<std::string_view> keys) override;
   void name(std::string& value, std::string_view help) override;
   void reference(SettingKey key, int& index, std::string_view list, std::string_view help) override;
   void derived(double&) override {}
@@ -56,18 +55,23 @@ class TomlReader final : public Fields {
   void text(const Setting&, std::string& value) override;
   void numbers(const Setting&, const Quantity&, std::vector<double>& values) override;
   void angles(const Setting&, const AngleQuantity&, std::vector<double>& radians) override;
+  void rows(const Setting&, const Quantity&, std::vector<std::vector<double>>& values) override;
   void vector(const Setting&, const Quantity&, std::span<double> value,
               std::string_view axes) override;
   void vectors(const Setting&, const Quantity&, std::vector<Vec3>& values) override;
   void choice(const Setting&, std::span<const std::string_view> words, std::size_t& index) override;
   void table(const Setting&, const Structure& inner) override;
   void perhaps(const Setting&, const Perhaps& inner) override;
+  void number_or_table(const Setting&, const Quantity&, double& value,
+                       const Perhaps& instead) override;
   void tables(const Setting&, const List& list, const ListRules& rules) override;
   void alternatives(const Setting&, const OneOf& one) override;
   bool takes(Ways& ways, std::span<const std::string_view> keys, bool is, bool last) override;
 
+  [[nodiscard]] bool is_word(const SettingKey& key);
   [[nodiscard]] bool absent(const SettingKey& key, const std::string& name, bool* given);
   [[nodiscard]] std::string angle_key(std::string_view name);
+  [[nodiscard]] std::string written_key(std::string_view key) const;
   void read(TomlTable& table, const Structure& inner);
   void refuse_others(const Ways& ways, std::span<const std::string_view> keys);
 
@@ -92,4 +96,4 @@ template <Worded E>
   return value;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::string_view trim(std::string_view text) {
@@ -102,4 +102,4 @@ std::string read_text_file(const std::filesystem::path& path, const std::string&
   return read_input(path, expected);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Numbers in columns under a header line.
 struct CsvTable {
@@ -26,4 +26,4 @@ struct CsvTable {
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
                                          const std::string& expected = "a readable file");
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include "core/text.h"
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::string figures(const Vacuum& /*vacuum*/) { return ""; }
@@ -54,4 +54,4 @@ std::string material_text(const BoundaryMaterial& material) {
   return std::visit([](const auto& m) { return std::string(m.name) + figures(m); }, material);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

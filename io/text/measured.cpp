@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 struct UnitName {
@@ -60,4 +60,4 @@ bool unit_fits(std::string_view unit, std::string_view expected) {
          expected.starts_with(std::string(unit) + " re ");
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

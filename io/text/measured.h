@@ -2,7 +2,7 @@
 #include <optional>
 #include <string_view>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A number with its unit as people type it: "25km", "12.5 kHz", "-3dB".
 struct Measured {
@@ -17,4 +17,4 @@ struct Measured {
 /// are, "dB" where levels re anything are.
 [[nodiscard]] bool unit_fits(std::string_view unit, std::string_view expected);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "core/text.h"
 #include "io/text/measured.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What an absent table reads as.
@@ -319,4 +319,4 @@ void TomlTable::finish() const {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "core/units.h"
 #include "io/text/toml_value.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A strict, typed reader of one table of a scenario. Every fault is an InputError that says
 /// "FILE:LINE: key.path: found X, expected Y". It remembers every key that was asked for; finish()
@@ -86,4 +86,4 @@ class TomlTable {
   std::vector<std::string> known_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

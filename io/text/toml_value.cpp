@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 TomlValue convert(const toml::node& node, const std::string& origin, const std::string& file) {
@@ -159,6 +160,14 @@ InputError no_such_index(const std::string& origin, const std::string& index,
                                            : "an index from 0 to " + std::to_string(size - 1)});
 }
 
+/// The index that a part of a path is; none: it is no number, or past the end.
+std::optional<std::size_t> index_of(const std::string& part, const TomlValue::Array& array) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  const bool whole = error == std::errc{} && end == part.data() + part.size();
+  return whole && index < array.size() ? std::optional(index) : std::nullopt;
+}
+
 InputError nothing_below(const std::string& origin, const std::string& part,
                          const std::string& path, const TomlValue& there) {
   return InputError({.where = origin,
@@ -173,11 +182,9 @@ TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& o
   std::string walked;
   for (const std::string& part : split(path)) {
     if (auto* array = std::get_if<TomlValue::Array>(&at->data)) {
-      std::size_t index = 0;
-      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-      if (error != std::errc{} || end != part.data() + part.size() || index >= array->size())
-        throw no_such_index(origin, part, walked, array->size());
-      at = &(*array)[index];
+      const std::optional<std::size_t> index = index_of(part, *array);
+      if (!index) throw no_such_index(origin, part, walked, array->size());
+      at = &(*array)[*index];
     } else if (auto* table = std::get_if<TomlValue::Table>(&at->data)) {
       if (part.empty())
         throw InputError({.where = origin, .got = "an empty name", .expected = "a key path"});
@@ -193,6 +200,32 @@ TomlValue& value_at(TomlValue& root, std::string_view path, const std::string& o
     walked += (walked.empty() ? "" : ".") + part;
   }
   return *at;
+}
+
+const TomlValue* find_at(const TomlValue& root, std::string_view path) {
+  const TomlValue* at = &root;
+  for (const std::string& part : split(path)) {
+    if (const auto* array = std::get_if<TomlValue::Array>(&at->data)) {
+      const std::optional<std::size_t> index = index_of(part, *array);
+      at = index ? &(*array)[*index] : nullptr;
+    } else {
+      at = at->find(part);
+    }
+    if (at == nullptr) return nullptr;
+  }
+  return at;
+}
+
+void erase_at(TomlValue& root, std::string_view path) {
+  if (find_at(root, path) == nullptr) return;
+  const std::string last = split(path).back();
+  const auto length = std::min(path.size(), last.size() + (path.ends_with('"') ? 3 : 1));
+  const std::string_view parent = path.substr(0, path.size() - length);
+  TomlValue& home = parent.empty() ? root : value_at(root, parent, "");
+  if (auto* array = std::get_if<TomlValue::Array>(&home.data))
+    array->erase(array->begin() + static_cast<std::ptrdiff_t>(*index_of(last, *array)));
+  else
+    erase_key(home, last);
 }
 
 void apply_override(TomlValue& root, const std::string& assignment) {
@@ -217,4 +250,4 @@ void erase_key(TomlValue& table, const std::string& key) {
                 [&](const TomlEntry& entry) { return entry.key == key; });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

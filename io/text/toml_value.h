@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 struct TomlEntry;
 
@@ -18,7 +18,8 @@ struct TomlValue {
   using Table = std::vector<TomlEntry>;  // in the order of keys as toml++ gives it (sorted)
 
   std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table> data;
-  std::string origin;  ///< "deep_ocean.toml:12", or "--set pulse.duration"
+  std::string origin;    ///< "deep_ocean.toml:12", or "--set pulse.duration"
+  bool in_line = false;  ///< a table that is written on the line of its key
 
   [[nodiscard]] const Table* table() const { return std::get_if<Table>(&data); }
   [[nodiscard]] Table* table() { return std::get_if<Table>(&data); }
@@ -53,9 +54,14 @@ void apply_override(TomlValue& root, const std::string& assignment);
 [[nodiscard]] TomlValue& value_at(TomlValue& root, std::string_view path,
                                   const std::string& origin);
 
+/// What stands at a dotted path with array indices; null: nothing.
+[[nodiscard]] const TomlValue* find_at(const TomlValue& root, std::string_view path);
+/// Takes out what stands at a dotted path, if there is something.
+void erase_at(TomlValue& root, std::string_view path);
+
 /// Sets a key of a table, or adds it.
 void set_key(TomlValue& table, const std::string& key, TomlValue value);
 /// Takes a key out of a table, if it is there.
 void erase_key(TomlValue& table, const std::string& key);
 
-}  // namespace asdic
+}  // namespace asdic::detail

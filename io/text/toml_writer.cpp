@@ -8,10 +8,8 @@
 #include "core/units.h"
 #include "io/text/toml_value.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
-
-constexpr std::size_t most_in_a_line = 12;
 
 /// Bytes of the UTF-8 character that begins a text; 0 if none does.
 std::size_t utf8_length(std::string_view text) {
@@ -168,4 +166,4 @@ void TomlWriter::angles(const std::string& name, std::span<const double> angles)
 
 std::string inline_toml(const TomlValue& value) { return std::visit(Inline{}, value.data); }
 
-}  // namespace asdic
+}  // namespace asdic::detail

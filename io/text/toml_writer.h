@@ -7,7 +7,9 @@
 #include "core/text.h"
 #include "io/text/toml_value.h"
 
-namespace asdic {
+namespace asdic::detail {
+
+inline constexpr std::size_t most_in_a_line = 12;  ///< numbers of a list
 
 /// TOML text, table by table. Numbers are the shortest that read back as the same bits.
 class TomlWriter {
@@ -45,4 +47,4 @@ class TomlWriter {
 /// none.
 [[nodiscard]] std::string exact_degrees(double radians);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -274,6 +274,17 @@ class PingFile:
     def pulse_kind(self) -> str:
         return self._text(self.file[self._replica].attrs, "kind") or ""
 
+    @property
+    def pulse_sweep(self) -> float:
+        """Width of the frequencies that it goes through [Hz]: 0 of a tone, NaN where it is not known.
+
+        Files before version 2.1 tell it by their kinds.
+        """
+        if "sweep_hz" in self.file[self._replica].attrs:
+            return self.attribute(self._replica, "sweep_hz")
+        known = {"lfm": self.bandwidth, "hfm": self.bandwidth, "file": np.nan}
+        return known.get(self.pulse_kind, 0.0)
+
     @cached_property
     def elevation_deg(self) -> np.ndarray:
         return self.read("elevation_deg")

@@ -12,7 +12,7 @@ COLUMNS = 1400
 
 
 def nothing_to_show(data, ping):
-    if data.pulse_kind not in ("lfm", "hfm", "file"):
+    if data.pulse_sweep == 0:
         return "a tone has nothing to compress"
     if data.valid_samples[ping] < data.replica().size:
         return "the record is shorter than the pulse"

@@ -17,7 +17,7 @@ def draw(data, ping):
     b = data.envelope(ping)
     # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which
     # resolves time and frequency alike.
-    sweep = data.pulse_kind in ("lfm", "hfm") and data.bandwidth > 0
+    sweep = data.pulse_sweep > 0 and data.bandwidth > 0
     length = np.sqrt(data.pulse_duration / data.bandwidth) if sweep else data.pulse_duration
     window = int(np.clip(round(length * b.rate), 16, max(b.values.shape[1] // 4, 16)))
     time, frequency, density = signal.spectrogram(b, window, 900)
@@ -35,7 +35,7 @@ def draw(data, ping):
     style.time_axis(axes, b.start, b.end)
     axes.set_ylim(frequency[0] - data.centre_frequency, frequency[-1] - data.centre_frequency)
     axes.set_ylabel(f"frequency above {data.centre_frequency:g} Hz / Hz")
-    if data.pulse_kind == "cw":
+    if data.pulse_sweep == 0:
         speed = data.sound_speed(float(np.mean(data.phones(ping)[:, 2])))
         # two-way Doppler, Hz per m/s
         shift = 2.0 * data.centre_frequency / speed

@@ -4,7 +4,7 @@
 #include "raytrace/math/arc_series.h"
 
 // Of a ray within a layer whose sound speed is linear in depth: an arc of a circle.
-namespace asdic {
+namespace asdic::detail {
 
 /// atanh(w)/w as a function of w²: to 5e-11 where w² < 0.1, further than atanh_series goes.
 template <class Real>
@@ -25,4 +25,4 @@ inline double layer_time(double w_over_g, double g) noexcept {
   return w * w < series_limit ? w_over_g * atanh_over_w(w * w) : std::atanh(w) / g;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

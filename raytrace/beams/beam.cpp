@@ -4,7 +4,7 @@
 
 #include "raytrace/beams/geometric.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 double beams::launch_factor(const BeamSetting& setting, const BeamLaunch& launch,
                             double source_speed) noexcept {
@@ -38,4 +38,4 @@ double field_scale(const BeamSetting& setting, double range) noexcept {
   return setting.spreading == Spreading::plane ? 1.0 : 1.0 / std::sqrt(std::abs(range));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/cases/propagation_case.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What all beams of a field have in common.
 struct BeamSetting {
@@ -57,4 +57,4 @@ void add_beam(const BeamSetting& setting, const BeamLaunch& launch, const RayTra
 /// is no crossing; 4√π, which is BELLHOP's choice, for a line source.
 [[nodiscard]] double field_scale(const BeamSetting& setting, double range) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/beams/geometric.h"
 #include "raytrace/tracing/reflected.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 namespace {
 
@@ -41,7 +41,7 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
                   std::holds_alternative<Vacuum>(wall(kind).material_at(grid.ranges[j]));
     const bool surface = kind == BoundaryKind::surface;
     for (std::size_t j = 0; j < rows.size(); ++j)
-      if (rows[j] >= 0 && silent[j] == 0) heard_[surface ? 0 : 1] = true;
+      if (rows[j] >= 0 && silent[j] == 0) received_[surface ? 0 : 1] = true;
     if (std::equal(rows.begin() + 1, rows.end(), rows.begin()))
       same_row_[surface ? 0 : 1] = rows.front();
     (surface ? silent_surface_ : silent_bottom_) = std::move(silent);
@@ -49,7 +49,7 @@ BoundaryRows::BoundaryRows(const Environment& environment, double frequency,
   }
 }
 
-std::complex<double> WallMeeting::twin() const noexcept {
+std::complex<double> WallMeeting::partner() const noexcept {
   if (!there) return 0.0;
   if (!reflected) return reflection;
   return std::abs(reflection) < least_reflection ? 0.0 : 1.0 / reflection;
@@ -76,7 +76,7 @@ WallMeeting BoundaryRows::meeting(BoundaryKind kind, std::size_t column, double 
   return {true, into_water >= 0.0, slope, reflection};
 }
 
-BeamTwins::BeamTwins(const BoundaryRows& rows, const FieldSum& field) : rows_(rows) {
+BeamPairs::BeamPairs(const BoundaryRows& rows, const FieldSum& field) : rows_(rows) {
   for (AtWall& wall : walls_) {
     for (std::size_t j = 0; j < field.ranges.size(); ++j)
       if (const std::int32_t row = rows.row(wall.kind, j); row >= 0) {
@@ -91,7 +91,7 @@ BeamTwins::BeamTwins(const BoundaryRows& rows, const FieldSum& field) : rows_(ro
   }
 }
 
-void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
+void BeamPairs::add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
                     FieldSum& field) {
   const double launched = beams::launch_factor(setting, launch, ray.source_speed);
   switch (setting.kind) {
@@ -112,7 +112,7 @@ void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const 
         const std::int32_t row = rows_.row(wall.kind, column);
         if (row < 0) continue;
         Crossing x = crossing_of(setting, segment, state);
-        x.loss *= rows_.twin(wall.kind, column, x);
+        x.loss *= rows_.partner(wall.kind, column, x);
         const auto k = static_cast<std::size_t>(row);
         const auto depth = field.column_depths(column).subspan(k, 1);
         const auto put = [&](std::size_t, std::complex<double> p) { field.column(column)[k] += p; };
@@ -124,13 +124,13 @@ void BeamTwins::add(const BeamSetting& setting, const BeamLaunch& launch, const 
     });
 }
 
-void BeamTwins::silence(FieldSum& field) const {
+void BeamPairs::silence(FieldSum& field) const {
   for (const AtWall& wall : walls_)
     for (std::size_t i = 0; i < wall.column.size(); ++i)
       if (rows_.silent(wall.kind, wall.column[i])) field.column(wall.column[i])[wall.row[i]] = 0.0;
 }
 
-void BeamTwins::add_ray_centred(const BeamSetting& setting, double launched,
+void BeamPairs::add_ray_centred(const BeamSetting& setting, double launched,
                                 const RayTrajectory& ray, FieldSum& field) {
   for (AtWall& wall : walls_) {
     if (wall.ranges.empty()) continue;
@@ -138,11 +138,11 @@ void BeamTwins::add_ray_centred(const BeamSetting& setting, double launched,
         setting, launched, ray, wall.field,
         [&](const Foot& foot, const Crossing& x, std::complex<double> p) {
           const auto i = static_cast<std::size_t>(foot.sum - wall.field.sum.data());
-          const std::complex<double> twin = rows_.twin(wall.kind, wall.column[i], x);
+          const std::complex<double> partner = rows_.partner(wall.kind, wall.column[i], x);
           field.column(wall.column[i])[wall.row[i]] +=
-              setting.coherent ? p * twin : p * std::norm(twin);
+              setting.coherent ? p * partner : p * std::norm(partner);
         });
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

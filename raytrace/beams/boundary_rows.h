@@ -5,7 +5,7 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/crossing.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A ray near a receiver on a boundary, as Snell's law has it there.
 struct WallMeeting {
@@ -13,8 +13,8 @@ struct WallMeeting {
   bool reflected = false;           ///< it leaves the boundary
   double slope = 0.0;               ///< dz/dr of the boundary
   std::complex<double> reflection;  ///< R
-  /// What the twin of its beam is to the beam: R, or 1/R behind the reflection; 0: it has none.
-  [[nodiscard]] std::complex<double> twin() const noexcept;
+  /// What the partner of its beam is to the beam: R, or 1/R behind the reflection; 0: it has none.
+  [[nodiscard]] std::complex<double> partner() const noexcept;
 };
 
 /// Receivers that lie on the surface or on the bottom, where a wave and its reflection arrive at
@@ -24,7 +24,7 @@ struct WallMeeting {
 /// the boundary from one side only: of two neighbours that enclose it one brings its incident, the
 /// other its reflected wave, each by its weight. With w the weights of all incident beams and of
 /// the reflected ones taken back to before their reflection, Σ w = 1; so each brings its own and
-/// its twin, R of it or 1/R of it, and the sum is (1 + R) times the incident wave: nothing at a
+/// its partner, R of it or 1/R of it, and the sum is (1 + R) times the incident wave: nothing at a
 /// vacuum. R at the angle that Snell's law gives the ray there. docs/theory/fields.md
 class BoundaryRows {
  public:
@@ -34,8 +34,8 @@ class BoundaryRows {
 
   [[nodiscard]] bool any() const noexcept { return !surface_.empty() || !bottom_.empty(); }
   /// Whether a column's receiver on this boundary is not silent.
-  [[nodiscard]] bool heard(BoundaryKind kind) const noexcept {
-    return heard_[kind == BoundaryKind::surface ? 0 : 1];
+  [[nodiscard]] bool received(BoundaryKind kind) const noexcept {
+    return received_[kind == BoundaryKind::surface ? 0 : 1];
   }
   /// The row that is on the boundary in all columns; −1: none is.
   [[nodiscard]] std::int32_t row_of_all(BoundaryKind kind) const noexcept {
@@ -54,10 +54,10 @@ class BoundaryRows {
   /// A ray with these at its column. \param cosine, sine, speed  of it (Crossing)
   [[nodiscard]] WallMeeting meeting(BoundaryKind kind, std::size_t column, double cosine,
                                     double sine, double speed) const noexcept;
-  /// What the twin of a beam is to the beam.
-  [[nodiscard]] std::complex<double> twin(BoundaryKind kind, std::size_t column,
-                                          const Crossing& x) const noexcept {
-    return meeting(kind, column, x.cosine, x.sine, x.speed).twin();
+  /// What the partner of a beam is to the beam.
+  [[nodiscard]] std::complex<double> partner(BoundaryKind kind, std::size_t column,
+                                             const Crossing& x) const noexcept {
+    return meeting(kind, column, x.cosine, x.sine, x.speed).partner();
   }
 
  private:
@@ -73,18 +73,18 @@ class BoundaryRows {
   std::span<const double> ranges_;
   std::vector<std::int32_t> surface_, bottom_;               // [columns], or empty
   std::vector<std::int8_t> silent_surface_, silent_bottom_;  // likewise
-  bool heard_[2] = {false, false};
+  bool received_[2] = {false, false};
   std::int32_t same_row_[2] = {-1, -1};
 };
 
-/// The twins of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams
+/// The partners of one ray's beam, receiver by receiver: of every geometric kind. (Cerveny's beams
 /// have their images.)
-class BeamTwins {
+class BeamPairs {
  public:
   /// \param rows  kept by reference
-  BeamTwins(const BoundaryRows& rows, const FieldSum& field);
-  BeamTwins(const BeamTwins&) = delete;
-  BeamTwins& operator=(const BeamTwins&) = delete;
+  BeamPairs(const BoundaryRows& rows, const FieldSum& field);
+  BeamPairs(const BeamPairs&) = delete;
+  BeamPairs& operator=(const BeamPairs&) = delete;
   void add(const BeamSetting& setting, const BeamLaunch& launch, const RayTrajectory& ray,
            FieldSum& field);
   /// Leaves nothing where there is nothing to be had (BoundaryRows::silent), also of rays that turn
@@ -106,4 +106,4 @@ class BeamTwins {
   AtWall walls_[2] = {{.kind = BoundaryKind::surface}, {.kind = BoundaryKind::bottom}};
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/beams/foot.h"
 #include "raytrace/beams/geometric.h"
 
-namespace asdic::beams {
+namespace asdic::detail::beams {
 
 namespace {
 
@@ -287,4 +287,4 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
   }
 }
 
-}  // namespace asdic::beams
+}  // namespace asdic::detail::beams

@@ -3,7 +3,7 @@
 
 #include "raytrace/beams/beam.h"
 
-namespace asdic::beams {
+namespace asdic::detail::beams {
 
 /// ε = Q/P at the source [m²/s]: iω·w²/2 for a beam of half-width w whose front is flat there; real
 /// for WKB beams, whose fronts are those of one horizontal slowness in a layered ocean.
@@ -38,4 +38,4 @@ class ComplexBeam {
   double jump_factor_ = 1.0;
 };
 
-}  // namespace asdic::beams
+}  // namespace asdic::detail::beams

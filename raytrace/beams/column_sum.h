@@ -9,9 +9,9 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
-#include "raytrace/math/lanes.h"
+#include "raytrace/math/simd.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 inline namespace ASDIC_LEVEL {
 
@@ -28,13 +28,13 @@ class ColumnSum {
     return 2 * columns * stride_of(rows);
   }
 
-  /// Adds one beam. \param walls  receivers on the boundaries, which its twin serves too; null:
+  /// Adds one beam. \param walls  receivers on the boundaries, which its partner serves too; null:
   /// none
   void add(const BeamLaunch& launch, const Crossings& crossings,
            const BoundaryRows* walls = nullptr);
 
   /// Leaves nothing at receivers where there is nothing to be had (BoundaryRows::silent): add()
-  /// left the twins out there.
+  /// left the partners out there.
   void silence(const BoundaryRows& walls);
 
   /// Adds what another sum of the same receivers has.
@@ -57,7 +57,7 @@ class ColumnSum {
   };
   /// From column to column: groups of rows may begin at the last row.
   [[nodiscard]] static std::size_t stride_of(std::size_t rows) noexcept {
-    return (rows + 2 * lanes - 1) / lanes * lanes;
+    return (rows + 2 * simd_width - 1) / simd_width * simd_width;
   }
 
   template <bool is_hat>
@@ -76,7 +76,7 @@ class ColumnSum {
   template <bool coherent>
   void add_hats(const Crossings& crossings);
   void add_even_gaussians(const Crossings& crossings);
-  void add_lanes(std::size_t at, const Lanes& re, const Lanes& im);
+  void add_simd(std::size_t at, const SimdFloats& re, const SimdFloats& im);
   void add_plainly(const Crossings& crossings, std::size_t i);
   void add_number(std::size_t at, const std::complex<double>& p);
   [[nodiscard]] Crossing crossing_at(const Crossings& x, std::size_t i) const;
@@ -84,9 +84,9 @@ class ColumnSum {
   /// The half of a hat that is being added.
   enum class Half : std::int8_t { both, higher, lower };
   void add_half(const BeamLaunch& launch, const Crossings& crossings, Half half);
-  void add_twins(const Crossings& crossings, const BoundaryRows& walls);
-  void add_twin(const Crossings& crossings, std::size_t i, BoundaryKind kind, std::size_t row,
-                const BoundaryRows& walls);
+  void add_partners(const Crossings& crossings, const BoundaryRows& walls);
+  void add_partner(const Crossings& crossings, std::size_t i, BoundaryKind kind, std::size_t row,
+                   const BoundaryRows& walls);
 
   BeamSetting setting_;
   double spacing_of_fan_ = 0.0;
@@ -115,4 +115,4 @@ class ColumnSum {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-namespace asdic {
+namespace asdic::detail {
 
 namespace {
 
@@ -446,4 +446,4 @@ ConvergedField converged_field(const PropagationCase& run_case, const FieldOfFan
              : field_of_even_fans(run_case, field_of, circle, count, most, progress);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "raytrace/cases/beam_error_text.h"
 #include "raytrace/ocean/level_rays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A field and how sure it is of its number of beams.
 struct ConvergedField {
@@ -76,4 +76,4 @@ inline constexpr int most_beams = 32'769;           ///< beyond this the error i
 [[nodiscard]] double level_difference_db(const std::vector<std::complex<double>>& a,
                                          const std::vector<std::complex<double>>& b, double share);
 
-}  // namespace asdic
+}  // namespace asdic::detail

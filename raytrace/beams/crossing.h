@@ -9,7 +9,7 @@
 #include "raytrace/tracing/ray_trajectory.h"
 #include "raytrace/tracing/reflected.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A ray and its beam where they cross the range of a column of receivers.
 struct Crossing {
@@ -81,4 +81,4 @@ void for_each_crossing(const RaySegment& segment, std::span<const double> ranges
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

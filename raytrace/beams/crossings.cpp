@@ -5,7 +5,7 @@
 #include "core/units.h"
 #include "raytrace/beams/crossing.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 void Crossings::resize(std::size_t n) {
   column.resize(n);
@@ -57,7 +57,7 @@ void find_crossings(const BeamSetting& setting, const RayTrajectory& ray,
 void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHistory& history) {
   const double c = 1.0 / std::sqrt(y.xi * y.xi + y.zeta * y.zeta);
   const int bounces = history.surface_bounces + history.bottom_bounces;
-  const double turns = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
+  const double cycles = 0.25 * history.caustics + history.reflection_phase / (2.0 * pi);
   out_.column.push_back(static_cast<std::uint32_t>(column));
   out_.depth.push_back(y.depth);
   out_.cosine.push_back(c * y.xi);
@@ -68,10 +68,10 @@ void MarchedCrossings::pass(std::size_t column, const RayState& y, const RayHist
   out_.dq_ds.push_back(c * y.p);
   out_.level.push_back(std::abs(reflected(history, setting_.coherent)) *
                        (std::exp(-y.nepers) * spread_across(setting_, y)));
-  out_.phase.push_back(2.0 * pi * (turns - std::floor(turns)));
+  out_.phase.push_back(2.0 * pi * (cycles - std::floor(cycles)));
   out_.mirror.push_back(bounces % 2 == 0 ? 1.0 : -1.0);
   out_.bounces.push_back(static_cast<std::uint32_t>(history.bottom_bounces) +
                          65536U * static_cast<std::uint32_t>(history.surface_bounces));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

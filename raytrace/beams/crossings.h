@@ -6,7 +6,7 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The crossings of one ray with the columns of a grid of receivers, an array for each quantity, so
 /// that loops over them vectorise. Memory is reused from ray to ray.
@@ -49,4 +49,4 @@ class MarchedCrossings final : public RangeVisitor {
   Crossings& out_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 BeamFan even_fan(double lowest, double highest, int count) {
   const double width = highest - lowest;
@@ -87,4 +87,4 @@ double launch_amplitude(const PropagationCase& run_case, double source_depth, do
   return amplitude;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

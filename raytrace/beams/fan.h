@@ -3,7 +3,7 @@
 
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The launch elevations of the beams of one source and the angle that each of them stands for.
 struct BeamFan {
@@ -49,4 +49,4 @@ struct FinestTubes {
 [[nodiscard]] double launch_amplitude(const PropagationCase& run_case, double source_depth,
                                       double source_speed, double elevation) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The field of one source and one fan, and of every second beam of it.
 struct FanField {
@@ -47,4 +47,4 @@ struct FieldCheck {
 /// Whether FieldCheck::bound can be had.
 [[nodiscard]] bool has_error_bound(const PropagationCase& run_case) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/parallel/progress.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The progress of a field that is summed again and again, from fans of more and more beams.
 ///
@@ -37,4 +37,4 @@ class FanProgress {
   double first_ = 0.0, last_ = 0.0, earlier_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "raytrace/beams/beam.h"
 #include "raytrace/tracing/segment_states.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where the normal of a ray meets a receiver.
 struct Foot {
@@ -123,4 +123,4 @@ void for_each_foot(const RayTrajectory& ray, FieldSum& field, Reach&& reach, Ima
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/beams/crossing.h"
 #include "raytrace/beams/foot.h"
 
-namespace asdic::beams {
+namespace asdic::detail::beams {
 
 namespace {
 
@@ -173,4 +173,4 @@ void add_simple_gaussian(const BeamSetting& setting, const BeamLaunch& launch,
     });
 }
 
-}  // namespace asdic::beams
+}  // namespace asdic::detail::beams

@@ -5,7 +5,7 @@
 #include "raytrace/beams/crossing.h"
 #include "raytrace/beams/foot.h"
 
-namespace asdic::beams {
+namespace asdic::detail::beams {
 
 /// Hat and Gaussian beams in Cartesian coordinates: every column of receivers that the ray crosses
 /// is served from the crossing. A receiver dz below it lies n = |dz·cos θ| off the ray and s =
@@ -54,4 +54,4 @@ void add_cerveny_ray_centred(const BeamSetting& setting, const BeamLaunch& launc
 [[nodiscard]] double launch_factor(const BeamSetting& setting, const BeamLaunch& launch,
                                    double source_speed) noexcept;
 
-}  // namespace asdic::beams
+}  // namespace asdic::detail::beams

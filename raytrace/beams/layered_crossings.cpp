@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "raytrace/beams/arc.h"
-#include "raytrace/math/lane_math.h"
-#include "raytrace/math/lanes.h"
+#include "raytrace/math/simd.h"
+#include "raytrace/math/simd_math.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 namespace {
 
@@ -93,12 +93,12 @@ bool LayeredCrossings::find(double launch_elevation, Workspace& work, Crossings&
   const double xi = cosine / source_speed_;
   work.flat = pass_layers(xi, work);
   follow(sine, xi, work);
-  const std::size_t room = ranges_.size() + std::max(lanes, doubles);
+  const std::size_t room = ranges_.size() + std::max(simd_width, doubles);
   work.pass_of.resize(room), work.length.resize(room);
   out.resize(room);
   const std::size_t n = find_layers(work);
   alpha_ == 0.0 ? cross<false>(xi, n, work, out) : cross<true>(xi, n, work, out);
-  fill_stretches(n, work, out);
+  fill_pieces(n, work, out);
   out.resize(n);
   out.source_speed = source_speed_;
   std::copy_n(columns_.begin(), n, out.column.begin());
@@ -113,8 +113,8 @@ std::size_t LayeredCrossings::find_layers(Workspace& work) const {
     const std::size_t first = column;
     column = column_at(work.pass[k + 1].r, column);
     // as many at a time as most layers have; those too many are overwritten by the next
-    for (std::size_t j = first; j < column; j += lanes)
-      WholeLanes(static_cast<std::int32_t>(k))
+    for (std::size_t j = first; j < column; j += simd_width)
+      SimdInts(static_cast<std::int32_t>(k))
           .copy_to(pass_of + j, std::experimental::element_aligned);
   }
   for (std::size_t j = column; j < column + doubles; ++j) pass_of[j] = 0;  // read and not used
@@ -164,13 +164,13 @@ void LayeredCrossings::cross(double xi, std::size_t n, Workspace& work, Crossing
 }
 
 /// What changes at boundaries and caustics only, and what absorption leaves: exp(−∫α ds).
-void LayeredCrossings::fill_stretches(std::size_t n, Workspace& work, Crossings& out) const {
+void LayeredCrossings::fill_pieces(std::size_t n, Workspace& work, Crossings& out) const {
   const double* q = out.q.data();
   double *level = out.level.data(), *phase = out.phase.data(), *mirror = out.mirror.data();
-  for (std::size_t i = 0, first = 0; i < work.stretch.size(); ++i) {
-    const Stretch& a = work.stretch[i];
-    const bool is_last = i + 1 == work.stretch.size();
-    const std::size_t end = is_last ? n : column_at(work.pass[work.stretch[i + 1].pass].r, first);
+  for (std::size_t i = 0, first = 0; i < work.piece.size(); ++i) {
+    const Piece& a = work.piece[i];
+    const bool is_last = i + 1 == work.piece.size();
+    const std::size_t end = is_last ? n : column_at(work.pass[work.piece[i + 1].pass].r, first);
     ASDIC_INDEPENDENT
     for (std::size_t j = first; j < end; ++j) {
       level[j] = a.level;
@@ -186,4 +186,4 @@ void LayeredCrossings::fill_stretches(std::size_t n, Workspace& work, Crossings&
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/beams/crossings.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Crossings in a layered ocean whose speed is linear in depth between samples, with flat
 /// boundaries and the same loss at every depth: closed forms, no marching. What RayTracer and
@@ -38,7 +38,7 @@ class LayeredCrossings {
     double length;  // of the ray, up to here
   };
   /// What changes at boundaries and caustics only.
-  struct Stretch {
+  struct Piece {
     std::size_t pass;                                            // from this one on
     double level = 1.0, phase = 0.0, mirror = 1.0, sense = 1.0;  // sense: the sign of q
   };
@@ -47,7 +47,7 @@ class LayeredCrossings {
     std::vector<double> sine, jump, reach, time;  // [nodes] twice, [layers] twice
     std::vector<Pass> pass;                       // [passes + 1]: the last is where it ends
     std::size_t passes = 0;
-    std::vector<Stretch> stretch;
+    std::vector<Piece> piece;
     std::vector<std::int32_t> pass_of;  // [columns + some]
     std::vector<double> length;         // [columns + some] of the ray up to each
     bool flat = true;                   // series will do for every arc
@@ -63,7 +63,7 @@ class LayeredCrossings {
   std::size_t find_layers(Workspace& work) const;
   template <bool absorbing>
   void cross(double xi, std::size_t n, Workspace& work, Crossings& out) const;
-  void fill_stretches(std::size_t n, Workspace& work, Crossings& out) const;
+  void fill_pieces(std::size_t n, Workspace& work, Crossings& out) const;
   [[nodiscard]] std::size_t column_at(double range, std::size_t column) const noexcept;
   [[nodiscard]] std::size_t first_layer(double sine) const noexcept;
 
@@ -81,4 +81,4 @@ class LayeredCrossings {
   double faintest_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,10 +3,10 @@
 
 #include "raytrace/beams/arc.h"
 #include "raytrace/beams/layered_crossings.h"
-#include "raytrace/math/lanes.h"
+#include "raytrace/math/simd.h"
 
 // A ray from layer to layer: what LayeredCrossings knows of it before it looks at columns.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A ray that passes more layers than this is trapped, as TraceLimits::max_segments has it:
@@ -50,15 +50,15 @@ bool LayeredCrossings::pass_layers(double xi, Workspace& work) const {
   return bent == 0;
 }
 
-/// The ray where it enters each layer, as far as the last column or as it can be heard.
+/// The ray where it enters each layer, as far as the last column or as it can be received.
 void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
   const std::size_t layers = gradient_.size();
   const double *s_at = work.sine.data(), *speed = speed_.data(), *depth = depth_.data();
   const double last_range = ranges_.empty() ? -1.0 : ranges_.back();
   std::complex<double> coefficient[2];  // of surface and bottom, once they are met
   double loss[2] = {-1.0, -1.0}, turn[2] = {0.0, 0.0};
-  Stretch now{.pass = 0};
-  work.stretch.assign(1, now);
+  Piece now{.pass = 0};
+  work.piece.assign(1, now);
   std::size_t layer = first_layer(sine), passes = 0;
   Pass at{.r = 0.0,
           .s = sine,
@@ -77,11 +77,11 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
     work.pass[passes++] = at;
     const bool down = at.s > 0.0;
     const std::size_t exit_node = down ? layer + 1 : layer;
-    const bool turns = xi * speed[exit_node] >= 1.0 || s_at[exit_node] == 0.0;
+    const bool cycles = xi * speed[exit_node] >= 1.0 || s_at[exit_node] == 0.0;
     std::size_t node = exit_node;
     double reach = work.reach[layer], time = work.time[layer],
            s_end = down ? s_at[node] : -s_at[node];
-    if (turns) {  // and leaves through the node by which it came, or lies on that side
+    if (cycles) {  // and leaves through the node by which it came, or lies on that side
       node = down ? layer : layer + 1;
       s_end = down ? -s_at[node] : s_at[node];
       reach = (at.s - s_end) / at.bend;
@@ -90,7 +90,7 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
     } else if (inside) {
       reach = (depth[node] - at.z) * (at.cosine + xi * speed[node]) / (at.s + s_end);
     }
-    if (turns || inside) time = layer_time(xi * reach / (1.0 - at.s * s_end), g);
+    if (cycles || inside) time = layer_time(xi * reach / (1.0 - at.s * s_end), g);
     inside = false;
     if (alpha_ != 0.0) {
       const double dz = depth[node] - at.z, chord = std::sqrt(reach * reach + dz * dz);
@@ -130,7 +130,7 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
     }
     if (caustic || at_surface || at_bottom) {
       now.pass = passes;
-      work.stretch.push_back(now);
+      work.piece.push_back(now);
       if (now.level == 0.0 || now.level < faintest_) break;
     }
   }
@@ -139,4 +139,4 @@ void LayeredCrossings::follow(double sine, double xi, Workspace& work) const {
   work.passes = passes;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

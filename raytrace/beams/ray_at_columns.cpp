@@ -3,10 +3,10 @@
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/larger.h"
 #include "raytrace/beams/tube_error.h"
-#include "raytrace/math/lanes.h"
+#include "raytrace/math/simd.h"
 
 // What a ray foretells of its neighbours where it crosses the columns.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using beams::larger;
@@ -54,4 +54,4 @@ void RayAtColumns::foretell(const BeamSetting& setting, const BeamLaunch& launch
     for (std::size_t i = 0; i < n; ++i) amplitude_to[i] = std::sqrt(amplitude_to[i]);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

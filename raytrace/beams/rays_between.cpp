@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "raytrace/beams/larger.h"
-#include "raytrace/math/lanes.h"
+#include "raytrace/math/simd.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// How far two outer rays may be off the middle one: radians of phase, shares of width and level.
@@ -250,4 +250,4 @@ void RaysBetween::Half::at(double elevation, Crossings& out) const {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

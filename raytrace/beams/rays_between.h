@@ -4,7 +4,7 @@
 #include "raytrace/beams/crossings.h"
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Rays of a fan between three that were traced, where these foretell one another: of a family that
 /// is smooth at most columns, a ray costs a fortieth of one that is traced.
@@ -78,4 +78,4 @@ class RaysBetween {
   Half halves_[2];
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One ray of a fan where it crosses the columns, and what it foretells of its neighbours there.
 struct RayAtColumns {
@@ -34,7 +34,7 @@ struct RayAtColumns {
 class TubeError {
  public:
   /// \param first_left_out, last_left_out  rows in [first, last) count for no share
-  /// \param walls  receivers on the boundaries, where each beam brings its twin; null: none
+  /// \param walls  receivers on the boundaries, where each beam brings its partner; null: none
   TubeError(const BeamSetting& setting, std::span<const double> depths, std::size_t columns,
             std::size_t first_left_out = 0, std::size_t last_left_out = 0,
             const BoundaryRows* walls = nullptr);
@@ -91,7 +91,7 @@ class TubeError {
   double put(std::size_t column, const Piece& piece, double level);
   double put_between(std::size_t column, double error, double from, double to);
 
-  // At receivers on the boundaries, where nothing else counts: tube_error_walls.cpp.
+  // At receivers on the boundaries, where nothing else counts: tube_error.cpp.
   double put_tube_at_walls(std::size_t column, std::size_t n, double level, const Pair& pair);
   double put_alone_at_walls(const Piece& piece, const RayAtColumns& ray, std::size_t i,
                             double level);
@@ -115,4 +115,4 @@ class TubeError {
   std::vector<std::int32_t> head_, next_;  // of crossings of the same column
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

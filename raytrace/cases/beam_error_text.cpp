@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <limits>
 
-namespace asdic {
+namespace asdic::detail {
 
 std::string beam_error_text(double error_db, bool bounded) {
   if (!std::isfinite(error_db))
@@ -32,4 +32,4 @@ std::string certainty_text(double share) {
   return text;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

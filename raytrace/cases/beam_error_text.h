@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is known of the number of beams of a field, in words: "more beams would change no more than
 /// 0.4 dB at 95 % of the receivers". \param error_db  as PropagationResult has it; ∞: no bound can
@@ -20,4 +20,4 @@ inline constexpr double sure_db = 0.5;
 /// The same in words: "to 0.5 dB at 28 % of the receivers"; shares are rounded down.
 [[nodiscard]] std::string certainty_text(double share);
 
-}  // namespace asdic
+}  // namespace asdic::detail

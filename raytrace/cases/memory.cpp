@@ -7,7 +7,7 @@
 #include "raytrace/cases/ray_path.h"
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double points_of_a_ray = 100.0;
@@ -49,4 +49,4 @@ MemoryBudget run_memory(const PropagationCase& run_case, MemoryBudget budget) {
   return budget;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace asdic {
+namespace asdic::detail {
 
 double SourcePattern::at(double launch_elevation) const noexcept {
   assert(!elevation.empty() && amplitude.size() == elevation.size());
@@ -16,4 +16,4 @@ double SourcePattern::at(double launch_elevation) const noexcept {
   return amplitude[i - 1] + share * (amplitude[i] - amplitude[i - 1]);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is computed.
 enum class Task { rays, eigenrays, arrivals, eigenrays_and_arrivals, field };
@@ -109,4 +109,4 @@ struct PropagationCase {
   LiteralSettings literal;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

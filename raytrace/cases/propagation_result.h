@@ -7,7 +7,7 @@
 #include "raytrace/cases/ray_path.h"
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The answer of a run; what was not asked for is empty.
 ///
@@ -29,4 +29,4 @@ struct PropagationResult {
   std::vector<std::string> notes;  ///< what the user should know
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One point of a traced ray.
 struct RayPoint {
@@ -20,4 +20,4 @@ struct RayPath {
   std::vector<double> surface_hits;  ///< ranges [m]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

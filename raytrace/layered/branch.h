@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/layered/column.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A history of a ray from source to receiver: whether it starts upward, and how many vertices
 /// (turning points or boundary bounces, by turns top and bottom) it has before it arrives.
@@ -43,4 +43,4 @@ struct BranchWeights {
   return w;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

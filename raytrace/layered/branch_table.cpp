@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "core/units.h"
-#include "raytrace/layered/column_lanes.h"
-#include "raytrace/layered/stretch_splitter.h"
+#include "raytrace/layered/piece_splitter.h"
+#include "raytrace/layered/simd_column.h"
 #include "raytrace/math/hermite.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The pieces of a column as sums of an OceanFan's layers, and of what the two cuts left of theirs.
 class BranchTable::Parts {
@@ -31,9 +31,9 @@ class BranchTable::Parts {
   }
 
   /// walk_sums, of the nodes from `first` on.
-  [[nodiscard]] ColumnLanes sums(const OceanFan::Interval& interval, const RayLanes& rays,
-                                 std::size_t first) const {
-    ColumnLanes sums;
+  [[nodiscard]] SimdColumn sums(const OceanFan::Interval& interval, const SimdRays& rays,
+                                std::size_t first) const {
+    SimdColumn sums;
     for (std::size_t i = column_.upper(); i < column_.lower(); ++i)
       add(interval, rays, first, i, sums.middle);
     for (std::size_t i = column_.upper(); i-- > 0;) {
@@ -59,8 +59,8 @@ class BranchTable::Parts {
   }
 
   /// \return whether all the rays have turned there, or before
-  bool add(const OceanFan::Interval& interval, const RayLanes& rays, std::size_t first,
-           std::size_t layer, LegLanes& leg) const {
+  bool add(const OceanFan::Interval& interval, const SimdRays& rays, std::size_t first,
+           std::size_t layer, SimdLegs& leg) const {
     const std::size_t ocean = of_ocean_[layer];
     if (ocean == cut)
       return all_of(visit_layer(column_.layers()[layer], rays, interval.between, leg).turned);
@@ -109,7 +109,7 @@ void BranchTable::add_interval(const CriticalSpeed& slow, const CriticalSpeed& f
   std::size_t n = 0;
   for (std::size_t begin = 0; begin < nodes.size(); begin += rays_at_once) {
     const Rays sigmas([&](auto i) { return nodes[std::min(begin + i, nodes.size() - 1)]; });
-    const RayLanes rays(slow.speed, sigmas);
+    const SimdRays rays(slow.speed, sigmas);
     const auto& [up, middle, down, turns_above, turns_below] =
         known != nullptr ? parts->sums(*known, rays, begin)
         : by_series      ? legs_->sums(column_, rays)
@@ -191,8 +191,8 @@ void BranchTable::limit_by_loss(FanInterval& interval) const {
 BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const Branch& branch,
                                               double sigma) const noexcept {
   // Lanes are as fast for one ray as for many, and know shorter ways through smooth laws.
-  const RayLanes rays(interval.reference_speed, Rays(sigma));
-  const ColumnLanes sums =
+  const SimdRays rays(interval.reference_speed, Rays(sigma));
+  const SimdColumn sums =
       legs_ ? legs_->sums(column_, legs_->find(interval.reference_speed, sigma), rays)
             : walk_sums(column_, rays);
   const BranchWeights w = weights(branch, column_.source_is_upper());
@@ -203,18 +203,18 @@ BranchTable::RangeSlope BranchTable::evaluate(const FanInterval& interval, const
           w.of(sums.up.d_range[0], sums.middle.d_range[0], sums.down.d_range[0])};
 }
 
-void BranchTable::for_each_stretch(double low, double high,
-                                   const std::function<void(const MonotoneStretch&)>& visit) const {
-  for_each_stretch(low, high, {}, visit);
+void BranchTable::for_each_piece(double low, double high,
+                                 const std::function<void(const MonotonePiece&)>& visit) const {
+  for_each_piece(low, high, {}, visit);
 }
 
-void BranchTable::for_each_stretch(std::span<const double> ranges,
-                                   const std::function<void(const MonotoneStretch&)>& visit) const {
-  for_each_stretch(ranges.front(), ranges.back(), ranges, visit);
+void BranchTable::for_each_piece(std::span<const double> ranges,
+                                 const std::function<void(const MonotonePiece&)>& visit) const {
+  for_each_piece(ranges.front(), ranges.back(), ranges, visit);
 }
 
-void BranchTable::for_each_stretch(double low, double high, std::span<const double> ranges,
-                                   const std::function<void(const MonotoneStretch&)>& visit) const {
+void BranchTable::for_each_piece(double low, double high, std::span<const double> ranges,
+                                 const std::function<void(const MonotonePiece&)>& visit) const {
   const bool upper = column_.source_is_upper();
   std::vector<int> most;
   std::vector<double> r, slope, least, greatest;  // of a branch at the nodes and between them
@@ -260,7 +260,7 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
         const auto node = [&](std::size_t i) {
           return HermiteNode{interval.sigma[i], r[i], slope[i]};
         };
-        StretchSplitter splitter(*this, interval, branch, ranges, visit);
+        PieceSplitter splitter(*this, interval, branch, ranges, visit);
         for (std::size_t i = 0; i + 1 < n; ++i)
           if (k <= most[i] && greatest[i] >= low && least[i] <= high)
             splitter.split_cell(i, node(i), node(i + 1));
@@ -269,4 +269,4 @@ void BranchTable::for_each_stretch(double low, double high, std::span<const doub
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -13,7 +13,7 @@
 #include "raytrace/math/hermite.h"
 #include "raytrace/ocean/path_limits.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Rays between two depths as functions of their parameter: what a fan of rays would find,
 /// tabulated.
@@ -46,8 +46,8 @@ inline constexpr double steep_sigma = 0.5;
   return std::sqrt((1.0 - minus_k) * (1.0 + minus_k));
 }
 
-/// A stretch of an interval over which a branch's range is monotone in σ.
-struct MonotoneStretch {
+/// A piece of an interval over which a branch's range is monotone in σ.
+struct MonotonePiece {
   const FanInterval* interval = nullptr;
   std::size_t cell = 0;  ///< between nodes cell and cell + 1
   Branch branch;
@@ -85,20 +85,20 @@ class BranchTable {
   [[nodiscard]] RangeSlope evaluate(const FanInterval& interval, const Branch& branch,
                                     double sigma) const noexcept;
 
-  /// Calls `visit` for every monotone stretch of every branch within the limits. With a non-empty
-  /// [low, high] only stretches whose ranges may meet it are split and visited.
-  void for_each_stretch(double low, double high,
-                        const std::function<void(const MonotoneStretch&)>& visit) const;
+  /// Calls `visit` for every monotone piece of every branch within the limits. With a non-empty
+  /// [low, high] only pieces whose ranges may meet it are split and visited.
+  void for_each_piece(double low, double high,
+                      const std::function<void(const MonotonePiece&)>& visit) const;
 
   /// The same where only these ranges matter. \param ranges  [n] increasing, n > 0. Extrema between
-  /// them need not be exact: a stretch may go on past one by less than the distance to the next
+  /// them need not be exact: a piece may go on past one by less than the distance to the next
   /// range.
-  void for_each_stretch(std::span<const double> ranges,
-                        const std::function<void(const MonotoneStretch&)>& visit) const;
+  void for_each_piece(std::span<const double> ranges,
+                      const std::function<void(const MonotonePiece&)>& visit) const;
 
  private:
-  void for_each_stretch(double low, double high, std::span<const double> ranges,
-                        const std::function<void(const MonotoneStretch&)>& visit) const;
+  void for_each_piece(double low, double high, std::span<const double> ranges,
+                      const std::function<void(const MonotonePiece&)>& visit) const;
   class Parts;
   void add_interval(const CriticalSpeed& slow, const CriticalSpeed& fast, const Parts* parts);
   void limit_by_loss(FanInterval& interval) const;
@@ -110,4 +110,4 @@ class BranchTable {
   std::vector<FanInterval> intervals_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Walks from node `from` (the top of layer `from`) down to the bottom vertex, or up to the top
@@ -129,4 +129,4 @@ Column::All Column::all(const RayParameter& ray) const noexcept {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

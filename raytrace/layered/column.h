@@ -8,7 +8,7 @@
 #include "raytrace/layered/ray_parameter.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Horizontal distances of one ray in a column with two depths of interest: from the upper of them
 /// to the ray's top vertex (where it turns or meets the surface), between the two, and from the
@@ -65,4 +65,4 @@ class Column {
   double source_speed_ = 0.0, receiver_speed_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

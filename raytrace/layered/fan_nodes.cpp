@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 bool is_smooth_extremum(const Layer& layer, double depth) {
@@ -12,7 +12,7 @@ bool is_smooth_extremum(const Layer& layer, double depth) {
   return std::abs(here.dc_dz) < 1e-6 * std::abs(here.d2c_dz2) * layer.thickness();
 }
 
-/// Speeds that the sums cannot tell apart. Rays that turn between them pass the one and not the
+/// Speeds that the sums cannot resolve. Rays that turn between them pass the one and not the
 /// other by less than rounding: there are none in the fan.
 bool are_one(double slower, double faster) { return faster - slower <= 1e-13 * faster; }
 
@@ -72,4 +72,4 @@ void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analyt
   sigma.push_back(sigma_end * (1.0 - 1e-12));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "raytrace/layered/layer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A speed at which the fan of an ocean is singular; `logarithmic` where it is a smooth extremum of
 /// the profile, near which a ray lingers.
@@ -25,4 +25,4 @@ struct CriticalSpeed {
 void put_nodes(const CriticalSpeed& slow, const CriticalSpeed& fast, bool analytic,
                std::vector<double>& sigma);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "core/units.h"
-#include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/layered/simd_column.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr int most_steps = 8;
@@ -67,17 +67,18 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
                       .vertices = known.surface_bounces + known.upper_turns + known.bottom_bounces +
                                   known.lower_turns};
   if (branch.vertices == 0 && branch.starts_up == column.source_is_upper()) return std::nullopt;
-  const RootStretch stretch(branch, column.source_is_upper());
-  const RootTask task{.stretch = &stretch, .range = range}, *const one = &task;
-  const TaskLanes lanes(&one, 1);
+  const RootPiece piece(branch, column.source_is_upper());
+  const RootTask task{.piece = &piece, .range = range}, *const one = &task;
+  const SimdTasks simd_width(&one, 1);
 
   const double k0 = known.horizontal_slowness * c_ref;
   const double first = std::sqrt(std::max(0.0, (1.0 - k0) * (1.0 + k0)));
   const bool steep = first > steep_sigma;
-  const auto shoot = [&](const RayLanes& rays, const ColumnLanes& legs) {
-    const Rays reached = rays.slowness * lanes.of(legs.up.per_slowness, legs.middle.per_slowness,
-                                                  legs.down.per_slowness);
-    const Rays d_range = lanes.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
+  const auto shoot = [&](const SimdRays& rays, const SimdColumn& legs) {
+    const Rays reached =
+        rays.slowness *
+        simd_width.of(legs.up.per_slowness, legs.middle.per_slowness, legs.down.per_slowness);
+    const Rays d_range = simd_width.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
     const Rays slope =
         steep ? Rays(-d_range / c_ref) : Rays(-rays.sigma * d_range * rays.per_c2 / rays.slowness);
     return Shot{.miss = static_cast<double>(reached[0]) - range,
@@ -91,10 +92,10 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
   }
   double sigma = first, first_slope = 0.0;
   for (int step = 0; step < most_steps; ++step) {
-    const RayLanes rays(c_ref, Rays(sigma));
+    const SimdRays rays(c_ref, Rays(sigma));
     // The first ray misses, as a rule, and the second one does not: series of times are not asked
     // for in vain.
-    ColumnLanes legs = step == 0 && source.kept != nullptr ? source.sums(rays) : source.all(rays);
+    SimdColumn legs = step == 0 && source.kept != nullptr ? source.sums(rays) : source.all(rays);
     const Shot shot = shoot(rays, legs);
     if (step == 0) first_slope = shot.slope;
     if (!(std::abs(shot.slope / first_slope - 1.0) < greatest_bend)) return std::nullopt;
@@ -109,7 +110,7 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
                                  .turns_below = legs.turns_below};
       std::vector<Arrivals> found(1);
       PathBuilder(ocean, column, frequency)
-          .build(interval, lanes, {rays, legs}, limits.faintest, found);
+          .build(interval, simd_width, {rays, legs}, limits.faintest, found);
       if (found.front().empty()) return std::nullopt;
       Arrival path = std::move(found.front().front());
       if (path.caustics != known.caustics ||
@@ -127,4 +128,4 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
   return std::nullopt;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

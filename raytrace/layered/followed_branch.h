@@ -5,7 +5,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The water between two depths, for the paths between them.
 struct WaterBetween {
@@ -31,4 +31,4 @@ struct WaterBetween {
                                                      double frequency, const Arrival& known,
                                                      const PathLimits& limits);
 
-}  // namespace asdic
+}  // namespace asdic::detail

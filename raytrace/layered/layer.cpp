@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/layered/water_lanes.h"
+#include "raytrace/layered/simd_water.h"
 #include "raytrace/math/gauss_legendre.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Depths strictly inside (top, bottom) where the layer is cut: where dc/dz changes sign, and for
@@ -53,7 +53,7 @@ void prepare_quadrature(Layer& layer) {
   gauss_legendre<8>(layer.top, layer.bottom, put);
   depth[edges + 1] = layer.bottom;
   for (std::size_t i = 0; i < nodes + 2; i += rays_at_once) {
-    const WaterLanes water(layer, load(&depth[i]));
+    const SimdWater water(layer, load(&depth[i]));
     store(water.c, &speed[i]);
     store(water.dc_dz, &slope[i]);
   }
@@ -176,4 +176,4 @@ double cut_at(std::vector<Layer>& layers, double depth) {
   return depth;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/ocean/sound_speed.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A slab of water in which the speed is monotone in depth and follows one law.
 struct Layer {
@@ -46,4 +46,4 @@ double cut_at(std::vector<Layer>& layers, double depth);
 
 inline constexpr double same_depth = 1e-7;  ///< [m]
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/layered/turned_arc.h"
 #include "raytrace/math/arc_series.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// (atanh x)/x and (asin x)/x, for |x| < 1, without cancellation at 0.
@@ -269,4 +269,4 @@ PassDetail turn_detail(const Layer& layer, const RayParameter& ray, double sine)
   return detail;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "raytrace/layered/layer.h"
 #include "raytrace/layered/ray_parameter.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What one way through a layer, or from its edge to the turning depth inside it, adds to the
 /// horizontal range.
@@ -57,4 +57,4 @@ struct PassDetail {
 /// The depth inside the layer where the ray turns: c(z) = 1/ξ [m].
 [[nodiscard]] double turning_depth(const Layer& layer, const RayParameter& ray) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

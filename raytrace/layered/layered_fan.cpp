@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace asdic {
+namespace asdic::detail {
 
 std::optional<LayeredFan> LayeredFan::make(const Environment& environment, double frequency,
                                            double source_depth) {
@@ -154,4 +154,4 @@ bool LayeredFan::trace(double elevation, double range, Workspace& work,
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,9 +6,9 @@
 #include "raytrace/layered/column.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/ray_at_range.h"
-#include "raytrace/math/lane_math.h"
+#include "raytrace/math/simd_math.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// RayFan where the speed is linear in depth between samples and the boundaries are flat: a ray is
 /// its Snell invariant, and after one cycle it repeats itself. So each layer is summed once,
@@ -46,4 +46,4 @@ class LayeredFan {
   std::vector<double> upper_, lower_, gradient_, sum_h_;  // [layers] c, c, g, (c_a + c_b)h
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

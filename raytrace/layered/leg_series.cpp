@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 LegSeries::LegSeries(const Column& column, double c_ref, double low, double high)
-    : stretch_(low, high) {
+    : extent_(low, high) {
   for (std::size_t j = 0; j < LegFit<3>::terms; j += rays_at_once) {
-    const RayLanes rays(c_ref, LegFit<3>::sigmas(stretch_, j));
-    const ColumnLanes sums = walk_all(column, rays);
+    const SimdRays rays(c_ref, LegFit<3>::sigmas(extent_, j));
+    const SimdColumn sums = walk_all(column, rays);
     turns_above_ = sums.turns_above;
     turns_below_ = sums.turns_below;
     legs_.put(0, j, sums.up, rays);
@@ -22,8 +22,8 @@ LegSeries::LegSeries(const Column& column, double c_ref, double low, double high
     good_ = good_ && legs_.good(leg, c_ref, {.range = 1e-7, .time = 1e-13, .slope = 1e-8});
 }
 
-ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
-  const auto [range, slope] = legs_.at(stretch_.x(rays.sigma), per_slowness, d_range);
+SimdColumn LegSeries::sums(const SimdRays& rays) const noexcept {
+  const auto [range, slope] = legs_.at(extent_.x(rays.sigma), per_slowness, d_range);
   const Rays per_sigma = 1.0 / rays.sigma;
   return {.up = {.per_slowness = range[0], .d_range = slope[0] * per_sigma},
           .middle = {.per_slowness = range[1], .d_range = slope[1] * per_sigma},
@@ -32,10 +32,10 @@ ColumnLanes LegSeries::sums(const RayLanes& rays) const noexcept {
           .turns_below = turns_below_};
 }
 
-ColumnLanes LegSeries::all(const RayLanes& rays) const noexcept {
-  ColumnLanes all = sums(rays);
-  const auto [times, lengths] = legs_.at(stretch_.x(rays.sigma), intercept, length);
-  LegLanes* legs[3] = {&all.up, &all.middle, &all.down};
+SimdColumn LegSeries::all(const SimdRays& rays) const noexcept {
+  SimdColumn all = sums(rays);
+  const auto [times, lengths] = legs_.at(extent_.x(rays.sigma), intercept, length);
+  SimdLegs* legs[3] = {&all.up, &all.middle, &all.down};
   for (std::size_t leg = 0; leg < 3; ++leg) {
     legs[leg]->intercept = times[leg];
     legs[leg]->length = lengths[leg];
@@ -85,4 +85,4 @@ const LegSeries* IntervalSeries::at(std::size_t cell) {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

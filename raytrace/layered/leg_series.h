@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/level_namespace.h"
-#include "raytrace/layered/column_lanes.h"
+#include "raytrace/layered/simd_column.h"
 #include "raytrace/math/polynomial_fit.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What of a leg is smooth in σ, and so a series: r/ξ, σ·dr/dξ, τ − ξr (whose error is of second
 /// order in that of σ) and the length.
@@ -24,16 +24,16 @@ class LegFit {
  public:
   static constexpr std::size_t terms = PolynomialFit<legs * leg_quantities>::terms;
 
-  /// Chebyshev's points `first` to `first` + lanes of a stretch.
-  [[nodiscard]] static Rays sigmas(const SigmaStretch& stretch, std::size_t first) noexcept {
+  /// Chebyshev's points `first` to `first` + lanes of a extent.
+  [[nodiscard]] static Rays sigmas(const SigmaExtent& extent, std::size_t first) noexcept {
     return Rays([&](auto i) {
-      return stretch.middle +
-             PolynomialFit<legs * leg_quantities>::point(first + i) / stretch.per_half;
+      return extent.middle +
+             PolynomialFit<legs * leg_quantities>::point(first + i) / extent.per_half;
     });
   }
   /// A leg's values there.
-  void put(std::size_t leg, std::size_t first, const LegLanes& value,
-           const RayLanes& rays) noexcept {
+  void put(std::size_t leg, std::size_t first, const SimdLegs& value,
+           const SimdRays& rays) noexcept {
     const Rays values[leg_quantities] = {value.per_slowness, rays.sigma * value.d_range,
                                          value.intercept, value.length};
     for (std::size_t q = 0; q < leg_quantities; ++q)
@@ -81,7 +81,7 @@ class LegFit {
   PolynomialFit<legs * leg_quantities> fit_;
 };
 
-/// The legs of an interval of the fan as Chebyshev series in σ, for stretches with many roots: a
+/// The legs of an interval of the fan as Chebyshev series in σ, for extents with many roots: a
 /// few walks through the column serve them all. Whether the series are right to rounding is told by
 /// their last terms.
 class LegSeries {
@@ -91,16 +91,16 @@ class LegSeries {
 
   /// Ranges right to a micrometre, times to a picosecond, slopes to 3e-8 of themselves.
   [[nodiscard]] bool good() const noexcept { return good_; }
-  [[nodiscard]] ColumnLanes sums(const RayLanes& rays) const noexcept;
-  [[nodiscard]] ColumnLanes all(const RayLanes& rays) const noexcept;
+  [[nodiscard]] SimdColumn sums(const SimdRays& rays) const noexcept;
+  [[nodiscard]] SimdColumn all(const SimdRays& rays) const noexcept;
 
  private:
-  SigmaStretch stretch_;
+  SigmaExtent extent_;
   LegFit<3> legs_;  ///< up, middle and down
   bool turns_above_ = false, turns_below_ = false, good_ = false;
 };
 
-/// Series over stretches of an interval, from node to node, made where they are wanted and as short
+/// Series over extents of an interval, from node to node, made where they are wanted and as short
 /// as they must be.
 class IntervalSeries {
  public:
@@ -131,11 +131,11 @@ class IntervalSeries {
 }  // namespace ASDIC_LEVEL
 
 /// How far a series reaches from σ on. The nearest singularity is where s vanishes at the next
-/// slower knot, at ±ia, a² = (c_ref/c)² − 1: on a stretch of 1.5 times its distance n terms leave
+/// slower knot, at ±ia, a² = (c_ref/c)² − 1: on a extent of 1.5 times its distance n terms leave
 /// about 4^(−n). \param slower  the knot's speed, 0 if there is none [m/s]
 [[nodiscard]] inline double series_reach(double from, double c_ref, double slower) noexcept {
   const double ratio = slower > 0.0 ? c_ref / slower : 2.0;
   return 0.7 * std::sqrt(ratio * ratio - 1.0 + from * from);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

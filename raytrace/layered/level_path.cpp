@@ -7,7 +7,7 @@
 #include "raytrace/ocean/level_rays.h"
 #include "raytrace/ocean/tube_amplitude.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The ray along a depth where the speed has no gradient, which r(σ) cannot tell: it stays there,
@@ -71,4 +71,4 @@ void put_level_paths(const Environment& ocean, double frequency, double source_d
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The order of arrivals: by delay.
 [[nodiscard]] inline bool earlier(const Arrival& a, const Arrival& b) noexcept {
@@ -20,4 +20,4 @@ void put_level_paths(const Environment& ocean, double frequency, double source_d
                      double receiver_depth, std::span<const double> ranges,
                      std::vector<Arrivals>& found);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 OceanFan::Interval make_interval(std::span<const Layer> layers, const CriticalSpeed& slow,
@@ -18,9 +18,9 @@ OceanFan::Interval make_interval(std::span<const Layer> layers, const CriticalSp
   for (std::size_t layer = 0; layer < layers.size(); ++layer) {
     bool some_cross = false, some_turn = false, all_come = true;
     for (std::size_t i = 0; i < n; i += rays_at_once) {
-      LegLanes leg;
+      SimdLegs leg;
       const LayerVisit visit = visit_layer(
-          layers[layer], RayLanes(slow.speed, load(&interval.sigma[i])), interval.between, leg);
+          layers[layer], SimdRays(slow.speed, load(&interval.sigma[i])), interval.between, leg);
       some_cross |= any_of(visit.crossed);
       some_turn |= any_of(visit.turned);
       all_come &= all_of(visit.crossed || visit.turned);
@@ -63,4 +63,4 @@ const OceanFan::Interval* OceanFan::find(const CriticalSpeed& slow,
   return &slot.interval;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

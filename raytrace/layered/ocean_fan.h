@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/level_namespace.h"
-#include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/fan_nodes.h"
+#include "raytrace/layered/simd_column.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 inline namespace ASDIC_LEVEL {
 
@@ -37,7 +37,7 @@ class OceanFan {
     std::size_t nodes = 0;
     double between = 0.0;                       ///< a speed inside it [m/s]
     std::vector<Reach> reach;                   ///< [layers]
-    std::vector<double> per_slowness, d_range;  ///< [layers × sigma] of LegLanes
+    std::vector<double> per_slowness, d_range;  ///< [layers × sigma] of SimdLegs
   };
 
   /// The interval between two critical speeds; nullptr where it is not one of the uncut ocean.
@@ -55,4 +55,4 @@ class OceanFan {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

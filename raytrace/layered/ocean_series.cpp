@@ -6,7 +6,7 @@
 
 #include "raytrace/layered/fan_nodes.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A piece that is not good is halved so often at most.
@@ -16,18 +16,18 @@ constexpr int most_halvings = 2;
 /// flat rays have that much noise.
 constexpr LegFit<2>::Tolerance tolerance{.range = 2e-6, .time = 1e-12, .slope = 5e-8};
 
-/// Series go on a little beyond the ends of their stretch.
+/// Series go on a little beyond the ends of their extent.
 constexpr double beyond_ends = 1.01;
 
-LegLanes nowhere() noexcept {
+SimdLegs nowhere() noexcept {
   const Rays none = std::numeric_limits<double>::quiet_NaN();
   return {none, none, none, none};
 }
 
 /// a + sign·b
 template <bool detailed>
-LegLanes plus(const LegLanes& a, double sign, const LegLanes& b) noexcept {
-  LegLanes sum{a.per_slowness + sign * b.per_slowness, a.d_range + sign * b.d_range};
+SimdLegs plus(const SimdLegs& a, double sign, const SimdLegs& b) noexcept {
+  SimdLegs sum{a.per_slowness + sign * b.per_slowness, a.d_range + sign * b.d_range};
   if constexpr (detailed) {
     sum.intercept = a.intercept + sign * b.intercept;
     sum.length = a.length + sign * b.length;
@@ -36,7 +36,7 @@ LegLanes plus(const LegLanes& a, double sign, const LegLanes& b) noexcept {
 }
 
 /// Ranges and slopes of those that a mask names.
-void put(const Rays::mask_type& these, const LegLanes& part, LegLanes& leg) noexcept {
+void put(const Rays::mask_type& these, const SimdLegs& part, SimdLegs& leg) noexcept {
   where(these, leg.per_slowness) = part.per_slowness;
   where(these, leg.d_range) = part.d_range;
 }
@@ -88,10 +88,10 @@ void OceanSeries::Piece::compute() {
   const std::size_t n = layers_.size();
   cuts_ = std::make_unique<Cut[]>(n + 1);
   const auto crossed = [&](const Layer& l) { return std::max(l.c_top, l.c_bottom) < between_; };
-  const auto come = [&](double speed) { return speed < between_ ? LegLanes{} : nowhere(); };
-  std::vector<LegLanes> part(n);
+  const auto come = [&](double speed) { return speed < between_ ? SimdLegs{} : nowhere(); };
+  std::vector<SimdLegs> part(n);
   for (std::size_t j = 0; j < LegFit<2>::terms; j += rays_at_once) {
-    const RayLanes rays(reference_speed_, LegFit<2>::sigmas(stretch(), j));
+    const SimdRays rays(reference_speed_, LegFit<2>::sigmas(extent(), j));
     Rays top = rays.sine(layers_.front().c_top);
     for (std::size_t i = 0; i < n; ++i) {
       const Layer& layer = layers_[i];
@@ -103,7 +103,7 @@ void OceanSeries::Piece::compute() {
         turn_in_layer<true>(layer, rays, layer.c_top < layer.c_bottom ? top : bottom, part[i]);
       top = bottom;
     }
-    LegLanes leg = come(layers_.front().c_top);
+    SimdLegs leg = come(layers_.front().c_top);
     cuts_[0].legs.put(up, j, leg, rays);
     for (std::size_t i = 0; i < n; ++i) {
       const Layer& layer = layers_[i];
@@ -167,7 +167,7 @@ OceanSeries::Found OceanSeries::find(double c_ref, double sigma, std::size_t cut
   const auto& pieces = interval.pieces;
   const auto at =
       std::upper_bound(pieces.begin(), pieces.end(), own,
-                       [](double s, const auto& piece) { return s < piece->stretch().high(); });
+                       [](double s, const auto& piece) { return s < piece->extent().high(); });
   Piece* piece = (at == pieces.end() ? pieces.back() : *at).get();
   for (int halved = 0; halved <= most_halvings && !piece->given_up(); ++halved) {
     const Piece::Cut &one = piece->cut(cut), &other = piece->cut(other_cut);
@@ -201,19 +201,19 @@ OceanLegs::Anchor OceanLegs::anchor(const Column& column, std::size_t node,
 }
 
 template <bool detailed>
-ColumnLanes OceanLegs::legs(const Column& column, const OceanSeries::Found& found,
-                            const RayLanes& rays) const noexcept {
+SimdColumn OceanLegs::legs(const Column& column, const OceanSeries::Found& found,
+                           const SimdRays& rays) const noexcept {
   const auto walked = [&] { return detailed ? walk_all(column, rays) : walk_sums(column, rays); };
   if (found.piece == nullptr) return walked();
   const double c_ref = found.piece->reference_speed();
   const Rays sine2 = c_ref == rays.reference_speed ? rays.sigma * rays.sigma : rays.sine2(c_ref);
   const Rays sigma = c_ref == rays.reference_speed ? rays.sigma : sqrt(sine2);
-  const Rays x = found.piece->stretch().x(sigma), per_sigma = 1.0 / sigma;
+  const Rays x = found.piece->extent().x(sigma), per_sigma = 1.0 / sigma;
   if (!all_of(sine2 > 0.0 && abs(x) < beyond_ends)) return walked();
 
   using Piece = OceanSeries::Piece;
   struct Both {
-    LegLanes up, down;
+    SimdLegs up, down;
   };
   const auto from = [&](const Anchor& anchor, const Piece::Cut& cut) {
     const auto [range, slope] = cut.legs.at(x, per_slowness, d_range);
@@ -227,15 +227,15 @@ ColumnLanes OceanLegs::legs(const Column& column, const OceanSeries::Found& foun
       legs.down.length = lengths[Piece::down];
     }
     if (anchor.first == anchor.last) return legs;
-    const LegLanes part = cross_layers<detailed>(column, anchor.first, anchor.last, rays);
+    const SimdLegs part = cross_layers<detailed>(column, anchor.first, anchor.last, rays);
     const double sign = anchor.above ? 1.0 : -1.0;
     return Both{plus<detailed>(legs.up, sign, part), plus<detailed>(legs.down, -sign, part)};
   };
   const Both upper = from(upper_, *found.cut), lower = from(lower_, *found.other_cut);
-  ColumnLanes legs{.up = upper.up,
-                   .down = lower.down,
-                   .turns_above = found.cut->turns_above,
-                   .turns_below = found.other_cut->turns_below};
+  SimdColumn legs{.up = upper.up,
+                  .down = lower.down,
+                  .turns_above = found.cut->turns_above,
+                  .turns_below = found.other_cut->turns_below};
   // A short way is summed: as a difference it would lose digits.
   legs.middle = column.lower() <= column.upper() + 2
                     ? cross_layers<detailed>(column, column.upper(), column.lower(), rays)
@@ -243,21 +243,21 @@ ColumnLanes OceanLegs::legs(const Column& column, const OceanSeries::Found& foun
   return legs;
 }
 
-ColumnLanes OceanLegs::sums(const Column& column, const OceanSeries::Found& found,
-                            const RayLanes& rays) const noexcept {
+SimdColumn OceanLegs::sums(const Column& column, const OceanSeries::Found& found,
+                           const SimdRays& rays) const noexcept {
   return legs<false>(column, found, rays);
 }
 
-ColumnLanes OceanLegs::sums(const Column& column, const RayLanes& rays) const noexcept {
+SimdColumn OceanLegs::sums(const Column& column, const SimdRays& rays) const noexcept {
   std::array<OceanSeries::Found, rays_at_once> found;
   for (std::size_t i = 0; i < rays_at_once; ++i)
     found[i] = find(rays.reference_speed, rays.sigma[i]);
-  ColumnLanes legs;
+  SimdColumn legs;
   Rays::mask_type todo(true);
   while (any_of(todo)) {
     const auto& piece = found[static_cast<std::size_t>(find_first_set(todo))];
     const auto these = Rays([&](auto i) { return found[i] == piece ? 1.0 : 0.0; }) > 0.5;
-    const ColumnLanes part = sums(column, piece, only(rays, these));
+    const SimdColumn part = sums(column, piece, only(rays, these));
     put(these, part.up, legs.up);
     put(these, part.middle, legs.middle);
     put(these, part.down, legs.down);
@@ -268,9 +268,9 @@ ColumnLanes OceanLegs::sums(const Column& column, const RayLanes& rays) const no
   return legs;
 }
 
-ColumnLanes OceanLegs::all(const Column& column, const OceanSeries::Found& found,
-                           const RayLanes& rays) const noexcept {
+SimdColumn OceanLegs::all(const Column& column, const OceanSeries::Found& found,
+                          const SimdRays& rays) const noexcept {
   return legs<true>(column, found, rays);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "core/level_namespace.h"
 #include "raytrace/layered/leg_series.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 inline namespace ASDIC_LEVEL {
 
@@ -30,7 +30,7 @@ class OceanSeries {
   /// \param layers  uncut; must outlive this
   explicit OceanSeries(std::span<const Layer> layers);
 
-  /// A stretch of σ.
+  /// A extent of σ.
   class Piece {
    public:
     Piece(std::span<const Layer> layers, double c_ref, double speed_between, double from,
@@ -43,7 +43,7 @@ class OceanSeries {
 
     /// Of rays, by their sine where the speed is this [m/s].
     [[nodiscard]] double reference_speed() const noexcept { return reference_speed_; }
-    [[nodiscard]] SigmaStretch stretch() const noexcept { return {low_, high_}; }
+    [[nodiscard]] SigmaExtent extent() const noexcept { return {low_, high_}; }
 
     /// Legs from a cut: up, to the vertex above it, and down.
     static constexpr std::size_t up = 0, down = 1;
@@ -58,7 +58,7 @@ class OceanSeries {
     /// Its rays are not for series.
     void give_up() noexcept { given_up_ = true; }
     [[nodiscard]] bool given_up() const noexcept { return given_up_; }
-    /// One half of the stretch or the other.
+    /// One half of the extent or the other.
     [[nodiscard]] Piece& half(double sigma);
 
    private:
@@ -105,12 +105,12 @@ class OceanLegs {
   }
   /// As walk_sums and walk_all. Where nothing is found, and beyond the piece's ends, rays are
   /// walked.
-  [[nodiscard]] ColumnLanes sums(const Column& column, const OceanSeries::Found& found,
-                                 const RayLanes& rays) const noexcept;
+  [[nodiscard]] SimdColumn sums(const Column& column, const OceanSeries::Found& found,
+                                const SimdRays& rays) const noexcept;
   /// As walk_sums, of rays that may have a piece each.
-  [[nodiscard]] ColumnLanes sums(const Column& column, const RayLanes& rays) const noexcept;
-  [[nodiscard]] ColumnLanes all(const Column& column, const OceanSeries::Found& found,
-                                const RayLanes& rays) const noexcept;
+  [[nodiscard]] SimdColumn sums(const Column& column, const SimdRays& rays) const noexcept;
+  [[nodiscard]] SimdColumn all(const Column& column, const OceanSeries::Found& found,
+                               const SimdRays& rays) const noexcept;
 
  private:
   /// The cut at the slower edge of the layer that a depth lies in: every ray of the depth comes
@@ -122,8 +122,8 @@ class OceanLegs {
   };
   static Anchor anchor(const Column& column, std::size_t node, std::span<const Layer> uncut);
   template <bool detailed>
-  ColumnLanes legs(const Column& column, const OceanSeries::Found& found,
-                   const RayLanes& rays) const noexcept;
+  SimdColumn legs(const Column& column, const OceanSeries::Found& found,
+                  const SimdRays& rays) const noexcept;
 
   const OceanSeries* series_;
   Anchor upper_, lower_;
@@ -131,4 +131,4 @@ class OceanLegs {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

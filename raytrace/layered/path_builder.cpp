@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/units.h"
-#include "raytrace/layered/reflection_lanes.h"
+#include "raytrace/layered/simd_reflection.h"
 #include "raytrace/ocean/tube_amplitude.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A ray that turns beside a maximum of c spreads so much that no number leads to the receiver: its
@@ -72,12 +72,12 @@ double PathBuilder::spreading(const RayParameter& ray, double range,
       {.speed = column_.receiver_speed(), .q = q, .range = range, .launch_slowness = ray.slowness});
 }
 
-PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, const TaskLanes& tasks,
+PathBuilder::SimdPaths PathBuilder::simd_paths(const FanInterval& interval, const SimdTasks& tasks,
                                                const FoundRays& roots) const noexcept {
   const auto& [traced, legs] = roots;
   const auto& [up, middle, down, turns_above, turns_below] = legs;
   const double c_ref = traced.reference_speed;
-  PathLanes p;
+  SimdPaths p;
   p.range_per_slowness = tasks.of(up.d_range, middle.d_range, down.d_range);
 
   // The ray traced misses the receiver by a millimetre at most. Its neighbour does not, by one more
@@ -92,7 +92,7 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
       !(abs(miss) < 1e-2 && abs(sigma_step) < 1e-3 * traced.sigma && abs(k_step) < 1e-3 * k_traced),
       k_step) = 0.0;
   where(k_step == 0.0, sigma_step) = 0.0;
-  RayLanes rays = traced;
+  SimdRays rays = traced;
   rays.sigma += sigma_step;
   rays.slowness += k_step / c_ref;
   const auto steep = traced.sigma > 0.7;
@@ -109,8 +109,8 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   p.bottom_grazing = interval.turns_below ? Rays(0.0) : angle_at(c_bottom);
   std::array<int, rays_at_once> tops{}, bottoms{};
   for (std::size_t i = 0; i < rays_at_once; ++i) {
-    if (!interval.turns_above) tops[i] = tasks.task[i]->stretch->branch.top_vertices();
-    if (!interval.turns_below) bottoms[i] = tasks.task[i]->stretch->branch.bottom_vertices();
+    if (!interval.turns_above) tops[i] = tasks.task[i]->piece->branch.top_vertices();
+    if (!interval.turns_below) bottoms[i] = tasks.task[i]->piece->branch.bottom_vertices();
   }
   p.reflection =
       reflections_of(environment_.surface.material, water_at_surface_, rays.sine(c_surface),
@@ -135,7 +135,7 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   // q = ∂n/∂θ₀ = |dr/dθ₀|·sin θ_r, and dξ/dθ₀ = −sin θ₀/c_s
   p.q = abs(p.range_per_slowness) * rays.sine(column_.source_speed()) / column_.source_speed() *
         rays.sine(column_.receiver_speed());
-  // tube_amplitude() of as many rays at once; held to it by tests/property/raytrace_layered.cpp
+  // tube_amplitude() of as many rays at once; held to it by tests/raytrace/property/layered.cpp
   p.spreading =
       sqrt(column_.receiver_speed() * rays.slowness / (max(tasks.range, Rays(1e-6)) * p.q));
 
@@ -155,7 +155,7 @@ PathBuilder::PathLanes PathBuilder::path_lanes(const FanInterval& interval, cons
   return p;
 }
 
-void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
+void PathBuilder::build(const FanInterval& interval, const SimdTasks& tasks, const FoundRays& roots,
                         double faintest, std::span<Arrivals> found) const {
   // Where the paths will stand is memory not touched for long: it comes while they are computed.
   for (std::size_t i = 0; i < tasks.count; ++i) {
@@ -163,43 +163,46 @@ void PathBuilder::build(const FanInterval& interval, const TaskLanes& tasks, con
     const auto* const line = reinterpret_cast<const std::byte*>(here.data() + here.size());
     for (std::size_t k = 0; k < sizeof(Arrival); k += 64) __builtin_prefetch(line + k, 1);
   }
-  const PathLanes lanes = path_lanes(interval, tasks, roots);
-  const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * lanes.length;
+  const SimdPaths simd_width = simd_paths(interval, tasks, roots);
+  const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * simd_width.length;
   const Rays absorbed = exponential(max(-nepers, Rays(-700.0)));
   for (std::size_t i = 0; i < tasks.count; ++i) {
-    const Branch& branch = tasks.task[i]->stretch->branch;
-    if (!std::isfinite(lanes.delay[i]) || !std::isfinite(lanes.spreading[i])) continue;
-    if (!(std::abs(lanes.miss[i]) < furthest_miss)) continue;
-    const std::complex<double> reflection(lanes.reflection.real[i], lanes.reflection.imag[i]);
-    if (std::norm(reflection) + lanes.scattered[i] < faintest * faintest) continue;
+    const Branch& branch = tasks.task[i]->piece->branch;
+    if (!std::isfinite(simd_width.delay[i]) || !std::isfinite(simd_width.spreading[i])) continue;
+    if (!(std::abs(simd_width.miss[i]) < furthest_miss)) continue;
+    const std::complex<double> reflection(simd_width.reflection.real[i],
+                                          simd_width.reflection.imag[i]);
+    if (std::norm(reflection) + simd_width.scattered[i] < faintest * faintest) continue;
 
     Arrival& path = found[tasks.task[i]->receiver].emplace_back();
     const int tops = branch.top_vertices(), bottoms = branch.bottom_vertices();
     (interval.turns_above ? path.upper_turns : path.surface_bounces) = tops;
     (interval.turns_below ? path.lower_turns : path.bottom_bounces) = bottoms;
-    path.launch_elevation = branch.starts_up ? lanes.launch[i] : -lanes.launch[i];
-    path.arrival_elevation = branch.arrives_upward() ? lanes.arrival[i] : -lanes.arrival[i];
-    path.horizontal_slowness = lanes.slowness[i];
-    path.delay = lanes.delay[i];
-    path.spreading = lanes.spreading[i];
+    path.launch_elevation = branch.starts_up ? simd_width.launch[i] : -simd_width.launch[i];
+    path.arrival_elevation =
+        branch.arrives_upward() ? simd_width.arrival[i] : -simd_width.arrival[i];
+    path.horizontal_slowness = simd_width.slowness[i];
+    path.delay = simd_width.delay[i];
+    path.spreading = simd_width.spreading[i];
     path.reflection = reflection;
     path.caustics =
-        caustics_passed(path.upper_turns + path.lower_turns, lanes.range_per_slowness[i]);
-    path.q = path.caustics % 2 == 0 ? lanes.q[i] : -lanes.q[i];
-    path.path_length = lanes.length[i];
+        caustics_passed(path.upper_turns + path.lower_turns, simd_width.range_per_slowness[i]);
+    path.q = path.caustics % 2 == 0 ? simd_width.q[i] : -simd_width.q[i];
+    path.path_length = simd_width.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
     path.amplitude = path_amplitude(path.spreading, absorbed[i], reflection, path.caustics);
-    path.scattered = scattered_power(path.spreading, absorbed[i], lanes.scattered[i]);
+    path.scattered = scattered_power(path.spreading, absorbed[i], simd_width.scattered[i]);
 
     // Vertices that are bounces are recorded.
-    const double first = branch.starts_up ? lanes.first_up[i] : lanes.first_down[i];
+    const double first = branch.starts_up ? simd_width.first_up[i] : simd_width.first_down[i];
     path.bounces.reserve(static_cast<std::size_t>(path.surface_bounces + path.bottom_bounces));
     for (int k = 0; k < branch.vertices; ++k) {
       const bool top = branch.starts_up == (k % 2 == 0);
       if (top ? interval.turns_above : interval.turns_below) continue;
-      path.bounces.push_back({.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
-                              .grazing = top ? lanes.surface_grazing[i] : lanes.bottom_grazing[i],
-                              .range = first + k * lanes.half_cycle[i]});
+      path.bounces.push_back(
+          {.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
+           .grazing = top ? simd_width.surface_grazing[i] : simd_width.bottom_grazing[i],
+           .range = first + k * simd_width.half_cycle[i]});
     }
   }
 }
@@ -243,4 +246,4 @@ std::complex<double> PathBuilder::all_reflected(const RayParameter& ray, int sur
                     : product;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,12 +2,12 @@
 #include <span>
 
 #include "raytrace/layered/branch_table.h"
-#include "raytrace/layered/reflection_lanes.h"
 #include "raytrace/layered/root_search.h"
+#include "raytrace/layered/simd_reflection.h"
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What follows from a root: angles, losses, phase, delay. One per environment, pair of depths and
 /// frequency.
@@ -17,7 +17,7 @@ class PathBuilder {
 
   /// Adds the path of every root of a batch whose reflections leave `faintest` to those of its
   /// receiver. \param found  [receivers]
-  void build(const FanInterval& interval, const TaskLanes& tasks, const FoundRays& roots,
+  void build(const FanInterval& interval, const SimdTasks& tasks, const FoundRays& roots,
              double faintest, std::span<Arrivals> found) const;
 
   /// tube_amplitude() of a ray, with q = |dr/dξ|·(sin θ₀/c_s)·sin θ_r [1/m × 1 m].
@@ -45,16 +45,16 @@ class PathBuilder {
 
  private:
   /// What follows from a root in straight formulae, for a batch of them.
-  struct PathLanes {
+  struct SimdPaths {
     Rays miss;  // of the ray traced, at the receiver's depth [m]
     Rays slowness, range_per_slowness, q, spreading, delay, length;
     Rays launch, arrival, surface_grazing, bottom_grazing;  // angles from the horizontal
-    ComplexLanes reflection;
+    SimdComplex reflection;
     std::array<double, rays_at_once>
         scattered{};                        // of reflection's square, beside the mean field's
     Rays first_up, first_down, half_cycle;  // ranges of vertices
   };
-  [[nodiscard]] PathLanes path_lanes(const FanInterval& interval, const TaskLanes& tasks,
+  [[nodiscard]] SimdPaths simd_paths(const FanInterval& interval, const SimdTasks& tasks,
                                      const FoundRays& roots) const noexcept;
   const Environment& environment_;
   const Column& column_;
@@ -72,4 +72,4 @@ class PathBuilder {
   return range_per_slowness < 0.0 ? turning_points - 1 : turning_points;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

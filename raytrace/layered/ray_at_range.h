@@ -1,7 +1,7 @@
 #pragma once
 #include <complex>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A ray and its beam where it first crosses a range.
 struct RayAtRange {
@@ -15,4 +15,4 @@ struct RayAtRange {
   std::complex<double> reflection = 1.0;  ///< product of the boundaries' coefficients
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One ray of a layered ocean: its Snell invariant ξ = cos θ/c, held so that nothing cancels where
 /// the ray is almost horizontal.
@@ -33,4 +33,4 @@ struct RayParameter {
   }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

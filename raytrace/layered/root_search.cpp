@@ -3,26 +3,26 @@
 #include <algorithm>
 #include <numeric>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 template <class Field>
-Rays gather(const TaskLanes& tasks, const Field& field) noexcept {
+Rays gather(const SimdTasks& tasks, const Field& field) noexcept {
   return Rays([&](auto i) { return field(*tasks.task[i]); });
 }
 
-/// The cubic through both ends of each task's stretch, over t from 0 to 1, in its variable x.
-class CubicLanes {
+/// The cubic through both ends of each task's piece, over t from 0 to 1, in its variable x.
+class SimdCubics {
  public:
-  explicit CubicLanes(const TaskLanes& tasks) noexcept
-      : steep_(gather(tasks, [](const RootTask& t) { return t.stretch->steep ? 1.0 : 0.0; }) > 0.5),
-        low_(gather(tasks, [](const RootTask& t) { return t.stretch->begin.x; })),
-        high_(gather(tasks, [](const RootTask& t) { return t.stretch->end.x; })),
-        a0_(gather(tasks, [](const RootTask& t) { return t.stretch->begin.value; })) {
+  explicit SimdCubics(const SimdTasks& tasks) noexcept
+      : steep_(gather(tasks, [](const RootTask& t) { return t.piece->steep ? 1.0 : 0.0; }) > 0.5),
+        low_(gather(tasks, [](const RootTask& t) { return t.piece->begin.x; })),
+        high_(gather(tasks, [](const RootTask& t) { return t.piece->end.x; })),
+        a0_(gather(tasks, [](const RootTask& t) { return t.piece->begin.value; })) {
     const Rays h = high_ - low_;
-    const Rays from = h * gather(tasks, [](const RootTask&t) { return t.stretch->begin.slope; }),
-               to = h * gather(tasks, [](const RootTask&t) { return t.stretch->end.slope; });
-    rise_ = gather(tasks, [](const RootTask& t) { return t.stretch->end.value; }) - a0_;
+    const Rays from = h * gather(tasks, [](const RootTask&t) { return t.piece->begin.slope; }),
+               to = h * gather(tasks, [](const RootTask&t) { return t.piece->end.slope; });
+    rise_ = gather(tasks, [](const RootTask& t) { return t.piece->end.value; }) - a0_;
     a1_ = from;
     a2_ = 3.0 * rise_ - 2.0 * from - to;
     a3_ = from + to - 2.0 * rise_;
@@ -62,7 +62,7 @@ struct Step {
   Rays next;             ///< σ
   Rays::mask_type last;  ///< it leaves less than 0.1 mm, and less than 1e-8 of the slope
 
-  Step(const RayLanes& rays, const Rays& miss, const Rays& d_range, const Rays::mask_type& steep,
+  Step(const SimdRays& rays, const Rays& miss, const Rays& d_range, const Rays::mask_type& steep,
        const Rays& bend) noexcept {
     const double c_ref = rays.reference_speed;
     Rays slope = -rays.sigma * d_range * rays.per_c2 / rays.slowness;
@@ -82,36 +82,36 @@ struct Step {
 
 }  // namespace
 
-RootStretch::RootStretch(const MonotoneStretch& stretch, bool source_is_upper) noexcept
-    : interval(stretch.interval),
-      cell(stretch.cell),
-      branch(stretch.branch),
-      weights(asdic::weights(stretch.branch, source_is_upper)),
-      steep(stretch.sigma_begin > steep_sigma),
-      begin{stretch.sigma_begin, stretch.range_begin, stretch.slope_begin},
-      end{stretch.sigma_end, stretch.range_end, stretch.slope_end} {
+RootPiece::RootPiece(const MonotonePiece& piece, bool source_is_upper) noexcept
+    : interval(piece.interval),
+      cell(piece.cell),
+      branch(piece.branch),
+      weights(asdic::detail::weights(piece.branch, source_is_upper)),
+      steep(piece.sigma_begin > steep_sigma),
+      begin{piece.sigma_begin, piece.range_begin, piece.slope_begin},
+      end{piece.sigma_end, piece.range_end, piece.slope_end} {
   if (!steep) return;
   begin = in_cosine(begin);
   end = in_cosine(end);
 }
 
-TaskLanes::TaskLanes(const RootTask* const* tasks, std::size_t n) noexcept : count(n) {
+SimdTasks::SimdTasks(const RootTask* const* tasks, std::size_t n) noexcept : count(n) {
   for (std::size_t i = 0; i < rays_at_once; ++i) task[i] = tasks[std::min(i, n - 1)];
   range = Rays([&](auto i) { return task[i]->range; });
-  up = Rays([&](auto i) { return task[i]->stretch->weights.up; });
-  middle = Rays([&](auto i) { return task[i]->stretch->weights.middle; });
-  down = Rays([&](auto i) { return task[i]->stretch->weights.down; });
+  up = Rays([&](auto i) { return task[i]->piece->weights.up; });
+  middle = Rays([&](auto i) { return task[i]->piece->weights.middle; });
+  down = Rays([&](auto i) { return task[i]->piece->weights.down; });
 }
 
-FoundRays find_roots(const LegSource& source, double c_ref, const TaskLanes& tasks) noexcept {
-  const CubicLanes cubic(tasks);
+FoundRays find_roots(const LegSource& source, double c_ref, const SimdTasks& tasks) noexcept {
+  const SimdCubics cubic(tasks);
   const Rays bend = cubic.bend();
   const auto rises = cubic.rises();
   Rays low = cubic.low(), high = cubic.high(), sigma = cubic.root();
   Rays::mask_type done(false);
   for (int i = 0; i < 100; ++i) {
-    const RayLanes rays(c_ref, sigma);
-    const ColumnLanes legs = source.sums(rays);
+    const SimdRays rays(c_ref, sigma);
+    const SimdColumn legs = source.sums(rays);
     const Rays d_range = tasks.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
     const Rays miss = rays.slowness * tasks.of(legs.up.per_slowness, legs.middle.per_slowness,
                                                legs.down.per_slowness) -
@@ -127,7 +127,7 @@ FoundRays find_roots(const LegSource& source, double c_ref, const TaskLanes& tas
     done = done || (step.last && !outside) || step.next == rays.sigma;
     if (all_of(done)) break;
   }
-  const RayLanes rays(c_ref, sigma);
+  const SimdRays rays(c_ref, sigma);
   return {rays, source.all(rays)};
 }
 
@@ -140,14 +140,14 @@ RootGroups::RootGroups(const BranchTable& fan, const FanInterval& interval,
               tasks.size() < worth_a_series ? std::span<const double>() : interval.sigma),
       order_(tasks.size()) {
   std::vector<std::size_t> next(interval.sigma.size() + 1, 0);  // place of each cell's first task
-  for (const RootTask& task : tasks) ++next[task.stretch->cell + 1];
+  for (const RootTask& task : tasks) ++next[task.piece->cell + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (const RootTask& task : tasks) order_[next[task.stretch->cell]++] = &task;
+  for (const RootTask& task : tasks) order_[next[task.piece->cell]++] = &task;
 }
 
 std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noexcept {
   std::size_t i = begin;
-  while (i < order_.size() && order_[i]->stretch->cell < cell) ++i;
+  while (i < order_.size() && order_[i]->piece->cell < cell) ++i;
   return i;
 }
 
@@ -155,22 +155,22 @@ std::size_t RootGroups::first_at(std::size_t begin, std::size_t cell) const noex
 /// holds for.
 RootGroups::Group RootGroups::few(std::size_t begin, std::size_t end) const {
   if (kept_ == nullptr) return {{.column = column_}, end};
-  const auto piece = [&](const RootTask& task) {
-    const HermiteNode &a = task.stretch->begin, &b = task.stretch->end;
+  const auto ocean_piece = [&](const RootTask& task) {
+    const HermiteNode &a = task.piece->begin, &b = task.piece->end;
     double x = a.x + (b.x - a.x) * (task.range - a.value) / (b.value - a.value);
     if (const double root = Hermite(a, b).root_near(x, task.range); root > a.x && root < b.x)
       x = root;
-    return kept_->find(interval_.reference_speed, task.stretch->steep ? sine_of_cosine(x) : x);
+    return kept_->find(interval_.reference_speed, task.piece->steep ? sine_of_cosine(x) : x);
   };
-  const OceanSeries::Found first = piece(*order_[begin]);
+  const OceanSeries::Found first = ocean_piece(*order_[begin]);
   std::size_t i = begin + 1;
-  while (i < end && piece(*order_[i]) == first) ++i;
+  while (i < end && ocean_piece(*order_[i]) == first) ++i;
   return {{.column = column_, .kept = kept_, .found = first}, i};
 }
 
 RootGroups::Group RootGroups::next(std::size_t begin) {
   if (order_.size() < worth_a_series) return few(begin, order_.size());
-  const std::size_t cell = order_[begin]->stretch->cell;
+  const std::size_t cell = order_[begin]->piece->cell;
   for (;;) {
     const IntervalSeries::Cells cells = series_.around(cell);
     const std::size_t end = first_at(begin, cells.last);
@@ -181,4 +181,4 @@ RootGroups::Group RootGroups::next(std::size_t begin) {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,31 +6,31 @@
 
 #include "core/level_namespace.h"
 #include "raytrace/layered/branch_table.h"
-#include "raytrace/layered/column_lanes.h"
 #include "raytrace/layered/leg_series.h"
 #include "raytrace/layered/ocean_series.h"
+#include "raytrace/layered/simd_column.h"
 #include "raytrace/math/hermite.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A monotone stretch that has roots, told by its ends.
-struct RootStretch {
+/// A monotone piece that has roots, told by its ends.
+struct RootPiece {
   const FanInterval* interval = nullptr;
   std::size_t cell = 0;  ///< of the interval
   Branch branch;
   BranchWeights weights;   ///< of the branch
   bool steep = false;      ///< −cos θ is the variable x of the next two, else σ
-  HermiteNode begin, end;  ///< x, r, dr/dx at the ends of the stretch
+  HermiteNode begin, end;  ///< x, r, dr/dx at the ends of the piece
 
-  RootStretch(const MonotoneStretch& stretch, bool source_is_upper) noexcept;
+  RootPiece(const MonotonePiece& piece, bool source_is_upper) noexcept;
   /// Of a root found by other means.
-  RootStretch(const Branch& history, bool source_is_upper) noexcept
-      : branch(history), weights(asdic::weights(history, source_is_upper)) {}
+  RootPiece(const Branch& history, bool source_is_upper) noexcept
+      : branch(history), weights(asdic::detail::weights(history, source_is_upper)) {}
 };
 
-/// A root of r(σ) = range, known to lie between the ends of a stretch.
+/// A root of r(σ) = range, known to lie between the ends of a piece.
 struct RootTask {
-  const RootStretch* stretch = nullptr;
+  const RootPiece* piece = nullptr;
   std::size_t receiver = 0;  ///< whose it is
   double range = 0.0;        ///< [m]
 };
@@ -38,13 +38,13 @@ struct RootTask {
 inline namespace ASDIC_LEVEL {
 
 /// As many tasks as lanes, side by side; the last one fills what is left.
-struct TaskLanes {
+struct SimdTasks {
   std::array<const RootTask*, rays_at_once> task{};
   std::size_t count = 0;  ///< of different ones
   Rays range;             ///< [m]
   Rays up, middle, down;  ///< BranchWeights
 
-  TaskLanes(const RootTask* const* tasks, std::size_t n) noexcept;
+  SimdTasks(const RootTask* const* tasks, std::size_t n) noexcept;
 
   [[nodiscard]] Rays of(const Rays& u, const Rays& m, const Rays& d) const noexcept {
     return up * u + middle * m + down * d;
@@ -53,8 +53,8 @@ struct TaskLanes {
 
 /// The rays of an interval that a batch of tasks asked for.
 struct FoundRays {
-  RayLanes rays;
-  ColumnLanes legs;
+  SimdRays rays;
+  SimdColumn legs;
 };
 
 /// Where the legs of a batch of rays come from: a series of the column that holds between the
@@ -65,11 +65,11 @@ struct LegSource {
   const OceanLegs* kept = nullptr;
   OceanSeries::Found found;  ///< of `kept`
 
-  [[nodiscard]] ColumnLanes sums(const RayLanes& rays) const noexcept {
+  [[nodiscard]] SimdColumn sums(const SimdRays& rays) const noexcept {
     if (series != nullptr) return series->sums(rays);
     return kept != nullptr ? kept->sums(column, found, rays) : walk_sums(column, rays);
   }
-  [[nodiscard]] ColumnLanes all(const RayLanes& rays) const noexcept {
+  [[nodiscard]] SimdColumn all(const SimdRays& rays) const noexcept {
     if (series != nullptr) return series->all(rays);
     return kept != nullptr ? kept->all(column, found, rays) : walk_all(column, rays);
   }
@@ -77,11 +77,11 @@ struct LegSource {
 
 }  // namespace ASDIC_LEVEL
 
-/// The roots: from the cubic through the stretch's ends by Newton's method, kept inside a shrinking
+/// The roots: from the cubic through the piece's ends by Newton's method, kept inside a shrinking
 /// bracket, until what is missed is below 0.01 mm, or what the next step would leave is below 0.1
 /// mm and 1e-8 of the slope; path_builder.cpp sees to the rest.
 [[nodiscard]] FoundRays find_roots(const LegSource& source, double c_ref,
-                                   const TaskLanes& tasks) noexcept;
+                                   const SimdTasks& tasks) noexcept;
 
 inline namespace ASDIC_LEVEL {
 
@@ -90,15 +90,15 @@ class RootGroups {
  public:
   RootGroups(const BranchTable& fan, const FanInterval& interval, std::span<const RootTask> tasks);
 
-  /// Calls found(TaskLanes, FoundRays) with every batch.
+  /// Calls found(SimdTasks, FoundRays) with every batch.
   template <class Found>
   void solve(Found&& found) {
     std::size_t begin = 0;
     while (begin < order_.size()) {
       const Group group = next(begin);
       for (std::size_t i = begin; i < group.end; i += rays_at_once) {
-        const TaskLanes lanes(&order_[i], std::min(rays_at_once, group.end - i));
-        found(lanes, find_roots(group.source, interval_.reference_speed, lanes));
+        const SimdTasks simd_width(&order_[i], std::min(rays_at_once, group.end - i));
+        found(simd_width, find_roots(group.source, interval_.reference_speed, simd_width));
       }
       begin = group.end;
     }
@@ -126,4 +126,4 @@ class RootGroups {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/layered/speed_drop.h"
 #include "raytrace/math/gauss_legendre.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Speed and sin²θ of a ray along the way from one depth of a layer, where the water is fastest on
 /// it: s² = s₀² + ξ²(c₀ − c)(c₀ + c), a sum of what is not negative, so that s² is as exact as s₀²
@@ -220,4 +220,4 @@ HandOver integrate_turning(const Layer& layer, const RayParameter& ray, double t
   return {near < total ? way.depth(near) : edge, way.at(near).sine2};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/layered/layer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How much slower the water of a cubic layer is at a distance t [m] from one of its depths than
 /// there, c(z₀) − c(z₀ ± t) [m/s], out of the law about z₀.
@@ -43,4 +43,4 @@ class SpeedDrop {
   return layer.at(0.5 * (layer.top + layer.bottom)).dc_dz < 0.0;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

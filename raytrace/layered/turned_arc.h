@@ -1,10 +1,10 @@
 #pragma once
 #include "raytrace/math/arc_series.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A piece that turns so little beyond the edge of its layer that its law is almost a straight
-/// line: nodes in it could not be told apart, for c is known to rounding only.
+/// line: nodes in it could not be resolved, for c is known to rounding only.
 ///
 /// With c = c_e(1 + …) + g·t + ½c″t² at the distance t from the edge, s² is (2g/c)(T − t)(1 + κ(T +
 /// t)/2), T = s_e²/(2ξg), κ = c″/g. An arc of a circle, corrected to the first order in κT:
@@ -15,7 +15,7 @@ namespace asdic {
 /// For a ray (double) or lanes of them.
 template <class T>
 struct TurnedArc {
-  T per_slowness, d_range, intercept, length;  ///< as in LegLanes
+  T per_slowness, d_range, intercept, length;  ///< as in SimdLegs
 
   /// The largest κT: the next order, 0.8(κT)², leaves 2e-11.
   static constexpr double straightest = 5e-6;
@@ -39,4 +39,4 @@ struct TurnedArc {
   }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
 /// (atanh x)/x and (asin x)/x by their series, for numbers or lanes of them with |x| <
 /// short_series, to rounding: a layer changes the speed by a few per cent.
@@ -22,4 +22,4 @@ inline T asin_series(const T& x) {
                               y * (105.0 / 3456 + y * (945.0 / 42240 + y * (10395.0 / 599040))))));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <array>
 #include <cstddef>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Gauss–Legendre nodes on (−1, 1) and their weights. Abramowitz & Stegun (1964), table 25.4.
 template <std::size_t n>
@@ -53,4 +53,4 @@ void gauss_legendre(double a, double b, F&& f) {
     f(centre + half * GaussLegendre<n>::node[i], half * GaussLegendre<n>::weight[i]);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace asdic {
+namespace asdic::detail {
 
 struct HermiteNode {
   double x = 0.0, value = 0.0, slope = 0.0;
@@ -72,4 +72,4 @@ class Hermite {
   std::array<double, 4> a_{};
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 
 #include "raytrace/math/hermite.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where a cubic that rises, or falls, from `low` to `high` has a value: Newton's method inside a
 /// shrinking bracket, from a guess, until the value is met to a tolerance.
@@ -23,4 +23,4 @@ namespace asdic {
   return x;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

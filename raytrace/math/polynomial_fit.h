@@ -5,17 +5,17 @@
 
 #include "core/level_namespace.h"
 #include "core/units.h"
-#include "raytrace/math/lane_math.h"
+#include "raytrace/math/simd_math.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 inline namespace ASDIC_LEVEL {
 
-/// A stretch of σ as x from −1 to 1.
-struct SigmaStretch {
+/// A extent of σ as x from −1 to 1.
+struct SigmaExtent {
   double middle, per_half;
 
-  SigmaStretch(double low, double high) noexcept
+  SigmaExtent(double low, double high) noexcept
       : middle(0.5 * (low + high)), per_half(2.0 / (high - low)) {}
   [[nodiscard]] double high() const noexcept { return middle + 1.0 / per_half; }
   [[nodiscard]] Rays x(const Rays& sigma) const noexcept { return (sigma - middle) * per_half; }
@@ -98,4 +98,4 @@ struct PolynomialFit {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/ocean/absorption_validity.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 double law(const NoAbsorption& /*none*/, double /*frequency*/) noexcept { return 0.0; }
@@ -115,4 +115,4 @@ double absorption_db_per_km(const BiologicalLayer& layer, double frequency) noex
   return layer.strength / (detuning * detuning + 1.0 / (layer.quality * layer.quality));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

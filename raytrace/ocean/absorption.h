@@ -2,7 +2,7 @@
 #include <string_view>
 #include <variant>
 
-namespace asdic {
+namespace asdic::detail {
 
 struct NoAbsorption {
   static constexpr std::string_view name = "none";
@@ -78,4 +78,4 @@ void for_each_water_property(const Absorption& absorption, F&& f) {
 /// What a layer adds inside its depths [dB/km].
 [[nodiscard]] double absorption_db_per_km(const BiologicalLayer& layer, double frequency) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

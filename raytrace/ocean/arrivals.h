@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 enum class BoundaryKind : std::uint8_t { surface, bottom };
 
@@ -55,4 +55,4 @@ struct Arrival {
 /// Eigenrays from one source to one receiver, sorted by delay.
 using Arrivals = std::vector<Arrival>;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using reflection::Jet;
@@ -80,4 +80,4 @@ BeamDisplacement beam_displacement(const BoundaryMaterial& material, double graz
   return moved;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/ocean/boundary.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How far a beam is carried along a boundary while it is reflected.
 struct BeamDisplacement {
@@ -26,4 +26,4 @@ struct BeamDisplacement {
                                                  const WaterAtBoundary& water,
                                                  double frequency) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

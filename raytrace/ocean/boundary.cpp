@@ -6,7 +6,7 @@
 #include "raytrace/ocean/layered_floor.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using reflection::Complex;
@@ -64,4 +64,4 @@ std::complex<double> reflection_coefficient(const BoundaryMaterial& material, do
   return std::visit([&](const auto& behind) { return reflect(behind, grazing, water); }, material);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

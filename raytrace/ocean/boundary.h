@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Pressure release: R = −1. The sea surface, seen from below.
 struct Vacuum {
@@ -128,4 +128,4 @@ struct WaterAtBoundary {
                                                           double grazing,
                                                           const WaterAtBoundary& water) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "raytrace/ocean/number_text.h"
 #include "raytrace/ocean/samples.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void check_nodes(std::span<const double> range, std::span<const double> depth,
@@ -50,8 +50,8 @@ struct Cubic {
 
 /// dφ/ds of a curve with these derivatives: z″·cos³φ.
 double curvature_of(double slope, double second) noexcept {
-  const double stretch = 1.0 + slope * slope;
-  return second / (stretch * std::sqrt(stretch));
+  const double piece = 1.0 + slope * slope;
+  return second / (piece * std::sqrt(piece));
 }
 
 /// Depths at which a cubic turns inside its facet; the ends again where it does not.
@@ -98,7 +98,7 @@ BoundaryShape::BoundaryShape(std::span<const double> range, std::span<const doub
   find_extremes();
 }
 
-// Curvilinear: a node's tangent is the mean of both facets' unit tangents; the flat stretches
+// Curvilinear: a node's tangent is the mean of both facets' unit tangents; the flat parts
 // beyond the ends count.
 void BoundaryShape::bend_facets() {
   const std::size_t n = range_.size();
@@ -117,7 +117,7 @@ BoundaryShape BoundaryShape::along(double origin, double cosine) const {
   if (cosine < 0.0) {
     if (!material_.empty()) {
       // A facet keeps its material: the last one, beyond all nodes, is to come before all of them.
-      // One more node on that flat stretch gives it a facet of its own.
+      // One more node on that flat part gives it a facet of its own.
       line.range_.push_back(range_.back() + 1.0);
       line.depth_.push_back(depth_.back());
       line.slope_.push_back(0.0);
@@ -203,4 +203,4 @@ void BoundaryShape::find_extremes() {
     }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

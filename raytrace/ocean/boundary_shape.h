@@ -7,7 +7,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/boundary.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How a boundary runs between its nodes.
 enum class ShapeInterpolation {
@@ -52,7 +52,7 @@ class BoundaryShape {
   /// Empty when one material serves everywhere (Boundary::material).
   [[nodiscard]] std::span<const BoundaryMaterial> materials() const noexcept { return material_; }
 
-  /// Facet 0 is the flat stretch before the first node, facet i runs from node i − 1 to node i,
+  /// Facet 0 is the flat part before the first node, facet i runs from node i − 1 to node i,
   /// facet n goes on flat after the last. A node belongs to the facet after it.
   [[nodiscard]] std::size_t facets() const noexcept { return range_.size() + 1; }
   [[nodiscard]] std::size_t facet(double range) const noexcept;
@@ -86,4 +86,4 @@ class BoundaryShape {
   double shallowest_ = 0.0, deepest_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Slopes of the parabola through three samples.
@@ -119,4 +119,4 @@ std::vector<double> limited_spline_slopes(const CubicSamples& s) {
   return slope;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Samples and what the cubic rules need of them: n ≥ 2 samples, n − 1 intervals.
 struct CubicSamples {
@@ -18,4 +18,4 @@ struct CubicSamples {
 [[nodiscard]] std::vector<double> pchip_slopes(const CubicSamples& samples);
 [[nodiscard]] std::vector<double> limited_spline_slopes(const CubicSamples& samples);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/ocean/number_text.h"
 #include "raytrace/ocean/samples.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 DepthFunction DepthFunction::table(std::span<const double> depth, std::span<const double> value) {
   check_count(depth.size(), "depth", 1);
@@ -48,4 +48,4 @@ double DepthFunction::just_above(double depth) const noexcept {
   return std::lerp(value_[i - 1], value_[i], share);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

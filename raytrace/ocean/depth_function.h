@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A quantity that varies with depth only: one value, or samples with straight lines between them,
 /// constant above the first and below the last. Depth [m] is positive down.
@@ -34,4 +34,4 @@ class DepthFunction {
   double constant_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

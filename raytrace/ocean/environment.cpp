@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 const double decibels_per_neper = 20.0 / std::log(10.0);
@@ -80,4 +80,4 @@ bool is_layered(const Environment& environment) noexcept {
          environment.attenuation_db_per_km.is_constant();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "raytrace/ocean/sound_speed.h"
 #include "raytrace/ocean/sound_speed_section.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A boundary of the water: where it is and what is behind it.
 struct Boundary {
@@ -73,4 +73,4 @@ struct Environment {
 /// at every depth. Otherwise rays are marched.
 [[nodiscard]] bool is_layered(const Environment& environment) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

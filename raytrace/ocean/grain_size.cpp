@@ -4,7 +4,7 @@
 #include "raytrace/ocean/boundary.h"
 #include "raytrace/ocean/number_text.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 // The three regressions; every interval is closed below and open above.
@@ -46,4 +46,4 @@ FluidHalfSpace sediment_of_grain_size(double m, double water_speed, double water
           .attenuation_db_per_wavelength = 1e-3 * speed * attenuation_ratio(m)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where paths end: at the surface, the bottom, or a depth in between, where sound passes both
 /// ways.
@@ -15,4 +15,4 @@ struct GroundLevel {
   explicit GroundLevel(double metres) : boundary(), depth(metres) {}
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

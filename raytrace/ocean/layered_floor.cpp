@@ -7,7 +7,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -138,4 +138,4 @@ std::complex<double> layered_reflection(const LayeredFloor& floor,
   return reflection_of(floor, cosine / water.speed, water);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

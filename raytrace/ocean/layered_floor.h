@@ -3,7 +3,7 @@
 
 #include "raytrace/ocean/boundary.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Plane-wave reflection coefficient of any number of fluid and elastic layers, e^{+iωt}.
 ///
@@ -22,4 +22,4 @@ namespace asdic {
                                                       const std::complex<double>& cosine,
                                                       const WaterAtBoundary& water) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 LevelRays level_within(double share_of_wavelength, const Environment& environment, double frequency,
@@ -44,4 +44,4 @@ void merge_level_paths(const LevelRays& level, Arrivals& arrivals) {
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The rays of a source on a kink of least sound speed that cannot be told from the level one.
 ///
@@ -23,12 +23,12 @@ struct LevelRays {
 
 /// The same for paths to receivers no further from the source's depth: rays that stay within λ/4 of
 /// it are one arrival there, the level one. (Fans are denser: receivers a little further off, and
-/// oceans whose axis moves with range, tell more of them apart.)
+/// oceans whose axis moves with range, resolve more of them.)
 [[nodiscard]] LevelRays level_paths(const Environment& environment, double frequency, double range,
                                     double depth) noexcept;
 
 /// Leaves of the paths to one receiver within LevelRays::height of the source's depth only the
-/// level one of those that are not told apart, if it is among them.
+/// level one of those that are not resolved, if it is among them.
 void merge_level_paths(const LevelRays& level, Arrivals& arrivals);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include <string>
 
 /// Numbers and places in the messages of this folder.
-namespace asdic {
+namespace asdic::detail {
 
 inline std::string with_unit(double value, const char* unit) {
   std::ostringstream text;
@@ -16,4 +16,4 @@ inline std::string element(const char* array, std::size_t i) {
   return std::string(array) + '[' + std::to_string(i) + ']';
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

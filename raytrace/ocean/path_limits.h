@@ -1,7 +1,7 @@
 #pragma once
 #include <limits>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is searched for, between one source and one receiver depth. A path is kept when it is
 /// within all the limits.
@@ -20,4 +20,4 @@ struct PathLimits {
   double home_slowness = 0.0;  ///< [s/m]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "raytrace/ocean/boundary.h"
 
-namespace asdic::reflection {
+namespace asdic::detail::reflection {
 
 using Complex = std::complex<double>;
 
@@ -100,4 +100,4 @@ auto coefficient(const ElasticHalfSpace& solid, const Grazing<Real>& at,
   return mismatch<Number>(m * at.sine * g, s);
 }
 
-}  // namespace asdic::reflection
+}  // namespace asdic::detail::reflection

@@ -7,7 +7,7 @@
 #include "core/units.h"
 #include "raytrace/math/gauss_legendre.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double gravity = 9.81;                     // [m/s²]
@@ -195,4 +195,4 @@ double pierson_moskowitz_height(double wind_speed) noexcept {
   return 0.0523 * u * u / gravity;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

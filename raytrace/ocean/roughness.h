@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The share of the incident energy that a scattering law takes to other directions, by grazing
 /// angle and wavenumber. docs/theory/surface-scattering.md, "Energy"
@@ -81,4 +81,4 @@ enum class Sea {
 /// h = 0.0523·(1.026 U)²/g [m], 0.56 m at 10 m/s. \param wind_speed  at 10 m [m/s]
 [[nodiscard]] double pierson_moskowitz_height(double wind_speed) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

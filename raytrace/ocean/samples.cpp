@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "raytrace/ocean/number_text.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 void check_count(std::size_t count, const char* name, std::size_t least) {
   if (count >= least) return;
@@ -38,4 +38,4 @@ void check_speed(double speed, const std::string& where) {
         {.where = where, .got = with_unit(speed, "m/s"), .expected = "a speed above 0 m/s"});
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

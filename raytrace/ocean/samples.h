@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What every table of the ocean asks of its samples, in one order: enough of them, as many values
 /// as places, and then sample by sample its place and its value. Each \throws InputError that names
@@ -23,4 +23,4 @@ void check_place(std::span<const double> axis, std::size_t i, const char* name, 
 /// A speed of sound. \param where  it stands, as in "speed[3]"
 void check_speed(double speed, const std::string& where);
 
-}  // namespace asdic
+}  // namespace asdic::detail

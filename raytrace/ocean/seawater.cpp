@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double pascal_per_bar = 1e5;
@@ -144,4 +144,4 @@ double sound_speed(SeawaterEquation equation, double temperature_degc, double sa
   return sound_speed_del_grosso(temperature_degc, salinity, gauge_pressure(z, latitude_deg));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

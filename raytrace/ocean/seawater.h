@@ -3,7 +3,7 @@
 
 #include "core/validity.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Which measurements the speed of sound in sea water is taken from.
 enum class SeawaterEquation {
@@ -52,4 +52,4 @@ enum class SeawaterEquation {
 /// values are for.
 [[nodiscard]] double gauge_pressure_standard_ocean(double depth, double latitude_deg) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

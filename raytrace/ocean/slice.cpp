@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double across = 1e-9;  // |cos β| below which a line does not get along the transect
@@ -57,4 +57,4 @@ Environment slice(const Environment& environment, double x0, double cos_beta) {
   return plane;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The vertical plane that crosses an ocean along a line which leaves the transect at x0 under an
 /// angle β. The ocean varies along the transect and is uniform across it, so a point at range r of
@@ -18,4 +18,4 @@ namespace asdic {
 /// \param environment  along the transect   \param x0  [m]   \param cos_beta  −1..1
 [[nodiscard]] Environment slice(const Environment& environment, double x0, double cos_beta);
 
-}  // namespace asdic
+}  // namespace asdic::detail

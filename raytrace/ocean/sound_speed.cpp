@@ -10,7 +10,7 @@
 #include "raytrace/ocean/number_text.h"
 #include "raytrace/ocean/samples.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void check_samples(std::span<const double> depth, std::span<const double> speed) {
@@ -178,4 +178,4 @@ SoundSpeed SoundSpeedProfile::at(double depth) const noexcept {
   return {.c = speed.c < lowest_ ? lowest_ : highest_, .dc_dz = 0.0, .d2c_dz2 = 0.0};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

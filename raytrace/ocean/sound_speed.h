@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Sound speed at one depth, with the derivatives a beam needs.
 struct SoundSpeed {
@@ -108,4 +108,4 @@ class SoundSpeedProfile {
   double highest_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/ocean/number_text.h"
 #include "raytrace/ocean/samples.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void check_axis(std::span<const double> axis, const char* name, std::size_t least) {
@@ -72,4 +72,4 @@ SoundSpeed2D SoundSpeedSection::at(double range, double depth, Cell cell) const 
           .c_rz = (b.c_z - a.c_z) / width};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

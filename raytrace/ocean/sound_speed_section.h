@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Sound speed at a point of the (range, depth) plane, with its derivatives.
 struct SoundSpeed2D {
@@ -52,4 +52,4 @@ class SoundSpeedSection {
   std::vector<double> range_, depth_, speed_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 StrongestReflection strongest_reflection(const BoundaryMaterial& material,
                                          const WaterAtBoundary& water) noexcept {
@@ -18,4 +18,4 @@ StrongestReflection strongest_reflection(const BoundaryMaterial& material,
   return most;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

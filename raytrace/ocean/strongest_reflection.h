@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/ocean/boundary.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where a material reflects most, of grazing angles 0.1° apart.
 struct StrongestReflection {
@@ -14,4 +14,4 @@ struct StrongestReflection {
 /// |R| above this is not the rounding of a program that made the numbers.
 inline constexpr double most_reflection = 1.0 + 1e-6;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 double Transect::range_of(double east, double north) const noexcept {
   return (east - x) * std::sin(bearing) + (north - y) * std::cos(bearing);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where on the map the ocean's range axis lies: from an origin along a bearing. The ocean is the
 /// same everywhere across it, so that range is the distance along it.
@@ -15,4 +15,4 @@ struct Transect {
   [[nodiscard]] bool operator==(const Transect&) const = default;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The tube of rays about one of a point source, where it gets to.
 struct RayTube {
@@ -35,7 +35,7 @@ struct RayTube {
 }
 
 /// The least |dr/dξ| [m²/s] that boundary paths keep beside a caustic: below it rays are no longer
-/// told apart. With r = r_c + ½r″(ξ − ξ_c)² two rays differ in time by (4√2/3)δ^{3/2}/√|r″|, Airy's
+/// resolved. With r = r_c + ½r″(ξ − ξ_c)² two rays differ in time by (4√2/3)δ^{3/2}/√|r″|, Airy's
 /// argument is ζ = (3ωΔτ/4)^{2/3}, and the largest Airy amplitude 2√π·Ai(−1.019) ζ^{1/4} A, shared
 /// by two rays adding at random, is reached by each at ζ = 0.307. Eigenrays that roots find are not
 /// held (their floor is 0): raytrace/waves/caustics.h says what sound they stand for there.
@@ -69,4 +69,4 @@ struct RayTube {
   return size * size * share;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

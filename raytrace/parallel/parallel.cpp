@@ -8,7 +8,7 @@
 #include "raytrace/parallel/progress.h"
 #include "raytrace/parallel/stop.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 void in_parallel_called(std::size_t count, const std::function<void(std::size_t i)>& body) {
   // A task may be many indices long, and is not cut short by itself.
@@ -51,4 +51,4 @@ void until_stopped(const std::stop_token& stop, const std::function<void()>& wor
   if (group.run_and_wait(work) == tbb::canceled) throw Interrupted();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Calls body(i) for every i of 0 … count − 1, spread over the threads.
 /// \throws Interrupted when this belongs to a task group that was cancelled, such as a realisation
@@ -16,11 +16,11 @@ void in_parallel(std::size_t count, Body&& body) {
   in_parallel_called(count, std::ref(body));
 }
 
-/// The same in stretches of at most `most` indices: body(begin, end).
+/// The same in pieces of at most `most` indices: body(begin, end).
 template <typename Body>
-void in_parallel_stretches(std::size_t count, std::size_t most, Body&& body) {
-  in_parallel((count + most - 1) / most, [&](std::size_t stretch) {
-    const std::size_t begin = stretch * most;
+void in_parallel_chunks(std::size_t count, std::size_t most, Body&& body) {
+  in_parallel((count + most - 1) / most, [&](std::size_t piece) {
+    const std::size_t begin = piece * most;
     body(begin, begin + most < count ? begin + most : count);
   });
 }
@@ -34,4 +34,4 @@ void in_parallel_stretches(std::size_t count, std::size_t most, Body&& body) {
 void in_parallel_by_worker(std::size_t count,
                            const std::function<void(std::size_t worker, std::size_t i)>& body);
 
-}  // namespace asdic
+}  // namespace asdic::detail

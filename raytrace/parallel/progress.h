@@ -2,7 +2,7 @@
 #include <functional>
 #include <stdexcept>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A run was stopped by its Progress.
 class Interrupted : public std::runtime_error {
@@ -15,4 +15,4 @@ class Interrupted : public std::runtime_error {
 /// the run (Interrupted is thrown).
 using Progress = std::function<bool(double)>;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <functional>
 #include <stop_token>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Does some work; when `stop` is requested meanwhile, its parallel loops
 /// (raytrace/parallel/parallel.h) end early and its stop points throw, so that it is over within
@@ -24,4 +24,4 @@ class StopPoint {
   void* group_;  // tbb::task_group_context of the place; null: of none
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

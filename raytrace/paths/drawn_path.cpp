@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The greater of the curvatures at the ends of a segment, |∂c/∂n|/c [1/m].
@@ -51,4 +51,4 @@ RayPath drawn_path(const RayTrajectory& ray, double length, double sagitta, doub
   return path;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "raytrace/cases/ray_path.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A marched ray as points: straight lines between them stay within `sagitta` of it [m].
 /// \param length  where it ends, along the ray [m]   \param depth_step  greatest difference of
@@ -12,4 +12,4 @@ namespace asdic {
 [[nodiscard]] RayPath drawn_path(const RayTrajectory& ray, double length = 1e300,
                                  double sagitta = 0.05, double depth_step = 1e300);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -16,7 +16,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Of a source and a receiver at one depth; the sums take them apart, no answer changes by more
@@ -45,7 +45,7 @@ void raise(Arrival& path, double share, const Column& column) {
 /// Distance below which two roots of one branch are one [m of range per slope].
 constexpr double same_root = 1e-9;
 
-/// By delay; a root found twice (on the end that two stretches share) counts once.
+/// By delay; a root found twice (on the end that two pieces share) counts once.
 void sort_and_drop_doubles(Arrivals& arrivals, std::vector<std::size_t>& order) {
   const auto same = [](const Arrival& a, const Arrival& b) {
     return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
@@ -227,19 +227,19 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
 
   const BranchTable fan = table(source_depth, receiver_depth, limits);
   const PathBuilder builder(environment_, fan.column(), frequency);
-  // Stretches with the receivers between their ends, by range [first, last).
+  // Pieces with the receivers between their ends, by range [first, last).
   struct Held {
-    RootStretch stretch;
+    RootPiece piece;
     std::size_t first, last;
   };
   std::vector<Held> held;
   std::size_t roots = 0;
-  fan.for_each_stretch(wanted, [&](const MonotoneStretch& stretch) {
-    const auto [low, high] = std::minmax(stretch.range_begin, stretch.range_end);
+  fan.for_each_piece(wanted, [&](const MonotonePiece& piece) {
+    const auto [low, high] = std::minmax(piece.range_begin, piece.range_end);
     const auto first = std::lower_bound(wanted.begin(), wanted.end(), low),
                last = std::upper_bound(first, wanted.end(), high);
     if (first == last) return;
-    held.push_back({.stretch = {stretch, fan.column().source_is_upper()},
+    held.push_back({.piece = {piece, fan.column().source_is_upper()},
                     .first = static_cast<std::size_t>(first - wanted.begin()),
                     .last = static_cast<std::size_t>(last - wanted.begin())});
     roots += held.back().last - held.back().first;
@@ -247,20 +247,20 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
   std::vector<RootTask> tasks;
   tasks.reserve(roots);
   std::vector<std::size_t> expected(ranges.size(), 0);
-  for (const auto& [stretch, first, last] : held)
+  for (const auto& [piece, first, last] : held)
     for (std::size_t i = first; i < last; ++i) {
-      tasks.push_back({.stretch = &stretch, .receiver = order[i], .range = wanted[i]});
+      tasks.push_back({.piece = &piece, .receiver = order[i], .range = wanted[i]});
       ++expected[order[i]];
     }
 
   std::vector<Arrivals> found(ranges.size());
   for (std::size_t i = 0; i < found.size(); ++i) found[i].reserve(expected[i]);
-  for (auto begin = tasks.begin(); begin != tasks.end();) {  // stretches come interval by interval
-    const FanInterval& interval = *begin->stretch->interval;
+  for (auto begin = tasks.begin(); begin != tasks.end();) {  // pieces come interval by interval
+    const FanInterval& interval = *begin->piece->interval;
     const auto end = std::find_if(
-        begin, tasks.end(), [&](const RootTask& t) { return t.stretch->interval != &interval; });
+        begin, tasks.end(), [&](const RootTask& t) { return t.piece->interval != &interval; });
     RootGroups(fan, interval, std::span(begin, end))
-        .solve([&](const TaskLanes& batch, const FoundRays& rays) {
+        .solve([&](const SimdTasks& batch, const FoundRays& rays) {
           builder.build(interval, batch, rays, limits.faintest, found);
         });
     begin = end;
@@ -275,4 +275,4 @@ std::vector<Arrivals> EigenraySolver::find(double source_depth, double receiver_
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "raytrace/ocean/path_limits.h"
 #include "raytrace/tracing/receiver_columns.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 class BranchTable;
 class RayTracer;
@@ -58,7 +58,7 @@ class EigenraySolver {
   [[nodiscard]] std::shared_ptr<const RayTracer> tracer(double frequency) const;
 
   /// The fan between two depths of a layered ocean, for those who follow branches rather than
-  /// receivers (ground_paths).
+  /// receivers (boundary_paths).
   [[nodiscard]] BranchTable table(double source_depth, double receiver_depth,
                                   const PathLimits& limits) const;
 
@@ -74,4 +74,4 @@ class EigenraySolver {
   std::shared_ptr<Columns> columns_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "raytrace/layered/layered_fan.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 class FirstPass final : public RangeVisitor {
@@ -57,4 +57,4 @@ void RayFan::trace(std::span<const double> elevations, double range,
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

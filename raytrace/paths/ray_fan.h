@@ -5,7 +5,7 @@
 #include "raytrace/layered/ray_at_range.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A fan of dynamic rays at one range, without their paths: what a search starts from, or a plot of
 /// depth over angle. Any ocean; where the speed is linear in depth between samples and the
@@ -26,4 +26,4 @@ class RayFan {
   std::unique_ptr<const Solvers> solvers_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

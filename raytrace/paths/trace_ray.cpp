@@ -9,7 +9,7 @@
 #include "raytrace/paths/drawn_path.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr int most_segments = 200'000;
@@ -228,4 +228,4 @@ RayPath trace_ray(const Environment& environment, double source_depth, double la
       .walk(max_range, max_bounces);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

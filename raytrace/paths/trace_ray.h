@@ -2,7 +2,7 @@
 #include "raytrace/cases/ray_path.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Traces one ray out to a range, with points at most `depth_step` apart in depth. It ends early
 /// after `max_bounces`, or 20 000 turning points (almost along a kink). In an ocean that is not
@@ -11,4 +11,4 @@ namespace asdic {
                                 double launch_elevation, double max_range, double depth_step = 50.0,
                                 int max_bounces = 100);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 void Bounces::include(const Bounces& other) noexcept {
   surface = std::max(surface, other.surface);
@@ -11,4 +11,4 @@ void Bounces::include(const Bounces& other) noexcept {
   left_out_db = std::fmax(left_out_db, other.left_out_db);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <limits>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How many bounces are followed off either boundary, and an estimate of how much of the level is
 /// missing for it [dB].
@@ -13,4 +13,4 @@ struct Bounces {
   void include(const Bounces& other) noexcept;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/tube_amplitude.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double near_enough = 1e-4;    // miss at the receiver [m]: τ is stationary, so 1e-12 s
@@ -72,4 +72,4 @@ std::optional<Arrival> followed_path(const RayTracer& tracer, const Arrival& pat
   return {};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The same path after its ends, and with them its plane, have moved by metres: traced again from
 /// its launch angle, which Newton's method turns until the ray passes within a tenth of a
@@ -15,4 +15,4 @@ namespace asdic {
                                                    double source_depth, double receiver_depth,
                                                    double range);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -13,7 +13,7 @@
 #include "raytrace/waves/cycles.h"
 #include "raytrace/waves/diffraction.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 // Of a sequence by itself. Schedules that come back to a place or a waveform do so sooner.
@@ -117,12 +117,13 @@ double PropagationPaths::speed_at(const Vec3& place) const noexcept {
 
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
   if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
-  const ExactKey kept_as = key(Kept::slice).add(plane.origin).add(plane.cos_beta);
-  if (auto kept = memory_->find<EigenraySolver>(kept_as)) return kept;
-  auto made =
-      std::make_shared<EigenraySolver>(slice(along_.environment(), plane.origin, plane.cos_beta));
-  const std::size_t bytes = bytes_of(made->environment());
-  return memory_->keep(kept_as, std::move(made), bytes);
+  return memory_->remember(
+      key(Kept::slice).add(plane.origin).add(plane.cos_beta),
+      [&] {
+        return std::make_shared<EigenraySolver>(
+            slice(along_.environment(), plane.origin, plane.cos_beta));
+      },
+      [](const EigenraySolver& made) { return bytes_of(made.environment()); });
 }
 
 /// All that a search depends on: in a layered ocean depths and range, otherwise the plane, too.
@@ -139,12 +140,12 @@ ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, 
 
 template <class Find>
 Arrivals PropagationPaths::recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const {
-  const auto known = memory_->find<Arrivals>(key);
+  bool known = false;
+  const auto found = memory_->remember(
+      key, [&] { return std::make_shared<Arrivals>(find()); },
+      [](const Arrivals& paths) { return bytes_of(paths); }, &known);
   if (reuse != nullptr) ++(known ? reuse->legs_reused : reuse->legs_searched);
-  if (known) return *known;
-  Arrivals found = find();
-  memory_->keep(key, std::make_shared<Arrivals>(found), bytes_of(found));
-  return found;
+  return *found;
 }
 
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
@@ -159,9 +160,7 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
                   ExactKey kept_as = key(Kept::slice);  // of which layered oceans have none
                   kept_as.add_all(need.source_depth, need.receiver_depth, need.frequency,
                                   need.furthest, need.without_surface, need.without_bottom);
-                  if (const auto kept = memory_->find<CycleWaves>(kept_as)) return kept;
-                  const auto made = make();
-                  return memory_->keep(kept_as, made, made->bytes());
+                  return memory_->remember(kept_as, make);
                 });
       auto more =
           diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
@@ -214,4 +213,4 @@ Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& fr
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/places/reuse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A vertical plane through the ocean: from a place on the map in one direction.
 struct Plane {
@@ -86,4 +86,4 @@ class PropagationPaths {
 /// Adds all that a path is followed by to a key: its angle and history.
 void add_path(ExactKey& key, const Arrival& path);
 
-}  // namespace asdic
+}  // namespace asdic::detail

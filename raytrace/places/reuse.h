@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What of a ping's propagation was known before. It tells of the run, not of the result: two
 /// threads that ask for the same at once may both search.
@@ -12,4 +12,4 @@ struct Reuse {
   bool expected_level = false;  ///< so were the reverberation's expected level and what is audible
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -17,7 +17,7 @@
 #include "raytrace/runs/single_beam.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Off either boundary. A waveguide without loss has no end of paths; these are very many, and what
@@ -129,10 +129,10 @@ class ArrivalSearch {
                       " m is on a boundary with a vacuum, which reflects all it sends with the "
                       "opposite sign: paths come in pairs whose sum is nothing");
     const LevelRays level = level_paths(case_.environment, case_.frequency, 0.0, depth);
-    const bool heard = std::any_of(receivers_.begin(), receivers_.end(), [&](const auto& at) {
+    const bool received = std::any_of(receivers_.begin(), receivers_.end(), [&](const auto& at) {
       return std::abs(at.depth - depth) <= level.height;
     });
-    if (level.angle > 0.0 && heard)
+    if (level.angle > 0.0 && received)
       notes.push_back("the source at " + std::to_string(depth) +
                       " m is on a kink where the sound speed is least: rays within " +
                       std::to_string(degrees(level.angle)) +
@@ -254,4 +254,4 @@ PropagationResult run_eigenrays(const PropagationCase& run_case, const Progress&
   return search(run_case, progress, selection, true, run_case.task == Task::eigenrays_and_arrivals);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "raytrace/parallel/progress.h"
 #include "raytrace/paths/eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a run keeps of the paths it could find.
 struct PathSelection {
@@ -33,4 +33,4 @@ struct PathSelection {
 /// The receivers of a grid in the order of results.
 [[nodiscard]] std::vector<ReceiverPoint> points_of(const ReceiverGrid& grid);
 
-}  // namespace asdic
+}  // namespace asdic::detail

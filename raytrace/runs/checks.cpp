@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::string shown(double value) {
@@ -68,4 +68,4 @@ RayTracer tracer_of(const PropagationCase& run_case) {
           run_case.beams.displacement ? Reflection::displaced : Reflection::on_the_spot};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "raytrace/cases/propagation_case.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What every run asks of a case: water that is deep enough, sources in it, a fan with width.
 /// \throws InputError naming the first thing that makes no sense
@@ -19,4 +19,4 @@ void check_receivers(const PropagationCase& run_case);
 /// layered solver knows no displacement; runs that ask for it march (`beams.displacement`).
 [[nodiscard]] RayTracer tracer_of(const PropagationCase& run_case);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -16,7 +16,7 @@
 #include "raytrace/runs/field_run.h"
 
 // The partial sums of a field: each adds rays of one fan, and a field is the sum of a few.
-namespace asdic {
+namespace asdic::detail {
 
 /// One source and one fan, ready to be summed.
 struct FieldWork {
@@ -63,7 +63,7 @@ class PlainPart {
       : work_(work),
         setting_{work.setting, work.setting},
         field_{empty_field(work.run_case), {}},
-        twins_(work.boundary_rows, field_[0]) {
+        pairs_(work.boundary_rows, field_[0]) {
     setting_[1].spacing *= 2.0;
     if (work.also.half) field_[1] = field_[0];
   }
@@ -89,7 +89,7 @@ class PlainPart {
   void silence() {
     const BeamKind kind = work_.setting.kind;
     if (kind == BeamKind::cerveny_cartesian || kind == BeamKind::cerveny_ray_centred) return;
-    for (std::size_t h = 0; h < (work_.also.half ? 2 : 1); ++h) twins_.silence(field_[h]);
+    for (std::size_t h = 0; h < (work_.also.half ? 2 : 1); ++h) pairs_.silence(field_[h]);
   }
   [[nodiscard]] std::complex<double> at(std::size_t column, std::size_t row, bool half) const {
     const FieldSum& field = field_[half ? 1 : 0];
@@ -99,14 +99,14 @@ class PlainPart {
  private:
   void add_to(std::size_t h, const BeamLaunch& launch) {
     add_beam(setting_[h], launch, ray_, field_[h]);
-    if (work_.boundary_rows.any()) twins_.add(setting_[h], launch, ray_, field_[h]);
+    if (work_.boundary_rows.any()) pairs_.add(setting_[h], launch, ray_, field_[h]);
   }
 
   const FieldWork& work_;
   BeamSetting setting_[2];
   RayTrajectory ray_;
   FieldSum field_[2];
-  BeamTwins twins_;
+  BeamPairs pairs_;
 };
 
 inline namespace ASDIC_LEVEL {
@@ -285,4 +285,4 @@ class FastPart {
 
 }  // namespace ASDIC_LEVEL
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -20,7 +20,7 @@
 #include "raytrace/runs/single_beam.h"
 #include "raytrace/waves/wave_field.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 namespace {
 
@@ -334,4 +334,4 @@ PropagationResult run_field(const PropagationCase& run_case, const Progress& pro
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "raytrace/parallel/progress.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The field of a case (Task::field), for each of its sources. The number of beams grows until the
 /// field is sure (docs/theory/fields.md), unless the case lists its elevations: then
@@ -32,4 +32,4 @@ enum class FieldMethod { fast, plain };
                                     FieldMethod method = FieldMethod::fast,
                                     const FieldCheck& also = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "raytrace/tracing/reflected.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -310,7 +310,7 @@ std::string note_of(int images, bool extrapolated, double error_db) {
   return text;
 }
 
-/// |ΔTL| that an error may make, at 95 % of those receivers that hear anything [dB].
+/// |ΔTL| that an error may make, at 95 % of those receivers that receive anything [dB].
 double error_at_95(const std::vector<RaySum>& sums, bool coherent) {
   std::vector<double> all;
   for (const RaySum& s : sums)
@@ -385,4 +385,4 @@ std::optional<ConvergedField> image_field(const PropagationCase& run_case, doubl
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "raytrace/cases/propagation_result.h"
 #include "raytrace/parallel/progress.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What became of the sum of all paths to a receiver.
 struct RaySum {
@@ -23,7 +23,7 @@ struct RaySum {
 /// further off there is no water.
 [[nodiscard]] std::optional<double> depth_in_water(const Environment& ocean, double depth) noexcept;
 
-/// Sums as a field, with the |ΔTL| that their errors may make at 95 % of the receivers that hear
+/// Sums as a field, with the |ΔTL| that their errors may make at 95 % of the receivers that receive
 /// anything. \param sums  [rows × ranges]
 [[nodiscard]] ConvergedField field_of_sums(const std::vector<RaySum>& sums, bool coherent);
 
@@ -41,4 +41,4 @@ struct RaySum {
                                                         double source_depth,
                                                         const Progress& progress = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

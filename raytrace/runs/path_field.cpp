@@ -12,7 +12,7 @@
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/runs/image_field.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double edge_of_fan_here = 1e-12;   // elevations there belong to it [rad]
@@ -145,4 +145,4 @@ std::optional<ConvergedField> path_field(const PropagationCase& run_case, double
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "raytrace/cases/propagation_result.h"
 #include "raytrace/parallel/progress.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The field of a source in stratified water between flat boundaries, as the sum of its eigenrays:
 /// what hats narrow to (narrows_to_paths). Nothing if the water is not that, if there are so many
@@ -18,4 +18,4 @@ namespace asdic {
                                                        double source_depth,
                                                        const Progress& progress = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "raytrace/runs/checks.h"
 #include "raytrace/runs/single_beam.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr int usual_count = 50;
@@ -74,4 +74,4 @@ PropagationResult run_rays(const PropagationCase& run_case, const Progress& prog
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

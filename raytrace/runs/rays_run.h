@@ -4,7 +4,7 @@
 #include "raytrace/parallel/progress.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The rays of a case (Task::rays), for each of its sources: exactly as many as it says (0: 50),
 /// out to its box or until reflections have left 0.005 of them. Straight lines between their points
@@ -18,4 +18,4 @@ void limit_depth(const PropagationCase& run_case, TraceLimits& limits) noexcept;
 /// Where the rays of a case end.
 [[nodiscard]] TraceLimits box_of(const PropagationCase& run_case);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,17 +3,17 @@
 #include <string>
 
 #include "core/error.h"
-#include "raytrace/like_bellhop/fan.h"
-#include "raytrace/like_bellhop/water.h"
+#include "raytrace/bellhop_emulation/fan.h"
+#include "raytrace/bellhop_emulation/water.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::optional<SingleBeam> single_beam(const PropagationCase& run_case) {
   const std::optional<int>& wanted = run_case.literal.single_beam;
   if (!wanted) return std::nullopt;
-  const like_bellhop::LiteralWater water(run_case.environment, run_case.frequency);
-  const like_bellhop::LiteralFan fan =
-      like_bellhop::make_fan(run_case, {}, water.last_depth() - water.first_depth());
+  const bellhop_emulation::LiteralWater water(run_case.environment, run_case.frequency);
+  const bellhop_emulation::LiteralFan fan =
+      bellhop_emulation::make_fan(run_case, {}, water.last_depth() - water.first_depth());
   const std::size_t n = fan.declinations.size();
   if (*wanted < 1 || static_cast<std::size_t>(*wanted) > n)
     throw InputError({.where = "literal.single_beam",
@@ -31,4 +31,4 @@ PropagationCase narrowed_to(const SingleBeam& beam, const PropagationCase& run_c
   return narrow;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One beam out of a fan.
 struct SingleBeam {
@@ -19,4 +19,4 @@ struct SingleBeam {
 /// beam stands for. The cases of all beams share the paths of the fan among them.
 [[nodiscard]] PropagationCase narrowed_to(const SingleBeam& beam, const PropagationCase& run_case);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/tracing/reflected.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A ray's state where it meets a line of slope tan(angle).
@@ -135,4 +135,4 @@ void digest_hits(const RayTrajectory& ray, const Environment& environment, const
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

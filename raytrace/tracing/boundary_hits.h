@@ -6,7 +6,7 @@
 #include "raytrace/ocean/ground_level.h"
 #include "raytrace/tracing/fan_ray.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where a ray strikes one boundary, or passes a depth of the water: the incident field, and how
 /// place and time move when the ray is launched a little higher.
@@ -43,4 +43,4 @@ struct StrikingRay {
 void digest_hits(const RayTrajectory& ray, const Environment& environment, const GroundLevel& level,
                  StrikingRay& out);
 
-}  // namespace asdic
+}  // namespace asdic::detail

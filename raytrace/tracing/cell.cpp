@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// c = c₁[1 + ε(η − 1 + e^(−η))], η = 2(z − z₁)/B; Munk, JASA 55, 220 (1974).
 SoundSpeed2D Cell::munk_speed(double depth) const noexcept {
@@ -14,4 +14,4 @@ SoundSpeed2D Cell::munk_speed(double depth) const noexcept {
           .c_zz = strength * decay * per_metre * per_metre};
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

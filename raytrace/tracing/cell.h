@@ -7,7 +7,7 @@
 #include "raytrace/ocean/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// How a ray runs in a cell.
 enum class Law : unsigned char {
@@ -88,4 +88,4 @@ struct Local {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -8,10 +8,10 @@
 #include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/fan_splitting.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
-/// Neighbours this close in launch angle are told apart no more [rad].
+/// Neighbours this close in launch angle are no longer resolved [rad].
 constexpr double finest = 1e-12;
 
 /// What the mean grazing angle of two neighbours may miss that of the ray between by; halves are
@@ -78,7 +78,7 @@ class CellSearch {
   void search(const StrikingRay& a, const StrikingRay& b, std::vector<CellHit>& out) const {
     const std::size_t hits = std::min(a.hits.size(), b.hits.size());
     for (std::size_t i = 0; i < hits && a.hits[i].history == b.hits[i].history; ++i)
-      lay(a, a.hits[i], b, b.hits[i], out);
+      grid_paths(a, a.hits[i], b, b.hits[i], out);
   }
 
  private:
@@ -100,8 +100,8 @@ class CellSearch {
   }
 
   /// Every cell centre between the hits of two rays.
-  void lay(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b, const BoundaryHit& hb,
-           std::vector<CellHit>& out) const {
+  void grid_paths(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
+                  const BoundaryHit& hb, std::vector<CellHit>& out) const {
     const Hermite range(range_node(a, ha), range_node(b, hb));
     const Hermite time(time_node(a, ha), time_node(b, hb));
     const bool caustic = (ha.d_range > 0.0) != (hb.d_range > 0.0);
@@ -110,16 +110,16 @@ class CellSearch {
     for (std::size_t i = 0; i <= turns.size(); ++i) {
       const double to = i < turns.size() ? turns.x[i] : b.angle;
       const double to_range = i < turns.size() ? range.value(to) : hb.range;
-      lay_monotone(a, ha, b, hb, range, time, from, from_range, to, to_range, out);
+      grid_monotone(a, ha, b, hb, range, time, from, from_range, to, to_range, out);
       from = to;
       from_range = to_range;
     }
   }
 
-  void lay_monotone(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
-                    const BoundaryHit& hb, const Hermite& range, const Hermite& time, double from,
-                    double from_range, double to, double to_range,
-                    std::vector<CellHit>& out) const {
+  void grid_monotone(const StrikingRay& a, const BoundaryHit& ha, const StrikingRay& b,
+                     const BoundaryHit& hb, const Hermite& range, const Hermite& time, double from,
+                     double from_range, double to, double to_range,
+                     std::vector<CellHit>& out) const {
     const bool rising = to_range > from_range;
     const double near = rising ? from : to, far = rising ? to : from;
     const double near_range = std::min(from_range, to_range);
@@ -207,4 +207,4 @@ std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

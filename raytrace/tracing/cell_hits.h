@@ -6,7 +6,7 @@
 #include "raytrace/tracing/boundary_hits.h"
 #include "raytrace/tracing/marching_eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One path to the middle of a cell of a level, the ring around the source from i·spacing to
 /// (i + 1)·spacing.
@@ -20,10 +20,10 @@ struct CellHit {
 
 /// Every path of a fan of marched rays to every cell, interpolated between neighbours that struck
 /// the same boundaries and passed the level as often; range is right to a hundredth of the spacing.
-/// Near a caustic the amplitude is held as in ground_paths.h. \param spacing, max_range [m]
+/// Near a caustic the amplitude is held as in boundary_paths.h. \param spacing, max_range [m]
 [[nodiscard]] std::vector<CellHit> hits_on_cells(const RayTracer& tracer, double source_depth,
                                                  const GroundLevel& level, double spacing,
                                                  double max_range, double frequency,
                                                  const FanLimits& limits);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 constexpr double small = 0.2;  // arguments up to which the series below are exact to rounding [rad]
@@ -271,4 +271,4 @@ RayState Course::end_of_series(double time) const noexcept {
   return b;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

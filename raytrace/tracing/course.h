@@ -4,7 +4,7 @@
 #include "raytrace/tracing/cell.h"
 #include "raytrace/tracing/power_series.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// A straight line of the (range, depth) plane, seen from one side: through (range, depth), with
 /// the unit normal (nr, nz) on the side where `distance` is positive.
@@ -98,4 +98,4 @@ double falling_root(double low, double high, double guess, F&& f) noexcept {
   return x;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -6,7 +6,7 @@
 
 #include "raytrace/tracing/march.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 /// A ray at a line: γ = β − φ, and the bend of the ray, κ_ray = −∇c·n/c with n = (−t_z, t_r).
@@ -93,4 +93,4 @@ bool March::displace_along(BoundaryKind kind, const RayState& in, const Local& w
   return true;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

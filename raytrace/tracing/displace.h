@@ -2,7 +2,7 @@
 #include "raytrace/ocean/beam_displacement.h"
 #include "raytrace/tracing/jumps.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// A displaced reflection: what was met, and where the ray leaves.
 struct DisplacedReflection {
@@ -31,4 +31,4 @@ struct DisplacedReflection {
 /// downwards (−1)
 int displace(const DisplacedReflection& r, RayState& y) noexcept;
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

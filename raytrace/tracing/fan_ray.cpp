@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// How far a leg is continued beyond its ends, as a part of its extent; and at least this [m].
@@ -276,4 +276,4 @@ ExactCrossing cross_leg(const RayTrajectory& ray, const RayTracer& tracer, const
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/tracing/ray_tracer.h"
 #include "raytrace/tracing/receiver_columns.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where a ray crosses the column of a range, and how that depth moves when the ray is launched a
 /// little higher.
@@ -47,7 +47,7 @@ struct LegEnd {
   [[nodiscard]] ColumnCrossing continued_to(double target, double sign) const noexcept;
 };
 
-/// A stretch of a ray from one boundary to the next, or to where it turns back; its range grows or
+/// A piece of a ray from one boundary to the next, or to where it turns back; its range grows or
 /// falls all along. Rays of one history hit the same boundaries (and
 /// facets of them, where the tangent jumps) in the same order up to the leg.
 struct RayLeg {
@@ -128,4 +128,4 @@ struct ExactCrossing {
                                                         const RayTracer& tracer, std::size_t leg,
                                                         std::uint64_t history, double range);
 
-}  // namespace asdic
+}  // namespace asdic::detail

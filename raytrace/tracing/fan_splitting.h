@@ -10,7 +10,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/tracing/search_watch.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A fan that is split until neighbours tell what lies between them, in parallel, with the same
 /// result for any number of threads.
@@ -142,4 +142,4 @@ class FanSplitting {
   double lowest_, highest_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 /// A ray along the line itself would have no tube; this keeps its numbers finite.
@@ -44,4 +44,4 @@ void cross(RayState& y, const Local& before, const Local& after, const Tangent& 
   y.p_plane += y.q_plane * jump;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/tracing/cell.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// A line met by a ray: the direction β of its tangent (cos β, sin β) and how it bends.
 struct Tangent {
@@ -25,4 +25,4 @@ double reflect(RayState& y, const Local& water, const Tangent& boundary) noexcep
 ///   p → p + q/c² · [∇c]·n · cot(β − φ)
 void cross(RayState& y, const Local& before, const Local& after, const Tangent& line) noexcept;
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 constexpr int most_touches = 32;
@@ -289,4 +289,4 @@ bool March::answer() {
   return true;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -4,7 +4,7 @@
 #include "raytrace/tracing/displace.h"
 #include "raytrace/tracing/ocean.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 inline constexpr double widest_turn = 0.3;      ///< of the direction within one segment [rad]
 inline constexpr double longest_segment = 2e4;  ///< [m]
@@ -116,4 +116,4 @@ class March {
   int touches_ = 0;  // reflections without way between them
 };
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -4,7 +4,7 @@
 
 #include "raytrace/tracing/march.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 constexpr double landed = 1e-9;  // an event is hit within this [m]
@@ -231,4 +231,4 @@ double March::hit_between(BoundaryKind kind, std::size_t facet, double in, doubl
   return falling_root(low, out, out, [&](double h) { return clearance(kind, facet, h); });
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 /// As std::arg, which takes a real number the long way.
@@ -83,4 +83,4 @@ bool March::reflect_at(BoundaryKind kind) {
                         beam_displacement(*material, grazing, beside, ocean_.frequency));
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -5,7 +5,7 @@
 #include "raytrace/tracing/march.h"
 #include "raytrace/tracing/row_crossing.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 constexpr double least_gap = 1e-9;  // to a shaped boundary [m]
@@ -185,4 +185,4 @@ bool March::cross_rows() {
   return true;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

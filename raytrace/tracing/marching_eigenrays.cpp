@@ -9,7 +9,7 @@
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A receiver (almost) straight above or below is met by (almost) vertical rays; they are found at
@@ -199,4 +199,4 @@ std::vector<Arrivals> marching_eigenrays(const RayTracer& tracer, double source_
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/tracing/receiver_columns.h"
 #include "raytrace/tracing/search_watch.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The fan that is searched, and what is kept of it.
 struct FanLimits {
@@ -39,4 +39,4 @@ struct FanLimits {
                                                        const FanLimits& limits = {},
                                                        SearchWatch* watch = nullptr);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "raytrace/tracing/neighbours.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Where histories part at a node between two facets, rays reach up to it: what lies between two
@@ -149,4 +149,4 @@ bool NeighbourTest::parting_matters(const FanRay& a, const FanRay& m, const FanR
   return !(at_a_node && widest * std::abs(b.angle - a.angle) < finest_gap);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/math/hermite.h"
 #include "raytrace/tracing/neighbours.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What the cubic may miss the ray in the middle by [m]; the two cubics through it are then right
@@ -296,4 +296,4 @@ bool NeighbourTest::ends_hold(const FanRay& a, const FanRay& m, const FanRay& b,
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/math/hermite.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 ColumnSpan columns_between(const FanRay& a, const FanRay& b, std::size_t leg,
                            std::span<const ReceiverColumn> columns) noexcept {
@@ -85,4 +85,4 @@ double splitting_angle(const FanRay& a, const FanRay& b, const Environment& envi
   return good_b ? b.angle + from_b : middle;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

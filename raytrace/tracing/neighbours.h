@@ -5,13 +5,13 @@
 
 #include "raytrace/tracing/fan_ray.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How far from the place where a leg turns around a column may be to be looked at, and a receiver
 /// from a ray that no gap between rays is left beside it [m].
 inline constexpr double least_room = 0.1;
 
-/// Launch angles closer than this are told apart no more [rad].
+/// Launch angles closer than this are no longer resolved [rad].
 [[nodiscard]] inline bool finest_apart(double a, double b) noexcept {
   return std::abs(b - a) < 4e-15 + 4e-16 * std::abs(a);
 }
@@ -73,4 +73,4 @@ struct ColumnSpan {
 [[nodiscard]] ColumnSpan columns_between(const FanRay& a, const FanRay& b, std::size_t leg,
                                          std::span<const ReceiverColumn> columns) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

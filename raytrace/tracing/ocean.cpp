@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double outside = 1e30;    // depth of the outer rows' far ends
@@ -168,4 +168,4 @@ double RayTracer::Ocean::column_end(std::size_t column) const noexcept {
   return environment.section->ranges()[column];
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

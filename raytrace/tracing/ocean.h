@@ -5,7 +5,7 @@
 #include "raytrace/tracing/course.h"
 #include "raytrace/tracing/ray_tracer.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 namespace tracing {
 
@@ -55,4 +55,4 @@ struct RayTracer::Ocean {
   [[nodiscard]] tracing::Cell make_cell(std::size_t row, std::size_t column) const noexcept;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

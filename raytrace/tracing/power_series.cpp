@@ -7,7 +7,7 @@
 #include "raytrace/math/gauss_legendre.h"
 #include "raytrace/tracing/power_series_terms.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 using Four = std::experimental::fixed_size_simd<double, 4>;
@@ -228,4 +228,4 @@ std::array<ValueSlope, 2> PowerSeries::where(double h) const noexcept {
   return {ValueSlope{v[0], d[0]}, ValueSlope{v[1], d[1]}};
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -4,7 +4,7 @@
 
 #include "raytrace/tracing/cell.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// Value and derivative.
 struct ValueSlope {
@@ -24,7 +24,7 @@ using FourSeries = std::array<std::array<double, 4>, 13>;
 /// Taylor's method, as in Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I
 /// (1993), §I.8. Four series that are made alike lie side by side and are made at once.
 struct PowerSeries {
-  enum Lane : std::size_t { range, depth, q, q_plane };        ///< of `place`
+  enum SimdFloat : std::size_t { range, depth, q, q_plane };   ///< of `place`
   enum Motion : std::size_t { tr, tz, growth, growth_plane };  ///< of `motion`; growth: P
   alignas(32) FourSeries place;   ///< range and depth less those of the begin [m], q, q_plane
   alignas(32) FourSeries motion;  ///< each the rate of its lane of `place`, over c
@@ -60,4 +60,4 @@ struct PowerSeries {
 /// Error accepted at the end of one segment [m], and of the quintics of state_at within it [m].
 inline constexpr double position_tolerance = 1e-7, quintic_tolerance = 1e-5;
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -4,7 +4,7 @@
 
 #include "raytrace/tracing/power_series_terms.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 using Doubles4 [[gnu::vector_size(32)]] = double;
@@ -12,7 +12,7 @@ using Doubles2 [[gnu::vector_size(16)]] = double;
 
 [[gnu::always_inline]] inline Doubles4 both(double x) noexcept { return Doubles4{x, x, x, x}; }
 
-[[gnu::always_inline]] inline Doubles4 lanes(const std::array<double, 4>& x) noexcept {
+[[gnu::always_inline]] inline Doubles4 simd_width(const std::array<double, 4>& x) noexcept {
   return Doubles4{x[0], x[1], x[2], x[3]};
 }
 [[gnu::always_inline]] inline Doubles4 magnitude(const Doubles4& x) noexcept {
@@ -65,14 +65,15 @@ class BilinearExpansion {
 
   /// Coefficient k of the product of two series. The terms with the latest coefficients come last:
   /// all others wait for nothing.
-  template <std::size_t k, class Lanes>
-  [[gnu::always_inline]] static Lanes product(const Lanes* x, const Lanes* y) noexcept {
+  template <std::size_t k, class SimdFloats>
+  [[gnu::always_inline]] static SimdFloats product(const SimdFloats* x,
+                                                   const SimdFloats* y) noexcept {
     if constexpr (k == 0) {
       return x[0] * y[0];
     } else if constexpr (k == 1) {
       return x[0] * y[1] + x[1] * y[0];
     } else {
-      const Lanes before = [&]<std::size_t... i>(std::index_sequence<i...>)
+      const SimdFloats before = [&]<std::size_t... i>(std::index_sequence<i...>)
           __attribute__((always_inline)) {
         return ((x[i + 1] * y[k - 1 - i]) + ...);
       }
@@ -121,8 +122,8 @@ class BilinearExpansion {
   const Row& row_;
   PowerSeries& y_;
   SeriesEnd end_;
-  const Doubles4 place_weights_ = lanes(end_.place_weights());
-  const Doubles4 motion_weights_ = lanes(SeriesEnd::motion_weights);
+  const Doubles4 place_weights_ = simd_width(end_.place_weights());
+  const Doubles4 motion_weights_ = simd_width(SeriesEnd::motion_weights);
   const Doubles4 gradient_;          // (c_z, c_r, c_z, c_r)
   Doubles4 place_[most_terms + 1];   // (r, z, q, q_plane)
   Doubles4 motion_[most_terms + 1];  // (t_r, t_z, P, P_plane)
@@ -144,4 +145,4 @@ void expand_bilinear(const SoundSpeed2D& s, const Row& row, double wanted,
   BilinearExpansion(s, row, wanted, y).run();
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

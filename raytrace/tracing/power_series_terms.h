@@ -6,7 +6,7 @@
 
 #include "raytrace/tracing/power_series.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 inline constexpr std::size_t most_terms = std::tuple_size_v<Series> - 1;
 
@@ -78,4 +78,4 @@ class SeriesEnd {
 /// \param row  its attenuation counted from the ray's depth   \param y  with its first terms
 void expand_bilinear(const SoundSpeed2D& s, const Row& row, double wanted, PowerSeries& y) noexcept;
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::array<double, family_size> places = {0.0, 0.25, 0.5, 0.75, 1.0};
@@ -230,4 +230,4 @@ void RayFamily::bounces(double angle, const FamilyRays& rays, std::vector<Bounce
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/tracing/fan_ray.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The polynomial through values and slopes at n places, in Newton's form.
 template <std::size_t n>
@@ -101,4 +101,4 @@ class RayFamily {
   OsculatingPolynomial<family_size> depth_, delay_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include "raytrace/tracing/march.h"
 #include "raytrace/tracing/ocean.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 RayTracer::RayTracer(const Environment& environment, double frequency, Reflection reflection)
     : ocean_(std::make_unique<const Ocean>(environment, frequency, reflection)) {}
@@ -62,4 +62,4 @@ RayState RayTracer::state_at_range(const RaySegment& segment, double range) cons
   return there;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "raytrace/ocean/environment.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Where a ray is followed no further.
 struct TraceLimits {
@@ -72,4 +72,4 @@ class RayTracer {
   std::unique_ptr<const Ocean> ocean_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 
 #include "raytrace/tracing/segment_states.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Value and slope of the quintic that has value, slope and second derivative f, f', f'' at both
@@ -161,4 +161,4 @@ double arc_at_range(const RaySegment& segment, double range) noexcept {
   return u * h;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A point on a ray in the (range, depth) plane, and the beam it carries. Slowness is tangent/c;
 /// depth and ζ are positive down.
@@ -97,4 +97,4 @@ class SegmentCurve {
 /// ends.
 [[nodiscard]] double arc_at_range(const RaySegment& segment, double range) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace asdic {
+namespace asdic::detail {
 
 ReceiverColumn::Between ReceiverColumn::between(double low, double high) const noexcept {
   const auto first = std::lower_bound(depths.begin(), depths.end(), low);
@@ -29,4 +29,4 @@ std::vector<ReceiverColumn> make_columns(std::span<const ReceiverPoint> receiver
   return columns;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

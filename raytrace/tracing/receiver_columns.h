@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A point where sound is heard, in the plane of the transect.
+/// A point where sound is received, in the plane of the transect.
 struct ReceiverPoint {
   double range = 0.0;  ///< along the transect [m]
   double depth = 0.0;  ///< [m]
@@ -28,4 +28,4 @@ struct ReceiverColumn {
 /// Receivers anywhere, sorted into columns of increasing range.
 [[nodiscard]] std::vector<ReceiverColumn> make_columns(std::span<const ReceiverPoint> receivers);
 
-}  // namespace asdic
+}  // namespace asdic::detail

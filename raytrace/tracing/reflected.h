@@ -5,7 +5,7 @@
 #include "raytrace/ocean/roughness.h"
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What the boundaries have left of a ray's pressure. Pressures that are to be added are those of
 /// the mean field. Where intensities are added its square is the energy: what rough boundaries
@@ -24,4 +24,4 @@ namespace asdic {
   return coherent ? left.coherent : std::sqrt(left.energy);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "raytrace/tracing/neighbours.h"
 #include "raytrace/tracing/root_finder.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Receivers this close to where the cubics turn are looked at [m].
@@ -150,4 +150,4 @@ bool RootFinder::search_family(const FamilyRays& rays, std::size_t leg) {
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

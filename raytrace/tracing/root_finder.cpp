@@ -8,7 +8,7 @@
 #include "raytrace/ocean/tube_amplitude.h"
 #include "raytrace/tracing/neighbours.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double miss_wanted = 1e-6;    ///< distance of ray and receiver [m]
@@ -99,7 +99,7 @@ void RootFinder::search_column(const FanRay& a, const FanRay& b, std::size_t leg
   const double margin = close_to_caustic / std::max(cosine_, 1e-3);
   const auto wanted = column_->between(low - margin, high + margin);
   if (wanted.empty()) return;
-  // Stretches over which the depth is monotone: between the extrema, exact where a receiver is
+  // Pieces over which the depth is monotone: between the extrema, exact where a receiver is
   // near.
   HermiteNode from = na;
   for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -109,13 +109,13 @@ void RootFinder::search_column(const FanRay& a, const FanRay& b, std::size_t leg
           i + 1 < turns.size() ? HermiteNode{turns.x[1], cubic.value(turns.x[1]), 0.0} : nb;
       caustic = extremum(from, to, caustic.x);
     }
-    search_stretch(from, caustic, cubic);
+    search_piece(from, caustic, cubic);
     from = caustic;
   }
-  search_stretch(from, nb, cubic);
+  search_piece(from, nb, cubic);
 }
 
-void RootFinder::search_stretch(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic) {
+void RootFinder::search_piece(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic) {
   if (!(b.x >= a.x)) return;
   const auto wanted = column_->between(std::min(a.value, b.value), std::max(a.value, b.value));
   for (std::size_t i = wanted.first; i < wanted.last; ++i)
@@ -157,7 +157,7 @@ HermiteNode RootFinder::extremum(HermiteNode a, HermiteNode b, double guess) {
   return best;
 }
 
-/// The root of z(α) = depth inside a stretch that has it between its ends.
+/// The root of z(α) = depth inside a piece that has it between its ends.
 void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic,
                         double depth, std::uint32_t receiver) {
   const bool rising = b.value > a.value;
@@ -207,13 +207,13 @@ void RootFinder::refine(const HermiteNode& a, const HermiteNode& b, const Hermit
   Arrival path = arrival(*there, depth);
   if (std::isfinite(path.delay) && std::isfinite(path.spreading))
     (*found_)(receiver, std::move(path));
-  twin_at_node(x, depth, receiver);
+  pair_at_node(x, depth, receiver);
 }
 
 /// A receiver on a node between two facets of a boundary: what arrives there is reflected there,
 /// but on either side rays of another facet begin, and no two neighbours enclose it. By the facet
 /// that the ray itself strikes.
-void RootFinder::twin_at_node(double angle, double depth, std::uint32_t receiver) {
+void RootFinder::pair_at_node(double angle, double depth, std::uint32_t receiver) {
   constexpr double on_node = 1e-3;  // [m]
   const double range = column_->range;
   const Environment& ocean = tracer_.environment();
@@ -276,4 +276,4 @@ Arrival RootFinder::arrival(const ExactCrossing& there, double depth) const {
   return path;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "raytrace/tracing/ray_family.h"
 #include "raytrace/tracing/search_watch.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Finds the eigenrays between two neighbours of a fan: by re-tracing single rays, or where there
 /// are many, by families of five rays that tell all between (ray_family.h).
@@ -49,12 +49,12 @@ class RootFinder {
                        std::size_t first_leg, std::size_t slot);
   [[nodiscard]] bool search_family(const FamilyRays& rays, std::size_t leg);
   void search_column(const FanRay& a, const FanRay& b, std::size_t leg, std::uint32_t column);
-  void search_stretch(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic);
+  void search_piece(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic);
   void refine(const HermiteNode& a, const HermiteNode& b, const Hermite& cubic, double depth,
               std::uint32_t receiver);
   [[nodiscard]] HermiteNode extremum(HermiteNode a, HermiteNode b, double guess);
   [[nodiscard]] std::optional<ExactCrossing> exact(double angle);
-  void twin_at_node(double angle, double depth, std::uint32_t receiver);
+  void pair_at_node(double angle, double depth, std::uint32_t receiver);
   [[nodiscard]] Arrival arrival(const ExactCrossing& there, double depth) const;
 
   const RayTracer& tracer_;
@@ -81,4 +81,4 @@ class RootFinder {
   int max_turns_ = 0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "raytrace/math/gauss_legendre.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 namespace {
 
 /// Shallower rays, and those that turn by more, take a step: tubes are carried with divisions by
@@ -35,11 +35,11 @@ bool cross_arc(const Cell& cell, const RayState& y, const Local& here, double to
   x.range = y.xi * x.speed_integral;
   const double chord = std::sqrt(dz * dz + x.range * x.range);
   const double half_sine = 0.5 * g * y.xi * chord;  // of half the turn
-  const double per_c = 1.0 / (c0 * c1), stretch = 0.25 * g * g * chord * chord * per_c;
-  if (x.turn > widest_bend || stretch > 0.0025) return false;
+  const double per_c = 1.0 / (c0 * c1), piece = 0.25 * g * g * chord * chord * per_c;
+  if (x.turn > widest_bend || piece > 0.0025) return false;
   const double bent = half_sine * half_sine;
   x.length = chord * asinc_of_square(bent);
-  x.time = chord * std::sqrt(per_c) * asinc_of_square(-stretch);
+  x.time = chord * std::sqrt(per_c) * asinc_of_square(-piece);
   if (cell.row->alpha_slope != 0.0) {  // Simpson's rule: z is a sine of the length
     const double middle =
         0.5 * dz + 0.5 * x.range * half_sine / (1.0 + std::sqrt(1.0 - bent));  // chord and sagitta
@@ -173,4 +173,4 @@ bool cross_row(const Cell& cell, const RayState& y, const Local& here, double to
   return false;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

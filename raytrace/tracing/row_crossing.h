@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/tracing/cell.h"
 
-namespace asdic::tracing {
+namespace asdic::detail::tracing {
 
 /// What a ray gathers between two depths of a row where the speed depends on depth alone.
 struct RowCrossing {
@@ -33,4 +33,4 @@ inline void carry_tube(double q, double p, double xi, double tz, double c_z, con
   p_end = -(d_xi + x.c_z * xi * xi * q_end) / tz_end;
 }
 
-}  // namespace asdic::tracing
+}  // namespace asdic::detail::tracing

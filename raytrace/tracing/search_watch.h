@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a search takes: rays traced, for the fan and for roots, and the segments of them.
 struct SearchCost {
@@ -32,4 +32,4 @@ struct SearchWatch {
   SearchCost cost;    ///< the same for any number of threads
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

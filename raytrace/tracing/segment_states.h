@@ -4,7 +4,7 @@
 
 #include "raytrace/tracing/ray_trajectory.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// state_at() of one segment at many places: what depends on the segment alone is worked out once.
 class SegmentStates {
@@ -61,4 +61,4 @@ class SegmentStates {
   Cubic c_{}, nepers_{};
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include "raytrace/ocean/absorption_validity.h"
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 constexpr ValidRange bubble_ranges[] = {{"frequency", "Hz", 1e4, 1e5}};
@@ -15,7 +15,7 @@ constexpr Validity bubble_validity{"the surface bubble loss", "APL-UW TR 9407, 1
 std::string bubble_range(const Environment& ocean, double lowest, double highest) {
   if (!(ocean.surface.roughness.bubble_wind > 0.0)) return "";
   const std::array<Asked, 1> asked{{{"frequency", lowest, highest}}};
-  const std::string text = asdic::outside(bubble_validity, asked);
+  const std::string text = asdic::detail::outside(bubble_validity, asked);
   return text.empty() ? "" : "environment.surface.bubbles: " + text;
 }
 
@@ -26,8 +26,8 @@ std::string absorption_range(const Environment& ocean, double lowest, double hig
   for_each_water_property(ocean.absorption, [&](std::string_view quantity, double value) {
     asked.push_back({quantity, value, value});
   });
-  const std::string text = asdic::outside(*law, asked);
+  const std::string text = asdic::detail::outside(*law, asked);
   return text.empty() ? "" : "environment.absorption: " + text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -3,7 +3,7 @@
 #include "raytrace/ocean/strongest_reflection.h"
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 /// \param where  "environment.bottom"   \param range, depth  where the water is taken [m]
@@ -41,4 +41,4 @@ std::string gaining_boundary(const Environment& ocean) {
   return text.empty() ? of_boundary("environment.bottom", ocean.bottom, ocean) : text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

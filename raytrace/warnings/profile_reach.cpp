@@ -2,7 +2,7 @@
 
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 
 std::string profile_reach(double first, double last, const Environment& ocean,
                           const std::string& beyond) {
@@ -26,4 +26,4 @@ std::string profile_reach(const Environment& ocean) {
                        "the law of the first and last interval goes on");
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

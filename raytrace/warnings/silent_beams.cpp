@@ -1,6 +1,6 @@
 #include "raytrace/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 /// The setting that leaves the beams no width; null: they have one.
@@ -29,4 +29,4 @@ std::string silent_beams(const PropagationCase& run_case) {
          " makes beams of no width: no sound reaches any receiver";
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

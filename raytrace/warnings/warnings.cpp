@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace asdic {
+namespace asdic::detail {
 
 void add_warnings(const std::vector<std::string>& more, std::vector<std::string>& all) {
   for (const std::string& one : more)
@@ -25,4 +25,4 @@ std::vector<std::string> warnings(const PropagationCase& run_case) {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 /// what is the matter". Every check is a file of this folder (and of sonar/warnings, for what only
 /// a sonar has); readers of files ask all of them, and commands print them and write them beside
 /// the numbers (docs/guide/scenarios.md).
-namespace asdic {
+namespace asdic::detail {
 
 /// Of the ocean at frequencies from `lowest` to `highest` [Hz].
 [[nodiscard]] std::vector<std::string> warnings(const Environment& ocean, double lowest,
@@ -37,4 +37,4 @@ namespace checks {
 [[nodiscard]] std::string silent_beams(const PropagationCase& run_case);
 
 }  // namespace checks
-}  // namespace asdic
+}  // namespace asdic::detail

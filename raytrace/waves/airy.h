@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Airy's functions and their derivatives at one place, real or complex.
 template <class Number>
@@ -32,4 +32,4 @@ template <class Number>
           .bi_slope = root * (ai_0 * df_sum - ai_slope_0 * dg_sum)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -12,7 +12,7 @@
 #include "raytrace/waves/airy.h"
 #include "raytrace/waves/make_wave.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -74,14 +74,14 @@ UniformPair uniform_of(const Arrival& early, const Arrival& late, double omega) 
 
 std::vector<Fold> folds_near(const BranchTable& table, double range, double reach, double omega) {
   std::vector<Fold> folds;
-  table.for_each_stretch(
-      std::max(0.0, range - reach), range + reach, [&](const MonotoneStretch& stretch) {
-        if (!stretch.caustic_begin || std::abs(stretch.range_begin - range) > reach) return;
-        const FanInterval& interval = *stretch.interval;
-        const RayParameter ray(interval.reference_speed, stretch.sigma_begin);
-        const double step = 1e-3 * (stretch.sigma_end - stretch.sigma_begin);
+  table.for_each_piece(
+      std::max(0.0, range - reach), range + reach, [&](const MonotonePiece& piece) {
+        if (!piece.caustic_begin || std::abs(piece.range_begin - range) > reach) return;
+        const FanInterval& interval = *piece.interval;
+        const RayParameter ray(interval.reference_speed, piece.sigma_begin);
+        const double step = 1e-3 * (piece.sigma_end - piece.sigma_begin);
         const double bend =
-            table.evaluate(interval, stretch.branch, stretch.sigma_begin + step).slope / step;
+            table.evaluate(interval, piece.branch, piece.sigma_begin + step).slope / step;
         // The phase ωτ is cubic about the fold: ω(ξ′x·δr − r″ξ′x³/6).
         const double turn = std::abs(ray.slowness_per_sigma());
         const double scale =
@@ -89,9 +89,9 @@ std::vector<Fold> folds_near(const BranchTable& table, double range, double reac
         if (!std::isfinite(scale) || !(scale > 0.0)) return;
         const double sine = std::sqrt(std::max(0.0, ray.sine2(table.column().source_speed())));
         const double launch = std::asin(std::min(1.0, sine));
-        const Branch& branch = stretch.branch;
-        folds.push_back({.range = stretch.range_begin,
-                         .side = stretch.range_end > stretch.range_begin ? 1.0 : -1.0,
+        const Branch& branch = piece.branch;
+        folds.push_back({.range = piece.range_begin,
+                         .side = piece.range_end > piece.range_begin ? 1.0 : -1.0,
                          .scale = scale,
                          .launch = branch.starts_up ? launch : -launch,
                          .surface_bounces = interval.turns_above ? 0 : branch.top_vertices(),
@@ -252,4 +252,4 @@ void put_caustics(const EigenraySolver& solver, double source_depth, double rece
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/paths/eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Gives pairs of rays that meet at a smooth caustic the amplitudes that waves have there, and adds
 /// such pairs on its dark side: Airy's function and its derivative instead of amplitudes that grow
@@ -16,4 +16,4 @@ namespace asdic {
 void put_caustics(const EigenraySolver& solver, double source_depth, double receiver_depth,
                   double range, double frequency, const PathLimits& limits, Arrivals& found);
 
-}  // namespace asdic
+}  // namespace asdic::detail

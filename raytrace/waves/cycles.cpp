@@ -12,7 +12,7 @@
 #include "raytrace/waves/make_wave.h"
 #include "raytrace/waves/ray_errors.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -50,9 +50,9 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
                                         : Turns::between;
   affordable_ = double(column.layers()) * double(window_.count) <= most_cycle_steps;
   if (!affordable_) return;
-  constexpr std::size_t stretch = 16;
+  constexpr std::size_t piece = 16;
   kernels_.resize(window_.count);
-  in_parallel_stretches(window_.count, stretch, [&](std::size_t begin, std::size_t end) {
+  in_parallel_chunks(window_.count, piece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       stop_point();
       kernels_[j] = kernel(column, window_.at(j));
@@ -84,7 +84,7 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
                         wronskian(u.u, u.du, v.u, v.du);
     return {all, 0.0, 0.0, all};
   }
-  // Up and down are told apart where all rays are steepest.
+  // Up and down are resolved where all rays are steepest.
   const TravellingWaves wave = travelling_waves(q, slope);
   const Complex both = wronskian(wave.up, wave.up_slope, wave.down, wave.down_slope);
   // u = a·(up + V_u·down), v = d·(down + V_v·up)
@@ -221,8 +221,8 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   }
   if (!(wrong > tolerable_error * tolerable_error * energy)) return;
 
-  // Of oceans whose boundaries return nothing where rays must not touch them so often; heard at the
-  // lower end, so that the way there and the way back have the same.
+  // Of oceans whose boundaries return nothing where rays must not touch them so often; received at
+  // the lower end, so that the way there and the way back have the same.
   const double furthest = furthest_of(range);
   const double upper = std::min(source_depth, receiver_depth),
                lower = std::max(source_depth, receiver_depth);
@@ -301,4 +301,4 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
   for (const auto& [i, amplitude] : changed) make_wave(found[i], amplitude / found[i].amplitude);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "raytrace/paths/eigenrays.h"
 #include "raytrace/waves/water_window.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Layers times wavenumbers of one pair of depths at one frequency: some tenths of a second of one
 /// core. A target under way asks for it every few wavelengths.
@@ -59,7 +59,7 @@ class CycleWaves {
   bool source_is_upper_, affordable_ = false;
   WaveColumn::Squared slowest_;
   Turns turns_;
-  double least_slope_;           // of what waves are told apart by [1/m³]
+  double least_slope_;           // of what waves are resolved by [1/m³]
   std::vector<Kernel> kernels_;  // [window_.count]
 };
 
@@ -87,4 +87,4 @@ void put_waves(const EigenraySolver& solver, double source_depth, double receive
                double range, double frequency, const PathLimits& limits, Arrivals& found,
                const CyclesKeeper& keeper = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "raytrace/waves/airy.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -162,4 +162,4 @@ void follow(DepthWave& wave, Complex q_from, Complex q_to, double thickness) noe
   normalise(wave, q_to);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

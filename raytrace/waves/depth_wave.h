@@ -1,9 +1,9 @@
 #pragma once
 #include <complex>
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A stretch of depth in which the square of the vertical wavenumber is a line: 1/c² linear.
+/// A piece of depth in which the square of the vertical wavenumber is a line: 1/c² linear.
 struct WaveLayer {
   double thickness = 0.0;      ///< [m]
   std::complex<double> k2[2];  ///< (ω/c − iα)² at its upper and its lower edge [1/m²]
@@ -17,7 +17,7 @@ struct DepthWave {
   double growth = 0.0;
 };
 
-/// What the wave becomes behind a stretch in which q goes from `q_from` to `q_to` in a line. Exact
+/// What the wave becomes behind a piece in which q goes from `q_from` to `q_to` in a line. Exact
 /// but for rounding and 1e-8: Airy's functions by their series for large arguments, about a turning
 /// point by the power series of the equation itself. Stable in the direction in which the wave
 /// grows, which is that away from the boundary that it starts from. docs/theory/waves.md
@@ -39,4 +39,4 @@ struct TravellingWaves {
 /// √q with Im ≤ 0: e^{−iwz} goes down, or dies out downwards.
 [[nodiscard]] std::complex<double> vertical_wavenumber(std::complex<double> q) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/waves/water_window.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -53,9 +53,9 @@ class WaterborneField {
                                              std::min(ocean_.bottom.depth, receiver_ + h)};
     const WaveColumn column(ocean_, frequency, source_, depths);
     const WaterWindow w = water_window(ocean_, column, frequency, range_, window_edge);
-    constexpr std::size_t stretch = 16;
+    constexpr std::size_t piece = 16;
     std::vector<Complex> g(rows * w.count), by_source(rows * w.count);
-    in_parallel_stretches(w.count, stretch, [&](std::size_t begin, std::size_t end) {
+    in_parallel_chunks(w.count, piece, [&](std::size_t begin, std::size_t end) {
       std::array<double, rows> growth{};
       for (std::size_t j = begin; j < end; ++j) {
         stop_point();
@@ -104,7 +104,7 @@ std::optional<Arrival> louder_arrival(const Environment& ocean, double source_de
   const WaveAt wave = there.field(frequency);
   if (!(std::abs(wave.p) > std::max(least, faintest / range))) return std::nullopt;
 
-  // A second frequency, so near that delays which differ are told apart.
+  // A second frequency, so near that delays which differ are resolved.
   const double about = range / c, step = std::min(1.0, 0.25 / (slowness_share * about));
   const Complex turned = std::conj(wave.p) * there.field(frequency + step).p *
                          std::polar(1.0, std::fmod(step * about, 1.0) * 2.0 * pi);
@@ -151,4 +151,4 @@ std::optional<Arrival> diffracted_arrival(const Environment& ocean, double sourc
                         faintest_beside * std::sqrt(power));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

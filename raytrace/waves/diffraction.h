@@ -4,7 +4,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What the water carries to a receiver that no ray reaches without the bottom: below a duct,
 /// beyond a limiting ray, on the dark side of a caustic. One arrival of kind `diffracted`, the wave
@@ -32,4 +32,4 @@ namespace asdic {
 /// Layers times wavenumbers of one arrival: a second of one core.
 inline constexpr double most_diffraction_steps = 3e6;
 
-}  // namespace asdic
+}  // namespace asdic::detail

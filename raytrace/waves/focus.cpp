@@ -9,7 +9,7 @@
 #include "raytrace/layered/branch_table.h"
 #include "raytrace/layered/ray_parameter.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double flattest_ray = 1e-7;  // that is looked at [rad]
@@ -107,4 +107,4 @@ std::vector<double> focusing_errors(const EigenraySolver& solver, double source_
   return errors;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

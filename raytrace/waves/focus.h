@@ -4,7 +4,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/paths/eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How far the amplitude of each ray may be off where its family focuses: the share of it that the
 /// next order of stationary phase adds, (5/24)·ψ‴²/ψ″³ and ψ⁗/(8ψ″²), by how much the width of the
@@ -19,4 +19,4 @@ namespace asdic {
                                                   const PathLimits& limits, const Arrivals& rays,
                                                   double faintest);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Gives a ray the amplitude of waves, of kind `caustic` then. \param times  the ray's own
 inline void make_wave(Arrival& ray, std::complex<double> times) {
@@ -13,4 +13,4 @@ inline void make_wave(Arrival& ray, std::complex<double> times) {
   ray.scattered *= std::norm(times);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

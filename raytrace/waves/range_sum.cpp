@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double sharpness = 2.30 * 12;  // β of the window e^{β(√(1−x²)−1)}, x from −1 to 1
@@ -57,4 +57,4 @@ void RangeSum::sum(std::span<const std::complex<double>> a, Memory& memory,
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

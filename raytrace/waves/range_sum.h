@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Σ_j a_j·e^{−i·j·δ·r} at any ranges r, for j of a block evenly spaced by δ: a fast Fourier
 /// transform twice as long, and between its samples a window of twelve (A. H. Barnett, J. F.
@@ -36,4 +36,4 @@ class RangeSum {
   std::vector<double> weight_;      // [n × window]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

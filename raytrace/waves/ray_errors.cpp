@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/waves/focus.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double faintest_focus = 1e-4;  // of the rays' energy
@@ -75,4 +75,4 @@ std::vector<RayError> ray_errors(const EigenraySolver& solver, double source_dep
   return errors;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "raytrace/ocean/arrivals.h"
 #include "raytrace/paths/eigenrays.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// How far the phase of each ray is off by its turns beside corners of the profile: a corner h from
 /// the turn sends back some ¼(h/L)^{−3/2} of it, L = (c/2k²|c′|)^{1/3} Airy's length, times its
@@ -26,4 +26,4 @@ struct RayError {
                                                double receiver_depth, double frequency,
                                                const PathLimits& limits, const Arrivals& rays);
 
-}  // namespace asdic
+}  // namespace asdic::detail

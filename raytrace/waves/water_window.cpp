@@ -5,7 +5,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double least_angle = radians(4.0), airy_spreads = 6.0;
@@ -52,4 +52,4 @@ WaterWindow water_window(const Environment& ocean, const WaveColumn& column, dou
   return w;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

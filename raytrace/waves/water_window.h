@@ -4,7 +4,7 @@
 
 #include "raytrace/waves/wave_column.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The wavenumbers that stay in the water at one range, evenly spaced above the real axis: those
 /// whose angle at the fastest depth is below four degrees, or what Airy's function spreads,
@@ -29,4 +29,4 @@ struct WaterWindow {
 [[nodiscard]] WaterWindow water_window(const Environment& ocean, const WaveColumn& column,
                                        double frequency, double range, double edge);
 
-}  // namespace asdic
+}  // namespace asdic::detail

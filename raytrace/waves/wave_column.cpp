@@ -9,7 +9,7 @@
 #include "raytrace/ocean/layered_floor.h"
 #include "raytrace/ocean/reflection_formulas.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -124,7 +124,7 @@ WaveColumn::WaveColumn(const Environment& environment, double frequency, double 
 void WaveColumn::cut(double from, double to) {
   double z = from;
   while (z < to) {
-    // Just inside, where the law of this stretch holds.
+    // Just inside, where the law of this piece holds.
     const auto at = [&](double depth) {
       const double margin = 1e-9 * (to - from);
       return environment_.water.at(std::clamp(depth, from + margin, to - margin));
@@ -246,4 +246,4 @@ void WaveColumn::kernel(Complex xi, std::span<double> growth, std::span<Complex>
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

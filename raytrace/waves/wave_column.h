@@ -7,7 +7,7 @@
 #include "raytrace/ocean/environment.h"
 #include "raytrace/waves/depth_wave.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A layered ocean as its depth-separated wave equation sees it, cut for one source and a number of
 /// receivers:
@@ -90,4 +90,4 @@ class WaveColumn {
                                                  std::complex<double> xi,
                                                  std::complex<double> w) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "core/units.h"
 #include "raytrace/waves/wave_integral.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double most_wave_bytes = 1e9;
@@ -117,4 +117,4 @@ std::optional<ConvergedField> wave_field(const PropagationCase& run_case, double
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/cases/propagation_result.h"
 #include "raytrace/parallel/progress.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Why the wave equation is not solved for the field of this case: "the bottom is not flat"; "" if
 /// it can be. What it costs is not asked.
@@ -26,4 +26,4 @@ namespace asdic {
 /// Layers times wavenumbers that a field takes unasked: some 5 s of one core.
 inline constexpr double most_wave_steps = 2e7;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/waves/range_sum.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Complex = std::complex<double>;
@@ -128,8 +128,8 @@ double WaveIntegral::bytes() const noexcept {
 
 void WaveIntegral::kernels(const Contour& contour, std::size_t first, std::size_t count,
                            std::vector<Complex>& g) const {
-  constexpr std::size_t stretch = 16;
-  in_parallel_stretches(count, stretch, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t piece = 16;
+  in_parallel_chunks(count, piece, [&](std::size_t begin, std::size_t end) {
     std::vector<double> growth(rows_);
     for (std::size_t j = begin; j < end; ++j) {
       stop_point();
@@ -210,4 +210,4 @@ std::vector<Complex> WaveIntegral::field(const std::function<bool(double)>& prog
   return field;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

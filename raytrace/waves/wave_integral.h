@@ -6,7 +6,7 @@
 
 #include "raytrace/waves/wave_column.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// p(r) = ∫ ξ·g(ξ)·J₀(ξr) dξ at ranges from r = 0 to a largest one, by even sampling of a contour
 /// above the real axis. docs/theory/waves.md, "The integral over wavenumbers"
@@ -62,4 +62,4 @@ class WaveIntegral {
 /// expansion. 1e-7 of e^{|Im z|}.
 [[nodiscard]] std::complex<double> bessel_j0(std::complex<double> z) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Chapman & Harris' empirical law of surface backscatter, from explosive sources in deep water.
 ///
@@ -31,6 +31,9 @@ struct ChapmanHarris {
     if (wind_speed <= 0.0 || frequency <= 0.0 || theta <= 0.0) return 0.0;
     return std::min(1.0, power_from_db(strength_db(theta, wind_speed, frequency)));
   }
+  [[nodiscard]] LawByAngles<ChapmanHarris> at(double frequency) const noexcept {
+    return {*this, frequency};
+  }
 
   /// S_s [dB]. \param grazing  [rad], above 0   \param wind  [m/s], above 0
   /// \param frequency  [Hz], above 0
@@ -45,4 +48,4 @@ struct ChapmanHarris {
 };
 static_assert(SurfaceScatteringModel<ChapmanHarris>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

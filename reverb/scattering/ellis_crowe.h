@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "core/units.h"
-#include "reverb/scattering/geometry.h"
+#include "reverb/scattering/lambert.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Bistatic sea floor: Lambert's diffuse law and a lobe of facets about the specular direction.
 ///
@@ -31,27 +31,35 @@ struct EllisCrowe {
           "rms slope angle of the facets");
   }
 
-  [[nodiscard]] double cross_section(const ScatterGeometry& g,
-                                     double /*frequency*/) const noexcept {
-    const double sin_in = std::sin(g.grazing_in), sin_out = std::sin(g.grazing_out);
-    if (sin_in <= 0.0 || sin_out <= 0.0) return 0.0;
-    const double diffuse = power_from_db(mu_db) * sin_in * sin_out;
-    // cos²θᵢ + cos²θₛ − 2 cos cos cos φ = (cos θᵢ − cos θₛ)² + 4 cos cos sin²(φ/2): nothing
-    // cancels.
-    const double difference = 2.0 * std::sin(0.5 * (g.grazing_in + g.grazing_out)) *
-                              std::sin(0.5 * (g.grazing_in - g.grazing_out));
-    const double turn = std::sin(0.5 * g.azimuth);
-    const double across = difference * difference +
-                          4.0 * std::cos(g.grazing_in) * std::cos(g.grazing_out) * turn * turn;
-    const double slope2 = across / ((sin_in + sin_out) * (sin_in + sin_out));  // ΔΩ
-    const double s = std::tan(radians(slope_deg));
-    const double exponent = slope2 / (2.0 * s * s);
-    if (exponent > 200.0) return diffuse;
-    const double facets =
-        power_from_db(nu_db) * (1.0 + slope2) * (1.0 + slope2) * std::exp(-exponent);
-    return diffuse + std::min(1.0, facets);
+  [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
+    return at(frequency)(sines_of(g));
   }
+
+  /// The law for many directions.
+  class At {
+   public:
+    explicit At(const EllisCrowe& law) noexcept
+        : diffuse_(Lambert{.mu_db = law.mu_db}), nu_(power_from_db(law.nu_db)) {
+      const double s = std::tan(radians(law.slope_deg));
+      two_s2_ = 2.0 * s * s;
+    }
+    [[nodiscard]] double operator()(const ScatterSines& g) const noexcept {
+      if (g.sin_in <= 0.0 || g.sin_out <= 0.0) return 0.0;
+      const double diffuse = diffuse_(g);
+      const double sines = g.sin_in + g.sin_out;
+      const double slope2 = g.across2() / (sines * sines);  // ΔΩ
+      const double exponent = slope2 / two_s2_;
+      if (exponent > 200.0) return diffuse;
+      const double facets = nu_ * (1.0 + slope2) * (1.0 + slope2) * std::exp(-exponent);
+      return diffuse + std::min(1.0, facets);
+    }
+
+   private:
+    Lambert::At diffuse_;
+    double nu_, two_s2_;
+  };
+  [[nodiscard]] At at(double /*frequency*/) const noexcept { return At(*this); }
 };
 static_assert(ScatteringModel<EllisCrowe>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/ocean/roughness.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The share of the incident energy that a law scatters in all directions of the water,
 /// (1/sin θᵢ)·∫σ dΩ over the upper hemisphere: of unit intensity sin θᵢ falls on a unit of area,
@@ -18,6 +18,7 @@ template <class Law>
                                      double beyond = 0.0) {
   const double sine = std::sin(grazing);
   if (!(sine > 0.0)) return 0.0;
+  const auto sigma = law.at(frequency);
   // Laws peak about the mirrored direction: pieces that halve towards it, in elevation and bearing.
   const int halvings = beyond > 0.0 ? 3 : 8;
   double share = 0.0;
@@ -37,8 +38,7 @@ template <class Law>
     const double first = edge >= 1.0 ? 0.0 : std::acos(edge);
     pieces(first, pi, [&](double turn, double part) {
       share += 2.0 * part * weight * std::cos(out) *
-               law.cross_section({.grazing_in = grazing, .grazing_out = out, .azimuth = turn},
-                                 frequency);
+               sigma(sines_of({.grazing_in = grazing, .grazing_out = out, .azimuth = turn}));
     });
   };
   pieces(grazing, 0.5 * pi, over_bearings);
@@ -77,4 +77,4 @@ template <class... Law>
   return table;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

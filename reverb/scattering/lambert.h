@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Lambert's law, the diffuse sea floor: σ = μ·sin θᵢ·sin θₛ [1/sr], whatever the azimuth.
 ///
@@ -21,12 +21,11 @@ struct Lambert {
           "10·log₁₀ μ");
   }
 
-  [[nodiscard]] double cross_section(const ScatterGeometry& g,
-                                     double /*frequency*/) const noexcept {
-    return at()({.sin_in = std::sin(g.grazing_in), .sin_out = std::sin(g.grazing_out)});
+  [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
+    return at(frequency)(sines_of(g));
   }
 
-  /// The law for many directions: μ is found once.
+  /// The law for many directions.
   class At {
    public:
     explicit At(const Lambert& law) noexcept : mu_(power_from_db(law.mu_db)) {}
@@ -37,8 +36,8 @@ struct Lambert {
    private:
     double mu_;
   };
-  [[nodiscard]] At at() const noexcept { return At(*this); }
+  [[nodiscard]] At at(double /*frequency*/) const noexcept { return At(*this); }
 };
 static_assert(ScatteringModel<Lambert>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,7 @@
 #pragma once
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "reverb/scattering/chapman_harris.h"
 #include "reverb/scattering/ellis_crowe.h"
@@ -10,7 +11,7 @@
 #include "reverb/scattering/table.h"
 #include "reverb/scattering/volume.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Every law of surface scattering. A new one is one file and one name here.
 using AnySurfaceScattering = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable>;
@@ -26,11 +27,16 @@ template <class... Model>
                     scattering);
 }
 
-/// The model's name in scenario files.
+/// A law at several frequencies, to be asked for many directions: which law it is, is asked once
+/// for all of them.
+template <class Any>
+struct AtFrequenciesOf;
 template <class... Model>
-[[nodiscard]] std::string_view name_of(const std::variant<Model...>& scattering) noexcept {
-  return std::visit([](const auto& model) { return std::string_view(model.name); }, scattering);
-}
+struct AtFrequenciesOf<std::variant<Model...>> {
+  using Type = std::variant<std::vector<decltype(std::declval<const Model&>().at(0.0))>...>;
+};
+template <class Any>
+using AtFrequencies = typename AtFrequenciesOf<Any>::Type;
 
 /// Puts a model under a sea (a table knows none). \param wind_speed  at 10 m [m/s]
 /// \param surface_sound_speed  of the water at the surface [m/s]
@@ -46,4 +52,4 @@ inline void set_sea(AnySurfaceScattering& scattering, double wind_speed,
       scattering);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

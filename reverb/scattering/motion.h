@@ -3,7 +3,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Q [rad/m]: the wavenumber along the surface that the sound takes up when it scatters,
 /// |k_i − k_s| in the horizontal, k = 2πf/c. The surface wave of that wavenumber scatters it
@@ -22,4 +22,4 @@ namespace asdic {
   return std::sqrt(gravity * wavenumber) / (2.0 * pi);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

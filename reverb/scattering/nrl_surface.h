@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Sea-surface scattering of the Naval Research Laboratory: rough interface plus subsurface
 /// bubbles, bistatic, incoherent part only.
@@ -41,34 +41,15 @@ struct NrlSurface {
   }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
-    return interface_cross_section(g, frequency) + bubble_cross_section(g, frequency);
+    return at(frequency)(sines_of(g));
   }
-
   [[nodiscard]] double interface_cross_section(const ScatterGeometry& g,
                                                double frequency) const noexcept {
-    const double k = 2.0 * pi * frequency / sound_speed;
-    const double sin_in = std::sin(g.grazing_in), sin_out = std::sin(g.grazing_out);
-    const double w2 = A_s * wind_speed;
-    if (k <= 0.0 || w2 <= 0.0 || sin_in <= 0.0 || sin_out <= 0.0) return 0.0;
-    // Q² as (cos θᵢ − cos θₛ)² + 4 cos θᵢ cos θₛ sin²(φ/2), in products: nothing cancels forward.
-    const double difference = 2.0 * std::sin(0.5 * (g.grazing_in + g.grazing_out)) *
-                              std::sin(0.5 * (g.grazing_in - g.grazing_out));
-    const double turn = std::sin(0.5 * g.azimuth);
-    const double cosines = std::cos(g.grazing_in) * std::cos(g.grazing_out);
-    const double q2 = k * k * (difference * difference + 4.0 * cosines * turn * turn);
-    if (q2 <= 0.0) return 1.0;  // vertical or specular: W(0) is infinite, the cap takes over
-    const double spectrum = w2 / std::pow(h0 * h0 * q2, 0.5 * gamma2);  // W(Q) = w₂/(h₀Q)^γ₂
-    const double half_beta = 2.0 * k * k * sin_in * sin_out;            // |β/2|
-    return std::min(1.0, half_beta * half_beta * spectrum);
+    return at(frequency).interface(sines_of(g));
   }
-
   [[nodiscard]] double bubble_cross_section(const ScatterGeometry& g,
                                             double frequency) const noexcept {
-    const double k = 2.0 * pi * frequency / sound_speed;
-    const double d = bubble_depth(wind_speed);
-    if (k <= 0.0 || d <= 0.0) return 0.0;
-    return 0.0019 * std::pow(d, 1.15) * std::pow(k, -0.6) *
-           bubble_directivity(k * d * std::sin(g.grazing_in), k * d * std::sin(g.grazing_out));
+    return at(frequency).bubbles(sines_of(g));
   }
 
   /// F(p, q) = ½{1 − 1/(1+p²) − 1/(1+q²) + ½[1/(1+(p−q)²) + 1/(1+(p+q)²)]}, written over one
@@ -81,12 +62,12 @@ struct NrlSurface {
     return numerator / denominator;
   }
 
-  /// The law at one frequency, for many directions: cross_section() to rounding of the angles.
+  /// The law at one frequency, for many directions.
   class At {
    public:
     At(const NrlSurface& law, double frequency) noexcept
         : k_(2.0 * pi * frequency / law.sound_speed),
-          spectrum_(law.A_s * law.wind_speed),
+          w2_(law.A_s * law.wind_speed),
           half_gamma_(0.5 * law.gamma2),
           h0_(law.h0) {
       const double d = bubble_depth(law.wind_speed);
@@ -96,28 +77,20 @@ struct NrlSurface {
     [[nodiscard]] double operator()(const ScatterSines& g) const noexcept {
       return interface(g) + bubbles(g);
     }
-
-   private:
-    [[nodiscard]] double interface(const ScatterSines& g) const noexcept {
-      if (k_ <= 0.0 || spectrum_ <= 0.0 || g.sin_in <= 0.0 || g.sin_out <= 0.0) return 0.0;
-      // cos θᵢ − cos θₛ = (sin²θₛ − sin²θᵢ)/(cos θᵢ + cos θₛ): nothing cancels near the horizon.
-      const double cosines = g.cos_in + g.cos_out;
-      const double difference = cosines > 0.5
-                                    ? (g.sin_out - g.sin_in) * (g.sin_out + g.sin_in) / cosines
-                                    : g.cos_in - g.cos_out;
-      const double q2 =
-          k_ * k_ *
-          (difference * difference + 4.0 * g.cos_in * g.cos_out * g.half_turn * g.half_turn);  // Q²
-      if (q2 <= 0.0) return 1.0;
+    [[nodiscard]] double interface(const ScatterSines& g) const noexcept {  ///< σ_int
+      if (k_ <= 0.0 || w2_ <= 0.0 || g.sin_in <= 0.0 || g.sin_out <= 0.0) return 0.0;
+      const double q2 = k_ * k_ * g.across2();  // Q²
+      if (q2 <= 0.0) return 1.0;  // vertical or specular: W(0) is infinite, the cap takes over
       const double half_beta = 2.0 * k_ * k_ * g.sin_in * g.sin_out;  // |β/2|
-      return std::min(1.0,
-                      half_beta * half_beta * spectrum_ / std::pow(h0_ * h0_ * q2, half_gamma_));
+      const double fall = std::pow(h0_ * h0_ * q2, half_gamma_);  // (h₀Q)^γ₂: W(Q) = w₂/fall
+      return std::min(1.0, half_beta * half_beta * w2_ / fall);
     }
-    [[nodiscard]] double bubbles(const ScatterSines& g) const noexcept {
+    [[nodiscard]] double bubbles(const ScatterSines& g) const noexcept {  ///< σ_bub
       return bubbles_ * bubble_directivity(kd_ * g.sin_in, kd_ * g.sin_out);
     }
 
-    double k_, spectrum_, half_gamma_, h0_, kd_ = 0.0;
+   private:
+    double k_, w2_, half_gamma_, h0_, kd_ = 0.0;
     double bubbles_ = 0.0;  // 0.0019·d^1.15·k^−0.6
   };
   [[nodiscard]] At at(double frequency) const noexcept { return {*this, frequency}; }
@@ -131,4 +104,4 @@ struct NrlSurface {
 };
 static_assert(SurfaceScatteringModel<NrlSurface>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "reverb/scattering/chapman_harris.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Ogden & Erskine's blend of Chapman–Harris with perturbation theory: calm seas follow the rough
 /// interface, rough ones the bubbles.
@@ -34,6 +34,9 @@ struct OgdenErskine {
     if (wind_speed <= 0.0 || frequency <= 0.0 || theta <= 0.0) return 0.0;
     return std::min(1.0, power_from_db(strength_db(theta, wind_speed, frequency)));
   }
+  [[nodiscard]] LawByAngles<OgdenErskine> at(double frequency) const noexcept {
+    return {*this, frequency};
+  }
 
   /// S_s [dB]. \param grazing  [rad], above 0   \param wind  [m/s], above 0
   /// \param frequency  [Hz], above 0
@@ -58,4 +61,4 @@ struct OgdenErskine {
 };
 static_assert(SurfaceScatteringModel<OgdenErskine>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

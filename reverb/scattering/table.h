@@ -8,7 +8,7 @@
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A measured or computed backscattering strength over grazing angle, of any boundary.
 ///
@@ -33,6 +33,9 @@ struct ScatteringTable {
     if (g.grazing_in <= 0.0 || g.grazing_out <= 0.0) return 0.0;
     return power_from_db(0.5 * (strength(g.grazing_in) + strength(g.grazing_out)));
   }
+  [[nodiscard]] LawByAngles<ScatteringTable> at(double frequency) const {
+    return {*this, frequency};
+  }
 
   /// S [dB]. \param angle  [rad]
   [[nodiscard]] double strength(double angle) const noexcept {
@@ -46,4 +49,4 @@ struct ScatteringTable {
 };
 static_assert(ScatteringModel<ScatteringTable>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 /// Where the laws of this folder hold, by the sources that their headers name. A law that is not
 /// here (a table) is passed over.
-namespace asdic {
+namespace asdic::detail {
 
 template <class Law>
 inline constexpr Validity scattering_validity{};
@@ -26,4 +26,4 @@ template <>
 inline constexpr Validity scattering_validity<OgdenErskine>{
     "Ogden and Erskine's law", "JASA 95, 746, 1994", ogden_erskine_ranges};
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "core/units.h"
 #include "reverb/scattering/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A horizontal sheet of water that scatters alike in all directions: σ = s_v·h per unit of its
 /// horizontal area, 10·log₁₀ s_v the volume scattering strength S_v [dB re 1 m⁻¹], −70 in strong
@@ -23,11 +23,21 @@ struct VolumeSheet {
           "of the sheet");
   }
 
-  [[nodiscard]] double cross_section(const ScatterGeometry& /*any direction*/,
-                                     double /*frequency*/) const noexcept {
-    return power_from_db(strength_db) * thickness;
+  [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
+    return at(frequency)(sines_of(g));
+  }
+
+  /// The law for many directions.
+  struct At {
+    double sigma = 0.0;  ///< [1/sr]
+    [[nodiscard]] double operator()(const ScatterSines& /*any direction*/) const noexcept {
+      return sigma;
+    }
+  };
+  [[nodiscard]] At at(double /*frequency*/) const noexcept {
+    return {power_from_db(strength_db) * thickness};
   }
 };
 static_assert(ScatteringModel<VolumeSheet>);
 
-}  // namespace asdic
+}  // namespace asdic::detail

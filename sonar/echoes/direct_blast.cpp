@@ -9,28 +9,27 @@
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The curve of a path's delay, where its Doppler factor changes during the pulse.
 std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics& source,
-                                   const Carried& hearer, int channel, const MetPath& met,
-                                   const Return& heard, const PathLimits& limits) {
+                                   const Carried& receiver, int channel, const MetPath& met,
+                                   const Return& received, const PathLimits& limits) {
   if (context.pulse == nullptr) return std::nullopt;
-  const Scenario& scenario = context.scenario;
+  const PingGeometry& geometry = context.geometry;
   const Pulse& pulse = *context.pulse;
   const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
-  const Track& track = hearer.track;
-  const Vec3& offset = hearer.offset;
+  const Track& track = receiver.track;
+  const Vec3& offset = receiver.offset;
   double aperture = 0.0;
   if (channel < 0)
-    for (const Vec3& phone : phones_at(scenario, context.array, context.ping, context.ping_time))
+    for (const Vec3& phone : geometry.phones(context.array))
       aperture = std::max(aperture, phone.norm());
-  const MovingPaths closely(context.paths, limits, context.frequency, context.ping_time, 1e-9,
+  const MovingPaths closely(context.paths, limits, context.frequency, geometry.time(), 1e-9,
                             context.reuse);
   const auto moment = [&](double sent) -> std::optional<PulseMoment> {
-    const Vec3 from =
-        transmitter_at(scenario, context.transmitter, context.ping_time + sent).position;
+    const Vec3 from = geometry.source_at(sent).position;
     const Way way = closely.way(from, sent, track, offset, std::span(&met.path, 1));
     const Arrival* path = same_path(way.leg.arrivals, met.path, context.paths.layered());
     if (path == nullptr) return std::nullopt;
@@ -38,79 +37,82 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
     return PulseMoment{
         .sent = sent,
         .struck = then.time,
-        .heard = then.time,
+        .received = then.time,
         .at_array = met_by(then.way.end.velocity,
                            slowness_vector(then.way.leg.bearing, then.path.arrival_elevation,
                                            context.paths.speed_at(then.way.end.position)))};
   };
-  const auto& transmitter = scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
-  const auto& carrier = scenario.platforms[static_cast<std::size_t>(transmitter.platform)];
   // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
-  const auto near = [&](std::vector<double> turns, double from) {
-    std::erase_if(
-        turns, [&](double turn) { return turn <= from || turn >= from + 1.5 * pulse.duration(); });
-    return turns;
+  const auto near = [&](std::vector<double> course_changes, double from) {
+    std::erase_if(course_changes, [&](double change) {
+      return change <= from || change >= from + 1.5 * pulse.duration();
+    });
+    return course_changes;
   };
-  const MovingPath path{.moment = moment,
-                        .pulse_duration = pulse.duration(),
-                        .frequency = highest,
-                        .source_turns = near(turns_of(carrier.track, context.ping_time), 0.0),
-                        .target_turns = {},
-                        .array_turns = near(turns_of(track, context.ping_time), met.time)};
+  const MovingPath path{
+      .moment = moment,
+      .pulse_duration = pulse.duration(),
+      .frequency = highest,
+      .source_course_changes =
+          near(course_changes_of(geometry.sender().track, geometry.time()), 0.0),
+      .target_course_changes = {},
+      .array_course_changes = near(course_changes_of(track, geometry.time()), met.time)};
   const double phase =
       curvature_phase(highest, pulse.duration(), (met.way.end.velocity - source.velocity).norm(),
                       met.path.path_length, context.paths.speed_at(source.position), aperture);
-  if (phase < negligible_phase && path.source_turns.empty() && path.array_turns.empty())
+  if (phase < negligible_phase && path.source_course_changes.empty() &&
+      path.array_course_changes.empty())
     return std::nullopt;
-  return delay_curve(pulse_moments(path), heard, Vec3::Zero(), highest, aperture);
+  return delay_curve(pulse_moments(path), received, Vec3::Zero(), highest, aperture);
 }
 
 /// The blast at one phone, or at the reference point for all of them.
-void hear(const EchoContext& context, int channel, DirectBlast& blast) {
-  const Scenario& scenario = context.scenario;
-  const ReceiverArray& array = scenario.arrays[static_cast<std::size_t>(context.array)];
-  const Carried hearer = channel < 0 ? reference_of(scenario, context.array)
-                                     : phone_of(scenario, context.array, context.ping, channel);
-  // Of the phone from the reference point, as it was at the ping: what its return is laid down by.
-  const Vec3 x = channel < 0 ? Vec3::Zero()
-                             : phones_at(scenario, context.array, context.ping,
-                                         context.ping_time)[static_cast<std::size_t>(channel)];
-  const Kinematics source = transmitter_at(scenario, context.transmitter, context.ping_time);
+void receive(const EchoContext& context, int channel, DirectBlast& blast) {
+  const PingGeometry& geometry = context.geometry;
+  const Scenario& scenario = context.scenario();
+  const ReceiverArray& array = geometry.array(context.array);
+  const Carried receiver = geometry.receiver(context.array, channel);
+  // Of the phone from the reference point, as it was at the ping: what its return is gridded by.
+  const Vec3 x = channel < 0 ? Vec3(Vec3::Zero())
+                             : geometry.phones(context.array)[static_cast<std::size_t>(channel)];
+  const Kinematics& source = geometry.source();
   const Bounces followed = enough_bounces(context.paths, scenario.propagation, source.position,
-                                          hearer.at(context.ping_time).position, context.frequency,
+                                          receiver.at(geometry.time()).position, context.frequency,
                                           end_of_record(scenario));
   blast.bounces.include(followed);
   const PathLimits limits = limits_of(scenario.propagation, followed);
-  const MovingPaths moving(context.paths, limits, context.frequency, context.ping_time, 1e-7,
+  const MovingPaths moving(context.paths, limits, context.frequency, geometry.time(), 1e-7,
                            context.reuse);
-  Way way = moving.way(source.position, 0.0, hearer.track, hearer.offset);
+  Way way = moving.way(source.position, 0.0, receiver.track, receiver.offset);
   way.leg.kind = Leg::Kind::source_to_array;
   way.leg.array = context.array;
   way.leg.channel = channel;
-  const auto& transmitter = scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
-  if (transmitter.platform == array.platform)
+  if (geometry.is_own(context.array))
     std::erase_if(way.leg.arrivals, [](const Arrival& path) {
       return path.surface_bounces + path.bottom_bounces == 0;
     });
   for (const Arrival& path : way.leg.arrivals) {
-    const MetPath met = moving.meet(source.position, 0.0, hearer.track, hearer.offset, way, path);
-    EchoPath path_heard = heard_along(context, source, met);
-    path_heard.heard.delay -= path_heard.heard.slowness.dot(x);  // at the reference point
-    path_heard.heard.channel = channel < 0 ? Return::all_channels : channel;
-    path_heard.curve = curve_of(context, source, hearer, channel, met, path_heard.heard, limits);
-    blast.heard.push_back(path_heard);
+    const MetPath met =
+        moving.meet(source.position, 0.0, receiver.track, receiver.offset, way, path);
+    EchoPath path_received = received_along(context, source, met);
+    path_received.received.delay -=
+        path_received.received.slowness.dot(x);  // at the reference point
+    path_received.received.channel = channel < 0 ? Return::all_channels : channel;
+    path_received.curve =
+        curve_of(context, source, receiver, channel, met, path_received.received, limits);
+    blast.received.push_back(path_received);
     scatter_along(context, source, 0.0, met,
-                  mixed(static_cast<std::uint64_t>(context.transmitter), ~0ULL), path_heard,
-                  blast.heard);
+                  mixed(static_cast<std::uint64_t>(geometry.sent().transmitter), ~0ULL),
+                  path_received, blast.received);
   }
   shorten_bounces(way.leg.arrivals, channel < 0 ? 1 : array.phones.size());
   blast.legs.push_back(std::move(way.leg));
 }
 
-/// Whether all that is heard at the reference point is a plane wave to the phones.
+/// Whether all that is received at the reference point is a plane wave to the phones.
 bool plane_waves(const EchoContext& context, const DirectBlast& blast) {
-  return std::all_of(blast.heard.begin(), blast.heard.end(), [&](const EchoPath& path) {
-    return is_plane_wave(context, path.heard, path.colour.path_length);
+  return std::all_of(blast.received.begin(), blast.received.end(), [&](const EchoPath& path) {
+    return is_plane_wave(context, path.received, path.response.path_length);
   });
 }
 
@@ -118,22 +120,22 @@ bool plane_waves(const EchoContext& context, const DirectBlast& blast) {
 
 DirectBlast direct_blast(const EchoContext& context) {
   DirectBlast blast;
-  const Scenario& scenario = context.scenario;
-  const auto phones = scenario.arrays[static_cast<std::size_t>(context.array)].phones.size();
-  const auto hear_at_phones = [&](DirectBlast& into) {
-    for (std::size_t n = 0; n < phones; ++n) hear(context, static_cast<int>(n), into);
+  const Scenario& scenario = context.scenario();
+  const auto phones = context.geometry.array(context.array).phones.size();
+  const auto receive_at_phones = [&](DirectBlast& into) {
+    for (std::size_t n = 0; n < phones; ++n) receive(context, static_cast<int>(n), into);
   };
   if (scenario.propagation.exact_per_phone) {
-    hear_at_phones(blast);
+    receive_at_phones(blast);
     return blast;
   }
-  hear(context, -1, blast);
+  receive(context, -1, blast);
   if (context.listens && !plane_waves(context, blast)) {
     DirectBlast at_phones;
-    hear_at_phones(at_phones);
-    blast.heard = std::move(at_phones.heard);
+    receive_at_phones(at_phones);
+    blast.received = std::move(at_phones.received);
   }
   return blast;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,21 +2,21 @@
 #include "sonar/echoes/echo.h"
 #include "sonar/paths/returns.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// What an array hears of the ping itself, on its way from the transmitter: no target, no
+/// What an array receives of the ping itself, on its way from the transmitter: no target, no
 /// scatterer.
 struct DirectBlast {
-  std::vector<Leg> legs;        ///< transmitter → array (or one to every phone)
-  std::vector<EchoPath> heard;  ///< one per path, and what rough boundaries scatter about it;
-                                ///< target −1
-  Bounces bounces;              ///< that were followed
+  std::vector<Leg> legs;           ///< transmitter → array (or one to every phone)
+  std::vector<EchoPath> received;  ///< one per path, and what rough boundaries scatter about it;
+                                   ///< target −1
+  Bounces bounces;                 ///< that were followed
 };
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact
-/// Doppler factor. An array on the transmitter's own platform hears what surface and bottom mirror
-/// (the fathometer's returns), not what comes straight: levels refer to 1 m, and a sonar is deaf
-/// while it sends. Any other has to be at least 1 m from the transmitter.
+/// Doppler factor. An array on the transmitter's own platform receives what surface and bottom
+/// mirror (the fathometer's returns), not what comes straight: levels refer to 1 m, and a sonar is
+/// deaf while it sends. Any other has to be at least 1 m from the transmitter.
 [[nodiscard]] DirectBlast direct_blast(const EchoContext& context);
 
-}  // namespace asdic
+}  // namespace asdic::detail

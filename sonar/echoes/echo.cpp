@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/doppler.h"
+#include "core/settings_key.h"
 #include "reverb/forward_scatter.h"
 #include "reverb/scatterer_field.h"
 #include "sonar/echoes/one_leg.h"
@@ -18,7 +19,7 @@
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// One path out and one path back, met where things are by then.
@@ -37,22 +38,21 @@ class EchoFinder {
  public:
   EchoFinder(const EchoContext& context, int target)
       : context_(context),
-        scenario_(context.scenario),
-        array_(scenario_.arrays[static_cast<std::size_t>(context.array)]),
-        phones_(phones_at(scenario_, context.array, context.ping, context.ping_time)),
-        reference_(reference_of(scenario_, context.array)),
+        geometry_(context.geometry),
+        scenario_(context.scenario()),
+        phones_(geometry_.phones(context.array)),
         target_(scenario_.targets[static_cast<std::size_t>(target)]),
         index_(target),
         layered_(context.paths.layered()),
         latest_(end_of_record(scenario_)),
         bounces_(enough()),
         limits_(limits_of(scenario_.propagation, bounces_)),
-        moving_(context.paths, limits_, context.frequency, context.ping_time, 1e-7, context.reuse),
-        closely_(context.paths, limits_, context.frequency, context.ping_time, 1e-9,
-                 context.reuse) {}
+        moving_(context.paths, limits_, context.frequency, geometry_.time(), 1e-7, context.reuse),
+        closely_(context.paths, limits_, context.frequency, geometry_.time(), 1e-9, context.reuse) {
+  }
 
   TargetEchoes find() {
-    const Kinematics source = transmitter_at(scenario_, context_.transmitter, context_.ping_time);
+    const Kinematics& source = geometry_.source();
     Way out = moving_.way(source.position, 0.0, target_.track, Vec3::Zero());
     out.leg.kind = Leg::Kind::source_to_target;
     out.leg.target = index_;
@@ -89,10 +89,9 @@ class EchoFinder {
  private:
   /// Bounces for both legs, found for where everything is when the ping starts.
   Bounces enough() const {
-    const Vec3 source =
-        transmitter_at(scenario_, context_.transmitter, context_.ping_time).position;
-    const Vec3 target = target_.track.at(context_.ping_time).position;
-    const Vec3 array = array_at(scenario_, context_.array, context_.ping_time).position;
+    const Vec3& source = geometry_.source().position;
+    const Vec3 target = geometry_.target_at(index_, 0.0).position;
+    const Vec3& array = geometry_.reference_place(context_.array).position;
     const auto leg = [&](const Vec3& from, const Vec3& to) {
       return enough_bounces(context_.paths, scenario_.propagation, from, to, context_.frequency,
                             latest_);
@@ -108,20 +107,20 @@ class EchoFinder {
   bool plane_waves(const TargetEchoes& found) const {
     const Arrivals& home = found.legs.back().arrivals;
     return std::all_of(found.echoes.begin(), found.echoes.end(), [&](const EchoPath& echo) {
-      return is_plane_wave(context_, echo.heard,
+      return is_plane_wave(context_, echo.received,
                            home[static_cast<std::size_t>(echo.returning)].path_length);
     });
   }
 
-  /// \param channel  phone that hears it; −1: the reference point
-  [[nodiscard]] Carried hearer(int channel) const {
-    return channel < 0 ? reference_ : phone_of(scenario_, context_.array, context_.ping, channel);
+  /// \param channel  phone that receives it; −1: the reference point
+  [[nodiscard]] Carried receiver(int channel) const {
+    return geometry_.receiver(context_.array, channel);
   }
 
   /// From where the first sound strikes the target.
   [[nodiscard]] Way way_back(const Way& out, int channel) const {
-    const Carried hearer = this->hearer(channel);
-    Way back = moving_.way(out.end.position, out.reference_time, hearer.track, hearer.offset);
+    const Carried receiver = this->receiver(channel);
+    Way back = moving_.way(out.end.position, out.reference_time, receiver.track, receiver.offset);
     back.leg.kind = Leg::Kind::target_to_array;
     back.leg.target = index_;
     back.leg.channel = channel;
@@ -137,22 +136,22 @@ class EchoFinder {
   };
   /// \param path  number of one of the way out   \param known  paths home, for where it moved to
   [[nodiscard]] Strike strike(const Kinematics& source, const Way& out, std::size_t path,
-                              std::span<const Arrival> known, const Carried& hearer) const {
+                              std::span<const Arrival> known, const Carried& receiver) const {
     Strike s{.source = source,
              .target = {},
              .there = moving_.meet(source.position, 0.0, target_.track, Vec3::Zero(), out,
                                    out.leg.arrivals[path]),
              .home = {}};
-    s.target = target_.track.at(context_.ping_time + s.there.time);
+    s.target = geometry_.target_at(index_, s.there.time);
     if (s.target.position != out.end.position)
-      s.home = moving_.way(s.target.position, s.there.time, hearer.track, hearer.offset, known);
+      s.home = moving_.way(s.target.position, s.there.time, receiver.track, receiver.offset, known);
     return s;
   }
 
   /// With one of the paths home; nothing if by then it is gone.
   [[nodiscard]] std::optional<TwoWayPaths> with_home(const Strike& strike, const Way& back,
                                                      std::size_t number,
-                                                     const Carried& hearer) const {
+                                                     const Carried& receiver) const {
     const Way& home = strike.home ? *strike.home : back;
     const Arrival& known = back.leg.arrivals[number];
     const Arrival* path = strike.home ? same_path(home.leg.arrivals, known, layered_) : &known;
@@ -160,21 +159,21 @@ class EchoFinder {
     return TwoWayPaths{.source = strike.source,
                        .target = strike.target,
                        .there = strike.there,
-                       .home = moving_.meet(strike.target.position, strike.there.time, hearer.track,
-                                            hearer.offset, home, *path)};
+                       .home = moving_.meet(strike.target.position, strike.there.time,
+                                            receiver.track, receiver.offset, home, *path)};
   }
 
   void pair_up(const Kinematics& source, const Way& out, const Way& back,
                TargetEchoes& result) const {
     const int channel = back.leg.channel;
-    const Carried hearer = this->hearer(channel);
+    const Carried receiver = this->receiver(channel);
     for (std::size_t i = 0; i < out.leg.arrivals.size(); ++i) {
-      const Strike strike = this->strike(source, out, i, back.leg.arrivals, hearer);
+      const Strike strike = this->strike(source, out, i, back.leg.arrivals, receiver);
       for (std::size_t j = 0; j < back.leg.arrivals.size(); ++j) {
-        const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+        const std::optional<TwoWayPaths> pair = with_home(strike, back, j, receiver);
         if (!pair || (bounces_.surface > fewest_bounces && pair->home.time > latest_)) continue;
         const std::size_t first = result.scattered.size();
-        std::vector<EchoPath> echoes = answer(*pair, hearer, channel);
+        std::vector<EchoPath> echoes = answer(*pair, receiver, channel);
         scatter(*pair, echoes, parts_of(out.leg.arrivals.size() * back.leg.arrivals.size()),
                 result.scattered);
         name(i, j, std::span(result.scattered).subspan(first));
@@ -196,45 +195,45 @@ class EchoFinder {
     const Arrivals &there = out.leg.arrivals, &home = back.leg.arrivals;
     ManyEchoes many{.target = index_, .array = context_.array, .followed = bounces_};
     const double c = context_.paths.speed_at(back.end.position);
-    std::size_t heard = home.size();  // of the paths home, after one more of those there
+    std::size_t received = home.size();  // of the paths home, after one more of those there
     for (const Arrival& one : there) {
-      while (heard > 0 && one.delay + home[heard - 1].delay > latest_) --heard;
-      many.pairs += heard;
+      while (received > 0 && one.delay + home[received - 1].delay > latest_) --received;
+      many.pairs += received;
     }
     many.first = there.front().delay + home.front().delay;
     many.last = std::min(latest_, there.back().delay + home.back().delay);
     many.at_phones =
         scenario_.propagation.exact_per_phone ||
         (context_.listens && !std::all_of(home.begin(), home.end(), [&](const Arrival& path) {
-           const Return heard_there{
+           const Return received_there{
                .delay = there.front().delay + path.delay,
                .slowness = met_by(back.end.velocity,
                                   slowness_vector(back.leg.bearing, path.arrival_elevation, c))};
-           return is_plane_wave(context_, heard_there, path.path_length);
+           return is_plane_wave(context_, received_there, path.path_length);
          }));
     return many;
   }
 
-  /// The loudest of too many pairs, at one of the hearers.
+  /// The loudest of too many pairs, at one of the receivers.
   void list_loudest(const Kinematics& source, const Way& out, const Way& back,
                     TargetEchoes& result) const {
     constexpr std::size_t most_listed = 1000;
     const std::size_t most =
         back.leg.channel < 0 ? most_listed : std::max<std::size_t>(1, most_listed / phones_.size());
-    const Carried hearer = this->hearer(back.leg.channel);
+    const Carried receiver = this->receiver(back.leg.channel);
     for (const auto& [i, j] : loudest_pairs(out.leg, back.leg, most)) {
       const Strike strike =
-          this->strike(source, out, i, std::span(&back.leg.arrivals[j], 1), hearer);
-      const std::optional<TwoWayPaths> pair = with_home(strike, back, j, hearer);
+          this->strike(source, out, i, std::span(&back.leg.arrivals[j], 1), receiver);
+      const std::optional<TwoWayPaths> pair = with_home(strike, back, j, receiver);
       if (!pair) continue;
-      std::vector<EchoPath> echoes = answer(*pair, hearer, back.leg.channel);
+      std::vector<EchoPath> echoes = answer(*pair, receiver, back.leg.channel);
       name(i, j, echoes);
       for (EchoPath& echo : echoes) result.echoes.push_back(std::move(echo));
     }
   }
 
-  /// The first pair and the loudest that are heard in time, by the numbers of their paths. Loudest
-  /// paths first on both legs, the best of every row of pairs is its first that is left.
+  /// The first pair and the loudest that are received in time, by the numbers of their paths.
+  /// Loudest paths first on both legs, the best of every row of pairs is its first that is left.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> loudest_pairs(
       const Leg& out, const Leg& back, std::size_t most) const {
     const Arrivals &there = out.arrivals, &home = back.arrivals;
@@ -284,32 +283,31 @@ class EchoFinder {
     if (!(scattered > 1e-9 * mean)) return;
     const auto place = [](const Kinematics& end) { return Vec2(end.position.head<2>()); };
     const ScatteredLeg legs[] = {
-        {&there, place(pair.source), pair.there.way.leg.bearing, context_.ping_time},
-        {&home, place(pair.target), pair.home.way.leg.bearing,
-         context_.ping_time + pair.there.time}};
+        {&there, place(pair.source), pair.there.way.leg.bearing, geometry_.time()},
+        {&home, place(pair.target), pair.home.way.leg.bearing, geometry_.time() + pair.there.time}};
     const double c = context_.paths.speed_at(pair.home.way.end.position);
     const double pressure = std::sqrt(scattered);
     for (const EchoPath& echo : echoes) {
-      std::uint64_t entity = mixed(static_cast<std::uint64_t>(context_.transmitter),
+      std::uint64_t entity = mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
                                    static_cast<std::uint64_t>(index_));
       for (const std::uint64_t more : {scatter_history(there), scatter_history(home)})
         entity = mixed(entity, more);
       // what the glint itself sends back, and the transmitter to there
       const std::complex<double> of_glint = echo.glint,
-                                 pattern = context_.pattern.towards(echo.colour.bearing,
-                                                                    echo.colour.elevation);
+                                 pattern = context_.pattern.towards(echo.response.bearing,
+                                                                    echo.response.elevation);
       for (const ScatteredPart& part : forward_scatter(
                scenario_.environment, legs, context_.frequency, parts, scenario_.seed, entity)) {
         EchoPath one = echo;
         one.curve.reset();
-        one.heard.delay += part.delay;
-        one.heard.doppler *= 1.0 + part.shift / context_.frequency;
-        one.heard.slowness = met_by(pair.home.way.end.velocity,
-                                    slowness_vector(pair.home.way.leg.bearing + part.bearing,
-                                                    home.arrival_elevation + part.elevation, c));
-        one.colour.without_pattern = pressure * part.amplitude * of_glint;
-        one.heard.amplitude = one.colour.without_pattern * pattern;
-        one.level_db = source_level_db() + db_from_amplitude(std::abs(one.heard.amplitude));
+        one.received.delay += part.delay;
+        one.received.doppler *= 1.0 + part.shift / context_.frequency;
+        one.received.slowness = met_by(pair.home.way.end.velocity,
+                                       slowness_vector(pair.home.way.leg.bearing + part.bearing,
+                                                       home.arrival_elevation + part.elevation, c));
+        one.response.without_pattern = pressure * part.amplitude * of_glint;
+        one.received.amplitude = one.response.without_pattern * pattern;
+        one.level_db = source_level_db() + db_from_amplitude(std::abs(one.received.amplitude));
         found.push_back(std::move(one));
       }
     }
@@ -322,9 +320,7 @@ class EchoFinder {
            (std::norm(home.amplitude) + home.scattered);
   }
 
-  [[nodiscard]] double source_level_db() const {
-    return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
-  }
+  [[nodiscard]] double source_level_db() const { return geometry_.transmitter().source_level_db; }
 
   /// Slownesses at the four ends of a pair.
   struct Slownesses {
@@ -352,7 +348,8 @@ class EchoFinder {
   }
 
   /// What all glints of the target send back by one pair of paths.
-  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Carried& hearer, int channel) const {
+  std::vector<EchoPath> answer(const TwoWayPaths& pair, const Carried& receiver,
+                               int channel) const {
     const auto [at_source, into_target, out_of_target, at_phone] = slownesses(pair);
     const Vec3 lag = lag_of(pair);
     const Kinematics& phone = pair.home.way.end;
@@ -360,52 +357,48 @@ class EchoFinder {
     echo.target = index_;
     echo.array = context_.array;
     echo.struck = pair.there.time;
-    echo.heard.channel = channel < 0 ? Return::all_channels : channel;
-    echo.heard.doppler =
+    echo.received.channel = channel < 0 ? Return::all_channels : channel;
+    echo.received.doppler =
         echo_doppler({pair.source.velocity, at_source}, {pair.target.velocity, into_target},
                      {pair.target.velocity, out_of_target}, {phone.velocity, at_phone});
-    echo.heard.slowness = met_by(phone.velocity, at_phone);
+    echo.received.slowness = met_by(phone.velocity, at_phone);
     const double bearing = pair.there.way.leg.bearing, elevation = pair.there.path.launch_elevation;
     const std::complex<double> crossed = pair.there.path.amplitude * pair.home.path.amplitude;
     const std::complex<double> towards = context_.pattern.towards(bearing, elevation);
     const std::complex<double> carried = crossed * towards;
-    echo.colour = {.path_length = pair.there.path.path_length + pair.home.path.path_length,
-                   .bearing = bearing,
-                   .elevation = elevation};
-    const Look look{.transmitter = context_.transmitter,
-                    .platform = array_.platform,
-                    .ping = context_.ping,
-                    .turn = context_.turn};
-    const std::vector<Glint> seen = glints(scenario_, index_, look, into_target, out_of_target,
-                                           context_.ping_time + pair.there.time);
+    echo.response = {.path_length = pair.there.path.path_length + pair.home.path.path_length,
+                     .bearing = bearing,
+                     .elevation = elevation};
+    const std::vector<Glint> seen = glints(scenario_, index_, context_.look(), into_target,
+                                           out_of_target, geometry_.time() + pair.there.time);
     // A return tells of the reference point, also where its path is a phone's own.
     const Vec3 x = channel < 0 ? Vec3::Zero() : phones_[static_cast<std::size_t>(channel)];
     std::vector<EchoPath> echoes;
     for (const Glint& glint : seen) {
       echo.highlight = glint.highlight;
-      echo.heard.delay = pair.home.time + lag.dot(glint.offset) - echo.heard.slowness.dot(x);
-      echo.heard.amplitude = carried * glint.amplitude;
-      echo.colour.without_pattern = crossed * glint.amplitude;
+      echo.received.delay = pair.home.time + lag.dot(glint.offset) - echo.received.slowness.dot(x);
+      echo.received.amplitude = carried * glint.amplitude;
+      echo.response.without_pattern = crossed * glint.amplitude;
       echo.glint = glint.amplitude;
-      echo.level_db = source_level_db() + db_from_amplitude(std::abs(echo.heard.amplitude));
+      echo.level_db = source_level_db() + db_from_amplitude(std::abs(echo.received.amplitude));
       if (const double all = intensity(pair); all > std::norm(crossed))
         echo.level_db = source_level_db() +
                         db_from_amplitude(std::sqrt(all) * std::abs(glint.amplitude * towards));
       echoes.push_back(echo);
     }
-    bend(pair, hearer, channel, seen, echoes);
+    bend(pair, receiver, channel, seen, echoes);
     return echoes;
   }
 
   /// Gives the echoes curves where the ranges change at changing rates during the pulse.
-  void bend(const TwoWayPaths& pair, const Carried& hearer, int channel,
+  void bend(const TwoWayPaths& pair, const Carried& receiver, int channel,
             const std::vector<Glint>& seen, std::vector<EchoPath>& echoes) const {
     if (context_.pulse == nullptr || echoes.empty()) return;
     const Pulse& pulse = *context_.pulse;
     double aperture = channel < 0 ? radius(phones_) : 0.0;
     for (const Glint& glint : seen) aperture = std::max(aperture, 2.0 * glint.offset.norm());
     const double highest = pulse.centre_frequency() + 0.5 * pulse.bandwidth_40db();
-    const MovingPath path = follow(pair, hearer, highest);
+    const MovingPath path = follow(pair, receiver, highest);
     const Vec3 out = pair.target.velocity - pair.source.velocity,
                back = pair.home.way.end.velocity - pair.target.velocity;
     const double c = context_.paths.speed_at(pair.target.position);
@@ -413,12 +406,13 @@ class EchoFinder {
                                          pair.there.path.path_length, c, aperture) +
                          curvature_phase(highest, pulse.duration(), back.norm(),
                                          pair.home.path.path_length, c, aperture);
-    const bool turns =
-        !(path.source_turns.empty() && path.target_turns.empty() && path.array_turns.empty());
-    if (phase < negligible_phase && !turns) return;
-    const std::vector<PulseMoment> moments = moments_of(path, pair, hearer);
+    const bool course_changes =
+        !(path.source_course_changes.empty() && path.target_course_changes.empty() &&
+          path.array_course_changes.empty());
+    if (phase < negligible_phase && !course_changes) return;
+    const std::vector<PulseMoment> moments = moments_of(path, pair, receiver);
     for (std::size_t i = 0; i < echoes.size(); ++i)
-      echoes[i].curve = delay_curve(moments, echoes[i].heard, seen[i].offset, highest, aperture);
+      echoes[i].curve = delay_curve(moments, echoes[i].received, seen[i].offset, highest, aperture);
   }
 
   /// What was found for one pair of paths, and how many sets of eigenrays that asked for.
@@ -429,86 +423,83 @@ class EchoFinder {
 
   /// pulse_moments(), out of what is kept for equal ways and paths.
   std::vector<PulseMoment> moments_of(const MovingPath& path, const TwoWayPaths& pair,
-                                      const Carried& hearer) const {
-    const auto& transmitter =
-        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
+                                      const Carried& receiver) const {
     const PathLimits& limits = limits_;
     ExactKey key = context_.paths.key(Kept::pulse_moments);
-    key.add_all(context_.ping_time, context_.frequency, path.pulse_duration, transmitter.offset,
-                hearer.offset, limits.max_surface_bounces, limits.max_bottom_bounces,
-                limits.max_launch_angle, limits.max_vertices, limits.faintest);
-    key.add_all(path.source_turns, path.target_turns, path.array_turns);
-    for (const Track* track :
-         {&scenario_.platforms[static_cast<std::size_t>(transmitter.platform)].track,
-          &target_.track, &hearer.track}) {
-      key.add_all(track->start.position, track->start.velocity, track->waypoints.size());
-      for (const Waypoint& point : track->waypoints) key.add_all(point.time, point.position);
-    }
+    key.add_all(geometry_.time(), context_.frequency, path.pulse_duration,
+                geometry_.sender().offset, receiver.offset, limits.max_surface_bounces,
+                limits.max_bottom_bounces, limits.max_launch_angle, limits.max_vertices,
+                limits.faintest);
+    key.add_all(path.source_course_changes, path.target_course_changes, path.array_course_changes);
+    for (const Track* const track : {&geometry_.sender().track, &target_.track, &receiver.track})
+      add_settings(key, *track);
     add_path(key, pair.there.path);
     add_path(key, pair.home.path);
-    PropagationMemory& memory = context_.paths.memory();
     Reuse* const reuse = context_.reuse;
-    if (const auto known = memory.find<Moments>(key)) {
-      if (reuse != nullptr) reuse->legs_reused += known->legs;
-      return known->along;
-    }
     const auto legs = [&] { return reuse ? reuse->legs_reused + reuse->legs_searched : 0; };
-    const int before = legs();
-    Moments found{.along = pulse_moments(path)};
-    found.legs = legs() - before;
-    memory.keep(key, std::make_shared<Moments>(found), found.along.size() * sizeof(PulseMoment));
-    return found.along;
+    bool known = false;
+    const auto found = context_.paths.memory().remember(
+        key,
+        [&] {
+          const int before = legs();
+          auto made = std::make_shared<Moments>(Moments{.along = pulse_moments(path)});
+          made->legs = legs() - before;
+          return made;
+        },
+        [](const Moments& moments) { return moments.along.size() * sizeof(PulseMoment); }, &known);
+    if (known && reuse != nullptr) reuse->legs_reused += found->legs;
+    return found->along;
   }
 
-  MovingPath follow(const TwoWayPaths& pair, const Carried& hearer, double highest) const {
-    const auto& transmitter =
-        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)];
-    const auto& carrier = scenario_.platforms[static_cast<std::size_t>(transmitter.platform)];
+  MovingPath follow(const TwoWayPaths& pair, const Carried& receiver, double highest) const {
     // Turns that the pulse can meet: it is nowhere longer than 1.5 T.
-    const auto near = [&](std::vector<double> turns, double from) {
-      std::erase_if(turns, [&](double turn) {
-        return turn <= from || turn >= from + 1.5 * context_.pulse->duration();
+    const auto near = [&](std::vector<double> course_changes, double from) {
+      std::erase_if(course_changes, [&](double change) {
+        return change <= from || change >= from + 1.5 * context_.pulse->duration();
       });
-      return turns;
+      return course_changes;
     };
-    return {.moment = [this, &pair, &hearer](double sent) { return moment(pair, hearer, sent); },
-            .pulse_duration = context_.pulse->duration(),
-            .frequency = highest,
-            .source_turns = near(turns_of(carrier.track, context_.ping_time), 0.0),
-            .target_turns = near(turns_of(target_.track, context_.ping_time), pair.there.time),
-            .array_turns = near(turns_of(hearer.track, context_.ping_time), pair.home.time)};
+    return {
+        .moment = [this, &pair, &receiver](double sent) { return moment(pair, receiver, sent); },
+        .pulse_duration = context_.pulse->duration(),
+        .frequency = highest,
+        .source_course_changes =
+            near(course_changes_of(geometry_.sender().track, geometry_.time()), 0.0),
+        .target_course_changes =
+            near(course_changes_of(target_.track, geometry_.time()), pair.there.time),
+        .array_course_changes =
+            near(course_changes_of(receiver.track, geometry_.time()), pair.home.time)};
   }
 
   /// The same pair of paths for what leaves `sent` after the leading edge.
-  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Carried& hearer,
+  std::optional<PulseMoment> moment(const TwoWayPaths& pair, const Carried& receiver,
                                     double sent) const {
     TwoWayPaths then;
-    then.source = transmitter_at(scenario_, context_.transmitter, context_.ping_time + sent);
+    then.source = geometry_.source_at(sent);
     const Way out = closely_.way(then.source.position, sent, target_.track, Vec3::Zero(),
                                  std::span(&pair.there.path, 1));
     const Arrival* path = same_path(out.leg.arrivals, pair.there.path, layered_);
     if (path == nullptr) return std::nullopt;
     then.there = closely_.meet(then.source.position, sent, target_.track, Vec3::Zero(), out, *path);
-    then.target = target_.track.at(context_.ping_time + then.there.time);
-    const Way home = closely_.way(then.target.position, then.there.time, hearer.track,
-                                  hearer.offset, std::span(&pair.home.path, 1));
+    then.target = geometry_.target_at(index_, then.there.time);
+    const Way home = closely_.way(then.target.position, then.there.time, receiver.track,
+                                  receiver.offset, std::span(&pair.home.path, 1));
     path = same_path(home.leg.arrivals, pair.home.path, layered_);
     if (path == nullptr) return std::nullopt;
-    then.home = closely_.meet(then.target.position, then.there.time, hearer.track, hearer.offset,
-                              home, *path);
+    then.home = closely_.meet(then.target.position, then.there.time, receiver.track,
+                              receiver.offset, home, *path);
     const Slownesses s = slownesses(then);
     return PulseMoment{.sent = sent,
                        .struck = then.there.time,
-                       .heard = then.home.time,
+                       .received = then.home.time,
                        .lag = lag_of(then),
                        .at_array = met_by(then.home.way.end.velocity, s.at_phone)};
   }
 
   const EchoContext& context_;
+  const PingGeometry& geometry_;
   const Scenario& scenario_;
-  const ReceiverArray& array_;
-  std::vector<Vec3> phones_;
-  Carried reference_;
+  const std::vector<Vec3>& phones_;
   const Target& target_;
   int index_;
   bool layered_;
@@ -520,24 +511,20 @@ class EchoFinder {
 
 }  // namespace
 
-bool is_plane_wave(const EchoContext& context, const Return& heard, double length) {
-  Front front{.slowness = heard.slowness,
+bool is_plane_wave(const EchoContext& context, const Return& received, double length) {
+  Front front{.slowness = received.slowness,
               .length = length,
-              .delay = heard.delay,
+              .delay = received.delay,
               .highest_frequency = context.frequency};
   if (const Pulse* pulse = context.pulse; pulse != nullptr) {
-    front.duration = pulse->duration() / heard.doppler;
+    front.duration = pulse->duration() / received.doppler;
     front.highest_frequency = pulse->centre_frequency() + 0.5 * pulse->bandwidth_40db();
   }
-  return is_plane_wave({.scenario = context.scenario,
-                        .array = context.array,
-                        .ping = context.ping,
-                        .ping_time = context.ping_time},
-                       front);
+  return is_plane_wave(listening(context.geometry, context.array), front);
 }
 
 TargetEchoes target_echoes(const EchoContext& context, int target) {
   return EchoFinder(context, target).find();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,45 +4,53 @@
 
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/echoes/echo_path.h"
+#include "sonar/echoes/target_response.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/leg.h"
 #include "sonar/paths/returns.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmitter.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What the echoes of one ping need to know. Times count from the start of the ping.
 struct EchoContext {
   const PropagationPaths& paths;
-  const Scenario& scenario;
+  const PingGeometry& geometry;
   const TransmitPattern& pattern;
   double frequency;               ///< centre of the pulse [Hz]
-  double ping_time;               ///< since the start of the scenario [s]
-  int transmitter = 0;            ///< that pings, an index
-  int array = 0;                  ///< that hears it
-  int ping = 1;                   ///< of the run, counted from 1
-  int turn = 1;                   ///< of the transmitter's own pings, counted from 1
+  int array = 0;                  ///< that receives it
   const Pulse* pulse = nullptr;   ///< none: its leading edge alone is followed
   Reuse* reuse = nullptr;         ///< counts the eigenrays that were known
   bool listens = true;            ///< false: nobody asks for the phones' samples
   std::size_t most_pairs = 4096;  ///< of paths: where there are more, the loudest are listed
+
+  [[nodiscard]] const Scenario& scenario() const noexcept { return geometry.scenario(); }
+  /// Who looks at a target in this ping.
+  [[nodiscard]] Look look() const noexcept {
+    return {.transmitter = geometry.sent().transmitter,
+            .platform = geometry.array(array).platform,
+            .ping = geometry.ping(),
+            .own_ping = geometry.sent().own_ping};
+  }
 };
 
-/// Whether a pulse passes the array as a plane wave (sonar/paths/plane_wave.h). \param heard  at
+/// Whether a pulse passes the array as a plane wave (sonar/paths/plane_wave.h). \param received  at
 /// the reference point   \param length  of its path to the array [m]
-[[nodiscard]] bool is_plane_wave(const EchoContext& context, const Return& heard, double length);
+[[nodiscard]] bool is_plane_wave(const EchoContext& context, const Return& received, double length);
 
 /// The echoes of one target: eigenrays out, eigenrays back, and every pair of them at every
 /// highlight.
 ///
 /// Where there are more than EchoContext::most_pairs, `echoes` are the loudest pairs alone and
-/// nothing of them is to be laid down: what is heard of `many` is two_step_echo().
+/// nothing of them is to be gridded: what is received of `many` is two_step_echo().
 struct TargetEchoes {
   std::vector<Leg> legs;  ///< source → target, then target → array (or one per phone)
   std::vector<EchoPath> echoes;
-  /// What each phone hears by paths of its own, where a plane wave about the reference point is not
-  /// what they hear (sonar/paths/plane_wave.h), nor exact_per_phone has been asked for; else empty.
+  /// What each phone receives by paths of its own, where a plane wave about the reference point is
+  /// not what they receive (sonar/paths/plane_wave.h), nor exact_per_phone has been asked for; else
+  /// empty.
   std::vector<EchoPath> at_phones;
   std::vector<EchoPath> scattered;  ///< by rough boundaries, about the paths of the echoes
   Bounces bounces;                  ///< that were followed on either leg
@@ -50,10 +58,10 @@ struct TargetEchoes {
 };
 
 /// Delays are solved for the target's position when the sound strikes it and the array's when it is
-/// heard, path by path: 7 m/s over 20 s is 144 m. Each pair has its exact Doppler factor from
+/// received, path by path: 7 m/s over 20 s is 144 m. Each pair has its exact Doppler factor from
 /// velocities, ray directions and local speeds, and a curve of its own where ranges change at
 /// changing rates during the pulse. The legs hold the eigenrays at the times of the first arrivals.
 /// Source: docs/theory/echoes.md, docs/theory/target.md
 [[nodiscard]] TargetEchoes target_echoes(const EchoContext& context, int target);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "sonar/paths/returns.h"
 #include "sonar/signal/band_response.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One echo: one path out, one path back, one place of the target.
 struct EchoPath {
@@ -20,23 +20,23 @@ struct EchoPath {
   double level_db = 0.0;  ///< peak envelope/√2 of an unwindowed pulse, what rough boundaries
                           ///< scatter about its paths included, in the mean [dB re 1 µPa]
   double struck = 0.0;    ///< when the leading edge meets the target, since the ping's start [s]
-  Return heard;           ///< at the array's reference point (or the phone)
-  PathColour colour;      ///< for other frequencies than the pulse's centre
+  Return received;        ///< at the array's reference point (or the phone)
+  PathResponse response;  ///< for other frequencies than the pulse's centre
   std::complex<double> glint = 1.0;      ///< what the target's place makes of the pressure
   std::optional<DelayCurve> curve = {};  ///< where a constant Doppler factor is not enough
 };
 
 /// The echoes of a target at an array where pairs of paths are too many to be taken one by one: the
-/// loudest alone are listed, all are heard (sonar/echoes/two_step_echo.h).
+/// loudest alone are listed, all are received (sonar/echoes/two_step_echo.h).
 struct ManyEchoes {
   int target = 0;          ///< index in the scenario
   int array = 0;           ///< index in the scenario
-  std::size_t pairs = 0;   ///< of paths, that are heard before the record ends
-  double first = 0.0;      ///< when the first of their leading edges is heard …
+  std::size_t pairs = 0;   ///< of paths, that are received before the record ends
+  double first = 0.0;      ///< when the first of their leading edges is received …
   double last = 0.0;       ///< … and the last [s]
-  bool at_phones = false;  ///< every phone hears paths of its own
+  bool at_phones = false;  ///< every phone receives paths of its own
   Bounces followed;        ///< on either leg
   double peak = 0.0;       ///< largest envelope at the reference point, over the pulse's at 1 m
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

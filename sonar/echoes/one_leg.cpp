@@ -7,9 +7,9 @@
 #include "reverb/forward_scatter.h"
 #include "reverb/scatterer_field.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-EchoPath heard_along(const EchoContext& context, const Kinematics& sender, const MetPath& met) {
+EchoPath received_along(const EchoContext& context, const Kinematics& sender, const MetPath& met) {
   const double c_sender = context.paths.speed_at(sender.position);
   const double c_array = context.paths.speed_at(met.way.end.position);
   const double bearing = met.way.leg.bearing;
@@ -18,52 +18,52 @@ EchoPath heard_along(const EchoContext& context, const Kinematics& sender, const
   EchoPath path;
   path.target = -1;
   path.array = context.array;
-  path.heard = {
+  path.received = {
       .delay = met.time,
       .amplitude = met.path.amplitude * context.pattern.towards(bearing, met.path.launch_elevation),
       .doppler = leg_doppler({sender.velocity, leaving}, {met.way.end.velocity, at_array}),
       .slowness = met_by(met.way.end.velocity, at_array)};
-  path.colour = {.path_length = met.path.path_length,
-                 .bearing = bearing,
-                 .elevation = met.path.launch_elevation,
-                 .without_pattern = met.path.amplitude};
+  path.response = {.path_length = met.path.path_length,
+                   .bearing = bearing,
+                   .elevation = met.path.launch_elevation,
+                   .without_pattern = met.path.amplitude};
   return path;
 }
 
 void scatter_along(const EchoContext& context, const Kinematics& sender, double sent,
-                   const MetPath& met, std::uint64_t ends, const EchoPath& heard,
+                   const MetPath& met, std::uint64_t ends, const EchoPath& received,
                    std::vector<EchoPath>& found) {
   constexpr int parts = 16;
   const Arrival& path = met.path;
   if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) return;
   const double c = context.paths.speed_at(met.way.end.position);
   const ScatteredLeg leg{&path, sender.position.head<2>(), met.way.leg.bearing,
-                         context.ping_time + sent};
+                         context.geometry.time() + sent};
   for (const ScatteredPart& part :
-       forward_scatter(context.scenario.environment, std::span(&leg, 1), context.frequency, parts,
-                       context.scenario.seed, mixed(ends, scatter_history(path)))) {
-    EchoPath one = heard;
+       forward_scatter(context.scenario().environment, std::span(&leg, 1), context.frequency, parts,
+                       context.scenario().seed, mixed(ends, scatter_history(path)))) {
+    EchoPath one = received;
     one.curve.reset();
-    one.heard.delay += part.delay;
-    one.heard.doppler *= 1.0 + part.shift / context.frequency;
-    one.heard.slowness =
+    one.received.delay += part.delay;
+    one.received.doppler *= 1.0 + part.shift / context.frequency;
+    one.received.slowness =
         met_by(met.way.end.velocity, slowness_vector(met.way.leg.bearing + part.bearing,
                                                      path.arrival_elevation + part.elevation, c));
-    one.colour.without_pattern = std::sqrt(path.scattered) * part.amplitude;
-    one.heard.amplitude = one.colour.without_pattern *
-                          context.pattern.towards(one.colour.bearing, one.colour.elevation);
+    one.response.without_pattern = std::sqrt(path.scattered) * part.amplitude;
+    one.received.amplitude = one.response.without_pattern *
+                             context.pattern.towards(one.response.bearing, one.response.elevation);
     found.push_back(std::move(one));
   }
 }
 
-void shorten_bounces(Arrivals& paths, std::size_t hearers) {
+void shorten_bounces(Arrivals& paths, std::size_t receivers) {
   constexpr std::size_t many_paths = 256, most = 256, least = 8;
   if (paths.size() <= many_paths) return;
-  const std::size_t kept = std::max(least, most / std::max<std::size_t>(1, hearers));
+  const std::size_t kept = std::max(least, most / std::max<std::size_t>(1, receivers));
   for (Arrival& path : paths)
     if (path.bounces.size() > kept)
       path.bounces = {path.bounces.begin(),
                       path.bounces.begin() + static_cast<std::ptrdiff_t>(kept)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

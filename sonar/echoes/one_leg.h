@@ -5,23 +5,23 @@
 #include "sonar/echoes/echo.h"
 #include "sonar/paths/moving_paths.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// What something that moves hears of something else that moves, along one path: delay since the
+/// What something that moves receives of something else that moves, along one path: delay since the
 /// ping, Doppler factor and slowness of the one leg, amplitude with the ping's pattern (and without
-/// it in `colour`). \param sender  when what is heard leaves
-[[nodiscard]] EchoPath heard_along(const EchoContext& context, const Kinematics& sender,
-                                   const MetPath& met);
+/// it in `frequency response`). \param sender  when what is received leaves
+[[nodiscard]] EchoPath received_along(const EchoContext& context, const Kinematics& sender,
+                                      const MetPath& met);
 
 /// Adds what rough boundaries scatter about that path. \param sent  when it leaves, since the ping
 /// [s]   \param ends  number of the pair of places, the same from ping to ping
-/// \param heard  of the path's own
+/// \param received  of the path's own
 void scatter_along(const EchoContext& context, const Kinematics& sender, double sent,
-                   const MetPath& met, std::uint64_t ends, const EchoPath& heard,
+                   const MetPath& met, std::uint64_t ends, const EchoPath& received,
                    std::vector<EchoPath>& found);
 
 /// Where so many paths are told of, no more than so many bounces of each are: their places took a
-/// gigabyte. Counts of bounces stay. \param hearers  that are told of alike
-void shorten_bounces(Arrivals& paths, std::size_t hearers = 1);
+/// gigabyte. Counts of bounces stay. \param receivers  that are told of alike
+void shorten_bounces(Arrivals& paths, std::size_t receivers = 1);
 
-}  // namespace asdic
+}  // namespace asdic::detail

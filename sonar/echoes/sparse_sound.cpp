@@ -12,7 +12,7 @@
 #include "sonar/echoes/wave_response.h"
 #include "sonar/scenario/transmitter.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What an echo's legs that are no rays do across the band.
@@ -40,7 +40,7 @@ std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const Echo
   std::vector<PathWaves> all;
   for (const EchoPath& path : paths) {
     PathWaves& waves =
-        all.emplace_back(PathWaves{.ray_length = path.colour.path_length, .legs = {}});
+        all.emplace_back(PathWaves{.ray_length = path.response.path_length, .legs = {}});
     for (const WaveLeg& leg : wave_legs(context, path, legs)) {
       waves.ray_length -= leg.path.path_length;
       ExactKey key = context.paths.key(Kept::legs);
@@ -67,9 +67,8 @@ PulseBand::PulseBand(const EchoContext& context, const Transmitter& projector,
       centre_(context.pulse->centre_frequency()),
       half_band_(
           Synthesizer(*context.pulse, recording, max_doppler, context.paths.memory()).half_band()),
-      sound_speed_(context.paths.speed_at(
-          transmitter_at(context.scenario, context.transmitter, context.ping_time).position)),
-      heading_(platform_heading(context.scenario, projector.platform, context.ping_time)) {}
+      sound_speed_(context.paths.speed_at(context.geometry.source().position)),
+      heading_(context.geometry.source_heading()) {}
 
 double PulseBand::nepers_per_metre(double frequency) const {
   return absorption_db_per_km(water_, frequency) / 1000.0 * std::numbers::ln10 / 20.0;
@@ -100,9 +99,9 @@ Baseband narrow_band_sound(const Synthesizer& synthesizer, std::span<const EchoP
   std::vector<CurvedReturn> curved;
   for (const EchoPath& path : paths)
     if (path.curve)
-      curved.push_back({path.heard, *path.curve});
+      curved.push_back({path.received, *path.curve});
     else
-      straight.push_back(path.heard);
+      straight.push_back(path.received);
   Baseband sound = synthesizer.baseband(straight, phones);
   synthesizer.add_curved(curved, phones, sound);
   return sound;
@@ -116,7 +115,7 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   const PulseBand of_pulse(context, projector, recording, max_doppler);
   const double centre = of_pulse.centre(), half_band = of_pulse.half_width();
   double longest = 0.0;
-  for (const EchoPath& path : paths) longest = std::max(longest, path.colour.path_length);
+  for (const EchoPath& path : paths) longest = std::max(longest, path.response.path_length);
   BandNodes band = of_pulse.nodes(longest);
   const std::vector<PathWaves> waves = waves_of(context, paths, legs, centre, half_band);
   std::size_t of_waves = 0;
@@ -124,18 +123,18 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   if (of_waves > 0) band = chebyshev_nodes(centre, half_band, band.frequencies.size() + of_waves);
 
   Baseband all;
-  std::vector<EchoPath> coloured(paths.begin(), paths.end());
+  std::vector<EchoPath> filtered(paths.begin(), paths.end());
   for (std::size_t k = 0; k < band.frequencies.size(); ++k) {
     const double f = std::max(1.0, band.frequencies[k]);
     const BandPart at = of_pulse.part(band, k);
-    for (std::size_t i = 0; i < coloured.size(); ++i) {
-      const PathColour& colour = coloured[i].colour;
-      coloured[i].heard.amplitude =
-          colour.without_pattern * at.pattern.towards(colour.bearing, colour.elevation) *
+    for (std::size_t i = 0; i < filtered.size(); ++i) {
+      const PathResponse& response = filtered[i].response;
+      filtered[i].received.amplitude =
+          response.without_pattern * at.pattern.towards(response.bearing, response.elevation) *
           std::exp(-at.more_nepers_per_metre * waves[i].ray_length) * waves[i].at(f);
     }
     Baseband sound =
-        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), coloured, phones);
+        narrow_band_sound(Synthesizer(pulse, recording, max_doppler, at.filter), filtered, phones);
     if (k == 0)
       all = std::move(sound);
     else
@@ -145,4 +144,4 @@ Baseband wide_band_sound(const EchoContext& context, const Transmitter& projecto
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

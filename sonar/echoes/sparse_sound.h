@@ -6,7 +6,7 @@
 #include "sonar/scenario/transmitter.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One of the frequencies that serve a pulse's band.
 struct BandPart {
@@ -54,4 +54,4 @@ class PulseBand {
                                        std::span<const Vec3> phones, const Recording& recording,
                                        double max_doppler);
 
-}  // namespace asdic
+}  // namespace asdic::detail

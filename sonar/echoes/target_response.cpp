@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Distinct for all looks of one kind: 16 bits each.
@@ -24,7 +24,7 @@ std::complex<double> fluctuation(const Scenario& scenario, int target, int highl
   if (one.fluctuation == Fluctuation::none) return 1.0;
   const bool by_scan =
       one.fluctuation == Fluctuation::swerling_1 || one.fluctuation == Fluctuation::swerling_3;
-  const int realisation = by_scan ? (look.turn - 1) / one.scan_pings : look.ping;
+  const int realisation = by_scan ? (look.own_ping - 1) / one.scan_pings : look.ping;
   RandomStream draw(scenario.seed, Draw::target_fluctuation,
                     static_cast<std::uint32_t>(realisation), entity(target, highlight, look));
   const std::complex<double> w = draw.complex_normal();
@@ -59,4 +59,4 @@ std::vector<Glint> glints(const Scenario& scenario, int target, const Look& look
   return seen;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

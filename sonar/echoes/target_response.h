@@ -4,14 +4,14 @@
 
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Who looks at a target, and in which ping: what fluctuation is keyed by.
 struct Look {
   int transmitter = 0;
-  int platform = 0;  ///< of the array that hears it: arrays of one platform see the same
+  int platform = 0;  ///< of the array that receives it: arrays of one platform see the same
   int ping = 1;      ///< of the run, counted from 1
-  int turn = 1;      ///< of the transmitter's own pings, counted from 1
+  int own_ping = 1;  ///< of the transmitter's own pings, counted from 1
 };
 
 /// Factor of a highlight's amplitude, E|w|² = 1 (1 where it does not fluctuate).
@@ -31,4 +31,4 @@ struct Glint {
 [[nodiscard]] std::vector<Glint> glints(const Scenario& scenario, int target, const Look& look,
                                         const Vec3& in, const Vec3& out, double time);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -15,14 +15,14 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/synthesis/sound_synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
-constexpr double tangent_phase = 0.02;    // by which a stretch's delays may be off [rad]
-constexpr double turning_stretch = 0.25;  // longest stretch for a hearer that turns [s]
+constexpr double tangent_phase = 0.02;    // by which a segment's delays may be off [rad]
+constexpr double turning_segment = 0.25;  // longest segment for a receiver that turns [s]
 
-/// A stretch of a sound: all of it at its middle, fading out over so much before and after [s].
-struct Stretch {
+/// A segment of a sound: all of it at its middle, fading out over so much before and after [s].
+struct Segment {
   double middle = 0.0, before = 0.0, after = 0.0;
 
   [[nodiscard]] double share(double since) const {
@@ -32,18 +32,18 @@ struct Stretch {
   }
 };
 
-/// Stretches whose shares add up to 1 between two times. They do not reach across turns.
-std::vector<Stretch> stretches(double begin, double end, std::vector<double> turns,
-                               double longest) {
-  std::erase_if(turns, [&](double t) { return t <= begin || t >= end; });
-  turns.push_back(end);
-  std::vector<Stretch> found;
-  for (const double turn : turns) {
-    const auto n = static_cast<int>(std::ceil((turn - begin) / longest));
-    const double step = (turn - begin) / n;
+/// Segments whose shares add up to 1 between two times. They do not reach across turns.
+std::vector<Segment> segments(double begin, double end, std::vector<double> course_changes,
+                              double longest) {
+  std::erase_if(course_changes, [&](double t) { return t <= begin || t >= end; });
+  course_changes.push_back(end);
+  std::vector<Segment> found;
+  for (const double change : course_changes) {
+    const auto n = static_cast<int>(std::ceil((change - begin) / longest));
+    const double step = (change - begin) / n;
     for (int i = 0; i <= n; ++i)
       found.push_back({begin + i * step, i > 0 ? step : 0.0, i < n ? step : 0.0});
-    begin = turn;
+    begin = change;
   }
   return found;
 }
@@ -55,22 +55,23 @@ struct Sound {
   double scale = 1.0;     // what it is over the wave
 };
 
-/// What a stretch lets through of it, about the stretch's middle. \param step  longest of all
-/// stretches: all waves alike   \return none where there is next to nothing
-std::optional<BandLimitedPulse> cut(const Sound& sound, const Stretch& stretch, double step) {
+/// What a segment lets through of it, about the segment's middle. \param step  longest of all
+/// segments: all waves alike   \return none where there is next to nothing
+std::optional<BandLimitedPulse> cut(const Sound& sound, const Segment& segment, double step) {
   // cos² over 2·step has nothing above −85 dB of it further than this.
   const double half_band = sound.wave.half_band() + 8.0 / step;
   const double rate = 4.2 * half_band;
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(step * rate));
   std::vector<std::complex<double>> samples;
   const double cycles =
-      sound.wave.centre_frequency() * std::fmod(stretch.middle - sound.middle, 1e6);
-  const std::complex<double> turn = std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
+      sound.wave.centre_frequency() * std::fmod(segment.middle - sound.middle, 1e6);
+  const std::complex<double> rotation = std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
   double largest = 0.0;
   for (std::ptrdiff_t i = -reach; i <= reach; ++i) {
-    const double since = static_cast<double>(i) / rate, share = stretch.share(since);
-    samples.push_back(
-        share > 0.0 ? share * turn * sound.wave.at(stretch.middle - sound.middle + since) : 0.0);
+    const double since = static_cast<double>(i) / rate, share = segment.share(since);
+    samples.push_back(share > 0.0
+                          ? share * rotation * sound.wave.at(segment.middle - sound.middle + since)
+                          : 0.0);
     largest = std::max(largest, std::abs(samples.back()));
   }
   if (largest < 1e-6) return std::nullopt;
@@ -89,7 +90,7 @@ void add_to(Baseband& all, Baseband&& more) {
 
 /// One path of a leg, for what leaves at one moment.
 struct LegPath {
-  EchoPath heard;           // delay since the ping
+  EchoPath received;        // delay since the ping
   Vec3 lag = Vec3::Zero();  // of a point of the sender at x from its reference point, lag·x [s/m]
 };
 
@@ -98,49 +99,49 @@ class MovingLeg {
  public:
   using Place = std::function<Kinematics(double since)>;
 
-  MovingLeg(const EchoContext& context, const MovingPaths& moving, Place sender, Carried hearer,
+  MovingLeg(const EchoContext& context, const MovingPaths& moving, Place sender, Carried receiver,
             std::uint64_t ends)
       : context_(context),
         moving_(moving),
         sender_(std::move(sender)),
-        hearer_(std::move(hearer)),
+        receiver_(std::move(receiver)),
         ends_(ends) {}
 
   /// All its paths for what leaves then. \param sent  since the ping [s]
   std::vector<LegPath> at(double sent) {
     const Kinematics from = sender_(sent);
-    Way way = moving_.way(from.position, sent, hearer_.track, hearer_.offset, known_);
+    Way way = moving_.way(from.position, sent, receiver_.track, receiver_.offset, known_);
     known_ = std::exchange(way.leg.arrivals, {});
     std::vector<LegPath> found;
     std::vector<EchoPath> scattered;
     const double c = context_.paths.speed_at(from.position);
     for (const Arrival& path : known_) {
       const MetPath met =
-          moving_.meet(from.position, sent, hearer_.track, hearer_.offset, way, path);
+          moving_.meet(from.position, sent, receiver_.track, receiver_.offset, way, path);
       const Vec3 out = slowness_vector(met.way.leg.bearing, met.path.launch_elevation, c),
-                 at_hearer = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation,
-                                             context_.paths.speed_at(met.way.end.position));
+                 at_receiver = slowness_vector(met.way.leg.bearing, met.path.arrival_elevation,
+                                               context_.paths.speed_at(met.way.end.position));
       const Vec3 lag = BodyLag{.out = out,
-                               .at_phone = at_hearer,
+                               .at_phone = at_receiver,
                                .body_velocity = from.velocity,
                                .phone_velocity = met.way.end.velocity}
                            .per_offset();
-      found.push_back({heard_along(context_, from, met), lag});
+      found.push_back({received_along(context_, from, met), lag});
       scattered.clear();
-      scatter_along(context_, from, sent, met, ends_, found.back().heard, scattered);
+      scatter_along(context_, from, sent, met, ends_, found.back().received, scattered);
       for (EchoPath& part : scattered) found.push_back({std::move(part), lag});
     }
     return found;
   }
 
-  /// Longest stretch over which its delays are straight in time [s].
+  /// Longest segment over which its delays are straight in time [s].
   double straight_for(double begin, double end, double frequency, double aperture) const {
     const Kinematics from = sender_(begin);
-    const Kinematics to = hearer_.at(context_.ping_time + begin);
+    const Kinematics to = receiver_.at(context_.geometry.time() + begin);
     const double speed = (to.velocity - from.velocity).norm(),
                  length = std::max(1.0, (to.position - from.position).norm()),
                  c = context_.paths.speed_at(from.position);
-    // A stretch's delays are off by an eighth of the curvature, where two of them are as loud.
+    // A segment's delays are off by an eighth of the curvature, where two of them are as loud.
     double longest = end - begin;
     while (longest > 1e-3 &&
            0.25 * curvature_phase(frequency, longest, speed, length, c, aperture) > tangent_phase)
@@ -148,64 +149,65 @@ class MovingLeg {
     return longest;
   }
 
-  [[nodiscard]] const Carried& hearer() const { return hearer_; }
+  [[nodiscard]] const Carried& receiver() const { return receiver_; }
 
  private:
   const EchoContext& context_;
   const MovingPaths& moving_;
   Place sender_;
-  Carried hearer_;
+  Carried receiver_;
   std::uint64_t ends_;
   Arrivals known_;  // of the last moment
 };
 
 class TwoSteps {
  public:
-  TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepHearers& hearers,
+  TwoSteps(const EchoContext& context, const ManyEchoes& many, const TwoStepReceivers& receivers,
            const Recording& recording, double max_doppler)
       : context_(context),
-        scenario_(context.scenario),
+        geometry_(context.geometry),
+        scenario_(context.scenario()),
         target_(scenario_.targets[static_cast<std::size_t>(many.target)]),
         index_(many.target),
-        hearers_(hearers),
+        receivers_(receivers),
         recording_(recording),
         max_doppler_(max_doppler),
         latest_(end_of_record(scenario_)),
         moving_(context.paths, limits_of(scenario_.propagation, many.followed), context.frequency,
-                context.ping_time, 1e-7, context.reuse),
+                geometry_.time(), 1e-7, context.reuse),
         places_(target_.highlights.empty() ? 1 : target_.highlights.size()) {}
 
   /// \param part  of the band; null: the pulse's centre stands for it
-  Baseband hear(const BandPart* part) {
+  Baseband receive(const BandPart* part) {
     const Synthesizer whole(*context_.pulse, recording_, max_doppler_,
                             part != nullptr ? part->filter : std::function<double(double)>());
     const Sound pulse{.wave = filtered_pulse(whole), .middle = 0.5 * context_.pulse->duration()};
     const std::vector<Sound> struck = at_target(pulse, part);
-    Baseband heard;
-    if (struck.empty()) return heard;
-    if (!hearers_.by_themselves) {
-      add(struck, -1, part, heard);
+    Baseband received;
+    if (struck.empty()) return received;
+    if (!receivers_.by_themselves) {
+      add(struck, -1, part, received);
     } else {
-      for (std::size_t n = 0; n < hearers_.phones.size(); ++n)
-        add(struck, static_cast<int>(n), part, heard);
+      for (std::size_t n = 0; n < receivers_.phones.size(); ++n)
+        add(struck, static_cast<int>(n), part, received);
     }
-    return heard;
+    return received;
   }
 
  private:
   [[nodiscard]] double highest() const {
     return context_.pulse->centre_frequency() + 0.5 * context_.pulse->bandwidth_40db();
   }
-  [[nodiscard]] std::vector<double> turns(const Track& track) const {
-    return turns_of(track, context_.ping_time);
+  [[nodiscard]] std::vector<double> course_changes(const Track& track) const {
+    return course_changes_of(track, geometry_.time());
   }
   [[nodiscard]] Kinematics target_at(double since) const {
-    return target_.track.at(context_.ping_time + since);
+    return geometry_.target_at(index_, since);
   }
   [[nodiscard]] Vec3 offset(std::size_t place, double since) const {
     if (target_.highlights.empty()) return Vec3::Zero();
     return from_body(target_.highlights[place].offset,
-                     heading_of(target_, context_.ping_time + since));
+                     heading_of(target_, geometry_.time() + since));
   }
   [[nodiscard]] double body_radius() const {
     double furthest = 0.0;
@@ -215,35 +217,35 @@ class TwoSteps {
   }
   [[nodiscard]] double array_radius() const {
     double furthest = 0.0;
-    if (!hearers_.by_themselves)
-      for (const Vec3& phone : hearers_.phones) furthest = std::max(furthest, phone.norm());
+    if (!receivers_.by_themselves)
+      for (const Vec3& phone : receivers_.phones) furthest = std::max(furthest, phone.norm());
     return furthest;
   }
 
-  /// Stretches of a sound along a leg; none: it need not be cut.
-  static std::vector<Stretch> cuts(const MovingLeg& leg, const Sound& sound,
-                                   std::vector<double> turns, bool hearer_turns, double frequency,
-                                   double aperture) {
+  /// Segments of a sound along a leg; none: it need not be cut.
+  static std::vector<Segment> cuts(const MovingLeg& leg, const Sound& sound,
+                                   std::vector<double> course_changes, bool receiver_course_changes,
+                                   double frequency, double aperture) {
     const double begin = sound.middle - sound.wave.half_duration(),
                  end = sound.middle + sound.wave.half_duration();
     double longest = leg.straight_for(begin, end, frequency, aperture);
-    if (hearer_turns) longest = std::min(longest, turning_stretch);
-    std::erase_if(turns, [&](double t) { return t <= begin || t >= end; });
-    if (turns.empty() && longest >= end - begin) return {};
-    return stretches(begin, end, std::move(turns), longest);
+    if (receiver_course_changes) longest = std::min(longest, turning_segment);
+    std::erase_if(course_changes, [&](double t) { return t <= begin || t >= end; });
+    if (course_changes.empty() && longest >= end - begin) return {};
+    return segments(begin, end, std::move(course_changes), longest);
   }
 
-  /// The moment for which a stretch's paths are found: within its own side of a turn.
-  static double moment_of(const Stretch& stretch) {
+  /// The moment for which a segment's paths are found: within its own side of a turn.
+  static double moment_of(const Segment& segment) {
     constexpr double aside = 1e-6;
-    return stretch.middle + (stretch.before == 0.0 ? aside : 0.0) -
-           (stretch.after == 0.0 ? aside : 0.0);
+    return segment.middle + (segment.before == 0.0 ? aside : 0.0) -
+           (segment.after == 0.0 ? aside : 0.0);
   }
 
   /// Calls with every piece of a sound that is carried along a leg, and the moment that its paths
   /// are found for.
   template <class Carry>
-  static void for_each_piece(const std::vector<Sound>& sounds, const std::vector<Stretch>& cut_at,
+  static void for_each_piece(const std::vector<Sound>& sounds, const std::vector<Segment>& cut_at,
                              const Carry& carry) {
     if (cut_at.empty()) {
       std::vector<std::optional<BandLimitedPulse>> whole;
@@ -251,8 +253,8 @@ class TwoSteps {
       return carry(whole, sounds.front().middle, sounds.front().middle);
     }
     double step = 0.0;
-    for (const Stretch& s : cut_at) step = std::max({step, s.before, s.after});
-    for (const Stretch& s : cut_at) {
+    for (const Segment& s : cut_at) step = std::max({step, s.before, s.after});
+    for (const Segment& s : cut_at) {
       std::vector<std::optional<BandLimitedPulse>> pieces;
       bool any = false;
       for (const Sound& sound : sounds) {
@@ -263,9 +265,9 @@ class TwoSteps {
     }
   }
 
-  /// A path's return of what leaves at a stretch's middle, its paths found for another moment.
+  /// A path's return of what leaves at a segment's middle, its paths found for another moment.
   static Return leaving_at(const LegPath& path, double middle, double moment) {
-    Return r = path.heard.heard;
+    Return r = path.received.received;
     r.delay += (middle - moment) / r.doppler;
     return r;
   }
@@ -274,15 +276,10 @@ class TwoSteps {
   /// none: nothing strikes it in time
   std::vector<Sound> at_target(const Sound& pulse, const BandPart* part) const {
     MovingLeg leg(
-        context_, moving_,
-        [&](double since) {
-          return transmitter_at(scenario_, context_.transmitter, context_.ping_time + since);
-        },
+        context_, moving_, [&](double since) { return geometry_.source_at(since); },
         {.track = target_.track},
-        mixed(static_cast<std::uint64_t>(context_.transmitter),
+        mixed(static_cast<std::uint64_t>(geometry_.sent().transmitter),
               mixed(1, static_cast<std::uint64_t>(index_))));
-    const auto& carrier = scenario_.platforms[static_cast<std::size_t>(
-        scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].platform)];
     struct Piece {
       BandLimitedPulse wave;
       Returns returns;
@@ -290,15 +287,15 @@ class TwoSteps {
     std::vector<Piece> pieces;
     double first = infinity, last = -infinity;
     for_each_piece({pulse},
-                   cuts(leg, pulse, turns(carrier.track), !turns(target_.track).empty(), highest(),
-                        2.0 * body_radius()),
+                   cuts(leg, pulse, course_changes(geometry_.sender().track),
+                        !course_changes(target_.track).empty(), highest(), 2.0 * body_radius()),
                    [&](const std::vector<std::optional<BandLimitedPulse>>& wave, double middle,
                        double moment) {
                      Piece& piece = pieces.emplace_back(Piece{*wave.front(), {}});
                      for (const LegPath& path : leg.at(moment)) {
                        Return r = leaving_at(path, middle, moment);
                        if (r.delay > latest_) continue;
-                       r.amplitude = amplitude(path.heard, part, true);
+                       r.amplitude = amplitude(path.received, part, true);
                        first = std::min(first, r.delay);
                        last = std::max(last, r.delay);
                        for (std::size_t p = 0; p < places_; ++p) {
@@ -330,7 +327,7 @@ class TwoSteps {
     const double half = 0.5 * static_cast<double>(all.recorded) / all.sample_rate;
     const double middle = all.start + half;
     const double cycles = all.carrier * middle;
-    const std::complex<double> turn = std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
+    const std::complex<double> rotation = std::polar(1.0, 2.0 * pi * (cycles - std::round(cycles)));
     std::vector<Sound> sounds;
     double peak = 0.0;
     for (std::size_t n = 0; n < all.channels; ++n) peak = std::max(peak, largest_envelope(all, n));
@@ -341,7 +338,7 @@ class TwoSteps {
       const auto reach = static_cast<std::ptrdiff_t>(std::ceil(half * rate));
       std::vector<std::complex<double>> samples;
       for (std::ptrdiff_t i = -reach; i <= reach; ++i)
-        samples.push_back(turn / peak * row.at(middle + static_cast<double>(i) / rate));
+        samples.push_back(rotation / peak * row.at(middle + static_cast<double>(i) / rate));
       const double half_band = 0.5 * all.sample_rate / all.oversampling;
       sounds.push_back(
           {.wave = BandLimitedPulse({samples, -static_cast<double>(reach) / rate, rate},
@@ -352,68 +349,66 @@ class TwoSteps {
     return sounds;
   }
 
-  /// Adds what is heard of the sounds at the target. \param channel  phone that hears paths of its
-  /// own; −1: all about the reference point
-  void add(const std::vector<Sound>& struck, int channel, const BandPart* part, Baseband& heard) {
+  /// Adds what is received of the sounds at the target. \param channel  phone that receives paths
+  /// of its own; −1: all about the reference point
+  void add(const std::vector<Sound>& struck, int channel, const BandPart* part,
+           Baseband& received) {
     const int array = context_.array;
-    const Carried hearer = channel < 0 ? reference_of(scenario_, array)
-                                       : phone_of(scenario_, array, context_.ping, channel);
+    const Carried receiver = geometry_.receiver(array, channel);
     MovingLeg leg(
-        context_, moving_, [&](double since) { return target_at(since); }, hearer,
+        context_, moving_, [&](double since) { return target_at(since); }, receiver,
         mixed(static_cast<std::uint64_t>(index_), mixed(2, static_cast<std::uint64_t>(array))));
-    const Vec3 x = channel < 0 ? Vec3::Zero() : hearers_.phones[static_cast<std::size_t>(channel)];
-    for_each_piece(struck,
-                   cuts(leg, struck.front(), turns(target_.track), !turns(hearer.track).empty(),
-                        highest(), std::max(array_radius(), 2.0 * body_radius())),
-                   [&](const std::vector<std::optional<BandLimitedPulse>>& waves, double middle,
-                       double moment) {
-                     const std::vector<LegPath> paths = leg.at(moment);
-                     if (paths.empty()) return;
-                     for (const Glint& glint : seen(paths.front().heard.colour.bearing, moment)) {
-                       const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
-                       if (!waves[place]) continue;
-                       Returns returns;
-                       for (const LegPath& path : paths) {
-                         Return r = leaving_at(path, middle, moment);
-                         r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
-                         r.amplitude = amplitude(path.heard, part, false) * glint.amplitude *
-                                       struck[place].scale;
-                         r.channel = channel < 0 ? Return::all_channels : channel;
-                         returns.push_back(r);
-                       }
-                       add_to(heard, baseband_of(*waves[place], recording_, max_doppler_, returns,
-                                                 hearers_.phones));
-                     }
-                   });
+    const Vec3 x =
+        channel < 0 ? Vec3::Zero() : receivers_.phones[static_cast<std::size_t>(channel)];
+    for_each_piece(
+        struck,
+        cuts(leg, struck.front(), course_changes(target_.track),
+             !course_changes(receiver.track).empty(), highest(),
+             std::max(array_radius(), 2.0 * body_radius())),
+        [&](const std::vector<std::optional<BandLimitedPulse>>& waves, double middle,
+            double moment) {
+          const std::vector<LegPath> paths = leg.at(moment);
+          if (paths.empty()) return;
+          for (const Glint& glint : seen(paths.front().received.response.bearing, moment)) {
+            const auto place = static_cast<std::size_t>(std::max(glint.highlight, 0));
+            if (!waves[place]) continue;
+            Returns returns;
+            for (const LegPath& path : paths) {
+              Return r = leaving_at(path, middle, moment);
+              r.delay += path.lag.dot(glint.offset) - r.slowness.dot(x);
+              r.amplitude =
+                  amplitude(path.received, part, false) * glint.amplitude * struck[place].scale;
+              r.channel = channel < 0 ? Return::all_channels : channel;
+              returns.push_back(r);
+            }
+            add_to(received, baseband_of(*waves[place], recording_, max_doppler_, returns,
+                                         receivers_.phones));
+          }
+        });
   }
 
   /// What answers at a moment: paths there and back lie in vertical planes, and the strength
   /// depends on their bearings alone. \param home  bearing of the way back [rad]
   [[nodiscard]] std::vector<Glint> seen(double home, double since) const {
-    const Look look{.transmitter = context_.transmitter,
-                    .platform = scenario_.arrays[static_cast<std::size_t>(context_.array)].platform,
-                    .ping = context_.ping,
-                    .turn = context_.turn};
-    const Vec3 source =
-        transmitter_at(scenario_, context_.transmitter, context_.ping_time).position;
-    const double there = separation(source, target_at(since).position).bearing;
-    return glints(scenario_, index_, look, slowness_vector(there, 0.0, 1.0),
-                  slowness_vector(home, 0.0, 1.0), context_.ping_time + since);
+    const double there = separation(geometry_.source().position, target_at(since).position).bearing;
+    return glints(scenario_, index_, context_.look(), slowness_vector(there, 0.0, 1.0),
+                  slowness_vector(home, 0.0, 1.0), geometry_.time() + since);
   }
 
   static std::complex<double> amplitude(const EchoPath& path, const BandPart* part, bool sent) {
-    if (part == nullptr) return sent ? path.heard.amplitude : path.colour.without_pattern;
-    const PathColour& colour = path.colour;
+    if (part == nullptr) return sent ? path.received.amplitude : path.response.without_pattern;
+    const PathResponse& response = path.response;
     const std::complex<double> alone =
-        colour.without_pattern * std::exp(-part->more_nepers_per_metre * colour.path_length);
-    return sent ? alone * part->pattern.towards(colour.bearing, colour.elevation) : alone;
+        response.without_pattern * std::exp(-part->more_nepers_per_metre * response.path_length);
+    return sent ? alone * part->pattern.towards(response.bearing, response.elevation) : alone;
   }
 
   const EchoContext& context_;
+  const PingGeometry& geometry_;
   const Scenario& scenario_;
   const Target& target_;
   int index_;
-  TwoStepHearers hearers_;
+  TwoStepReceivers receivers_;
   Recording recording_;
   double max_doppler_;
   double latest_;  // end of the record [s]
@@ -424,25 +419,24 @@ class TwoSteps {
 }  // namespace
 
 Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
-                       const TwoStepHearers& hearers, const Recording& recording,
+                       const TwoStepReceivers& receivers, const Recording& recording,
                        double max_doppler, std::span<const BandPart> band) {
-  TwoSteps steps(context, many, hearers, recording, max_doppler);
-  if (band.empty()) return steps.hear(nullptr);
+  TwoSteps steps(context, many, receivers, recording, max_doppler);
+  if (band.empty()) return steps.receive(nullptr);
   Baseband all;
-  for (const BandPart& part : band) add_to(all, steps.hear(&part));
+  for (const BandPart& part : band) add_to(all, steps.receive(&part));
   return all;
 }
 
 double two_step_peak(const EchoContext& context, const ManyEchoes& many, const Recording& recording,
                      double max_doppler) {
   const std::vector<Vec3> one = {Vec3::Zero()};
-  const bool phone = context.scenario.propagation.exact_per_phone;
-  std::vector<Vec3> heard_at = one;
-  if (phone)
-    heard_at[0] =
-        phones_at(context.scenario, context.array, context.ping, context.ping_time).front();
-  const Baseband heard = two_step_echo(context, many, {heard_at, phone}, recording, max_doppler);
-  return heard.channels > 0 ? largest_envelope(heard, 0) : 0.0;
+  const bool phone = context.scenario().propagation.exact_per_phone;
+  std::vector<Vec3> received_at = one;
+  if (phone) received_at[0] = context.geometry.phones(context.array).front();
+  const Baseband received =
+      two_step_echo(context, many, {received_at, phone}, recording, max_doppler);
+  return received.channels > 0 ? largest_envelope(received, 0) : 0.0;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

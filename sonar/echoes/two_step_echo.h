@@ -5,20 +5,20 @@
 #include "sonar/echoes/sparse_sound.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Which of an array's phones hear echoes in two steps.
-struct TwoStepHearers {
+/// Which of an array's phones receive echoes in two steps.
+struct TwoStepReceivers {
   std::span<const Vec3> phones;  ///< [n] from the array's reference point [m]
   bool by_themselves = false;    ///< each by paths of its own, the first n of the array
 };
 
 /// The echoes of a target whose pairs of paths are too many: first the sound at each of its
-/// highlights, by all paths to it, then what the phones hear of that sound, by all paths from it.
-/// Cost and memory grow with the sum of the paths there and back, not with their product.
+/// highlights, by all paths to it, then what the phones receive of that sound, by all paths from
+/// it. Cost and memory grow with the sum of the paths there and back, not with their product.
 ///
 /// Where ranges change at changing rates (or something turns), a leg is straight in time for a
-/// while only: its sound is cut into stretches that fade into one another, each with delays,
+/// while only: its sound is cut into segments that fade into one another, each with delays,
 /// Doppler factors and directions of its own; phases are off by 0.02 rad at most (−34 dB of the
 /// path). What rough boundaries scatter is drawn for each leg by itself.
 /// Source: docs/theory/echoes.md, "Many paths"
@@ -26,7 +26,7 @@ struct TwoStepHearers {
 /// \param band  as wide_band_sound() takes it apart; none: the pulse's centre stands for it
 /// \return [phones] over the pulse's peak at 1 m
 [[nodiscard]] Baseband two_step_echo(const EchoContext& context, const ManyEchoes& many,
-                                     const TwoStepHearers& hearers, const Recording& recording,
+                                     const TwoStepReceivers& receivers, const Recording& recording,
                                      double max_doppler, std::span<const BandPart> band = {});
 
 /// The largest envelope at the array's reference point (at its first phone, where every phone has
@@ -34,4 +34,4 @@ struct TwoStepHearers {
 [[nodiscard]] double two_step_peak(const EchoContext& context, const ManyEchoes& many,
                                    const Recording& recording, double max_doppler);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Of paths that were found, the one that a path is, or that it has become.
@@ -69,8 +69,8 @@ std::complex<double> wave_response(const PropagationPaths& paths, const WaveLeg&
   const Arrivals there = at_place(paths, leg.path, leg.from, leg.to, f, leg.limits);
   const Arrival* same = become(there, leg.path, paths.layered());
   if (same == nullptr) return 0.0;  // too faint there
-  const double turns = std::fmod(f * (same->delay - leg.path.delay), 1.0);
-  return same->amplitude / leg.path.amplitude * std::polar(1.0, -2.0 * pi * turns);
+  const double cycles = std::fmod(f * (same->delay - leg.path.delay), 1.0);
+  return same->amplitude / leg.path.amplitude * std::polar(1.0, -2.0 * pi * cycles);
 }
 
 SampledResponse wave_response(const PropagationPaths& paths, const WaveLeg& leg, double centre,
@@ -79,14 +79,15 @@ SampledResponse wave_response(const PropagationPaths& paths, const WaveLeg& leg,
                           [&](double f) { return wave_response(paths, leg, f); });
 }
 
-std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard,
+std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& received,
                                std::span<const Leg> legs) {
-  const Scenario& scenario = context.scenario;
-  const int channel = heard.heard.channel == Return::all_channels ? -1 : heard.heard.channel;
-  const Carried hearer = channel < 0 ? reference_of(scenario, heard.array)
-                                     : phone_of(scenario, heard.array, context.ping, channel);
-  const Vec3 source = transmitter_at(scenario, context.transmitter, context.ping_time).position,
-             phone = hearer.at(context.ping_time + heard.heard.delay).position;
+  const PingGeometry& geometry = context.geometry;
+  const int channel =
+      received.received.channel == Return::all_channels ? -1 : received.received.channel;
+  const Vec3 source = geometry.source().position,
+             phone = geometry.receiver(received.array, channel)
+                         .at(geometry.time() + received.received.delay)
+                         .position;
   std::vector<WaveLeg> waves;
   const auto add = [&](const Vec3& from, const Vec3& to, const Leg& leg, const Arrival& path) {
     if (path.kind == ArrivalKind::ray) return;
@@ -94,7 +95,7 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
     int bounces = 0;
     for (const Arrival& a : leg.arrivals)
       bounces = std::max({bounces, a.surface_bounces, a.bottom_bounces});
-    const PathLimits limits = limits_of(scenario.propagation, bounces + 2);
+    const PathLimits limits = limits_of(context.scenario().propagation, bounces + 2);
     const Arrivals there = at_place(context.paths, path, from, to, context.frequency, limits);
     if (const Arrival* met = become(there, path, context.paths.layered()))
       if (met->kind != ArrivalKind::ray)
@@ -102,17 +103,17 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
   };
   const auto leg_of = [&](Leg::Kind kind) {
     return std::find_if(legs.begin(), legs.end(), [&](const Leg& leg) {
-      return leg.kind == kind && leg.target == heard.target &&
+      return leg.kind == kind && leg.target == received.target &&
              (kind == Leg::Kind::source_to_target ||
-              (leg.array == heard.array && (leg.channel == channel || leg.channel < 0)));
+              (leg.array == received.array && (leg.channel == channel || leg.channel < 0)));
     });
   };
-  if (heard.target < 0) {  // the blast tells of itself by its angle and length
+  if (received.target < 0) {  // the blast tells of itself by its angle and length
     const auto leg = leg_of(Leg::Kind::source_to_array);
     if (leg == legs.end()) return waves;
     const auto off = [&](const Arrival& a) {
-      return std::abs(a.launch_elevation - heard.colour.elevation) +
-             std::abs(a.path_length / heard.colour.path_length - 1.0);
+      return std::abs(a.launch_elevation - received.response.elevation) +
+             std::abs(a.path_length / received.response.path_length - 1.0);
     };
     const auto path =
         std::min_element(leg->arrivals.begin(), leg->arrivals.end(),
@@ -120,17 +121,16 @@ std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard
     if (path != leg->arrivals.end()) add(source, phone, *leg, *path);
     return waves;
   }
-  const auto& track = scenario.targets[static_cast<std::size_t>(heard.target)].track;
-  const Vec3 target = track.at(context.ping_time + heard.struck).position;
+  const Vec3 target = geometry.target_at(received.target, received.struck).position;
   const auto out = leg_of(Leg::Kind::source_to_target), home = leg_of(Leg::Kind::target_to_array);
   const auto has = [&](auto leg, int path) {
     return leg != legs.end() && static_cast<std::size_t>(path) < leg->arrivals.size();
   };
-  if (has(out, heard.outgoing))
-    add(source, target, *out, out->arrivals[static_cast<std::size_t>(heard.outgoing)]);
-  if (has(home, heard.returning))
-    add(target, phone, *home, home->arrivals[static_cast<std::size_t>(heard.returning)]);
+  if (has(out, received.outgoing))
+    add(source, target, *out, out->arrivals[static_cast<std::size_t>(received.outgoing)]);
+  if (has(home, received.returning))
+    add(target, phone, *home, home->arrivals[static_cast<std::size_t>(received.returning)]);
   return waves;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

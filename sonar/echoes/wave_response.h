@@ -7,7 +7,7 @@
 #include "sonar/echoes/echo.h"
 #include "sonar/signal/band_response.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Frequencies at which a wave's amplitude is computed across a band, at most.
 inline constexpr std::size_t most_wave_frequencies = 33;
@@ -48,7 +48,7 @@ struct WaveLeg {
 
 /// The legs of an echo or a blast that are no rays, met where things are by then. \param legs  that
 /// its paths belong to
-[[nodiscard]] std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& heard,
+[[nodiscard]] std::vector<WaveLeg> wave_legs(const EchoContext& context, const EchoPath& received,
                                              std::span<const Leg> legs);
 
-}  // namespace asdic
+}  // namespace asdic::detail

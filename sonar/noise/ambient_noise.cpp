@@ -9,7 +9,7 @@
 #include "sonar/paths/plane_wave.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::uint32_t before_all = 0x80000000U;  // no ping has that number
@@ -77,7 +77,7 @@ void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {
   if (!settings_.any() || record.pressure.empty()) return;
   const auto ping = static_cast<std::uint32_t>(record.ping);
   if (settings_.plain()) {
-    const double level = *settings_.spectral_level_db;
+    const double level = *settings_.flat_level_db();
     add_white_noise(record.pressure, record.channels,
                     record.recording.is_complex() ? white_baseband_variance(level, rate_)
                                                   : white_noise_variance(level, rate_),
@@ -103,4 +103,4 @@ void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

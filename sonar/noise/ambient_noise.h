@@ -7,7 +7,7 @@
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/recording.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The sea's own noise at all phones of a scenario.
 ///
@@ -40,4 +40,4 @@ class AmbientNoise {
 /// How long the blocks are in which an array's coherent noise is made [s].
 [[nodiscard]] double noise_block(const Scenario& scenario, int array);
 
-}  // namespace asdic
+}  // namespace asdic::detail

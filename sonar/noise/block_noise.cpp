@@ -11,7 +11,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t blocks_at_once = 4;
@@ -232,4 +232,4 @@ void BlockNoise::add_blocks(std::span<float> rows, std::int64_t first, std::uint
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "sonar/noise/noise_coherence.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Which random numbers a noise is made of.
 struct NoiseKey {
@@ -86,4 +86,4 @@ class BlockNoise {
   std::shared_ptr<const CoherenceFactors> factors_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

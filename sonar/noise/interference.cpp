@@ -6,16 +6,16 @@
 #include <complex>
 
 #include "raytrace/parallel/parallel.h"
-#include "sonar/noise/interference_stretch.h"
+#include "sonar/noise/interference_segment.h"
 #include "sonar/signal/fractional_delay.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::int64_t chunk = interference_chunk;
 constexpr double node_spacing = 0.5;  // [s], about
 
-std::complex<double> turns(double cycles) {
+std::complex<double> phasor(double cycles) {
   return std::polar(1.0, 2.0 * pi * (cycles - std::floor(cycles)));
 }
 
@@ -26,40 +26,40 @@ std::complex<double> turns(double cycles) {
 /// the nodes, and how fast that grows   \param at  place of its first sample in the source
 /// \param step  from sample to sample   \param z, turn  phase of the first, and from one to the
 /// next
-void Interference::add_band(const Stretch& path, std::span<const float> source, std::size_t length,
+void Interference::add_band(const Segment& path, std::span<const float> source, std::size_t length,
                             std::array<double, 2> u, double at, double step, std::complex<double> z,
-                            std::complex<double> turn, std::span<std::complex<double>> sum) {
+                            std::complex<double> rotation, std::span<std::complex<double>> sum) {
   static const FractionalDelay interpolate;
   constexpr std::int64_t reach = FractionalDelay::taps;
   const auto last = static_cast<double>(sum.size() - 1);
   const auto first = static_cast<std::int64_t>(std::floor(std::min(at, at + last * step))) - reach;
   const auto end =
       static_cast<std::int64_t>(std::floor(std::max(at, at + last * step))) + reach + 1;
-  std::vector<float> coloured(2 * static_cast<std::size_t>(end - first), 0.0F);
+  std::vector<float> filtered(2 * static_cast<std::size_t>(end - first), 0.0F);
   for (std::size_t k = 0; k < path.band[0].size(); ++k) {
     const std::complex<double> slope = path.band[1][k] - path.band[0][k];
     const float* q = source.data() + k * length + 2 * first;
     for (std::int64_t j = 0; j < end - first; ++j) {
-      // The output's sample that is heard there; amplitudes hardly change from one to the next.
+      // The output's sample that is received there; amplitudes hardly change from one to the next.
       const double i = (static_cast<double>(first + j) - at) / step;
       const std::complex<float> a(path.band[0][k] + (u[0] + i * u[1]) * slope);
       const std::complex<float> product = a * std::complex<float>(q[2 * j], q[2 * j + 1]);
-      coloured[2 * static_cast<std::size_t>(j)] += product.real();
-      coloured[2 * static_cast<std::size_t>(j) + 1] += product.imag();
+      filtered[2 * static_cast<std::size_t>(j)] += product.real();
+      filtered[2 * static_cast<std::size_t>(j) + 1] += product.imag();
     }
   }
-  for (std::size_t i = 0; i < sum.size(); ++i, z *= turn) {
+  for (std::size_t i = 0; i < sum.size(); ++i, z *= rotation) {
     const double place = at + static_cast<double>(i) * step, whole = std::floor(place);
     sum[i] += z * std::complex<double>(
-                      interpolate(coloured.data() + 2 * (static_cast<std::int64_t>(whole) - first),
+                      interpolate(filtered.data() + 2 * (static_cast<std::int64_t>(whole) - first),
                                   static_cast<float>(place - whole)));
   }
 }
 
-std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64_t later) const {
+std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::int64_t later) const {
   const Recording& recording = record.recording;
   if (scenario_.interferers.empty() || recording.samples == 0) return {};
-  std::vector<HeardPath> paths;
+  std::vector<ReceivedPath> paths;
   const bool complex = recording.is_complex();
   const std::size_t width = recording.components();
   Clock clock;
@@ -83,32 +83,34 @@ std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64
       RandomStream draw(scenario_.seed, Draw::ship_tonal, static_cast<std::uint32_t>(k),
                         ship_index);
       tone.push_back(std::numbers::sqrt2 * micropascal *
-                     amplitude_from_db(ship.tonals[k].level_db) * turns(draw.uniform()));
+                     amplitude_from_db(ship.tonals[k].level_db) * phasor(draw.uniform()));
     }
     for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
       const int array = static_cast<int>(a);
       const Carried reference = reference_of(scenario_, array);
-      for (Heard& one : heard_at(ship, array, reference, clock.time(clock.first - later), false)) {
+      for (Received& one :
+           received_at(ship, array, reference, clock.time(clock.first - later), false)) {
         one.path.interferer = static_cast<int>(ship_index);
         paths.push_back(std::move(one.path));
       }
       std::vector<Vec3> phones = phones_at(scenario_, array, record.ping, record.start_time);
-      std::vector<std::vector<Stretch>> heard;  // by all phones together, or by each
+      std::vector<std::vector<Segment>> received;  // by all phones together, or by each
       if (scenario_.propagation.exact_per_phone || !plane_waves(ship, array, record, clock)) {
         for (std::size_t n = 0; n < phones.size(); ++n)
-          heard.push_back(stretches(
+          received.push_back(segments(
               ship, array, phone_of(scenario_, array, record.ping, static_cast<int>(n)), clock));
         std::fill(phones.begin(), phones.end(), Vec3::Zero());
       } else {
-        heard.push_back(stretches(ship, array, reference, clock));
+        received.push_back(segments(ship, array, reference, clock));
       }
-      if (std::all_of(heard.begin(), heard.end(), [](const auto& all) { return all.empty(); }))
+      if (std::all_of(received.begin(), received.end(),
+                      [](const auto& all) { return all.empty(); }))
         continue;
-      // The source's samples that any phone hears.
+      // The source's samples that any phone receives.
       double reach = 0.0, least = infinity, most = -infinity;
       for (const Vec3& phone : phones) reach = std::max(reach, phone.norm() / 1000.0);
-      for (const std::vector<Stretch>& all : heard)
-        for (const Stretch& s : all) {
+      for (const std::vector<Segment>& all : received)
+        for (const Segment& s : all) {
           least = std::min({least, s.delay[0], s.delay[1]});
           most = std::max({most, s.delay[0], s.delay[1]});
         }
@@ -138,15 +140,15 @@ std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64
       const auto per_phone = static_cast<std::size_t>(chunks);
       in_parallel(phones.size() * per_phone, [&](std::size_t task) {
         const std::size_t n = task / per_phone;
-        const std::vector<Stretch>& all = heard[heard.size() > 1 ? n : 0];
+        const std::vector<Segment>& all = received[received.size() > 1 ? n : 0];
         // Whole chunks of the absolute grid, of which the record may want a part.
         const std::int64_t sample =
             (floor_div(clock.first, chunk) + static_cast<std::int64_t>(task % per_phone)) * chunk;
         const std::int64_t node = floor_div(sample, clock.node) * clock.node;
         std::array<std::complex<double>, chunk> sum{};
         const auto [from, to] =
-            std::equal_range(all.begin(), all.end(), Stretch{.begin = node},
-                             [](const Stretch& x, const Stretch& y) { return x.begin < y.begin; });
+            std::equal_range(all.begin(), all.end(), Segment{.begin = node},
+                             [](const Segment& x, const Segment& y) { return x.begin < y.begin; });
         for (auto path = from; path != to; ++path) {
           const double u0 = static_cast<double>(sample - node) / static_cast<double>(clock.node),
                        du = 1.0 / static_cast<double>(clock.node);
@@ -160,21 +162,21 @@ std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64
               path->amplitude[0] + u0 * (path->amplitude[1] - path->amplitude[0]);
           // What the sea's motion has turned since the node, and turns from sample to sample.
           const std::complex<double> moved =
-              turns(path->shift * static_cast<double>(sample - node) / clock.rate);
-          const std::complex<double> moves = turns(path->shift / clock.rate);
+              phasor(path->shift * static_cast<double>(sample - node) / clock.rate);
+          const std::complex<double> moves = phasor(path->shift / clock.rate);
           const double clock_cycles =
               carrier_ * (clock.carrier_zero + static_cast<double>(sample) / clock.rate);
           if (broadband && !band_.empty()) {
             add_band(*path, source, part_length, {u0, du}, left * source_rate_ - double(begin),
                      step * source_rate_,
-                     moved * turns(source_carrier_ * left) * std::conj(turns(clock_cycles)),
-                     moves * turns(source_carrier_ * step - carrier_ / clock.rate), sum);
+                     moved * phasor(source_carrier_ * left) * std::conj(phasor(clock_cycles)),
+                     moves * phasor(source_carrier_ * step - carrier_ / clock.rate), sum);
           } else if (broadband) {
             std::complex<double> z =
-                moved * turns(source_carrier_ * left) * std::conj(turns(clock_cycles));
-            const std::complex<double> turn =
-                moves * turns(source_carrier_ * step - carrier_ / clock.rate);
-            for (std::int64_t i = 0; i < chunk; ++i, z *= turn) {
+                moved * phasor(source_carrier_ * left) * std::conj(phasor(clock_cycles));
+            const std::complex<double> rotation =
+                moves * phasor(source_carrier_ * step - carrier_ / clock.rate);
+            for (std::int64_t i = 0; i < chunk; ++i, z *= rotation) {
               const double at = (left + static_cast<double>(i) * step) * source_rate_;
               const double whole = std::floor(at);
               const std::complex<float> q =
@@ -190,9 +192,9 @@ std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64
               continue;  // outside the recorded band
             const double length = path->length[0] + u0 * (path->length[1] - path->length[0]);
             std::complex<double> z = moved * tone[k] * std::exp(-loss[k] * length) *
-                                     turns(f * left) * std::conj(turns(clock_cycles));
-            const std::complex<double> turn = moves * turns(f * step - carrier_ / clock.rate);
-            for (std::int64_t i = 0; i < chunk; ++i, z *= turn)
+                                     phasor(f * left) * std::conj(phasor(clock_cycles));
+            const std::complex<double> rotation = moves * phasor(f * step - carrier_ / clock.rate);
+            for (std::int64_t i = 0; i < chunk; ++i, z *= rotation)
               sum[static_cast<std::size_t>(i)] += (level + static_cast<double>(i) * slope) * z;
           }
         }
@@ -210,4 +212,4 @@ std::vector<HeardPath> Interference::add(const RecordSamples& record, std::int64
   return paths;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

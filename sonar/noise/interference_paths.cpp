@@ -1,4 +1,4 @@
-// What a scenario's ships send, and the paths along which arrays hear it.
+// What a scenario's ships send, and the paths along which arrays receive it.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "core/geometry.h"
 #include "raytrace/parallel/parallel.h"
 #include "reverb/scatterer_field.h"
-#include "sonar/noise/interference_stretch.h"
+#include "sonar/noise/interference_segment.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/moving_paths.h"
@@ -18,12 +18,12 @@
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 double source_density(const Interferer& ship, double frequency) noexcept {
   double level = -infinity;
   if (ship.table)
-    level = level_db(*ship.table, frequency);
+    level = ship.table->level_at(frequency);
   else if (ship.level_db)
     level =
         *ship.level_db + ship.slope_db_per_decade * std::log10(std::max(frequency, 100.0) / 1000.0);
@@ -40,10 +40,10 @@ std::vector<double> frequencies_of_losses(const Environment& ocean, double low, 
   const double depth = 0.0;
   const double change = longest * (attenuation_np_per_m(ocean, high).at(depth) -
                                    attenuation_np_per_m(ocean, low).at(depth));
-  const int stretches = static_cast<int>(
+  const int segments = static_cast<int>(
       std::clamp(std::ceil(std::abs(change) / straight), double(fewest - 1), double(most - 1)));
   std::vector<double> all;
-  for (int i = 0; i <= stretches; ++i) all.push_back(low + (high - low) * i / stretches);
+  for (int i = 0; i <= segments; ++i) all.push_back(low + (high - low) * i / segments);
   return all;
 }
 
@@ -94,10 +94,11 @@ Interference::Interference(const Scenario& scenario, const PropagationPaths& pat
 }
 
 /// Paths that arrive at a time, delays those from where the ship was when each left it.
-std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, int array,
-                                                        const Carried& hearer, double time,
-                                                        bool across_the_band) const {
-  const Kinematics receiver = hearer.at(time);
+std::vector<Interference::Received> Interference::received_at(const Interferer& ship, int array,
+                                                              const Carried& receiver_point,
+                                                              double time,
+                                                              bool across_the_band) const {
+  const Kinematics receiver = receiver_point.at(time);
   const Bounces followed =
       enough_bounces(paths_, scenario_.propagation, ship.track.at(time).position, receiver.position,
                      frequency_, infinity);
@@ -120,14 +121,14 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
   if (across_the_band)
     for (const double f : band_)
       at_frequencies.push_back(paths_.find(source.position, receiver.position, f, limits));
-  std::vector<Heard> heard;
+  std::vector<Received> received;
   for (const Arrival& path : found) {
     const Vec3 leaving = slowness_vector(way.bearing, path.launch_elevation, c_source);
     const Vec3 arriving = slowness_vector(way.bearing, path.arrival_elevation, c_array);
     // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
     const double along = leaving.dot(source.velocity);
     const double delay = (path.delay - along * (time - left)) / (1.0 - along);
-    Heard one{
+    Received one{
         .path = {.array = array,
                  .delay = delay,
                  .doppler = leg_doppler({source.velocity, leaving}, {receiver.velocity, arriving}),
@@ -144,9 +145,9 @@ std::vector<Interference::Heard> Interference::heard_at(const Interferer& ship, 
       one.band.push_back(same == nullptr ? 0.0 : same->amplitude);
       one.scattered_band.push_back(same == nullptr ? 0.0 : std::sqrt(same->scattered));
     }
-    heard.push_back(std::move(one));
+    received.push_back(std::move(one));
   }
-  return heard;
+  return received;
 }
 
 bool Interference::plane_waves(const Interferer& ship, int array, const RecordSamples& record,
@@ -156,7 +157,7 @@ bool Interference::plane_waves(const Interferer& ship, int array, const RecordSa
   const double begin = clock.time(clock.first), end = clock.time(clock.first + clock.samples);
   const Carried reference = reference_of(scenario_, array);
   for (const double time : {begin, end})
-    for (const Heard& one : heard_at(ship, array, reference, time, false))
+    for (const Received& one : received_at(ship, array, reference, time, false))
       if (!is_plane_wave(here, {.slowness = one.path.slowness,
                                 .length = one.path.path.path_length,
                                 .delay = begin - record.start_time,
@@ -166,13 +167,14 @@ bool Interference::plane_waves(const Interferer& ship, int array, const RecordSa
   return true;
 }
 
-void Interference::scatter(const Interferer& ship, double time, std::vector<Heard>& heard) const {
+void Interference::scatter(const Interferer& ship, double time,
+                           std::vector<Received>& received) const {
   constexpr int most_parts = 8;
   double loudest = 0.0;
-  for (const Heard& one : heard)
+  for (const Received& one : received)
     loudest = std::max(loudest, std::norm(one.path.path.amplitude) + one.path.path.scattered);
   const auto number = static_cast<std::uint64_t>(&ship - scenario_.interferers.data());
-  for (Heard& one : heard) {
+  for (Received& one : received) {
     const Arrival& path = one.path.path;
     if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) continue;
     const double left = time - one.path.delay;
@@ -187,31 +189,31 @@ void Interference::scatter(const Interferer& ship, double time, std::vector<Hear
 /// Between nodes a part's frequency is shifted by the mean of its ends', and by what more turns the
 /// phase of the one into the other's. Where a part is another draw at the other end, one fades out
 /// and the other in.
-void Interference::add_parts(const Heard* one, const Heard* other, std::int64_t begin,
-                             double seconds, std::vector<Stretch>& all) {
-  const auto end = [](const Heard& heard, std::size_t i, double phase, std::size_t side,
-                      Stretch& into) {
-    const ScatteredPart& part = heard.parts[i];
+void Interference::add_parts(const Received* one, const Received* other, std::int64_t begin,
+                             double seconds, std::vector<Segment>& all) {
+  const auto end = [](const Received& received, std::size_t i, double phase, std::size_t side,
+                      Segment& into) {
+    const ScatteredPart& part = received.parts[i];
     const std::complex<double> weight =
-        std::polar(1.0 / std::sqrt(double(heard.parts.size())), phase);
-    into.delay[side] = heard.path.delay + part.delay;
-    into.length[side] = heard.path.path.path_length;
-    into.moveout[side] = slowness_vector(heard.path.bearing + part.bearing,
-                                         heard.path.path.arrival_elevation + part.elevation,
-                                         1.0 / heard.path.moveout.norm());
-    into.amplitude[side] = std::sqrt(heard.path.path.scattered) * weight;
-    for (const double root : heard.scattered_band) into.band[side].push_back(root * weight);
+        std::polar(1.0 / std::sqrt(double(received.parts.size())), phase);
+    into.delay[side] = received.path.delay + part.delay;
+    into.length[side] = received.path.path.path_length;
+    into.moveout[side] = slowness_vector(received.path.bearing + part.bearing,
+                                         received.path.path.arrival_elevation + part.elevation,
+                                         1.0 / received.path.moveout.norm());
+    into.amplitude[side] = std::sqrt(received.path.path.scattered) * weight;
+    for (const double root : received.scattered_band) into.band[side].push_back(root * weight);
   };
   const auto same_draw = [&](const ScatteredPart& a, const ScatteredPart& b) {
     return std::abs(a.shift - b.shift) * seconds < 0.5 &&
            std::abs(a.delay - b.delay) < 1e-5 + 0.2 * std::max(a.delay, b.delay);
   };
-  const auto fades = [&](const Heard& heard, std::size_t i, std::size_t side) {
-    const ScatteredPart& part = heard.parts[i];
-    const double turned = side == 0 ? 0.0 : 2.0 * pi * part.shift * seconds;
-    Stretch s{.begin = begin, .shift = part.shift};
-    end(heard, i, std::arg(part.amplitude) - turned, 0, s);
-    end(heard, i, std::arg(part.amplitude) - turned, 1, s);
+  const auto fades = [&](const Received& received, std::size_t i, std::size_t side) {
+    const ScatteredPart& part = received.parts[i];
+    const double rotated = side == 0 ? 0.0 : 2.0 * pi * part.shift * seconds;
+    Segment s{.begin = begin, .shift = part.shift};
+    end(received, i, std::arg(part.amplitude) - rotated, 0, s);
+    end(received, i, std::arg(part.amplitude) - rotated, 1, s);
     s.amplitude[1 - side] = 0.0;
     for (std::complex<double>& amplitude : s.band[1 - side]) amplitude = 0.0;
     all.push_back(std::move(s));
@@ -228,28 +230,28 @@ void Interference::add_parts(const Heard* one, const Heard* other, std::int64_t 
     const double mean = 0.5 * (a.shift + b.shift), phase = std::arg(a.amplitude);
     const double more = std::arg(b.amplitude * std::conj(a.amplitude) *
                                  std::polar(1.0, -2.0 * pi * mean * seconds));
-    Stretch s{.begin = begin, .shift = mean + more / (2.0 * pi * seconds)};
+    Segment s{.begin = begin, .shift = mean + more / (2.0 * pi * seconds)};
     end(*one, i, phase, 0, s);
     end(*other, i, phase, 1, s);
     all.push_back(std::move(s));
   }
 }
 
-std::vector<Interference::Stretch> Interference::stretches(const Interferer& ship, int array,
-                                                           const Carried& hearer,
-                                                           const Clock& clock) const {
+std::vector<Interference::Segment> Interference::segments(const Interferer& ship, int array,
+                                                          const Carried& receiver_point,
+                                                          const Clock& clock) const {
   const std::int64_t from = floor_div(clock.first, clock.node),
                      to = floor_div(clock.first + clock.samples - 1, clock.node);
   const auto count = static_cast<std::size_t>(to - from + 2);
   const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
-  std::vector<std::vector<Heard>> nodes(count);
+  std::vector<std::vector<Received>> nodes(count);
   in_parallel(count, [&](std::size_t i) {
     const double time = clock.time((from + static_cast<std::int64_t>(i)) * clock.node);
-    nodes[i] = heard_at(ship, array, hearer, time, across_the_band);
+    nodes[i] = received_at(ship, array, receiver_point, time, across_the_band);
     scatter(ship, time, nodes[i]);
   });
   const double seconds = static_cast<double>(clock.node) / clock.rate;
-  std::vector<Stretch> all;
+  std::vector<Segment> all;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;
     std::vector<bool> taken(nodes[i + 1].size(), false);
@@ -257,8 +259,9 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
       for (std::complex<double>& amplitude : amplitudes) amplitude *= there;
       return amplitudes;
     };
-    const auto add = [&](const Heard& one, const Heard& other, double a_there, double b_there) {
-      const HeardPath &a = one.path, &b = other.path;
+    const auto add = [&](const Received& one, const Received& other, double a_there,
+                         double b_there) {
+      const ReceivedPath &a = one.path, &b = other.path;
       all.push_back({.begin = begin,
                      .delay = {a.delay, b.delay},
                      .length = {a.path.path_length, b.path.path_length},
@@ -267,8 +270,8 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
                      .moveout = {a.moveout, b.moveout}});
     };
     Arrivals next;
-    for (const Heard& one : nodes[i + 1]) next.push_back(one.path.path);
-    for (const Heard& one : nodes[i]) {
+    for (const Received& one : nodes[i + 1]) next.push_back(one.path.path);
+    for (const Received& one : nodes[i]) {
       const Arrival* same = same_path(next, one.path.path, paths_.layered());
       const auto at = same == nullptr ? next.size() : static_cast<std::size_t>(same - next.data());
       if (at < next.size() && !taken[at]) {
@@ -289,4 +292,4 @@ std::vector<Interference::Stretch> Interference::stretches(const Interferer& shi
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 double white_noise_variance(double spectral_level_db, double sample_rate) noexcept {
   return power_from_db(spectral_level_db) * 0.5 * sample_rate * micropascal * micropascal;
@@ -35,4 +35,4 @@ void add_white_noise(std::span<float> all, std::size_t channels, double variance
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <span>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Variance of white noise sampled at `sample_rate` [Pa²]: a one-sided spectral level NL fills the
-/// band to half the rate, 10^(NL/10)·fs/2 µPa² (PHYSICS: 40 dB at 16 kHz is 79.0 dB).
+/// band to half the rate, 10^(NL/10)·fs/2 µPa² (40 dB at 16 kHz is 79.0 dB).
 [[nodiscard]] double white_noise_variance(double spectral_level_db, double sample_rate) noexcept;
 
 /// The same in complex baseband, of the real as of the imaginary part: p = Re{b e^{iωt}} has half
@@ -22,4 +22,4 @@ namespace asdic {
 void add_white_noise(std::span<float> all, std::size_t channels, double variance,
                      std::uint64_t seed, std::uint32_t ping);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,9 +7,10 @@
 #include <map>
 #include <optional>
 
+#include "core/settings_key.h"
 #include "raytrace/parallel/parallel.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Matrix = Eigen::MatrixXcd;
@@ -50,7 +51,7 @@ struct Cones {
   }
 };
 
-/// Gauss–Legendre over elevation in every stretch on which the law is smooth, enough nodes for a
+/// Gauss–Legendre over elevation in every segment on which the law is smooth, enough nodes for a
 /// phase of `reach` = k·d radians to be resolved.
 Cones cones_of(NoiseCoherence kind, const NoiseDirections& directions, double reach) {
   std::vector<double> ends;
@@ -259,19 +260,19 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
     made.factor = factor_of(made.gamma);
     return made;
   };
-  // Stretches of about a radian of the longest separation, each then halved as needed.
+  // Segments of about a radian of the longest separation, each then halved as needed.
   const double per_bin = 2.0 * pi * step / sound_speed * separations.reach();
-  const auto stretch = static_cast<std::size_t>(
+  const auto segment = static_cast<std::size_t>(
       std::clamp(std::ceil(1.0 / std::max(per_bin, 1e-9)), 1.0, static_cast<double>(bins)));
   const std::size_t last = bins - 1,
-                    stretches = std::max<std::size_t>(1, (last + stretch - 1) / stretch);
+                    segments = std::max<std::size_t>(1, (last + segment - 1) / segment);
   const std::size_t pairs = phones_ * (phones_ + 1) / 2;
-  std::vector<std::vector<Packed>> found(stretches);
-  in_parallel(stretches, [&](std::size_t s) {
-    Node left = node(s * stretch);
+  std::vector<std::vector<Packed>> found(segments);
+  in_parallel(segments, [&](std::size_t s) {
+    Node left = node(s * segment);
     found[s].push_back(packed(left));
     std::vector<Node> waiting;  // right ends, the nearest last
-    waiting.push_back(node(std::min(last, (s + 1) * stretch)));
+    waiting.push_back(node(std::min(last, (s + 1) * segment)));
     while (!waiting.empty()) {
       const Node& right = waiting.back();
       if (right.bin > left.bin + 1) {
@@ -286,8 +287,8 @@ CoherenceFactors::CoherenceFactors(NoiseCoherence kind, const NoiseDirections& d
       }
       left = std::move(waiting.back());
       waiting.pop_back();
-      // A stretch's right end is the next one's first node.
-      if (!waiting.empty() || (s + 1 == stretches && left.bin > found[s].back().bin))
+      // A segment's right end is the next one's first node.
+      if (!waiting.empty() || (s + 1 == segments && left.bin > found[s].back().bin))
         found[s].push_back(packed(left));
     }
   });
@@ -321,14 +322,11 @@ std::shared_ptr<const CoherenceFactors> CoherenceFactors::recalled(
                                               bins);
   };
   if (memory == nullptr) return made();
-  const auto& [dipole_exponent, elevation, level_db] = directions;
-  ExactKey key(Kept::noise_factors, static_cast<std::uint64_t>(kind));
-  key.add_all(dipole_exponent, elevation, level_db, sound_speed, first, step, bins);
+  ExactKey key(Kept::noise_factors, 0);
+  add_settings(key, NoiseField{kind, directions});
+  key.add_all(sound_speed, first, step, bins);
   for (const Vec3& phone : phones) key.add(phone);
-  if (auto known = memory->find<CoherenceFactors>(key)) return known;
-  auto fresh = made();
-  const std::size_t bytes = fresh->bytes();
-  return memory->keep(key, std::move(fresh), bytes);
+  return memory->remember(key, made);
 }
 
 std::size_t CoherenceFactors::bytes() const noexcept {
@@ -348,4 +346,4 @@ void CoherenceFactors::element(std::size_t row, std::size_t column, std::size_t 
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

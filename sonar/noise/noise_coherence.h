@@ -8,7 +8,7 @@
 #include "core/propagation_memory.h"
 #include "sonar/scenario/noise_settings.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Coherence of the noise at phone i with that at phone j, E[P_i P_j*]/E|P|² (time dependence
 /// e^{+iωt}), of a field that is alike at all bearings:
@@ -64,4 +64,4 @@ class CoherenceFactors {
   std::vector<std::complex<float>> factor_;  // [pairs × nodes], pair = row(row + 1)/2 + column
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double least_level_db = -150.0;  // of what no ray brings
@@ -128,14 +128,14 @@ NoiseDirections surface_noise(const Environment& ocean, double depth, double dip
     }
     add(b, b_db);
   };
-  constexpr int stretches = 18;  // on either side; the horizontal belongs to both
+  constexpr int segments = 18;  // on either side; the horizontal belongs to both
   for (const double side : {-1.0, 1.0}) {
     const double least = side < 0.0 ? -0.5 * pi : 0.5 * narrowest,
                  most = side < 0.0 ? -0.5 * narrowest : 0.5 * pi;
     double from = least, from_db = rays.level_db(from);
     add(from, from_db);
-    for (int i = 1; i <= stretches; ++i) {
-      const double to = std::lerp(least, most, double(i) / stretches), to_db = rays.level_db(to);
+    for (int i = 1; i <= segments; ++i) {
+      const double to = std::lerp(least, most, double(i) / segments), to_db = rays.level_db(to);
       between(between, from, from_db, to, to_db);
       from = to, from_db = to_db;
     }
@@ -159,11 +159,11 @@ NoiseField noise_field(const Scenario& scenario, int array) {
       varies_with_range(scenario.environment))
     return field;
   const double frequency = Pulse(pulse_of(scenario, 0)).centre_frequency();
-  constexpr double heard = 1e-3;
-  if (sent_up(scenario.environment, frequency).share < heard) return field;
+  constexpr double received = 1e-3;
+  if (sent_up(scenario.environment, frequency).share < received) return field;
   return {NoiseCoherence::profile,
           surface_noise(scenario.environment, array_at(scenario, array, 0.0).position.z(),
                         asked.directions.dipole_exponent, frequency)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

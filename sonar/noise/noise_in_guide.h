@@ -2,16 +2,10 @@
 #include "sonar/scenario/noise_settings.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// How noise is related from phone to phone, and where it comes from.
-struct NoiseField {
-  NoiseCoherence coherence = NoiseCoherence::independent;
-  NoiseDirections directions;
-};
-
-/// Power per solid angle of a sheet of sources just under the surface of a stratified ocean, heard
-/// at a depth, over elevation ε (positive: from above):
+/// Power per solid angle of a sheet of sources just under the surface of a stratified ocean,
+/// received at a depth, over elevation ε (positive: from above):
 ///
 ///   w(ε) = sin^{2m−1}θ_s·a/(1 − |R_s|²|R_b|²a²b²),    w(−ε) = w(ε)·|R_b|²b²
 ///
@@ -32,7 +26,7 @@ struct SentUp {
 [[nodiscard]] SentUp sent_up(const Environment& ocean, double frequency);
 
 /// As the scenario asks for it at one of its arrays: a sheet under the surface over a level bottom
-/// that sends up a thousandth or more is heard in its guide, at the first pulse's centre.
+/// that sends up a thousandth or more is received in its guide, at the first pulse's centre.
 [[nodiscard]] NoiseField noise_field(const Scenario& scenario, int array);
 
-}  // namespace asdic
+}  // namespace asdic::detail

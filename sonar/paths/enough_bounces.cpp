@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 // Bounces that are tried at most where no time ends.
@@ -41,29 +41,29 @@ PathLimits limits_of(const PropagationSettings& settings, const Bounces& enough)
   return limits_of(settings, std::max(enough.surface, enough.bottom));
 }
 
-EnergyByBounces::EnergyByBounces(std::size_t stretches, double latest, int most, double floor)
+EnergyByBounces::EnergyByBounces(std::size_t segments, double latest, int most, double floor)
     : latest_(latest),
       most_(most),
       floor_(floor),
-      energy_(stretches * static_cast<std::size_t>(most + 1), 0.0) {}
+      energy_(segments * static_cast<std::size_t>(most + 1), 0.0) {}
 
 void EnergyByBounces::add(double delay, int bounces, double energy) {
   if (delay > latest_) return;
   // Of many bounces one path stands for those around it, up to a twentieth more (cycles_told_by).
   any_has_most_ = any_has_most_ || bounces >= most_ - most_ / 16;
-  const std::size_t row = static_cast<std::size_t>(most_) + 1, stretches = energy_.size() / row;
+  const std::size_t row = static_cast<std::size_t>(most_) + 1, segments = energy_.size() / row;
   const double share = std::isfinite(latest_) ? delay / latest_ : 0.0;
-  const auto stretch = static_cast<std::size_t>(share * static_cast<double>(stretches));
-  energy_[std::min(stretch, stretches - 1) * row +
+  const auto segment = static_cast<std::size_t>(share * static_cast<double>(segments));
+  energy_[std::min(segment, segments - 1) * row +
           static_cast<std::size_t>(std::clamp(bounces, 0, most_))] += energy;
 }
 
 double EnergyByBounces::left_out_db(int bounces) const {
   const auto row = static_cast<std::ptrdiff_t>(most_) + 1;
   double worst = 0.0;
-  for (auto stretch = energy_.begin(); stretch != energy_.end(); stretch += row) {
+  for (auto segment = energy_.begin(); segment != energy_.end(); segment += row) {
     double kept = 0.0, missing = 0.0;
-    for (int n = 0; n <= most_; ++n) (n <= bounces ? kept : missing) += stretch[n];
+    for (int n = 0; n <= most_; ++n) (n <= bounces ? kept : missing) += segment[n];
     if (missing > floor_) worst = std::max(worst, missing_db(missing, kept + missing));
   }
   return worst;
@@ -72,12 +72,12 @@ double EnergyByBounces::left_out_db(int bounces) const {
 int EnergyByBounces::enough(double db) const {
   const auto row = static_cast<std::ptrdiff_t>(most_) + 1;
   int bounces = std::min(fewest_bounces, most_);
-  for (auto stretch = energy_.begin(); stretch != energy_.end(); stretch += row) {
-    const double all = std::accumulate(stretch, stretch + row, 0.0);
+  for (auto segment = energy_.begin(); segment != energy_.end(); segment += row) {
+    const double all = std::accumulate(segment, segment + row, 0.0);
     double missing = 0.0;  // of those of more bounces than n
     int n = most_;
     for (; n > bounces; --n) {
-      const double more = missing + stretch[n];
+      const double more = missing + segment[n];
       if (more > floor_ && missing_db(more, all) > db) break;
       missing = more;
     }
@@ -99,26 +99,26 @@ PropagationSettings unlimited(const PropagationSettings& settings) noexcept {
   return open;
 }
 
-void HeardBounces::add(double delay, int surface, int bottom, double energy) {
+void ReceivedBounces::add(double delay, int surface, int bottom, double energy) {
   const bool beyond = surface > asked_.surface || bottom > asked_.bottom;
   by_most_.add(delay, std::max(surface, bottom), energy);
   by_numbers_.add(delay, beyond ? 1 : 0, energy);
 }
 
 Bounces search_bounces(const PropagationSettings& settings, const BounceSearch& search,
-                       const std::function<void(const PathLimits&, HeardBounces&)>& look) {
+                       const std::function<void(const PathLimits&, ReceivedBounces&)>& look) {
   const bool numbers = in_numbers(settings);
   for (int most = std::min(search.first, search.most);; most = std::min(2 * most, search.most)) {
     const Bounces asked = as_asked(settings, most);
-    HeardBounces heard(search.stretches, search.latest, most, search.floor, asked);
-    look(limits_of(unlimited(settings), most), heard);
-    const EnergyByBounces& by_most = heard.by_most();
+    ReceivedBounces received(search.segments, search.latest, most, search.floor, asked);
+    look(limits_of(unlimited(settings), most), received);
+    const EnergyByBounces& by_most = received.by_most();
     const bool converged = by_most.converged(search.tolerance_db);
     if (!converged && most < search.most) continue;
     const int bounces = by_most.enough(search.tolerance_db);
     Bounces followed = numbers ? asked : as_asked(settings, bounces);
     followed.left_out_db =
-        numbers ? heard.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
+        numbers ? received.by_numbers().left_out_db(0) : by_most.estimate_db(bounces, converged);
     return followed;
   }
 }
@@ -133,11 +133,12 @@ Bounces enough_bounces(const PropagationPaths& paths, const PropagationSettings&
                                                       : most_over_slopes,
                             .tolerance_db = 0.5 * negligible_db,  // an echo has two legs
                             .latest = latest};
-  return search_bounces(settings, search, [&](PathLimits limits, HeardBounces& heard) {
+  return search_bounces(settings, search, [&](PathLimits limits, ReceivedBounces& received) {
     limits.max_delay = latest;
     limits.diffraction = false;  // it has no bounces
     for (const Arrival& a : paths.find(from, to, frequency, limits))
-      heard.add(a.delay, a.surface_bounces, a.bottom_bounces, std::norm(a.amplitude) + a.scattered);
+      received.add(a.delay, a.surface_bounces, a.bottom_bounces,
+                   std::norm(a.amplitude) + a.scattered);
   });
 }
 
@@ -159,4 +160,4 @@ std::string lacking(const PropagationSettings& settings, const Bounces& followed
   return text;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Bounces off either boundary that "auto" follows at least.
 inline constexpr int fewest_bounces = 3;
@@ -26,16 +26,16 @@ inline constexpr double negligible_db = 0.05, tolerable_db = 0.1;
 /// as many paths are held.
 inline constexpr int most_over_slopes = 96, most_between_places = 768;
 
-/// What reaches a place or comes back from the ground, in stretches of delay (or of whatever else
+/// What reaches a place or comes back from the ground, in segments of delay (or of whatever else
 /// may miss it), by the bounces of the path that has more of them.
 class EnergyByBounces {
  public:
-  /// \param latest  end of the last stretch [s]   \param most  bounces   \param floor  what may be
-  /// missing of a stretch whatever is heard there
-  EnergyByBounces(std::size_t stretches, double latest, int most, double floor);
+  /// \param latest  end of the last segment [s]   \param most  bounces   \param floor  what may be
+  /// missing of a segment whatever is received there
+  EnergyByBounces(std::size_t segments, double latest, int most, double floor);
 
   void add(double delay, int bounces, double energy);
-  /// What is missing of the stretch that misses most, if no more bounces are followed [dB]: 0 where
+  /// What is missing of the segment that misses most, if no more bounces are followed [dB]: 0 where
   /// that is below the floor.
   [[nodiscard]] double left_out_db(int bounces) const;
   /// The fewest bounces, from fewest_bounces on, that leave out no more [dB].
@@ -54,15 +54,15 @@ class EnergyByBounces {
   int most_;
   double floor_;
   bool any_has_most_ = false;
-  std::vector<double> energy_;  // [stretches × (most + 1)]
+  std::vector<double> energy_;  // [segments × (most + 1)]
 };
 
-/// What a search for bounces has heard: of all paths, and of those beyond the numbers asked for.
-class HeardBounces {
+/// What a search for bounces has received: of all paths, and of those beyond the numbers asked for.
+class ReceivedBounces {
  public:
-  HeardBounces(std::size_t stretches, double latest, int most, double floor, const Bounces& asked)
-      : by_most_(stretches, latest, most, floor),
-        by_numbers_(stretches, latest, 1, floor),
+  ReceivedBounces(std::size_t segments, double latest, int most, double floor, const Bounces& asked)
+      : by_most_(segments, latest, most, floor),
+        by_numbers_(segments, latest, 1, floor),
         asked_(asked) {}
 
   void add(double delay, int surface, int bottom, double energy);
@@ -79,14 +79,14 @@ struct BounceSearch {
   int first = 2 * fewest_bounces;  ///< tried first, then twice as many
   int most = 768;                  ///< tried at most
   double tolerance_db = negligible_db;
-  std::size_t stretches = 1;
-  double latest = std::numeric_limits<double>::infinity();  ///< end of the stretches
+  std::size_t segments = 1;
+  double latest = std::numeric_limits<double>::infinity();  ///< end of the segments
   double floor = 0.0;                                       ///< as of EnergyByBounces
 };
 
 /// Whether the settings say how many off either boundary.
 [[nodiscard]] bool in_numbers(const PropagationSettings& settings) noexcept;
-/// What is asked for; where that is in numbers, without them: what there is to be heard.
+/// What is asked for; where that is in numbers, without them: what there is to be received.
 [[nodiscard]] PropagationSettings unlimited(const PropagationSettings& settings) noexcept;
 /// Bounces that the settings ask for, of which nothing is estimated.
 [[nodiscard]] Bounces as_asked(const PropagationSettings& settings,
@@ -100,7 +100,7 @@ struct BounceSearch {
 /// \param look  adds what there is within limits
 [[nodiscard]] Bounces search_bounces(
     const PropagationSettings& settings, const BounceSearch& search,
-    const std::function<void(const PathLimits&, HeardBounces&)>& look);
+    const std::function<void(const PathLimits&, ReceivedBounces&)>& look);
 
 /// What a user should know of a sound that lacks bounces, in one line; "" where next to nothing is
 /// missing. \param sound  "an echo"
@@ -115,4 +115,4 @@ struct BounceSearch {
                                      const Vec3& to, double frequency, double latest,
                                      bool judged = false);
 
-}  // namespace asdic
+}  // namespace asdic::detail

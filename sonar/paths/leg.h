@@ -1,7 +1,7 @@
 #pragma once
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Eigenrays of one leg of the way.
 struct Leg {
@@ -15,4 +15,4 @@ struct Leg {
   Arrivals arrivals;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

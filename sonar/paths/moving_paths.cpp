@@ -6,7 +6,7 @@
 
 #include "core/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// When a path that starts at `start` reaches the end of its way, which has moved since the
@@ -137,4 +137,4 @@ MetPath MovingPaths::meet(const Vec3& from, double start, const Track& track, co
   return met;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,22 +5,23 @@
 #include "sonar/paths/leg.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Unit vector of travel over the local speed of sound [s/m].
 [[nodiscard]] Vec3 slowness_vector(double bearing, double elevation, double sound_speed);
 
-/// The slowness of a front as an array that moves meets it, s/(1 − s·v): its phone at x hears what
-/// the reference point hears s'·x later, having moved meanwhile.
+/// The slowness of a front as an array that moves meets it, s/(1 − s·v): its phone at x receives
+/// what the reference point receives s'·x later, having moved meanwhile.
 [[nodiscard]] inline Vec3 met_by(const Vec3& velocity, const Vec3& slowness) noexcept {
   return slowness / (1.0 - slowness.dot(velocity));
 }
 
-/// How much later the echo of a moving body's point at x is heard than that of its reference point,
-/// as a vector a: a·x, fronts being plane. The front that passes the reference point with the
-/// slowness s_in meets the point δ = s_in·x/(1 − s_in·v_T) later, v_T·δ farther on; what that sends
-/// back with s_out comes δ(1 − s_out·v_T) − s_out·x later to a place at rest, and a phone that
-/// moves meets it η_R = 1/(1 − s_R·v_R) times as much later. Source: docs/theory/target.md, eq. (2)
+/// How much later the echo of a moving body's point at x is received than that of its reference
+/// point, as a vector a: a·x, fronts being plane. The front that passes the reference point with
+/// the slowness s_in meets the point δ = s_in·x/(1 − s_in·v_T) later, v_T·δ farther on; what that
+/// sends back with s_out comes δ(1 − s_out·v_T) − s_out·x later to a place at rest, and a phone
+/// that moves meets it η_R = 1/(1 − s_R·v_R) times as much later. Source: docs/theory/target.md,
+/// eq. (2)
 struct BodyLag {
   Vec3 into = Vec3::Zero(), out = Vec3::Zero();  ///< slownesses at the body [s/m]
   Vec3 at_phone = Vec3::Zero();
@@ -97,4 +98,4 @@ class MovingPaths {
   Reuse* reuse_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

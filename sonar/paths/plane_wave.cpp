@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 double speed_at(const Scenario& scenario, const Vec3& place) {
   const double along = scenario.transect.range_of(place.x(), place.y());
@@ -53,4 +53,4 @@ bool is_plane_wave(const Listening& here, const Front& front) {
   return plane_wave_error(here, front) * front.highest_frequency <= periods;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

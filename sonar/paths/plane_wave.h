@@ -1,7 +1,8 @@
 #pragma once
 #include "sonar/scenario/carried.h"
+#include "sonar/scenario/ping_geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Of sound [m/s].
 [[nodiscard]] double speed_at(const Scenario& scenario, const Vec3& place);
@@ -13,6 +14,11 @@ struct Listening {
   int ping = 1;            ///< of the run, counted from 1
   double ping_time = 0.0;  ///< whose shape is kept, since the start of the scenario [s]
 };
+
+/// An array that listens to a ping.
+[[nodiscard]] inline Listening listening(const PingGeometry& geometry, int array) {
+  return {geometry.scenario(), array, geometry.ping(), geometry.time()};
+}
 
 /// A front that passes it.
 struct Front {
@@ -40,7 +46,7 @@ struct Front {
                                       const Carried& point, PhoneRange phones);
 
 /// Whether that is less than a hundredth of a period (0.063 rad). Where it is not, phones are to
-/// hear paths of their own.
+/// receive paths of their own.
 [[nodiscard]] bool is_plane_wave(const Listening& here, const Front& front);
 
-}  // namespace asdic
+}  // namespace asdic::detail

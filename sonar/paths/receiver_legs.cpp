@@ -2,7 +2,7 @@
 
 #include "sonar/paths/delay_curve.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The straight way that a track takes at a time, drawn on to another.
@@ -26,8 +26,8 @@ std::vector<ReceiverLeg> receiver_legs(const Track& track, double start, double 
       legs.push_back({.until = until - 0.5 * pulse, .line = line});
     from = until;
   };
-  for (const double turn : turns_of(track, start))
-    if (turn > 0.0 && turn < latest + pulse) add(turn);
+  for (const double change : course_changes_of(track, start))
+    if (change > 0.0 && change < latest + pulse) add(change);
   add(latest + 2.0 * pulse);
   if (legs.size() == 1) legs.clear();
   return legs;
@@ -39,4 +39,4 @@ Kinematics sent_from(const Track& track, double start, double pulse) {
   return way.velocity == at_once.velocity ? at_once : way;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,24 +8,24 @@
 #include "reverb/doppler_span.h"
 #include "sonar/paths/returns.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Some returns, and what they are across the band.
 struct ReturnBlock {
   Returns returns;
-  /// [returns × colours] amplitude at each of the synthesizer's frequencies; empty: it has one, and
-  /// that is Return::amplitude.
-  std::vector<std::complex<float>> colours;
+  /// [returns × responses] amplitude at each of the synthesizer's frequencies; empty: it has one,
+  /// and that is Return::amplitude.
+  std::vector<std::complex<float>> responses;
 
   void clear() noexcept {
     returns.clear();
-    colours.clear();
+    responses.clear();
   }
 };
 
-/// Returns that are made when they are laid down, block by block, and forgotten then: what memory
-/// they take does not grow with their number. Blocks and their order belong to what is heard, not
-/// to threads.
+/// Returns that are made when they are gridded, block by block, and forgotten then: what memory
+/// they take does not grow with their number. Blocks and their order belong to what is received,
+/// not to threads.
 class ReturnSource {
  public:
   virtual ~ReturnSource() = default;
@@ -34,7 +34,7 @@ class ReturnSource {
   [[nodiscard]] virtual std::size_t expected(std::size_t block) const = 0;
   /// Called by several threads at once. \param into  empty; its memory is used again
   virtual void make(std::size_t block, ReturnBlock& into) const = 0;
-  /// Stretches that hold every return's Doppler factor.
+  /// Segments that hold every return's Doppler factor.
   [[nodiscard]] virtual std::vector<DopplerSpan> dopplers() const = 0;
 };
 
@@ -62,4 +62,4 @@ class ReturnList final : public ReturnSource {
   std::span<const Return> returns_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,12 +4,12 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One sparse return: what reaches the array along one path from one echo or one scatterer.
 ///
-/// A phone at x hears Re{amplitude · s₊(doppler·(t − τ))}, τ = delay + slowness·(x − reference) (a
-/// plane wave).
+/// A phone at x receives Re{amplitude · s₊(doppler·(t − τ))}, τ = delay + slowness·(x − reference)
+/// (a plane wave).
 struct Return {
   double delay =
       0.0;  ///< of the leading edge at the array's reference point, from the ping's start [s]
@@ -20,11 +20,11 @@ struct Return {
                                  ///< over 1 − s·v for an array that
                                  ///< moves [s/m]
   int channel =
-      all_channels;  ///< the one phone that hears it (exact per-phone eigenrays), or all of them
+      all_channels;  ///< the one phone that receives it (exact per-phone eigenrays), or all of them
 
   static constexpr int all_channels = -1;
 };
 
 using Returns = std::vector<Return>;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t most_oceans = 16;
@@ -39,4 +39,4 @@ std::shared_ptr<const PropagationPaths> SharedPropagation::paths(const Environme
   return oceans_.front();
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

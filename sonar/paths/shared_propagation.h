@@ -6,7 +6,7 @@
 
 #include "raytrace/places/propagation_paths.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Propagation that simulators of one ocean share, so that a study or a served session traces
 /// nothing twice: the ocean's solver, eigenrays between places, the paths from places to scattering
@@ -43,4 +43,4 @@ class SharedPropagation {
   std::list<Paths> oceans_;  // the latest used first
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "sonar/noise/noise_spectrum.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 LevelMeter::LevelMeter(const Recording& recording) {
   const double duration = static_cast<double>(recording.samples) / recording.sample_rate;
@@ -22,23 +22,24 @@ void LevelMeter::add_noise(double variance) {
   for (float& value : series_.noise) value += static_cast<float>(variance);
 }
 
-void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<float>& into) const {
-  if (heard.channels == 0) return;
+void LevelMeter::add(const Baseband& received, double peak_pressure,
+                     std::vector<float>& into) const {
+  if (received.channels == 0) return;
   const auto step_of = [&](std::size_t i) {
-    return std::min(
-        into.size() - 1,
-        static_cast<std::size_t>(static_cast<double>(i) / heard.sample_rate / series_.time_step));
+    return std::min(into.size() - 1,
+                    static_cast<std::size_t>(static_cast<double>(i) / received.sample_rate /
+                                             series_.time_step));
   };
-  const double step_samples = heard.sample_rate * series_.time_step;
+  const double step_samples = received.sample_rate * series_.time_step;
   std::array<float, 1024> squares;  // of the channels' real and imaginary parts, added up
   constexpr std::size_t block = squares.size() / 2;
   std::size_t begin = 0, end = 0, step = 0;  // samples of a step
   double power = 0.0;                        // of those so far
-  for (std::size_t first = 0; first < heard.recorded; first += block) {
-    const std::size_t count = std::min(block, heard.recorded - first);
+  for (std::size_t first = 0; first < received.recorded; first += block) {
+    const std::size_t count = std::min(block, received.recorded - first);
     squares.fill(0.0F);
-    for (std::size_t n = 0; n < heard.channels; ++n) {
-      const auto* parts = reinterpret_cast<const float*>(heard.channel(n).data() + first);
+    for (std::size_t n = 0; n < received.channels; ++n) {
+      const auto* parts = reinterpret_cast<const float*>(received.channel(n).data() + first);
       for (std::size_t j = 0; j < 2 * count; ++j) squares[j] += parts[j] * parts[j];
     }
     for (std::size_t i = first; i < first + count;) {
@@ -46,9 +47,9 @@ void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<fl
         begin = i;
         step = step_of(begin);
         end = std::clamp(static_cast<std::size_t>(static_cast<double>(step + 1) * step_samples),
-                         begin + 1, heard.recorded);
+                         begin + 1, received.recorded);
         while (end > begin + 1 && step_of(end - 1) != step) --end;
-        while (end < heard.recorded && step_of(end) == step) ++end;
+        while (end < received.recorded && step_of(end) == step) ++end;
         power = 0.0;
       }
       const std::size_t until = std::min(end, first + count);
@@ -57,7 +58,7 @@ void LevelMeter::add(const Baseband& heard, double peak_pressure, std::vector<fl
       // mean square of a tone is half its envelope's square
       if (i == end)
         into[step] += static_cast<float>(0.5 * peak_pressure * peak_pressure * power /
-                                         static_cast<double>(heard.channels * (end - begin)));
+                                         static_cast<double>(received.channels * (end - begin)));
     }
   }
 }
@@ -71,9 +72,9 @@ double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& p
                       double source_level_db) {
   double first = infinity, last = -infinity, slowest = 1.0;
   for (const EchoPath* echo : echoes) {
-    first = std::min(first, echo->heard.delay);
-    last = std::max(last, echo->heard.delay);
-    slowest = std::min(slowest, echo->heard.doppler);
+    first = std::min(first, echo->received.delay);
+    last = std::max(last, echo->received.delay);
+    slowest = std::min(slowest, echo->received.doppler);
   }
   last += pulse.duration() / slowest;
   const auto steps =
@@ -83,7 +84,8 @@ double peak_of_sum_db(const std::vector<const EchoPath*>& echoes, const Pulse& p
     const double t = first + (last - first) * i / steps;
     std::complex<double> sum = 0.0;
     for (const EchoPath* echo : echoes)
-      sum += echo->heard.amplitude * pulse.analytic(echo->heard.doppler * (t - echo->heard.delay));
+      sum += echo->received.amplitude *
+             pulse.analytic(echo->received.doppler * (t - echo->received.delay));
     peak = std::max(peak, std::abs(sum));
   }
   return source_level_db + db_from_amplitude(peak);
@@ -113,28 +115,29 @@ std::vector<TargetSummary> summarise(
     row.noise_db = noise_band_db(scenario.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
     if (strongest != nullptr) {
       row.array = strongest->array;
-      std::vector<const EchoPath*> heard;
+      std::vector<const EchoPath*> received;
       for (const EchoPath& echo : record.echoes) {
         if (echo.target != static_cast<int>(i) || echo.array != row.array) continue;
         ++row.paths;
-        if (echo.heard.channel == Return::all_channels || echo.heard.channel == 0)
-          heard.push_back(&echo);
+        if (echo.received.channel == Return::all_channels || echo.received.channel == 0)
+          received.push_back(&echo);
       }
       for (const EchoPath& part : record.scattered)
         if (part.target == static_cast<int>(i) && part.array == row.array &&
-            (part.heard.channel == Return::all_channels || part.heard.channel == 0))
-          heard.push_back(&part);
+            (part.received.channel == Return::all_channels || part.received.channel == 0))
+          received.push_back(&part);
       const auto many = std::find_if(
           record.many_echoes.begin(), record.many_echoes.end(), [&](const ManyEchoes& one) {
             return one.target == static_cast<int>(i) && one.array == row.array;
           });
       const bool listed = many == record.many_echoes.end();
       if (!listed) row.paths = static_cast<int>(std::min<std::size_t>(many->pairs, 1'000'000'000));
-      row.echo_time = strongest->heard.delay;
+      row.echo_time = strongest->received.delay;
       row.echo_level_db = strongest->level_db;
-      row.reverberation_db = reverberation_db(
-          row.array, strongest->heard.delay + 0.5 * pulse.duration() / strongest->heard.doppler);
-      row.echo_peak_db = listed ? peak_of_sum_db(heard, pulse, source_level_db)
+      row.reverberation_db =
+          reverberation_db(row.array, strongest->received.delay +
+                                          0.5 * pulse.duration() / strongest->received.doppler);
+      row.echo_peak_db = listed ? peak_of_sum_db(received, pulse, source_level_db)
                                 : source_level_db + db_from_amplitude(many->peak);
       row.signal_excess_db = row.echo_peak_db - db_from_power(power_from_db(row.reverberation_db) +
                                                               power_from_db(row.noise_db));
@@ -144,4 +147,4 @@ std::vector<TargetSummary> summarise(
   return summary;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,35 +7,35 @@
 #include "sonar/signal/pulse.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Mean-square pressure over all phones in steps of time, the parts of the sound told apart.
+/// Mean-square pressure over all phones in steps of time, the parts of the sound resolved.
 class LevelMeter {
  public:
   explicit LevelMeter(const Recording& recording);
 
   /// \param peak_pressure  of the source at 1 m [Pa], the unit of the baseband
-  void add_echo(const Baseband& heard, double peak_pressure) {
-    add(heard, peak_pressure, series_.echo);
+  void add_echo(const Baseband& received, double peak_pressure) {
+    add(received, peak_pressure, series_.echo);
   }
-  void add_reverberation(const Baseband& heard, double peak_pressure) {
-    add(heard, peak_pressure, series_.reverberation);
+  void add_reverberation(const Baseband& received, double peak_pressure) {
+    add(received, peak_pressure, series_.reverberation);
   }
   void add_noise(double variance);  ///< of every sample [Pa²]
 
   [[nodiscard]] LevelSeries series() const { return series_; }
 
  private:
-  void add(const Baseband& heard, double peak_pressure, std::vector<float>& into) const;
+  void add(const Baseband& received, double peak_pressure, std::vector<float>& into) const;
 
   LevelSeries series_;
 };
 
-/// What a ping's echoes come to, one per target: the strongest path pair, at the array that hears
-/// it, against reverberation and noise at its time. \param reverberation_db  expected level at an
-/// array at a time [dB re 1 µPa]
+/// What a ping's echoes come to, one per target: the strongest path pair, at the array that
+/// receives it, against reverberation and noise at its time. \param reverberation_db  expected
+/// level at an array at a time [dB re 1 µPa]
 [[nodiscard]] std::vector<TargetSummary> summarise(
     const PingRecord& record, const Scenario& scenario, const Pulse& pulse,
     const std::function<double(int array, double time)>& reverberation_db);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,19 +8,19 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/warnings/wave_warnings.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-Bounces PingSimulator::judged_echoes(const Transmission& sent, int array) const {
-  const double frequency = pulse(sent.transmitter).centre_frequency();
-  const Vec3 source = transmitter_at(scenario_, sent.transmitter, sent.time).position,
-             receiver = array_at(scenario_, array, sent.time).position;
+Bounces PingSimulator::judged_echoes(const PingGeometry& geometry, int array) const {
+  const double frequency = pulse(geometry.sent().transmitter).centre_frequency();
+  const Vec3 &source = geometry.source().position,
+             &receiver = geometry.reference_place(array).position;
   const auto judged = [&](const Vec3& from, const Vec3& to) {
     return enough_bounces(*paths_, scenario_.propagation, from, to, frequency,
                           end_of_record(scenario_), true);
   };
   Bounces all;
-  for (const Target& target : scenario_.targets) {
-    const Vec3 place = target.track.at(sent.time).position;
+  for (int t = 0; t < static_cast<int>(scenario_.targets.size()); ++t) {
+    const Vec3 place = geometry.target_at(t, 0.0).position;
     Bounces legs = judged(source, place);
     const Bounces back = judged(place, receiver);
     const double both = legs.left_out_db + back.left_out_db;
@@ -31,9 +31,8 @@ Bounces PingSimulator::judged_echoes(const Transmission& sent, int array) const 
   return all;
 }
 
-Bounces PingSimulator::judged_reverberation(const Transmission& sent, int array) const {
-  const Emission emission = emit(sent);
-  PingRecord record = blank_record(1, sent);
+Bounces PingSimulator::judged_reverberation(const Emission& emission, int array) const {
+  PingRecord record = blank_record(emission.geometry);
   MemoryBudget budget = budget_;
   ReverberationContext context = reverberation_context(emission, array, record, {}, {}, &budget);
   context.judged = true;
@@ -47,11 +46,12 @@ PingSimulator::JudgedPaths PingSimulator::judge_paths() {
     const auto first = std::find_if(transmissions_.begin(), transmissions_.end(),
                                     [&](const Transmission& s) { return s.transmitter == t; });
     if (first == transmissions_.end()) continue;
+    const Emission emission = emit(*first, 1);
     for (int a = 0; a < static_cast<int>(scenario_.arrays.size()); ++a) {
-      echoes.include(judged_echoes(*first, a));
-      for (std::string& text : wave_warnings(scenario_, *paths_, *first, pulse(t), a))
+      echoes.include(judged_echoes(emission.geometry, a));
+      for (std::string& text : wave_warnings(emission.geometry, *paths_, pulse(t), a))
         add_warnings({std::move(text)}, judged.warnings);
-      if (scenario_.reverberation.enabled) reverberated.include(judged_reverberation(*first, a));
+      if (scenario_.reverberation.enabled) reverberated.include(judged_reverberation(emission, a));
     }
   }
   judged.followed.include(reverberated);
@@ -63,4 +63,4 @@ PingSimulator::JudgedPaths PingSimulator::judge_paths() {
   return judged;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

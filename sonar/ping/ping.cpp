@@ -26,7 +26,7 @@
 #include "sonar/scenario/transmitter.h"
 #include "sonar/synthesis/sound_synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t most_patch_rows = 2000;
@@ -41,13 +41,13 @@ double end_of(const Recording& recording) {
   return recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
 }
 
-/// Of echoes by many paths: a sound as long as the record at the target, and what is heard of it,
-/// in a period of three records, before and after the transform.
-MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& heard) {
+/// Of echoes by many paths: a sound as long as the record at the target, and what is received of
+/// it, in a period of three records, before and after the transform.
+MemoryNeed two_step_need(const ManyEchoes& many, const Baseband& received) {
   return {.where = "pings.recording_duration",
           .what = "echoes by " + std::to_string(many.pairs) + " pairs of paths on " +
-                  std::to_string(heard.channels) + " phones",
-          .bytes = 6.0 * static_cast<double>(heard.values.size() + 4 * heard.samples) *
+                  std::to_string(received.channels) + " phones",
+          .bytes = 6.0 * static_cast<double>(received.values.size() + 4 * received.samples) *
                    sizeof(std::complex<float>),
           .remedy =
               "a shorter record, fewer phones or numbers in propagation.max_surface_bounces and "
@@ -60,7 +60,7 @@ PingSimulator::PingSimulator(Scenario scenario, const std::shared_ptr<SharedProp
                              MemoryBudget budget)
     : scenario_(std::move(scenario)),
       budget_(std::move(budget)),
-      transmissions_(asdic::transmissions(scenario_)),
+      transmissions_(asdic::detail::transmissions(scenario_)),
       paths_(paths_of(scenario_, shared.get(), known_ocean_)),
       noise_(scenario_, *paths_),
       interference_(scenario_, *paths_),
@@ -84,24 +84,23 @@ Transmitter PingSimulator::transmitter(int ping) const {
 
 double PingSimulator::ground_spacing() const { return reverberation_->ground_spacing(); }
 
-PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const {
+PingRecord PingSimulator::blank_record(const PingGeometry& geometry) const {
+  const Transmission& sent = geometry.sent();
   const PingSchedule& schedule = scenario_.pings;
   PingRecord record;
   record.reuse = {.ocean = known_ocean_,
                   .reverberation = scenario_.reverberation.enabled,
                   .expected_level = scenario_.reverberation.enabled};
-  record.ping = ping;
+  record.ping = geometry.ping();
   record.transmitter = sent.transmitter;
   record.start_time = sent.time;
   record.elevation = sent.elevation;
-  record.platform = transmitter_at(scenario_, sent.transmitter, sent.time);
-  for (const Target& target : scenario_.targets)
-    record.targets.push_back(target.track.at(sent.time));
-  for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
-    const Vec3 reference = array_at(scenario_, static_cast<int>(a), sent.time).position;
-    for (const Vec3& phone : phones_at(scenario_, static_cast<int>(a), ping, sent.time))
-      record.phones.push_back(reference + phone);
-  }
+  record.platform = geometry.source();
+  for (int t = 0; t < static_cast<int>(scenario_.targets.size()); ++t)
+    record.targets.push_back(geometry.target_at(t, 0.0));
+  for (int a = 0; a < static_cast<int>(scenario_.arrays.size()); ++a)
+    for (const Vec3& phone : geometry.phones(a))
+      record.phones.push_back(geometry.reference_place(a).position + phone);
   record.recording = recording_of(scenario_);
   if (schedule.continuous) record.recording.epoch = sent.time;
   return record;
@@ -110,7 +109,7 @@ PingRecord PingSimulator::blank_record(int ping, const Transmission& sent) const
 /// Echoes, source → target × target → array, and the ping itself on its way to the array.
 std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
                                                     PingRecord& record) const {
-  std::vector<EchoPath> heard;
+  std::vector<EchoPath> received;
   for (std::size_t i = 0; i < scenario_.targets.size(); ++i) {
     const Target& target = scenario_.targets[i];
     if (record.ping < target.first_ping || record.ping > target.last_ping) continue;
@@ -124,31 +123,27 @@ std::vector<EchoPath> PingSimulator::sparse_returns(const EchoContext& context,
     }
     for (Leg& leg : found.legs) record.legs.push_back(std::move(leg));
     for (const EchoPath& echo : found.echoes) {
-      if (found.at_phones.empty()) heard.push_back(echo);
+      if (found.at_phones.empty()) received.push_back(echo);
       record.echoes.push_back(echo);
     }
-    heard.insert(heard.end(), found.at_phones.begin(), found.at_phones.end());
-    heard.insert(heard.end(), found.scattered.begin(), found.scattered.end());
+    received.insert(received.end(), found.at_phones.begin(), found.at_phones.end());
+    received.insert(received.end(), found.scattered.begin(), found.scattered.end());
     record.scattered.insert(record.scattered.end(), found.scattered.begin(), found.scattered.end());
   }
-  const auto platform_of = [](const auto& list, int i) {
-    return list[static_cast<std::size_t>(i)].platform;
-  };
-  const bool own = platform_of(scenario_.transmitters, context.transmitter) ==
-                   platform_of(scenario_.arrays, context.array);
+  const bool own = context.geometry.is_own(context.array);
   if (own ? scenario_.propagation.fathometer : scenario_.propagation.direct_blast) {
     DirectBlast blast = direct_blast(context);
     record.bounces.include(blast.bounces);
     for (Leg& leg : blast.legs) record.legs.push_back(std::move(leg));
-    heard.insert(heard.end(), blast.heard.begin(), blast.heard.end());
+    received.insert(received.end(), blast.received.begin(), blast.received.end());
   }
-  return heard;
+  return received;
 }
 
-/// Of the targets whose pairs of paths are too many to be laid down one by one.
+/// Of the targets whose pairs of paths are too many to be gridded one by one.
 void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& emission,
                                     std::span<const Vec3> phones, const PingRecord& record,
-                                    Baseband& heard) const {
+                                    Baseband& received) const {
   for (const ManyEchoes& many : record.many_echoes) {
     if (many.array != context.array) continue;
     std::vector<BandPart> band;
@@ -161,32 +156,27 @@ void PingSimulator::add_many_echoes(const EchoContext& context, const Emission& 
     }
     const Baseband more = two_step_echo(context, many, {phones, many.at_phones}, record.recording,
                                         max_doppler_, band);
-    if (more.channels > 0) add_resampled(more, heard);
+    if (more.channels > 0) add_resampled(more, received);
   }
 }
 
-PingSimulator::Emission PingSimulator::emit(const Transmission& sent) const {
+PingSimulator::Emission PingSimulator::emit(const Transmission& sent, int ping) const {
+  PingGeometry geometry(scenario_, sent, ping);
   Transmitter projector = projector_of(scenario_, sent);
   const Pulse& sent_pulse = pulse(sent.transmitter);
   const double frequency = sent_pulse.centre_frequency();
-  const double local_speed =
-      paths_->speed_at(transmitter_at(scenario_, sent.transmitter, sent.time).position);
-  const double heading = platform_heading(scenario_, projector.platform, sent.time);
-  BeamPattern pattern(projector, local_speed / frequency, local_speed, heading);
-  return {sent, std::move(projector), sent_pulse, std::move(pattern)};
+  const double local_speed = paths_->speed_at(geometry.source().position);
+  BeamPattern pattern(projector, local_speed / frequency, local_speed, geometry.source_heading());
+  return {std::move(geometry), std::move(projector), sent_pulse, std::move(pattern)};
 }
 
 EchoContext PingSimulator::echo_context(const Emission& emission, int array,
                                         PingRecord& record) const {
   return {.paths = *paths_,
-          .scenario = scenario_,
+          .geometry = emission.geometry,
           .pattern = emission.pattern,
           .frequency = emission.pulse.centre_frequency(),
-          .ping_time = emission.sent.time,
-          .transmitter = emission.sent.transmitter,
           .array = array,
-          .ping = record.ping,
-          .turn = emission.sent.turn,
           .pulse = &emission.pulse,
           .reuse = &record.reuse};
 }
@@ -197,19 +187,17 @@ ReverberationContext PingSimulator::reverberation_context(const Emission& emissi
                                                           std::span<const Vec3> phones,
                                                           std::span<const BandPoint> band,
                                                           MemoryBudget* budget) const {
-  return {.pattern = emission.pattern,
+  return {.geometry = emission.geometry,
+          .pattern = emission.pattern,
           .pulse = emission.pulse,
-          .transmitter = emission.sent.transmitter,
           .array = array,
-          .time = emission.sent.time,
-          .ping = static_cast<std::uint32_t>(record.ping),
           .latest = latest_,  // whatever part of the record is made
           .reuse = &record.reuse,
           .phones = phones,
           .band = band,
           .budget = budget,
           .drifts = true,
-          .heard_once = one_ping_ && scenario_.arrays.size() == 1};
+          .received_once = one_ping_ && scenario_.arrays.size() == 1};
 }
 
 PingReverberation PingSimulator::reverberation(const Emission& emission, int array,
@@ -223,42 +211,37 @@ PingReverberation PingSimulator::reverberation(const Emission& emission, int arr
 }
 
 /// The whole array, with what plane waves of reverberation would be wrong at its worst phone.
-PhoneGroups PingSimulator::plane_wave_fit(const Emission& emission, int array,
-                                          const PingRecord& record) const {
-  const Listening here{
-      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
-  return one_group(here, front_of_reverberation(here, emission),
-                   reverberation_point(scenario_, emission.sent.transmitter, array, here.ping_time,
-                                       emission.pulse.centre_frequency()));
+PhoneGroups PingSimulator::plane_wave_fit(const Emission& emission, int array) const {
+  return one_group(listening(emission.geometry, array), front_of_reverberation(emission, array),
+                   emission.geometry.reverberation_point(array, emission.pulse.centre_frequency()));
 }
 
-Front PingSimulator::front_of_reverberation(const Listening& here, const Emission& emission) const {
+Front PingSimulator::front_of_reverberation(const Emission& emission, int array) const {
   return nearest_reverberation(
-      here, emission.sent.transmitter, emission.pulse.duration(),
+      emission.geometry, array, emission.pulse.duration(),
       emission.pulse.centre_frequency() + 0.5 * emission.pulse.bandwidth_40db());
 }
 
-/// The parts of an array that hear reverberation by themselves: every phone where that is asked
-/// for, else those that plane waves fit. Where its covariance or sectors are drawn, all hear it
-/// together; streams are spheres; and groups lay down no more returns than are allowed one by one.
+/// The parts of an array that receive reverberation by themselves: every phone where that is asked
+/// for, else those that plane waves fit. Where its covariance or sectors are drawn, all receive it
+/// together; streams are spheres; and groups grid no more returns than are allowed one by one.
 PhoneGroups PingSimulator::reverberation_groups(const Emission& emission, int array,
-                                                const PingRecord& record, PhoneGroups whole,
-                                                const PingReverberation& heard) const {
-  if (heard.fields().empty()) return {};
-  const Listening here{
-      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = emission.sent.time};
-  const Front front = front_of_reverberation(here, emission);
+                                                PhoneGroups whole,
+                                                const PingReverberation& received) const {
+  if (received.fields().empty()) return {};
+  const Listening here = listening(emission.geometry, array);
+  const Front front = front_of_reverberation(emission, array);
   if (scenario_.propagation.exact_per_phone) return phone_groups(here, front, infinity, 0.0);
-  if (heard.streams() != nullptr && heard.covariance() == nullptr && heard.blocks() == 0)
+  if (received.streams() != nullptr && received.covariance() == nullptr && received.blocks() == 0)
     whole.error = 0.0;
-  if (heard.covariance() != nullptr || !(heard.one_by_one() > 0.0) ||
+  if (received.covariance() != nullptr || !(received.one_by_one() > 0.0) ||
       whole.error <= reverberation_periods)
     return whole;
   const auto most = static_cast<double>(scenario_.reverberation.most_returns);
-  return phone_groups(here, front, most / heard.one_by_one());
+  return phone_groups(here, front, most / received.one_by_one());
 }
 
-/// Reverberation as groups of phones hear it where they are, from the same scatterers.
+/// Reverberation as groups of phones receive it where they are, from the same scatterers.
 Baseband PingSimulator::sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
                                       int array, PingRecord& record, const PhoneGroups& groups,
                                       std::span<const BandPoint> band,
@@ -268,8 +251,7 @@ Baseband PingSimulator::sea_of_groups(const Synthesizer& synthesizer, const Emis
     MemoryBudget own = budget;
     ReverberationContext context = reverberation_context(emission, array, record, {}, band, &own);
     context.point = middle_of(scenario_, array, record.ping, part);
-    const std::vector<Vec3> phones =
-        phones_from(*context.point, scenario_, array, record.ping, emission.sent.time);
+    const std::vector<Vec3> phones = emission.geometry.phones_from(*context.point, array);
     const PingReverberation sea = reverberation_->ping(context);
     append_channels(all, sea.blocks() > 0 ? synthesizer.baseband(sea, std::span(phones).subspan(
                                                                           part.first, part.count))
@@ -281,23 +263,23 @@ Baseband PingSimulator::sea_of_groups(const Synthesizer& synthesizer, const Emis
 PingRecord PingSimulator::levels(int ping) const {
   Stopwatch watch;
   paths_->memory().next_ping();
-  const Emission emission = emit(transmission(ping));
-  PingRecord record = blank_record(ping, emission.sent);
+  const Emission emission = emit(transmission(ping), ping);
+  PingRecord record = blank_record(emission.geometry);
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     EchoContext context = echo_context(emission, static_cast<int>(a), record);
     context.listens = false;
     sparse_returns(context, record);
   }
   record.timings.eigenrays = watch.lap();
-  std::map<int, PingReverberation> heard;  // by array, where an echo is strongest
+  std::map<int, PingReverberation> received;  // by array, where an echo is strongest
   record.summary = summarise(record, scenario_, emission.pulse, [&](int array, double time) {
-    auto at = heard.find(array);
-    if (at == heard.end()) {
+    auto at = received.find(array);
+    if (at == received.end()) {
       MemoryBudget budget = budget_;
       ReverberationContext context =
           reverberation_context(emission, array, record, {}, {}, &budget);
       context.level_alone = true;
-      at = heard.emplace(array, reverberation_->ping(context)).first;
+      at = received.emplace(array, reverberation_->ping(context)).first;
     }
     record.bounces.include(at->second.bounces());
     return at->second.expected_db(time);
@@ -309,8 +291,9 @@ PingRecord PingSimulator::levels(int ping) const {
 PingRecord PingSimulator::sound(int ping, const Transmission& sent, const ChoosePart& part) const {
   Stopwatch watch;
   paths_->memory().next_ping();
-  const Emission emission = emit(sent);
-  PingRecord record = blank_record(ping, sent);
+  const Emission emission = emit(sent, ping);
+  const PingGeometry& geometry = emission.geometry;
+  PingRecord record = blank_record(geometry);
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
   std::vector<std::vector<EchoPath>> sparse;  // [arrays]
@@ -327,16 +310,16 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
                                micropascal;  // at 1 m [Pa]
   const Synthesizer synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory());
   std::optional<ReverberationBand> band;
-  std::optional<Synthesizer> coloured;
+  std::optional<Synthesizer> filtered;
   if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
     band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
                  platform_heading(scenario_, emission.projector.platform, sent.time),
                  emission.pulse.centre_frequency(), synthesizer.half_band(),
                  end_of(record.recording));
-    coloured.emplace(emission.pulse, record.recording, max_doppler_, band->filters());
+    filtered.emplace(emission.pulse, record.recording, max_doppler_, band->filters());
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
-  budget.take(synthesis_need(coloured ? *coloured : synthesizer));
+  budget.take(synthesis_need(filtered ? *filtered : synthesizer));
   const std::size_t samples =
       record.phones.size() * record.recording.samples * record.recording.components();
   record.pressure.reserve(samples);
@@ -349,11 +332,11 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   thread_local std::vector<std::complex<float>> used_before;
   constexpr std::size_t few = std::size_t{1} << 19;
   LevelMeter levels(record.recording);
-  Baseband heard, reverberated;              // of all channels
+  Baseband received, reverberated;           // of all channels
   std::vector<PingReverberation> scattered;  // [arrays]
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     const int array = static_cast<int>(a);
-    const std::vector<Vec3> phones = phones_at(scenario_, array, ping, sent.time);
+    const std::vector<Vec3>& phones = geometry.phones(array);
     const EchoContext context = echo_context(emission, array, record);
     Baseband of_array = scenario_.propagation.wide_band
                             ? wide_band_sound(context, emission.projector, sparse[a], record.legs,
@@ -362,14 +345,12 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     for (const ManyEchoes& many : record.many_echoes)
       if (many.array == array) budget.take(two_step_need(many, of_array));
     add_many_echoes(context, emission, phones, record, of_array);
-    append_channels(heard, std::move(of_array));
+    append_channels(received, std::move(of_array));
     record.timings.synthesis += watch.lap();
     const auto points = band ? band->points() : std::span<const BandPoint>();
-    const std::vector<Vec3> around =
-        phones_from(reverberation_point(scenario_, sent.transmitter, array, sent.time,
-                                        emission.pulse.centre_frequency()),
-                    scenario_, array, ping, sent.time);
-    const PhoneGroups whole = plane_wave_fit(emission, array, record);
+    const std::vector<Vec3> around = geometry.phones_from(
+        geometry.reverberation_point(array, emission.pulse.centre_frequency()), array);
+    const PhoneGroups whole = plane_wave_fit(emission, array);
     const bool plane = whole.error <= reverberation_periods;
     // A line that bends while it listens has phones with velocities of their own.
     const bool drawn =
@@ -382,9 +363,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     if (a == 0) record.patches = scattered.back().rows(most_patch_rows, &paths_->memory()).rows;
     record.timings.patches += watch.lap();
     if (scenario_.reverberation.enabled) {
-      const Synthesizer& voice = coloured ? *coloured : synthesizer;
-      const PhoneGroups groups =
-          reverberation_groups(emission, array, record, whole, scattered.back());
+      const Synthesizer& voice = filtered ? *filtered : synthesizer;
+      const PhoneGroups groups = reverberation_groups(emission, array, whole, scattered.back());
       record.plane_waves.groups =
           std::max(record.plane_waves.groups, static_cast<int>(groups.parts.size()));
       record.plane_waves.error = std::max(record.plane_waves.error, groups.error);
@@ -409,18 +389,18 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     }
     record.timings.synthesis += watch.lap();
   }
-  levels.add_echo(heard, peak_pressure);
+  levels.add_echo(received, peak_pressure);
   levels.add_reverberation(reverberated, peak_pressure);
-  if (reverberated.samples == heard.samples)
-    std::transform(reverberated.values.begin(), reverberated.values.end(), heard.values.begin(),
-                   heard.values.begin(), std::plus<>{});
+  if (reverberated.samples == received.samples)
+    std::transform(reverberated.values.begin(), reverberated.values.end(), received.values.begin(),
+                   received.values.begin(), std::plus<>{});
   else if (reverberated.channels > 0) {  // on a grid of its own
     receivers_.respond(reverberated);
     synthesizer.add_samples(reverberated, peak_pressure, record.pressure);
   }
   if (reverberated.values.size() <= few) used_before = std::move(reverberated.values);
-  receivers_.respond(heard);
-  synthesizer.add_samples(heard, peak_pressure, record.pressure);
+  receivers_.respond(received);
+  synthesizer.add_samples(received, peak_pressure, record.pressure);
   record.timings.synthesis += watch.lap();
 
   levels.add_noise(noise_.recorded_power());
@@ -448,4 +428,4 @@ PingRecord PingSimulator::simulate(int ping, const Transmission& sent) const {
   return record;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

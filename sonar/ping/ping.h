@@ -14,11 +14,12 @@
 #include "sonar/ping/receiver_electronics.h"
 #include "sonar/reverberation/phone_groups.h"
 #include "sonar/reverberation/reverberation.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmission.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Some of the samples of a record.
 struct SampleRange {
@@ -51,11 +52,12 @@ class PingSimulator {
   /// of noise and scatterers. The whole where the part would not be alike: of receivers that ring,
   /// of a stream, where the sender blanks it, and without noise. \param part  is asked once
   [[nodiscard]] PingRecord simulate(int ping, const ChoosePart& part) const;
-  /// From now on nobody compares what is heard with another ping, or another array: a realisation
-  /// has one ping. Scatterers that keep their weights are then drawn as those that do not.
-  void hears_one_ping() noexcept { one_ping_ = true; }
-  /// The same before noise, blanking and the receivers: what is heard of this ping alone. Streams
-  /// add these up (sonar/ping/stream.h) and complete() the sum.
+  /// From now on nobody compares what is received with another ping, or another array: a
+  /// realisation has one ping. Scatterers that keep their weights are then drawn as those that do
+  /// not.
+  void receives_one_ping() noexcept { one_ping_ = true; }
+  /// The same before noise, blanking and the receivers: what is received of this ping alone.
+  /// Streams add these up (sonar/ping/stream.h) and complete() the sum.
   [[nodiscard]] PingRecord sound(int ping) const { return sound(ping, transmission(ping)); }
   [[nodiscard]] PingRecord sound(int ping, const Transmission& sent,
                                  const ChoosePart& part = {}) const;
@@ -99,20 +101,20 @@ class PingSimulator {
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
 
  private:
-  [[nodiscard]] PingRecord blank_record(int ping, const Transmission& sent) const;
+  [[nodiscard]] PingRecord blank_record(const PingGeometry& geometry) const;
   /// Echoes and direct blasts, also put into the record with their legs.
   std::vector<EchoPath> sparse_returns(const EchoContext& context, PingRecord& record) const;
-  /// What a ping is for all who hear it.
+  /// What a ping is for all who receive it.
   struct Emission {
-    const Transmission& sent;
+    PingGeometry geometry;
     Transmitter projector;
     const Pulse& pulse;
     BeamPattern pattern;
   };
-  [[nodiscard]] Emission emit(const Transmission& sent) const;
+  [[nodiscard]] Emission emit(const Transmission& sent, int ping) const;
   void add_many_echoes(const EchoContext& context, const Emission& emission,
                        std::span<const Vec3> phones, const PingRecord& record,
-                       Baseband& heard) const;
+                       Baseband& received) const;
   [[nodiscard]] EchoContext echo_context(const Emission& emission, int array,
                                          PingRecord& record) const;
   [[nodiscard]] ReverberationContext reverberation_context(const Emission& emission, int array,
@@ -124,18 +126,17 @@ class PingSimulator {
                                                 PingRecord& record, std::span<const Vec3> phones,
                                                 std::span<const BandPoint> band,
                                                 MemoryBudget budget, bool plane_waves = true) const;
-  [[nodiscard]] Front front_of_reverberation(const Listening& here, const Emission& emission) const;
-  [[nodiscard]] PhoneGroups plane_wave_fit(const Emission& emission, int array,
-                                           const PingRecord& record) const;
+  [[nodiscard]] Front front_of_reverberation(const Emission& emission, int array) const;
+  [[nodiscard]] PhoneGroups plane_wave_fit(const Emission& emission, int array) const;
   [[nodiscard]] PhoneGroups reverberation_groups(const Emission& emission, int array,
-                                                 const PingRecord& record, PhoneGroups whole,
-                                                 const PingReverberation& heard) const;
+                                                 PhoneGroups whole,
+                                                 const PingReverberation& received) const;
   [[nodiscard]] Baseband sea_of_groups(const Synthesizer& synthesizer, const Emission& emission,
                                        int array, PingRecord& record, const PhoneGroups& groups,
                                        std::span<const BandPoint> band,
                                        const MemoryBudget& budget) const;
-  [[nodiscard]] Bounces judged_echoes(const Transmission& sent, int array) const;
-  [[nodiscard]] Bounces judged_reverberation(const Transmission& sent, int array) const;
+  [[nodiscard]] Bounces judged_echoes(const PingGeometry& geometry, int array) const;
+  [[nodiscard]] Bounces judged_reverberation(const Emission& emission, int array) const;
   [[nodiscard]] double most_samples() const;
   [[nodiscard]] MemoryNeed synthesis_need(const Synthesizer& synthesizer) const;
   [[nodiscard]] std::vector<float> surroundings(const PingRecord& record, std::int64_t first,
@@ -168,4 +169,4 @@ struct PingOptions {
 int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
               const PingOptions& options = {});
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stopwatch.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Noise and ships at the phones in samples first … of a record that may lie outside of it.
 std::vector<float> PingSimulator::surroundings(const PingRecord& record, std::int64_t first,
@@ -32,7 +32,7 @@ void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* c
     record.interference = interference_.add(record.samples());
     noise_.add(record.samples());
   } else {  // the sound of the ping has passed the receivers; this has to as well
-    std::vector<float> heard =
+    std::vector<float> received =
         std::exchange(record.pressure, std::vector<float>(record.pressure.size(), 0.0F));
     const auto ahead = static_cast<std::int64_t>(receivers_.ahead(record.recording));
     ReceiverElectronics::Carried own;
@@ -41,15 +41,15 @@ void PingSimulator::complete(PingRecord& record, ReceiverElectronics::Carried* c
     record.interference = interference_.add(record.samples(), ahead);
     noise_.add(record.samples(), ahead);
     receivers_.respond(record.pressure, record.recording, *carried);
-    std::transform(heard.begin(), heard.end(), record.pressure.begin(), record.pressure.begin(),
-                   std::plus<>{});
+    std::transform(received.begin(), received.end(), record.pressure.begin(),
+                   record.pressure.begin(), std::plus<>{});
   }
   if (scenario_.pings.blanking) blank(record);
   receivers_.convert(record.pressure, record.recording);
   record.timings.noise += watch.lap();
 }
 
-/// Nothing is heard on a platform while one of its transmitters sends: this ping's own or, in a
+/// Nothing is received on a platform while one of its transmitters sends: this ping's own or, in a
 /// stream, that of any other ping that falls into this part of it.
 void PingSimulator::blank(PingRecord& record) const {
   const Recording& recording = record.recording;
@@ -74,19 +74,19 @@ void PingSimulator::blank(PingRecord& record) const {
     }
   };
   silence(record.transmitter, 0.0);
-  if (!scenario_.pings.continuous) return;  // such a record hears no other ping
+  if (!scenario_.pings.continuous) return;  // such a record receives no other ping
   double longest = 0.0;
   for (std::size_t t = 0; t < scenario_.transmitters.size(); ++t)
     longest = std::max(longest, pulse(static_cast<int>(t)).duration());
-  const double heard = static_cast<double>(recording.samples) / recording.sample_rate;
+  const double received = static_cast<double>(recording.samples) / recording.sample_rate;
   const auto since = [&](const Transmission& sent) { return sent.time - record.start_time; };
   const auto own = transmissions_.begin() + (record.ping - 1);
   for (auto sent = own; sent != transmissions_.begin() && since(*std::prev(sent)) > -longest;) {
     --sent;
     silence(sent->transmitter, since(*sent));
   }
-  for (auto sent = std::next(own); sent != transmissions_.end() && since(*sent) < heard; ++sent)
+  for (auto sent = std::next(own); sent != transmissions_.end() && since(*sent) < received; ++sent)
     silence(sent->transmitter, since(*sent));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

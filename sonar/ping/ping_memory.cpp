@@ -10,7 +10,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/synthesis/synthesis_bytes.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 MemoryNeed record_need(const Scenario& scenario, double samples, const std::string& where) {
   const bool complex = scenario.pings.samples == Samples::baseband;
@@ -55,22 +55,19 @@ MemoryNeed PingSimulator::synthesis_need(const Synthesizer& synthesizer) const {
 }
 
 MemoryBudget PingSimulator::memory(int ping) const {
-  const Transmission& sent = transmission(ping);
-  const Emission emission = emit(sent);
-  PingRecord record = blank_record(ping, sent);
+  const Emission emission = emit(transmission(ping), ping);
+  PingRecord record = blank_record(emission.geometry);
   MemoryBudget budget = budget_;
   budget.take(record_need(scenario_, most_samples()));
   budget.take(synthesis_need(
       Synthesizer(emission.pulse, record.recording, max_doppler_, paths_->memory())));
   if (!scenario_.reverberation.enabled) return budget;
-  MemoryBudget largest = budget;  // of the arrays, which are heard one after the other
+  MemoryBudget largest = budget;  // of the arrays, which are received one after the other
   for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
     MemoryBudget of_array = budget;
     const int array = static_cast<int>(a);
-    const std::vector<Vec3> phones =
-        phones_from(reverberation_point(scenario_, sent.transmitter, array, sent.time,
-                                        emission.pulse.centre_frequency()),
-                    scenario_, array, ping, sent.time);
+    const std::vector<Vec3> phones = emission.geometry.phones_from(
+        emission.geometry.reverberation_point(array, emission.pulse.centre_frequency()), array);
     reverberation_->take_memory(
         reverberation_context(emission, array, record, phones, {}, &of_array));
     if (of_array.taken() > largest.taken()) largest = std::move(of_array);
@@ -78,4 +75,4 @@ MemoryBudget PingSimulator::memory(int ping) const {
   return largest;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include "core/memory_budget.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What the samples of a ping's record take: once, and while a stream or receivers that are not
 /// flat work on them again.
@@ -12,4 +12,4 @@ namespace asdic {
 [[nodiscard]] MemoryNeed record_need(const Scenario& scenario, double samples,
                                      const std::string& where = "pings.recording_duration");
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,17 +4,17 @@
 
 #include "raytrace/places/reuse.h"
 #include "sonar/echoes/echo_path.h"
-#include "sonar/noise/heard_path.h"
+#include "sonar/noise/received_path.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/leg.h"
 #include "sonar/reverberation/patch_row.h"
 #include "sonar/scenario/track.h"
 #include "sonar/signal/recording.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Mean-square pressure over the phones against time, with the parts told apart: what comes of this
-/// ping alone, whatever of others is heard in its record. [n] each [Pa²]
+/// Mean-square pressure over the phones against time, with the parts resolved: what comes of this
+/// ping alone, whatever of others is received in its record. [n] each [Pa²]
 struct LevelSeries {
   double time_step = 0.05;  ///< [s]
   std::vector<float> echo, reverberation, noise;
@@ -23,10 +23,10 @@ struct LevelSeries {
 struct TargetSummary {
   std::string name;
   bool present = false;
-  int array = 0;               ///< that hears the strongest pair: all that follows is heard there
-  int paths = 0;               ///< path pairs
-  double echo_time = 0.0;      ///< of the strongest pair [s]
-  double echo_level_db = 0.0;  ///< of the strongest pair [dB re 1 µPa]
+  int array = 0;           ///< that receives the strongest pair: all that follows is received there
+  int paths = 0;           ///< path pairs
+  double echo_time = 0.0;  ///< of the strongest pair [s]
+  double echo_level_db = 0.0;     ///< of the strongest pair [dB re 1 µPa]
   double reverberation_db = 0.0;  ///< expected level at that time [dB re 1 µPa]
   double noise_db = 0.0;          ///< in the pulse's band [dB re 1 µPa]
   double echo_peak_db = 0.0;  ///< all paths together, as they add at the array's reference point:
@@ -46,13 +46,13 @@ struct BandFit {
   double error = 0.0;  ///< of absorption times √σ between them, over its largest value
 };
 
-/// By what plane waves reverberation is heard (sonar/reverberation/phone_groups.h).
+/// By what plane waves reverberation is received (sonar/reverberation/phone_groups.h).
 struct PlaneWaveFit {
   int groups = 1;      ///< of phones, each about a point of its own, in the array that has most
   double error = 0.0;  ///< of the nearest scatterers' fronts at the worst phone [periods]
 };
 
-/// Everything about one ping: what the phones heard, and the truth behind it.
+/// Everything about one ping: what the phones received, and the truth behind it.
 struct PingRecord {
   int ping = 1;             ///< counted from 1
   int transmitter = 0;      ///< that sent it, an index
@@ -68,7 +68,7 @@ struct PingRecord {
   std::vector<EchoPath> scattered;      ///< what rough boundaries scatter about the echoes' paths
   std::vector<ManyEchoes> many_echoes;  ///< of which `echoes` lists the loudest
   std::vector<PatchRow> patches;
-  std::vector<HeardPath> interference;
+  std::vector<ReceivedPath> interference;
   LevelSeries levels;
   std::vector<TargetSummary> summary;
   Timings timings;
@@ -87,4 +87,4 @@ struct PingRecord {
   }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

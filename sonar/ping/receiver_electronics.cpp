@@ -8,7 +8,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 double drawn(const Scenario& scenario, Draw purpose, std::size_t channel) {
@@ -100,17 +100,17 @@ std::size_t ReceiverElectronics::ahead(const Recording& recording) const noexcep
   return std::max(least, static_cast<std::size_t>(std::ceil(memory() * recording.sample_rate)));
 }
 
-void ReceiverElectronics::respond(std::span<float> heard, const Recording& recording,
+void ReceiverElectronics::respond(std::span<float> received, const Recording& recording,
                                   Carried& carried) const {
   if (flat_) return;
   const std::size_t width = recording.components(), part = recording.samples;
   const std::size_t half = ahead(recording), before = 2 * half,
                     length = fast_fft_length((before + part + 1) / 2) * 2;
-  assert(heard.size() == channels_.size() * part * width);
+  assert(received.size() == channels_.size() * part * width);
   assert(carried.size() == channels_.size() * before * width);
   Carried inputs(channels_.size() * before * width);
   in_parallel(channels_.size(), [&](std::size_t channel) {
-    float* row = heard.data() + channel * part * width;
+    float* row = received.data() + channel * part * width;
     FftBuffer<std::complex<float>> x(length);
     const auto value = [&](std::size_t i) {
       return width == 2 ? std::complex<float>(row[2 * i], row[2 * i + 1])
@@ -162,4 +162,4 @@ void ReceiverElectronics::convert(std::span<float> samples, const Recording& rec
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

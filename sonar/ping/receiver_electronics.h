@@ -6,10 +6,10 @@
 #include "sonar/scenario/scenario.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// What the phones' electronics make of what they hear: gain and phase of every channel, band-pass,
-/// analogue-to-digital conversion.
+/// What the phones' electronics make of what they receive: gain and phase of every channel,
+/// band-pass, analogue-to-digital conversion.
 ///
 /// The response has no delay: Butterworth's magnitude with its phase taken out, times the channel's
 /// gain, times e^{iφ} at frequencies above 0. Drawn errors are keyed by the channel: the same in
@@ -18,7 +18,7 @@ class ReceiverElectronics {
  public:
   explicit ReceiverElectronics(const Scenario& scenario);
 
-  /// Whether every channel gives what it hears, apart from its converter.
+  /// Whether every channel gives what it receives, apart from its converter.
   [[nodiscard]] bool is_flat() const noexcept { return flat_; }
 
   /// The sound of one ping, filtered in its period of the synthesis: there are no edges in it.
@@ -28,10 +28,10 @@ class ReceiverElectronics {
   [[nodiscard]] std::size_t ahead(const Recording& recording) const noexcept;
   /// The inputs before those of a part, [channels × 2·ahead × components].
   using Carried = std::vector<float>;
-  /// What has no beginning, through the response by overlap and save. \param heard  [channels ×
+  /// What has no beginning, through the response by overlap and save. \param received  [channels ×
   /// samples × components] in: the sound `ahead` samples after each sample of the part; out: the
   /// part   \param carried  in: the inputs before them; out: those before the next part's
-  void respond(std::span<float> heard, const Recording& recording, Carried& carried) const;
+  void respond(std::span<float> received, const Recording& recording, Carried& carried) const;
 
   /// Rounds to the converter's steps and clips: −full scale … full scale − 1 step, real and
   /// imaginary part each.
@@ -55,4 +55,4 @@ class ReceiverElectronics {
 /// |H| of a band-pass at a frequency above 0 [Hz].
 [[nodiscard]] double magnitude(const Electronics::BandPass& filter, double frequency) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

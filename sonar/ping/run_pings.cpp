@@ -9,7 +9,7 @@
 #include "sonar/ping/ping.h"
 #include "sonar/ping/stream.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Two pings in flight a thread keep the writer fed; more would only cost memory, and no more than
@@ -77,4 +77,4 @@ int run_pings(const PingSimulator& simulator, const std::function<void(PingRecor
   return done;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <chrono>
 #include <utility>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Wall time since it was made or last read [s].
 class Stopwatch {
@@ -16,4 +16,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::vector<std::size_t> parts_of(const Scenario& scenario) {
@@ -57,4 +57,4 @@ void Stream::take(PingRecord& record) {
   record.recording.samples = part;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

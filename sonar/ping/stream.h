@@ -4,11 +4,12 @@
 #include "sonar/ping/ping_record.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Joins the sound of single pings to one stream per phone without gaps: ping by ping, the part
-/// from its start to the start of the next one (of any transmitter), with all that is still heard
-/// of those before it. The last part is as long as its ping is heard. Memory: the longest record.
+/// from its start to the start of the next one (of any transmitter), with all that is still
+/// received of those before it. The last part is as long as its ping is received. Memory: the
+/// longest record.
 class Stream {
  public:
   explicit Stream(const Scenario& scenario);
@@ -22,8 +23,8 @@ class Stream {
  private:
   std::vector<std::size_t> parts_;  // samples of every ping's part
   std::size_t next_ = 0;
-  std::vector<float> waiting_;  // [channels × waiting samples × components] heard later
+  std::vector<float> waiting_;  // [channels × waiting samples × components] received later
   std::size_t waiting_samples_ = 0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Width of the bins of delay in which power is summed: a sixteenth of the pulse [s].
 [[nodiscard]] inline double delay_bin(double pulse_duration, double latest) noexcept {
@@ -11,7 +11,7 @@ namespace asdic {
   return std::max(std::min(pulse_duration / 16.0, widest), latest / most_bins);
 }
 
-/// Adds a power that is heard evenly from `first` to `last` [bins].
+/// Adds a power that is received evenly from `first` to `last` [bins].
 template <class Number>
 void spread(double power, double first, double last, std::span<Number> bins) noexcept {
   const double all = static_cast<double>(bins.size());
@@ -30,4 +30,4 @@ void spread(double power, double first, double last, std::span<Number> bins) noe
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/path_interference.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr std::size_t rings_together = 64;  // rings that one task works through
@@ -34,11 +34,11 @@ void over_rings(std::uint32_t rings, std::uint32_t step, std::vector<Item>& all,
   }
 }
 
-/// Rings so near each other are sampled only once that eight still lie within a stretch.
-std::uint32_t sample_step(const ScatteringField& field, double stretch) {
-  constexpr double slow_sea = 1400.0, samples = 8.0;
-  const double delay = 2.0 * field.grid.spacing / slow_sea;  // from ring to ring, at most
-  return static_cast<std::uint32_t>(std::clamp(stretch / (samples * delay), 1.0, 1e6));
+/// Rings so near each other are sampled only once that eight still lie within a segment.
+std::uint32_t sample_step(const ScatteringField& field, double segment) {
+  constexpr double samples = 8.0;
+  const double delay = 2.0 * field.grid.spacing / slowest_sea;  // from ring to ring, at most
+  return static_cast<std::uint32_t>(std::clamp(segment / (samples * delay), 1.0, 1e6));
 }
 
 /// A pair through the middle of a cell.
@@ -48,36 +48,30 @@ struct Found {
   double scatterers;         // of that ring
 };
 
-/// The ground, or the layer, for which a place stands: how far the phases of sounds turn over it.
-class PiecePhases {
- public:
-  /// \param rings, sectors  for which it stands; how many sectors stand for all
-  PiecePhases(const ScatteringField& field, std::uint32_t ring, int sector, std::uint32_t rings,
-              std::uint32_t sectors)
-      : outward_(std::sin(field.bearing(sector)), std::cos(field.bearing(sector))) {
-    // of what is even over a width
-    const double omega = 2.0 * pi * field.sheet.ends().frequency / std::sqrt(12.0);
-    const double range = (ring + 0.5) * field.grid.spacing;
-    along_ = omega * rings * field.grid.spacing;
-    across_ = omega * 2.0 * pi * range / sectors;
-    through_ = omega * field.thickness;
-  }
-  [[nodiscard]] std::array<float, 3> of(const PathPair& pair) const noexcept {
-    const Vec2 beside(-outward_.y(), outward_.x());
-    return {static_cast<float>(along_ * steepness(pair, outward_)),
-            static_cast<float>(across_ * steepness(pair, beside)),
-            static_cast<float>(through_ * (pair.out_ends->down + pair.back_ends->down))};
-  }
+/// The ground, or the layer, for which a place stands. \param rings, sectors  for which it does;
+/// how many sectors stand for all
+GroundPiece piece_about(const ScatteringField& field, std::uint32_t ring, int sector,
+                        std::uint32_t rings, std::uint32_t sectors) {
+  const double bearing = field.bearing(sector), range = (ring + 0.5) * field.grid.spacing;
+  return {.outward = {std::sin(bearing), std::cos(bearing)},
+          .length = rings * field.grid.spacing,
+          .width = 2.0 * pi * range / sectors,
+          .thickness = field.thickness};
+}
 
- private:
-  Vec2 outward_;
-  double along_, across_, through_;
-};
+/// How far a pair's phase turns over it.
+std::array<float, 3> phases_of(const PathPair& pair, const GroundPiece& piece,
+                               const PiecePhases& phases) noexcept {
+  const Vec2 beside(-piece.outward.y(), piece.outward.x());
+  return {static_cast<float>(phases.along * steepness(pair, piece.outward)),
+          static_cast<float>(phases.across * steepness(pair, beside)),
+          static_cast<float>(phases.through * (pair.out_ends->down + pair.back_ends->down))};
+}
 
 /// A sound of a place at a time.
 struct SoundNow {
   std::complex<double> pressure;
-  std::array<float, 3> turns;
+  std::array<float, 3> phases;
 };
 
 /// Mean over the place's piece of |Σp|².
@@ -88,13 +82,13 @@ double power_of(std::span<const SoundNow> sounds) noexcept {
     const SoundNow& a = sounds[i];
     power += std::norm(a.pressure);
     for (const SoundNow& b : sounds.subspan(i + 1)) {
-      float turns = 0.0F;
+      float phases = 0.0F;
       for (std::size_t k = 0; k < 3; ++k) {
-        const float apart = a.turns[k] - b.turns[k];
-        turns += apart * apart;
+        const float apart = a.phases[k] - b.phases[k];
+        phases += apart * apart;
       }
-      if (!(turns < nothing)) continue;
-      power += 2.0 * double(std::exp(-0.5F * turns)) *
+      if (!(phases < nothing)) continue;
+      power += 2.0 * double(std::exp(-0.5F * phases)) *
                (a.pressure.real() * b.pressure.real() + a.pressure.imag() * b.pressure.imag());
     }
   }
@@ -108,8 +102,8 @@ struct Middles {
   std::vector<int> sectors = field.sample_sectors();
   std::uint32_t step;
 
-  Middles(const ScatteringField& f, std::uint32_t first, double stretch)
-      : field(f), first_place(first), step(sample_step(f, stretch)) {}
+  Middles(const ScatteringField& f, std::uint32_t first, double segment)
+      : field(f), first_place(first), step(sample_step(f, segment)) {}
 
   [[nodiscard]] std::uint32_t count() const noexcept {
     return static_cast<std::uint32_t>(sectors.size());
@@ -121,8 +115,9 @@ struct Middles {
     for (std::uint32_t i = 0; i < count(); ++i) {
       field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs, nullptr, 0.0, 0.0,
                            mixed(ring, i));
-      const double share = double(stands_for) / count(), area = field.heard_area(ring);
-      const PiecePhases phases(field, ring, sectors[i], stands_for, count());
+      const double share = double(stands_for) / count(), area = field.received_area(ring);
+      const GroundPiece piece = piece_about(field, ring, sectors[i], stands_for, count());
+      const PiecePhases phases(piece, field.sheet.ends().frequency);
       double loudest = 0.0;
       for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
       for (const PathPair& pair : pairs.found) {
@@ -132,7 +127,7 @@ struct Middles {
               .by_itself = pair.of_many,
               .delay = pair.delay,
               .amplitude = pair.amplitude * std::sqrt(pair.area * area * share * pair.reciprocal),
-              .turns = phases.of(pair)},
+              .phases = phases_of(pair, piece, phases)},
              pair.power * area,
              share,
              double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
@@ -141,11 +136,11 @@ struct Middles {
   }
 };
 
-std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double stretch) {
+std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, double segment) {
   std::vector<Found> all;
   std::uint32_t first_place = 0;
   for (const ScatteringField& field : fields) {
-    const Middles middles(field, first_place, stretch);
+    const Middles middles(field, first_place, segment);
     over_rings<Found>(field.grid.rings, middles.step, all,
                       [&](std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) {
                         middles.find(ring, pairs, out);
@@ -155,32 +150,32 @@ std::vector<Found> pairs_at_middles(std::span<const ScatteringField> fields, dou
   return all;
 }
 
-/// Below which all that is left out of a stretch is a hundred-thousandth of its power.
-std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
+/// Below which all that is left out of a segment is a hundred-thousandth of its power.
+std::vector<double> least_power(const std::vector<Found>& all, double segment) {
   constexpr double left_out = 1e-5;
   struct Entry {
     double power, share;
   };
-  std::size_t stretches = 0;
-  std::vector<std::size_t> stretch_of;
-  stretch_of.reserve(all.size());
+  std::size_t segments = 0;
+  std::vector<std::size_t> segment_of;
+  segment_of.reserve(all.size());
   for (const Found& f : all) {
-    stretch_of.push_back(static_cast<std::size_t>(f.sample.delay / stretch));
-    stretches = std::max(stretches, stretch_of.back() + 1);
+    segment_of.push_back(static_cast<std::size_t>(f.sample.delay / segment));
+    segments = std::max(segments, segment_of.back() + 1);
   }
-  const Grouped by_stretch = grouped(stretch_of, stretches);
-  std::vector<double> least(stretches, 0.0);
+  const Grouped by_segment = grouped(segment_of, segments);
+  std::vector<double> least(segments, 0.0);
   std::vector<Entry> here;
-  for (std::size_t s = 0; s < stretches; ++s) {
+  for (std::size_t s = 0; s < segments; ++s) {
     here.clear();
-    for (const std::size_t i : by_stretch.of(s)) here.push_back({all[i].ring_power, all[i].share});
+    for (const std::size_t i : by_segment.of(s)) here.push_back({all[i].ring_power, all[i].share});
     std::sort(here.begin(), here.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.power, a.share) < std::tie(b.power, b.share);
     });
     double total = 0.0, dropped = 0.0;
     for (const Entry& e : here) total += e.power * e.share;
     // The loudest of those left out. Not the faintest of those kept: a scatterer of the next ring
-    // that lies a little nearer than its middle would be left out of this stretch for it.
+    // that lies a little nearer than its middle would be left out of this segment for it.
     for (const Entry& e : here) {
       dropped += e.power * e.share;
       if (dropped > left_out * total) break;
@@ -191,10 +186,10 @@ std::vector<double> least_power(const std::vector<Found>& all, double stretch) {
 }
 
 /// About how many pairs pairs_at_middles() finds, by those at a few rings of each field.
-double count_pairs(std::span<const ScatteringField> fields, double stretch, std::uint32_t at) {
+double count_pairs(std::span<const ScatteringField> fields, double segment, std::uint32_t at) {
   double pairs = 0.0;
   for (const ScatteringField& field : fields) {
-    const Middles middles(field, 0, stretch);
+    const Middles middles(field, 0, segment);
     const std::uint32_t visited = (field.grid.rings + middles.step - 1) / middles.step;
     const std::uint32_t every = std::max(1U, visited / at);
     std::vector<Found> counted;
@@ -211,13 +206,13 @@ double count_pairs(std::span<const ScatteringField> fields, double stretch, std:
 
 MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
                                        double pulse_duration) {
-  // Put together twice; then their stretches, their order and those that are kept are beside them.
+  // Put together twice; then their segments, their order and those that are kept are beside them.
   constexpr double a_pair = 2.0 * sizeof(Found) + 2.0 * sizeof(std::size_t);
   constexpr double little = 100e6;               // [bytes]
   constexpr std::uint32_t few = 4, enough = 64;  // rings looked at
-  const double stretch = 0.25 * pulse_duration;
-  double pairs = count_pairs(fields, stretch, few);
-  if (pairs * a_pair > little) pairs = count_pairs(fields, stretch, enough);
+  const double segment = 0.25 * pulse_duration;
+  double pairs = count_pairs(fields, segment, few);
+  if (pairs * a_pair > little) pairs = count_pairs(fields, segment, enough);
   return {.where = "reverberation.ground_spacing",
           .what = std::to_string(std::llround(pairs)) + " pairs of paths to and from scatterers",
           .bytes = pairs * a_pair,
@@ -228,9 +223,9 @@ MemoryNeed ExpectedReverberation::need(std::span<const ScatteringField> fields,
 
 ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fields,
                                              double pulse_duration) {
-  limits.stretch = 0.25 * pulse_duration;
-  const std::vector<Found> all = pairs_at_middles(fields, limits.stretch);
-  limits.least = least_power(all, limits.stretch);
+  limits.segment = 0.25 * pulse_duration;
+  const std::vector<Found> all = pairs_at_middles(fields, limits.segment);
+  limits.least = least_power(all, limits.segment);
   std::vector<double> of_ring;  // returns of the field in hand
   std::size_t next = 0;
   std::uint32_t first_place = 0;
@@ -245,7 +240,7 @@ ExpectedReverberation::ExpectedReverberation(std::span<const ScatteringField> fi
       of_ring[(f.sample.place - first_place) / count] += f.share * f.scatterers;
     }
     // What was found at one ring belongs to those that it stands for.
-    const std::uint32_t step = sample_step(fields[field], limits.stretch);
+    const std::uint32_t step = sample_step(fields[field], limits.segment);
     for (std::uint32_t ring = 0; ring < rings; ++ring)
       if (ring % step == 0)
         of_ring[ring] /= std::min(step, rings - ring);
@@ -277,7 +272,7 @@ std::optional<ExactKey> ExpectedReverberation::key(std::span<const ScatteringFie
   key.add_all(pulse_duration, fields.size());
   for (const ScatteringField& f : fields) {
     // All but motion, statistics, draws' keys and where in a sheet scatterers lie.
-    const auto& [sheet, grid, field, weights, boundary, depth, thickness, heard_by, bearings,
+    const auto& [sheet, grid, field, weights, boundary, depth, thickness, received_by, bearings,
                  divided_below, bounces, share] = f;
     const auto& [anchor, identity, spacing, azimuths, per_cell, first_bearing, rings] = grid;
     if (!sheet.add_to(key)) return std::nullopt;
@@ -305,11 +300,11 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double since = t - samples[i].delay;
     if (since >= 0.0 && since <= pulse.duration()) {
-      const std::complex<double> heard = samples[i].amplitude * pulse.analytic(since);
+      const std::complex<double> received = samples[i].amplitude * pulse.analytic(since);
       if (samples[i].by_itself)
-        power += std::norm(heard);
+        power += std::norm(received);
       else
-        here.push_back({heard, samples[i].turns});
+        here.push_back({received, samples[i].phases});
     }
     if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
       power += power_of(here);
@@ -319,4 +314,4 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
   return power;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "reverb/scattering_field.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is known of a ping's reverberation before a weight is drawn: how faint a pair may be to be
 /// left out, the mean level, how many returns there will be. Found from pairs through the middles
@@ -24,7 +24,7 @@ struct ExpectedReverberation {
     double delay = 0.0;
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for
     /// Standard deviation of its phase over that area: outward, beside that and in depth [rad].
-    std::array<float, 3> turns{};
+    std::array<float, 3> phases{};
   };
   /// Rings or sectors begin…end of a field.
   struct Block {
@@ -48,7 +48,7 @@ struct ExpectedReverberation {
   AudibleLimits limits;
   std::vector<Sample> samples;
   std::vector<Block> blocks;  ///< all rings, some thousand returns each
-  double returns = 0.0;       ///< if every scatterer is heard
+  double returns = 0.0;       ///< if every scatterer is received
 
   /// Those of one field.
   [[nodiscard]] double returns_of(std::size_t field) const noexcept;
@@ -62,4 +62,4 @@ struct ExpectedReverberation {
   void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

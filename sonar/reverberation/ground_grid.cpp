@@ -4,7 +4,7 @@
 
 #include "reverb/ground_spacing.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double finest_ground = 1.0;  // [m]
@@ -27,4 +27,4 @@ double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths)
   return paths.speed_at(place);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

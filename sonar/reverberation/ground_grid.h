@@ -3,7 +3,7 @@
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Speed of sound at the surface over the first platform's first place [m/s].
 [[nodiscard]] double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths);
@@ -13,4 +13,4 @@ namespace asdic {
 [[nodiscard]] double ground_spacing(const Scenario& scenario, const Pulse& pulse,
                                     const PropagationPaths& paths);
 
-}  // namespace asdic
+}  // namespace asdic::detail

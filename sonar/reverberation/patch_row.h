@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What scatters back from one ground cell, by one path pair: from the whole ring in a layered
 /// ocean, otherwise from the sector at `bearing` and the one mirrored about the transect.
@@ -21,4 +21,4 @@ struct PatchRow {
       0.0;  ///< expected level of that area by this pair, pulse not windowed [dB re 1 µPa]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,20 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/signal/phase_turn.h"
+#include "reverb/scattering_field.h"
+#include "sonar/signal/rotate_back.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// No water carries sound so slowly that two slownesses differ by more [s/m].
-constexpr double most_apart = 2.0 / 1400.0;
+constexpr double most_apart = 2.0 / slowest_sea;
 
-/// Variance of what is even over a width.
-double square_of_even(double width) noexcept { return width * width / 12.0; }
+/// Standard deviation of what is even over a width.
+double deviation_of_even(double width) noexcept { return width / std::sqrt(12.0); }
 
 double squared(double x) noexcept { return x * x; }
 
 }  // namespace
+
+PiecePhases::PiecePhases(const GroundPiece& piece, double frequency) noexcept {
+  const double omega = 2.0 * pi * frequency;
+  along = deviation_of_even(omega * piece.length);
+  across = deviation_of_even(omega * piece.width);
+  through = deviation_of_even(omega * piece.thickness);
+}
 
 double steepness(const PathPair& pair, const Vec2& towards) noexcept {
   return pair.out->horizontal_slowness * pair.leaving.dot(towards) -
@@ -24,7 +32,7 @@ double steepness(const PathPair& pair, const Vec2& towards) noexcept {
 }
 
 PathInterference::PathInterference(std::span<const Vec3> phones, double frequency,
-                                   const PulseCoherence& pulse, bool all_round)
+                                   const PulseCoherence& pulse, bool azimuthally_symmetric)
     : pulse_(pulse), frequency_(frequency) {
   double level = 0.0;
   for (const Vec3& x : phones) {
@@ -32,7 +40,7 @@ PathInterference::PathInterference(std::span<const Vec3> phones, double frequenc
     level = std::max(level, phones_.back().head<2>().norm());
     reach_ = std::max(reach_, phones_.back().norm());
   }
-  if (all_round) bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
+  if (azimuthally_symmetric) bessel_.emplace(2.0 * pi * level * most_apart + 1.0);
 }
 
 std::complex<double> PathInterference::over_phones(const Vec3& apart) const noexcept {
@@ -42,7 +50,7 @@ std::complex<double> PathInterference::over_phones(const Vec3& apart) const noex
   double re = 0.0, im = 0.0;
   for (const Vec3& x : phones_) {
     double one = bessel_ ? (*bessel_)(level * x.head<2>().norm()) : 1.0, other = 0.0;
-    turn_back(bessel_ ? apart.z() * x.z() : apart.dot(x), one, other);
+    rotate_back(bessel_ ? apart.z() * x.z() : apart.dot(x), one, other);
     re += one;
     im += other;
   }
@@ -54,32 +62,33 @@ std::complex<double> PathInterference::over_phones(const Vec3& apart) const noex
 class PlaceSounds::Between {
  public:
   Between(const PathInterference& interference, const GroundPiece& piece, double strongest)
-      : interference_(interference), least_(squared(faint * strongest)) {
-    const double omega = 2.0 * pi * interference.frequency();
+      : interference_(interference),
+        least_(squared(faint * strongest)),
+        phases_(piece, interference.frequency()) {
     constexpr double hours = 1e4;  // [s] of a tone without end
-    along2_ = square_of_even(omega * piece.length);
-    across2_ = square_of_even(omega * piece.width);
-    through2_ = square_of_even(omega * piece.thickness);
-    doppler2_ = square_of_even(omega * std::min(hours, interference.pulse().duration()));
+    doppler_ = deviation_of_even(2.0 * pi * interference.frequency() *
+                                 std::min(hours, interference.pulse().duration()));
   }
 
   [[nodiscard]] double operator()(const Sound& a, const Sound& b) const noexcept {
     if (std::norm(a.amplitude) * std::norm(b.amplitude) < least_) return 0.0;
     constexpr double nothing = 9.0;  // 1 % of their product
-    const double turns =
-        along2_ * squared(a.along - b.along) + across2_ * squared(a.across - b.across) +
-        through2_ * squared(a.through - b.through) + doppler2_ * squared(a.doppler - b.doppler);
-    if (!(turns < nothing)) return 0.0;
-    const std::complex<double> heard = interference_.over_phones(a.slowness - b.slowness) *
-                                       interference_.pulse()(b.delay - a.delay);
-    return 2.0 * std::exp(-0.5 * turns) * (a.amplitude * std::conj(b.amplitude) * heard).real();
+    const double phases = squared(phases_.along * (a.along - b.along)) +
+                          squared(phases_.across * (a.across - b.across)) +
+                          squared(phases_.through * (a.through - b.through)) +
+                          squared(doppler_ * (a.doppler - b.doppler));
+    if (!(phases < nothing)) return 0.0;
+    const std::complex<double> received = interference_.over_phones(a.slowness - b.slowness) *
+                                          interference_.pulse()(b.delay - a.delay);
+    return 2.0 * std::exp(-0.5 * phases) * (a.amplitude * std::conj(b.amplitude) * received).real();
   }
 
  private:
   static constexpr double faint = 1e-3;  // product of two sounds over the strongest's power
   const PathInterference& interference_;
   double least_;
-  double along2_, across2_, through2_, doppler2_;
+  PiecePhases phases_;
+  double doppler_ = 0.0;  // the same for a Doppler factor over the pulse [rad]
 };
 
 void PlaceSounds::add(const ScatteringSheet& sheet, const PathPair& pair, const GroundPiece& piece,
@@ -88,7 +97,7 @@ void PlaceSounds::add(const ScatteringSheet& sheet, const PathPair& pair, const 
   if (sounds_.empty()) origin_ = pair.delay;
   const double root = std::sqrt(pair.area);
   double re = root * pair.amplitude.real(), im = root * pair.amplitude.imag();
-  turn_back(sheet.ends().frequency * (pair.delay - origin_), re, im);
+  rotate_back(sheet.ends().frequency * (pair.delay - origin_), re, im);
   const Vec2 beside(-piece.outward.y(), piece.outward.x());
   sounds_.push_back({.amplitude = {re, im},
                      .delay = pair.delay,
@@ -165,4 +174,4 @@ void PlaceSounds::share_out(std::size_t begin, std::size_t end) {
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "reverb/scattering_sheet.h"
-#include "sonar/reverberation/all_round_covariance.h"
+#include "sonar/reverberation/azimuthally_symmetric_covariance.h"
 #include "sonar/signal/pulse_coherence.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Who hears sounds of one place that come by different paths, and so how far they add up in phase:
-/// through a pulse, and as a mean over the phones.
+/// Who receives sounds of one place that come by different paths, and so how far they add up in
+/// phase: through a pulse, and as a mean over the phones.
 class PathInterference {
  public:
   /// \param phones  relative to the array's reference point [m]; none: one phone there
-  /// \param frequency  [Hz]   \param all_round  of the mean over bearings
+  /// \param frequency  [Hz]   \param azimuthally_symmetric  of the mean over bearings
   PathInterference(std::span<const Vec3> phones, double frequency, const PulseCoherence& pulse,
-                   bool all_round);
+                   bool azimuthally_symmetric);
   [[nodiscard]] double frequency() const noexcept { return frequency_; }
   [[nodiscard]] const PulseCoherence& pulse() const noexcept { return pulse_; }
   /// Mean over phones of e^{−iω(s_a − s_b)·x}. \param apart  s_a − s_b [s/m]
@@ -39,8 +39,16 @@ struct GroundPiece {
   double thickness = 0.0;            ///< [m]
 };
 
-/// The sounds of one place by all pairs of paths, each a part of something that is heard: a pair by
-/// itself, or with its reciprocal. Used again from place to place.
+/// How far the phases of sounds turn over a piece: standard deviations, of what is even over its
+/// sides, for a slope of their delay [rad per s/m].
+struct PiecePhases {
+  double along = 0.0, across = 0.0, through = 0.0;
+  /// \param frequency  [Hz]
+  PiecePhases(const GroundPiece& piece, double frequency) noexcept;
+};
+
+/// The sounds of one place by all pairs of paths, each a part of something that is received: a pair
+/// by itself, or with its reciprocal. Used again from place to place.
 class PlaceSounds {
  public:
   void clear() noexcept { sounds_.clear(); }
@@ -77,4 +85,4 @@ class PlaceSounds {
 /// ∂delay of a pair over the ground, towards a direction [s/m].
 [[nodiscard]] double steepness(const PathPair& pair, const Vec2& towards) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

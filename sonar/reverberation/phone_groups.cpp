@@ -5,7 +5,7 @@
 
 #include "sonar/scenario/pulse_frequencies.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::size_t phones_of(const Listening& here) {
@@ -13,14 +13,14 @@ std::size_t phones_of(const Listening& here) {
 }
 
 /// Height of a place above or below the nearest sheet that scatters [m].
-double height_of(const Listening& here, const Vec3& place) {
-  const ReverberationSettings& sea = here.scenario.reverberation;
+double height_of(const Scenario& scenario, const Vec3& place) {
+  const ReverberationSettings& sea = scenario.reverberation;
   double least = infinity;
   if (!sea.enabled) return least;
-  const double along = here.scenario.transect.range_of(place.x(), place.y());
+  const double along = scenario.transect.range_of(place.x(), place.y());
   const auto sheet = [&](double depth) { least = std::min(least, std::abs(depth - place.z())); };
-  if (sea.surface_scatters) sheet(here.scenario.environment.surface.depth_at(along));
-  if (sea.bottom) sheet(here.scenario.environment.bottom.depth_at(along));
+  if (sea.surface_scatters) sheet(scenario.environment.surface.depth_at(along));
+  if (sea.bottom) sheet(scenario.environment.bottom.depth_at(along));
   for (const VolumeLayer& layer : sea.volume) sheet(std::clamp(place.z(), layer.top, layer.bottom));
   return least;
 }
@@ -47,15 +47,15 @@ void halve(const Listening& here, const Front& front, double allowed, PhoneRange
 
 }  // namespace
 
-Front nearest_reverberation(const Listening& here, int transmitter, double duration,
+Front nearest_reverberation(const PingGeometry& geometry, int array, double duration,
                             double highest_frequency) {
-  const Vec3 place = array_at(here.scenario, here.array, here.ping_time).position;
-  const double apart =
-      (transmitter_at(here.scenario, transmitter, here.ping_time).position - place).norm();
-  const PingSchedule& pings = here.scenario.pings;
+  const Scenario& scenario = geometry.scenario();
+  const Vec3& place = geometry.reference_place(array).position;
+  const double apart = (geometry.source().position - place).norm();
+  const PingSchedule& pings = scenario.pings;
   const double begin = std::max(pings.recording_start, duration);
-  const double on_ellipse = 0.5 * (speed_at(here.scenario, place) * begin - apart);
-  return {.length = std::max(height_of(here, place), on_ellipse),
+  const double on_ellipse = 0.5 * (speed_at(scenario, place) * begin - apart);
+  return {.length = std::max(height_of(scenario, place), on_ellipse),
           .duration = pings.recording_start + pings.recording_duration,
           .highest_frequency = highest_frequency};
 }
@@ -91,4 +91,4 @@ PhoneGroups phone_groups(const Listening& here, const Front& front, double most,
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "sonar/paths/plane_wave.h"
 #include "sonar/scenario/carried.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Most that a plane wave of reverberation may be wrong at a phone [periods]: λ/16 is the far
 /// field's border 2L²/λ of a line L. A beam loses 0.03 dB of a scatterer there.
@@ -16,13 +16,13 @@ inline constexpr double reverberation_periods = 1.0 / 16.0;
 ///     r = max(h, (c·t − D)/2),
 ///
 /// h the height of the reference point above or below the nearest sheet that scatters, t when the
-/// record or, if later, the pulse's end begins (what is heard before lies under the ping itself),
-/// D how far the transmitter is. r is infinite where nothing scatters. It lasts for the record.
-/// \param duration  of the pulse [s]   \param highest_frequency  of it [Hz]
-[[nodiscard]] Front nearest_reverberation(const Listening& here, int transmitter, double duration,
+/// record or, if later, the pulse's end begins (what is received before lies under the ping
+/// itself), D how far the transmitter is. r is infinite where nothing scatters. It lasts for the
+/// record. \param duration  of the pulse [s]   \param highest_frequency  of it [Hz]
+[[nodiscard]] Front nearest_reverberation(const PingGeometry& geometry, int array, double duration,
                                           double highest_frequency);
 
-/// Parts of an array, each of which hears reverberation as plane waves about a point of its own.
+/// Parts of an array, each of which receives reverberation as plane waves about a point of its own.
 struct PhoneGroups {
   std::vector<PhoneRange> parts;
   double error = 0.0;  ///< of the nearest scatterers' fronts at the worst phone [periods]
@@ -40,4 +40,4 @@ struct PhoneGroups {
 [[nodiscard]] PhoneGroups phone_groups(const Listening& here, const Front& front, double most,
                                        double allowed = reverberation_periods);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/paths/moving_paths.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Three normals that belong to a scatterer, held at four standard deviations.
@@ -35,13 +35,14 @@ PingReverberation::PingReverberation(const Scenario& scenario, const Reverberati
   context_.phones = {};  // of the caller's, who needs not keep them
   context_.budget = nullptr;
   for (std::size_t i = 0; i < fields_.size(); ++i)
-    if (fields_[i].heard_by == HeardBy::scatterers) one_by_one_ += expected_->returns_of(i);
-  // A part of the array hears the scatterers that its neighbours hear, one by one.
+    if (fields_[i].received_by == ReceivedBy::scatterers) one_by_one_ += expected_->returns_of(i);
+  // A part of the array receives the scatterers that its neighbours receive, one by one.
   by_sectors_ =
       !context_.point && one_by_one_ > static_cast<double>(scenario_.reverberation.most_returns);
   blocks_ = by_sectors_ ? sector_blocks() : expected_->blocks;
-  std::erase_if(blocks_,
-                [&](const Block& b) { return fields_[b.field].heard_by != HeardBy::scatterers; });
+  std::erase_if(blocks_, [&](const Block& b) {
+    return fields_[b.field].received_by != ReceivedBy::scatterers;
+  });
 }
 
 PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
@@ -50,12 +51,12 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
   const ScattererMotion& motion = field.field.motion;
   const Scatterer scatterer = place_scatterer(field.grid, key, entity, scenario_.seed);
   field.sheet.pairs_at(
-      scatterer.place, pairs, &expected_->limits, field.heard_area(key.ring),
+      scatterer.place, pairs, &expected_->limits, field.received_area(key.ring),
       (scatterer.depth_share - 0.5) * field.thickness,
-      mixed(entity, field.field.statistics.coherence_time > 0.0 ? 0 : context_.ping));
+      mixed(entity, field.field.statistics.coherence_time > 0.0 ? 0 : context_.ping()));
   Met met;
   if (pairs.found.empty()) return met;
-  const Vec2 in_water = scatterer.place - motion.current * context_.time;
+  const Vec2 in_water = scatterer.place - motion.current * context_.geometry.time();
   met.strength =
       field.share * std::sqrt(scatterer.area * pairs.found.front().area) *
       texture_amplitude(field.field.statistics, in_water, field.boundary, scenario_.seed);
@@ -67,9 +68,9 @@ PingReverberation::Met PingReverberation::meet(const ScatteringField& field,
   return met;
 }
 
-void PingReverberation::hear(const ScatteringField& field, const PathPairs& pairs,
-                             const PathPair& pair, const Met& met, std::complex<double> weight,
-                             ReturnBlock& into) const {
+void PingReverberation::receive(const ScatteringField& field, const PathPairs& pairs,
+                                const PathPair& pair, const Met& met, std::complex<double> weight,
+                                ReturnBlock& into) const {
   const std::complex<double> strength = met.strength * weight;
   into.returns.push_back({.delay = pair.delay,
                           .amplitude = pair.amplitude * strength,
@@ -78,13 +79,13 @@ void PingReverberation::hear(const ScatteringField& field, const PathPairs& pair
   const std::size_t points = context_.band.size();
   const auto first = static_cast<std::size_t>(&pair - pairs.found.data()) * points;
   for (std::size_t k = 0; k < points; ++k)
-    into.colours.emplace_back(pairs.colours[first + k] * strength);
+    into.responses.emplace_back(pairs.responses[first + k] * strength);
 }
 
 void PingReverberation::add_rings(const ScatteringField& field, std::uint32_t begin,
                                   std::uint32_t end, ReturnBlock& into) const {
   const ScattererWeights weights(field.field.statistics, field.weights, scenario_.seed,
-                                 context_.time, context_.ping);
+                                 context_.geometry.time(), context_.ping());
   PathPairs pairs;
   for (std::uint32_t ring = begin; ring < end; ++ring)
     for (int sector = 0; sector < field.grid.azimuths; ++sector)
@@ -92,7 +93,7 @@ void PingReverberation::add_rings(const ScatteringField& field, std::uint32_t be
                          [&](const ScattererKey& /*key*/, std::uint64_t entity, const Met& met) {
                            const std::complex<double> weight = weights(entity);
                            for (const PathPair& pair : pairs.found)
-                             hear(field, pairs, pair, met, weight, into);
+                             receive(field, pairs, pair, met, weight, into);
                          });
 }
 
@@ -136,7 +137,7 @@ Returns PingReverberation::sector_returns() const { return collect(sector_blocks
 Returns PingReverberation::returns() const { return collect(blocks_, by_sectors_); }
 
 double PingReverberation::expected_db(double t) const {
-  return scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db +
+  return context_.geometry.transmitter().source_level_db +
          db_from_power(expected_->power(context_.pulse, t));
 }
 
@@ -146,38 +147,36 @@ PatchRows PingReverberation::rows(std::size_t most, PropagationMemory* memory) c
                  ? std::nullopt
                  : ExpectedReverberation::key(fields_, context_.pulse.duration(), Kept::patch_rows);
   if (!key) return find_rows(most);
-  key->add(most).add(
-      scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db);
+  key->add(most).add(context_.geometry.transmitter().source_level_db);
   for (const ScatteringField& field : fields_) key->add_all(field.boundary, field.thickness);
-  if (const auto known = memory->find<PatchRows>(*key)) return *known;
-  PatchRows found = find_rows(most);
-  memory->keep(*key, std::make_shared<PatchRows>(found), found.rows.size() * sizeof(PatchRow));
-  return found;
+  return *memory->remember(
+      *key, [&] { return std::make_shared<PatchRows>(find_rows(most)); },
+      [](const PatchRows& found) { return found.rows.size() * sizeof(PatchRow); });
 }
 
 PatchRows PingReverberation::find_rows(std::size_t most) const {
   PathPairs pairs;
-  const double source_level =
-      scenario_.transmitters[static_cast<std::size_t>(context_.transmitter)].source_level_db;
+  const double source_level = context_.geometry.transmitter().source_level_db;
   const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
                        std::vector<PatchRow>& rows) {
     const double ring_of = field.ring_area(ring);
     field.sheet.pairs_at(field.centre(ring, sector), pairs, &expected_->limits, ring_of);
     for (const PathPair& pair : pairs.found)
-      rows.push_back({.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
-                                : field.boundary == 1 ? PatchRow::Ground::bottom
-                                                      : PatchRow::Ground::surface,
-                      .bearing = field.all_round() ? std::nan("") : field.bearing(sector),
-                      .range = (ring + 0.5) * field.grid.spacing,
-                      .area = share * ring_of * pair.area,
-                      .delay = pair.delay,
-                      .grazing_in = pair.grazing_in,
-                      .grazing_out = pair.grazing_out,
-                      .launch_elevation = pair.out->launch_elevation,
-                      .arrival_elevation = -pair.back->launch_elevation,
-                      .scattering_strength_db = db_from_power(pair.cross_section),
-                      .level_db = source_level + db_from_power(std::norm(pair.amplitude) * share *
-                                                               ring_of * pair.area)});
+      rows.push_back(
+          {.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
+                     : field.boundary == 1 ? PatchRow::Ground::bottom
+                                           : PatchRow::Ground::surface,
+           .bearing = field.azimuthally_symmetric() ? std::nan("") : field.bearing(sector),
+           .range = (ring + 0.5) * field.grid.spacing,
+           .area = share * ring_of * pair.area,
+           .delay = pair.delay,
+           .grazing_in = pair.grazing_in,
+           .grazing_out = pair.grazing_out,
+           .launch_elevation = pair.out->launch_elevation,
+           .arrival_elevation = -pair.back->launch_elevation,
+           .scattering_strength_db = db_from_power(pair.cross_section),
+           .level_db = source_level +
+                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
   };
   // Of a boundary whose sea is that of several anchors: the nearest one's rings tell all of it.
   const auto nearest_anchors = [&](const ScatteringField& field) {
@@ -206,4 +205,4 @@ PatchRows PingReverberation::find_rows(std::size_t most) const {
   return result;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

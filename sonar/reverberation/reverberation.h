@@ -12,36 +12,42 @@
 #include "sonar/reverberation/expected_reverberation.h"
 #include "sonar/reverberation/patch_row.h"
 #include "sonar/scenario/carried.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 struct ReverberationCovariance;
 struct ReverberationStreams;
 
-/// One ping as one array hears it.
+/// One ping as one array receives it.
 struct ReverberationContext {
+  PingGeometry geometry;
   const TransmitPattern& pattern;
   const Pulse& pulse;
-  int transmitter = 0, array = 0;  ///< indices in the scenario
-  /// Of a part of the array that hears it by itself; none: all about reverberation_point().
+  int array = 0;  ///< that receives it, an index
+  /// Of a part of the array that receives it by itself; none: all about reverberation_point().
   std::optional<Carried> point = {};
-  double time = 0.0;       ///< of the ping, since the start of the scenario [s]
-  std::uint32_t ping = 1;  ///< counted from 1: the key of weights that last one ping
   double latest = 0.0;     ///< end of the record, since the ping [s]
   Reuse* reuse = nullptr;  ///< is told what had to be traced or worked out
-  /// From where it is heard [m]; none: nothing is heard by its covariance, all of it one by one.
+  /// From where it is received [m]; none: nothing is received by its covariance, all of it one by
+  /// one.
   std::span<const Vec3> phones = {};
   std::span<const BandPoint> band = {};  ///< returns get an amplitude for each; none: the centre's
   MemoryBudget* budget = nullptr;        ///< is asked before pairs are collected; null: nobody is
-  bool plane_waves = true;               ///< fit all of the phones, whatever is heard
+  bool plane_waves = true;               ///< fit all of the phones, whatever is received
   /// Whether a sea that every ping draws anew may lie around the source, wherever that is.
   bool drifts = false;
-  /// Whether no other ping and no other array hears these scatterers: the world is this ping's.
-  bool heard_once = false;
+  /// Whether no other ping and no other array receives these scatterers: the world is this ping's.
+  bool received_once = false;
   bool level_alone = false;  ///< nothing but the expected level is asked for
   bool judged = false;       ///< what numbers of bounces leave out is estimated
+
+  /// The key of weights that last one ping.
+  [[nodiscard]] std::uint32_t ping() const noexcept {
+    return static_cast<std::uint32_t>(geometry.ping());
+  }
 };
 
 /// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
@@ -62,16 +68,16 @@ class PingReverberation final : public ReturnSource {
                     std::shared_ptr<const ReverberationCovariance> covariance = nullptr,
                     std::shared_ptr<const ReverberationStreams> streams = nullptr);
 
-  /// What the array's reference point hears. The weakest pairs are left out as long as all that is
-  /// left out stays 50 dB below what is heard at its time. More than the scenario's most returns
-  /// are replaced by those of sectors.
+  /// What the array's reference point receives. The weakest pairs are left out as long as all that
+  /// is left out stays 50 dB below what is received at its time. More than the scenario's most
+  /// returns are replaced by those of sectors.
   [[nodiscard]] Returns returns() const;
   /// One return for every scatterer and pair of paths.
   [[nodiscard]] Returns plain_returns() const;
-  /// The statistical equivalent: the scatterers of a sector, heard within one bin of delay out of
-  /// the same range of elevations, are one return with the power of all, a Gaussian weight of its
-  /// own, and delay, direction and Doppler factor of one of them, chosen with the chances of their
-  /// powers. Reciprocal pairs share a weight. docs/theory/reverberation.md
+  /// The statistical equivalent: the scatterers of a sector, received within one bin of delay out
+  /// of the same range of elevations, are one return with the power of all, a Gaussian weight of
+  /// its own, and delay, direction and Doppler factor of one of them, chosen with the chances of
+  /// their powers. Reciprocal pairs share a weight. docs/theory/reverberation.md
   [[nodiscard]] Returns sector_returns() const;
   /// returns() in blocks: some rings, or a sector, of a field each.
   [[nodiscard]] std::size_t blocks() const override { return blocks_.size(); }
@@ -80,7 +86,7 @@ class PingReverberation final : public ReturnSource {
   }
   void make(std::size_t block, ReturnBlock& into) const override;
   [[nodiscard]] std::vector<DopplerSpan> dopplers() const override;
-  /// Of the fields that are heard by it, and are not among the blocks; null: none is.
+  /// Of the fields that are received by it, and are not among the blocks; null: none is.
   [[nodiscard]] const ReverberationCovariance* covariance() const noexcept {
     return covariance_.get();
   }
@@ -90,7 +96,7 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] Bounces bounces() const;
   /// How many plain_returns() are, more or less.
   [[nodiscard]] double expected_returns() const noexcept { return expected_->returns; }
-  /// How many of them are laid down one by one; none where sectors, a covariance or streams
+  /// How many of them are gridded one by one; none where sectors, a covariance or streams
   /// stand for them.
   [[nodiscard]] double one_by_one() const noexcept { return by_sectors_ ? 0.0 : one_by_one_; }
 
@@ -129,9 +135,9 @@ class PingReverberation final : public ReturnSource {
       if (!pairs.found.empty()) visit(key, entity, met);
     }
   }
-  /// Adds what is heard of a pair, with its colours.
-  void hear(const ScatteringField& field, const PathPairs& pairs, const PathPair& pair,
-            const Met& met, std::complex<double> weight, ReturnBlock& into) const;
+  /// Adds what is received of a pair, with its frequency responses.
+  void receive(const ScatteringField& field, const PathPairs& pairs, const PathPair& pair,
+               const Met& met, std::complex<double> weight, ReturnBlock& into) const;
   void add_sector(const ScatteringField& field, int sector, ReturnBlock& into) const;
   void add_rings(const ScatteringField& field, std::uint32_t begin, std::uint32_t end,
                  ReturnBlock& into) const;
@@ -182,30 +188,30 @@ class ReverberationModel {
     scatterers,  ///< for each scatterer by itself: cells of the grid
     means        ///< for means over many: wider cells where they are far away
   };
-  /// All that a ping hears.
+  /// All that a ping receives.
   [[nodiscard]] std::vector<ScatteringField> fields(const ReverberationContext& context,
                                                     Ground ground) const;
-  /// Those fields with the paths to each scatterer, as far as they are heard one by one.
+  /// Those fields with the paths to each scatterer, as far as they are received one by one.
   [[nodiscard]] std::vector<ScatteringField> in_detail(std::vector<ScatteringField> fields,
                                                        const ReverberationContext& context) const;
   /// Whether nothing tells where in the world a part of the sea lies: each ping has weights of its
   /// own, there is one array, and the ocean is the same everywhere.
   [[nodiscard]] bool forgets_places(const Part& part, const ReverberationContext& context) const;
-  /// Bounces after which a stretch of the record lacks next to nothing, found on a coarse grid.
+  /// Bounces after which a segment of the record lacks next to nothing, found on a coarse grid.
   [[nodiscard]] Bounces enough(const Part& part, const SheetEnds& ends, BoundaryFans::Settings fan,
                                const ReverberationContext& context) const;
   [[nodiscard]] double inaudible(const ReverberationContext& context) const;
   /// Cells for means over many scatterers: places that a level, a covariance or streams look at lie
   /// further apart [m].
   [[nodiscard]] static double wide_cells(const Pulse& pulse) noexcept;
-  /// Adds the fields of a part that a ping hears, one for every anchor.
+  /// Adds the fields of a part that a ping receives, one for every anchor.
   void meet(Part part, const ReverberationContext& context, Ground ground,
             std::vector<ScatteringField>& fields) const;
-  /// Whether it can be heard that pairs of ends with other anchors hear other seas: of weights that
-  /// outlast a ping, or if one ping is heard from several platforms.
+  /// Whether it can be received that pairs of ends with other anchors receive other seas: of
+  /// weights that outlast a ping, or if one ping is received from several platforms.
   [[nodiscard]] bool seas_compared(const ScattererField& field) const;
   [[nodiscard]] std::vector<Part> parts() const;
-  /// Of a ring: as many as are told apart, but no more scatterers in all rings than twice the most
+  /// Of a ring: as many as are resolved, but no more scatterers in all rings than twice the most
   /// returns, and no fewer sectors than the scenario says. \param reach  of the rings [m]
   [[nodiscard]] int sectors(double reach) const;
   [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
@@ -224,4 +230,4 @@ class ReverberationModel {
   int resolved_sectors_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "raytrace/ocean/absorption.h"
 #include "sonar/scenario/ping_bounds.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Response = std::function<double(double frequency)>;
@@ -58,9 +58,9 @@ std::vector<ScatterGeometry> geometries() {
   std::vector<ScatterGeometry> all;
   for (const double in : {2.0, 8.0, 20.0, 45.0, 80.0})
     for (const double out : {2.0, 20.0, 80.0})
-      for (const double turn : {180.0, 90.0})
+      for (const double rotation : {180.0, 90.0})
         all.push_back(
-            {.grazing_in = radians(in), .grazing_out = radians(out), .azimuth = radians(turn)});
+            {.grazing_in = radians(in), .grazing_out = radians(out), .azimuth = radians(rotation)});
   return all;
 }
 
@@ -121,4 +121,4 @@ std::vector<std::function<double(double)>> ReverberationBand::filters() const {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "sonar/scenario/transmitter.h"
 #include "sonar/signal/band_response.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The few frequencies at which a ping's reverberation is known, and what differs there: the
 /// water's absorption, the scattering laws, the transmitter's pattern.
@@ -31,7 +31,7 @@ class ReverberationBand {
 
   [[nodiscard]] std::span<const BandPoint> points() const noexcept { return points_; }
   /// ℓ_k over the frequency from the band's centre [Hz]: a synthesizer of these has the points for
-  /// its colours. They end with this.
+  /// its frequency responses. They end with this.
   [[nodiscard]] std::vector<std::function<double(double)>> filters() const;
 
   /// The largest error of absorption times √σ between the points, over its largest value.
@@ -47,4 +47,4 @@ class ReverberationBand {
   double reached_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

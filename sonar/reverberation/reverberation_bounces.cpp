@@ -5,21 +5,22 @@
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/reverberation.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
-constexpr std::size_t stretches = 32;  // of the record
+constexpr std::size_t segments = 32;  // of the record
 constexpr int rings = 64, first_try = 8;
 constexpr int most_ever = 1 << 14;     // bounces that are tried at most in layered water
 constexpr int bearings_looked_at = 8;  // and planes, over slopes
 
 /// Adds what comes back from rings around the middle of two ends, by the bounces of either leg.
 /// \param most  of the bounces
-void look(const ScatteringSheet& sheet, double reach, int most, HeardBounces& into) {
+void look(const ScatteringSheet& sheet, double reach, int most, ReceivedBounces& into) {
   const SheetEnds& ends = sheet.ends();
   const Vec2 middle = 0.5 * (ends.source.position + ends.receiver.position).head<2>();
   // Where a path may stand for hundreds, a place that draws one tells too little of them.
-  const int bearings = sheet.all_round() && most < 2 * all_cycles ? 1 : bearings_looked_at;
+  const int bearings =
+      sheet.azimuthally_symmetric() && most < 2 * all_cycles ? 1 : bearings_looked_at;
   const double step = reach / rings;
   PathPairs pairs;
   for (int ring = 0; ring < rings; ++ring)
@@ -40,15 +41,14 @@ void look(const ScatteringSheet& sheet, double reach, int most, HeardBounces& in
 
 }  // namespace
 
-/// What a stretch may miss, 10 dB under the noise in the pulse's band, in units of what look() adds
+/// What a segment may miss, 10 dB under the noise in the pulse's band, in units of what look() adds
 /// up: of a source of 1 at 1 m that sounds for a second.
 double ReverberationModel::inaudible(const ReverberationContext& context) const {
-  const double source_db =
-      scenario_.transmitters[static_cast<std::size_t>(context.transmitter)].source_level_db;
+  const double source_db = context.geometry.transmitter().source_level_db;
   const Pulse& pulse = context.pulse;
   const double noise_db =
       noise_band_db(scenario_.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
-  return 0.1 * power_from_db(noise_db - source_db) * context.latest / stretches / pulse.duration();
+  return 0.1 * power_from_db(noise_db - source_db) * context.latest / segments / pulse.duration();
 }
 
 Bounces ReverberationModel::enough(const Part& part, const SheetEnds& ends,
@@ -64,18 +64,18 @@ Bounces ReverberationModel::enough(const Part& part, const SheetEnds& ends,
   fan.sectors = bearings_looked_at;
   const BounceSearch search{.first = first_try,
                             .most = paths_.layered() ? most_ever : most_over_slopes,
-                            .stretches = stretches,
+                            .segments = segments,
                             .latest = context.latest,
                             .floor = inaudible(context)};
-  return search_bounces(settings, search, [&](const PathLimits& limits, HeardBounces& heard) {
+  return search_bounces(settings, search, [&](const PathLimits& limits, ReceivedBounces& received) {
     fan.limits = limits;
     fan.limits.max_delay = max_delay;
     fan.limits.home_slowness = home_slowness;
     const ScatteringSheet sheet(fans_.around(ends.source.position, part.level, fan),
                                 fans_.around(ends.receiver.position, part.level, fan), part.law,
                                 centre, context.pattern);
-    look(sheet, reach, std::max(limits.max_surface_bounces, limits.max_bottom_bounces), heard);
+    look(sheet, reach, std::max(limits.max_surface_bounces, limits.max_bottom_bounces), received);
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

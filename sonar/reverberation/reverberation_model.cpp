@@ -10,7 +10,7 @@
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/ping_bounds.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The law of a boundary out of the scenario's shorter lists.
@@ -19,25 +19,22 @@ ScatteringSheet::Law law_of(const std::variant<Model...>& law) {
   return std::visit([](const auto& model) { return ScatteringSheet::Law(model); }, law);
 }
 
-/// Source and receiver of one ping, with the ways that they take while it is sent and heard.
-SheetEnds ends_of(const Scenario& scenario, const ReverberationContext& context) {
-  const Transmitter& transmitter =
-      scenario.transmitters[static_cast<std::size_t>(context.transmitter)];
-  const Carried hearer = context.point
-                             ? *context.point
-                             : reverberation_point(scenario, context.transmitter, context.array,
-                                                   context.time, context.pulse.centre_frequency());
+/// Source and receiver of one ping, with the ways that they take while it is sent and received.
+SheetEnds ends_of(const ReverberationContext& context) {
+  const PingGeometry& geometry = context.geometry;
+  const Carried receiver_point =
+      context.point ? *context.point
+                    : geometry.reverberation_point(context.array, context.pulse.centre_frequency());
   const double duration = context.pulse.duration();
   SheetEnds ends = {
-      .source = sent_from(scenario.platforms[static_cast<std::size_t>(transmitter.platform)].track,
-                          context.time, duration),
-      .receiver = hearer.at(context.time),
-      .legs = receiver_legs(hearer.track, context.time, context.latest, duration),
+      .source = sent_from(geometry.sender().track, geometry.time(), duration),
+      .receiver = receiver_point.at(geometry.time()),
+      .legs = receiver_legs(receiver_point.track, geometry.time(), context.latest, duration),
       .frequency = context.pulse.centre_frequency(),
       .latest = context.latest,
       .band = context.band};
-  ends.source.position += transmitter.offset;
-  for (ReceiverLeg& leg : ends.legs) leg.line.position += hearer.offset;
+  ends.source.position += geometry.sender().offset;
+  for (ReceiverLeg& leg : ends.legs) leg.line.position += receiver_point.offset;
   // Who moves so little in a record that no phase changes by a twentieth of a radian is at rest.
   constexpr double still = 0.05;  // [rad]
   const double fastest = ends.source.velocity.norm() + ends.receiver.velocity.norm();
@@ -64,9 +61,9 @@ double way_of_receiver(const SheetEnds& ends) {
   return furthest;
 }
 
-/// Sectors so narrow that no array nor its Doppler tells them apart: λ/(2L) for a length L, and 1/T
+/// Sectors so narrow that no array nor its Doppler resolves them: λ/(2L) for a length L, and 1/T
 /// of Doppler, 2v/λ·Δφ, for a platform's speed v. The same for every array and every ping: they
-/// hear the same scatterers.
+/// receive the same scatterers.
 int resolved_sectors(const Scenario& scenario, double sound_speed) {
   double length = 0.0, speed = 0.0;
   for (const ReceiverArray& array : scenario.arrays)
@@ -91,8 +88,8 @@ ReverberationModel::ReverberationModel(const Scenario& scenario, const Propagati
     : scenario_(scenario),
       paths_(paths),
       fans_(paths),
-      spacing_(asdic::ground_spacing(scenario, widest, paths)),
-      fastest_water_(asdic::fastest_water(scenario.environment)),
+      spacing_(asdic::detail::ground_spacing(scenario, widest, paths)),
+      fastest_water_(asdic::detail::fastest_water(scenario.environment)),
       resolved_sectors_(scenario.reverberation.resolve_azimuth
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))
                             : 1) {}
@@ -168,15 +165,15 @@ double ReverberationModel::wide_cells(const Pulse& pulse) noexcept {
 void ReverberationModel::meet(Part part, const ReverberationContext& context, Ground ground,
                               std::vector<ScatteringField>& fields) const {
   const ReverberationSettings& settings = scenario_.reverberation;
-  // Who hears one ping cannot tell weights that last from those that do not.
-  if (context.heard_once && settings.synthesis != ScattererSynthesis::scatterers &&
+  // Who receives one ping cannot tell weights that last from those that do not.
+  if (context.received_once && settings.synthesis != ScattererSynthesis::scatterers &&
       !part.field.statistics.k_shape)
     part.field.statistics.coherence_time = 0.0;
   const ScattererField& field = part.field;
-  SheetEnds ends = ends_of(scenario_, context);
+  SheetEnds ends = ends_of(context);
 
   // Around points next to the middle of the two platforms, on a lattice through that of the first
-  // two: pairs whose middles are near each other hear one sea.
+  // two: pairs whose middles are near each other receive one sea.
   const auto middle = [&](int transmitter, int array, double time) -> Vec2 {
     const auto platform = [&](int i) -> Vec2 {
       return scenario_.platforms[static_cast<std::size_t>(i)].track.at(time).position.head<2>();
@@ -193,8 +190,10 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context, Gr
                    .place = 0.5 * (ends.source.position + ends.receiver.position).head<2>(),
                    .identity = mixed(part.id, part.id)}}
              : anchors_of(middle(0, 0, 0.0),
-                          middle(context.transmitter, context.array, context.time), context.time,
-                          field.motion.current, reach / 8.0, part.id, seas_compared(field));
+                          middle(context.geometry.sent().transmitter, context.array,
+                                 context.geometry.time()),
+                          context.geometry.time(), field.motion.current, reach / 8.0, part.id,
+                          seas_compared(field));
   const Vec2 source = ends.source.position.head<2>(), receiver = ends.receiver.position.head<2>();
   const double moved = way_of_receiver(ends);
   const double apart = (source - receiver).norm() + moved;
@@ -224,7 +223,7 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context, Gr
   const Bounces followed = enough(part, ends, fan, context);
   fan.limits = limits_of(scenario_.propagation, followed);
   // A few bounces that were asked for by number are followed to whatever time: what comes too late
-  // is not heard, but moves the nodes of the synthesis by its Doppler.
+  // is not received, but moves the nodes of the synthesis by its Doppler.
   constexpr int a_few = 12;
   if (!in_numbers(scenario_.propagation) || std::max(followed.surface, followed.bottom) > a_few) {
     fan.limits.max_delay = max_delay;
@@ -241,13 +240,12 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context, Gr
     return paths_to_level;
   };
   const auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
-  // For parts of an array that of all its phones: they are to hear the same scatterers.
+  // For parts of an array that of all its phones: they are to receive the same scatterers.
   const auto farthest_phone = [&](const Vec2& place) {
     if (!context.point) return (receiver - place).norm();
-    const Vec2 reference = array_at(scenario_, context.array, context.time).position.head<2>();
+    const Vec2 reference = context.geometry.reference_place(context.array).position.head<2>();
     double farthest = 0.0;
-    for (const Vec3& x :
-         phones_at(scenario_, context.array, static_cast<int>(context.ping), context.time))
+    for (const Vec3& x : context.geometry.phones(context.array))
       farthest = std::max(farthest, (reference + x.head<2>() - place).norm());
     return farthest;
   };
@@ -287,22 +285,20 @@ std::shared_ptr<const ExpectedReverberation> ReverberationModel::expected(
     std::span<const ScatteringField> fields, const ReverberationContext& context) const {
   const double duration = context.pulse.duration();
   const auto key = ExpectedReverberation::key(fields, duration);
-  PropagationMemory& memory = paths_.memory();
-  auto known = key ? memory.find<ExpectedReverberation>(*key) : nullptr;
-  if (known) return known;
-  if (context.reuse != nullptr) context.reuse->expected_level = false;
-  if (context.budget != nullptr)
-    context.budget->take(ExpectedReverberation::need(fields, duration));
-  auto made = std::make_shared<ExpectedReverberation>(fields, duration);
-  const std::size_t bytes = made->bytes();
-  return key ? memory.keep(*key, std::move(made), bytes) : made;
+  const auto make = [&] {
+    if (context.reuse != nullptr) context.reuse->expected_level = false;
+    if (context.budget != nullptr)
+      context.budget->take(ExpectedReverberation::need(fields, duration));
+    return std::make_shared<ExpectedReverberation>(fields, duration);
+  };
+  return key ? paths_.memory().remember(*key, make) : make();
 }
 
 namespace {
 
-constexpr double many = 20'000.0;  // returns: fewer are laid down as soon
+constexpr double many = 20'000.0;  // returns: fewer are gridded as soon
 
-/// Whether a ping may be heard as streams where they serve.
+/// Whether a ping may be received as streams where they serve.
 bool may_stream(const Scenario& scenario, const ReverberationContext& context) noexcept {
   const ScattererSynthesis how = scenario.reverberation.synthesis;
   return how != ScattererSynthesis::scatterers && how != ScattererSynthesis::covariance &&
@@ -321,12 +317,11 @@ std::vector<Vec3> places_of(std::span<const std::vector<Vec3>> shapes,
   return some;
 }
 
-/// Who hears them.
-ReverberationStreams::Listener stream_listener(const Scenario& scenario,
-                                               const ReverberationContext& context) {
-  // What an array of many shapes hears is sorted for all of them once.
+/// Who receives them.
+ReverberationStreams::Listener stream_listener(const ReverberationContext& context) {
+  // What an array of many shapes receives is sorted for all of them once.
   const std::vector<std::vector<Vec3>> now{{context.phones.begin(), context.phones.end()}};
-  const auto& shapes = scenario.arrays[static_cast<std::size_t>(context.array)].shapes;
+  const auto& shapes = context.geometry.array(context.array).shapes;
   const double highest = context.pulse.centre_frequency() + 0.5 * context.pulse.bandwidth_99();
   return {.extents = ReverberationStreams::extents_of(shapes.empty() ? now : shapes, highest),
           .phones = context.phones.size(),
@@ -340,8 +335,8 @@ ReverberationStreams::Listener stream_listener(const Scenario& scenario,
 
 }  // namespace
 
-/// Marks the fields that are heard by their covariance: those that it serves, if they have many
-/// returns. Two arrays that hear the same scatterers would have one covariance: not if there are
+/// Marks the fields that are received by their covariance: those that it serves, if they have many
+/// returns. Two arrays that receive the same scatterers would have one covariance: not if there are
 /// several. Out of the paths' memory if it is there.
 std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
     std::span<ScatteringField> fields, const ExpectedReverberation& expected,
@@ -361,7 +356,7 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (ReverberationCovariance::serves(fields[i]) &&
         (how == ScattererSynthesis::covariance || expected.returns_of(i) > many)) {
-      fields[i].heard_by = HeardBy::covariance;
+      fields[i].received_by = ReceivedBy::covariance;
       served.push_back(&fields[i]);
     }
   if (served.empty()) return nullptr;
@@ -372,56 +367,54 @@ std::shared_ptr<const ReverberationCovariance> ReverberationModel::covariance(
                                                       .latest = context.latest};
   auto key =
       ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_covariance);
-  PropagationMemory& memory = paths_.memory();
-  if (key) {
-    key->add(listener.band.frequencies);
-    key->add(listener.coherence->fingerprint());
-    for (const ScatteringField& field : fields)
-      key->add_all(static_cast<int>(field.heard_by), field.thickness);
-    for (const Vec3& phone : context.phones) key->add(phone);
-    if (auto known = memory.find<ReverberationCovariance>(*key)) return known;
-  }
-  auto made = std::make_shared<ReverberationCovariance>(served, expected.limits, listener);
-  const std::size_t bytes = made->bytes();
-  return key ? memory.keep(*key, std::move(made), bytes) : made;
+  const auto make = [&] {
+    return std::make_shared<ReverberationCovariance>(served, expected.limits, listener);
+  };
+  if (!key) return make();
+  key->add(listener.band.frequencies);
+  key->add(listener.coherence->fingerprint());
+  for (const ScatteringField& field : fields)
+    key->add_all(static_cast<int>(field.received_by), field.thickness);
+  for (const Vec3& phone : context.phones) key->add(phone);
+  return paths_.memory().remember(*key, make);
 }
 
-/// Marks the fields that are heard as streams: those that they serve, if they have many returns and
-/// no covariance. Out of the paths' memory if they are there.
+/// Marks the fields that are received as streams: those that they serve, if they have many returns
+/// and no covariance. Out of the paths' memory if they are there.
 std::shared_ptr<const ReverberationStreams> ReverberationModel::streams(
     std::span<ScatteringField> fields, const ExpectedReverberation& expected,
     const ReverberationContext& context) const {
   if (!may_stream(scenario_, context)) return nullptr;
   const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
-  const ReverberationStreams::Listener listener = stream_listener(scenario_, context);
+  const ReverberationStreams::Listener listener = stream_listener(context);
   std::vector<const ScatteringField*> served;
   for (std::size_t i = 0; i < fields.size(); ++i)
-    if (fields[i].heard_by == HeardBy::scatterers && ReverberationStreams::serves(fields[i]) &&
+    if (fields[i].received_by == ReceivedBy::scatterers &&
+        ReverberationStreams::serves(fields[i]) &&
         (wherever || expected.returns_of(i) >
                          std::max(many, ReverberationStreams::worth(listener, fields[i])))) {
-      fields[i].heard_by = HeardBy::streams;
+      fields[i].received_by = ReceivedBy::streams;
       served.push_back(&fields[i]);
     }
   if (served.empty()) return nullptr;
   auto key =
       ExpectedReverberation::key(fields, listener.pulse_duration, Kept::reverberation_streams);
-  PropagationMemory& memory = paths_.memory();
-  if (key) {
-    key->add(listener.frequency);
-    key->add(listener.coherence->fingerprint());
-    for (const ScatteringField& field : fields) {
-      const ScattererMotion& motion = field.field.motion;
-      key->add_all(static_cast<int>(field.heard_by), field.thickness, field.boundary,
-                   static_cast<int>(motion.kind), motion.receding_share, motion.current);
-    }
-    for (const Vec3& axis : listener.extents) key->add(axis);
-    for (const Vec3& place : listener.places) key->add(place);
-    if (auto known = memory.find<ReverberationStreams>(*key)) return known;
+  const auto make = [&] {
+    if (context.budget != nullptr)
+      context.budget->take(ReverberationStreams::need(served, listener));
+    return std::make_shared<ReverberationStreams>(served, expected.limits, listener);
+  };
+  if (!key) return make();
+  key->add(listener.frequency);
+  key->add(listener.coherence->fingerprint());
+  for (const ScatteringField& field : fields) {
+    const ScattererMotion& motion = field.field.motion;
+    key->add_all(static_cast<int>(field.received_by), field.thickness, field.boundary,
+                 static_cast<int>(motion.kind), motion.receding_share, motion.current);
   }
-  if (context.budget != nullptr) context.budget->take(ReverberationStreams::need(served, listener));
-  auto made = std::make_shared<ReverberationStreams>(served, expected.limits, listener);
-  const std::size_t bytes = made->bytes();
-  return key ? memory.keep(*key, std::move(made), bytes) : made;
+  for (const Vec3& axis : listener.extents) key->add(axis);
+  for (const Vec3& place : listener.places) key->add(place);
+  return paths_.memory().remember(*key, make);
 }
 
 std::vector<ScatteringField> ReverberationModel::fields(const ReverberationContext& context,
@@ -432,16 +425,16 @@ std::vector<ScatteringField> ReverberationModel::fields(const ReverberationConte
 }
 
 std::vector<ScatteringField> ReverberationModel::in_detail(
-    std::vector<ScatteringField> heard, const ReverberationContext& context) const {
+    std::vector<ScatteringField> received, const ReverberationContext& context) const {
   const auto one_by_one = [](const ScatteringField& field) {
-    return field.heard_by == HeardBy::scatterers;
+    return field.received_by == ReceivedBy::scatterers;
   };
-  if (context.level_alone || std::none_of(heard.begin(), heard.end(), one_by_one) ||
+  if (context.level_alone || std::none_of(received.begin(), received.end(), one_by_one) ||
       !paths_.layered() || !(wide_cells(context.pulse) > spacing_))
-    return heard;
+    return received;
   std::vector<ScatteringField> fine = fields(context, Ground::scatterers), all;
-  for (std::size_t i = 0; i < heard.size(); ++i)
-    all.push_back(std::move(one_by_one(heard[i]) ? fine[i] : heard[i]));
+  for (std::size_t i = 0; i < received.size(); ++i)
+    all.push_back(std::move(one_by_one(received[i]) ? fine[i] : received[i]));
   return all;
 }
 
@@ -452,37 +445,37 @@ Bounces ReverberationModel::bounces(const ReverberationContext& context) const {
 }
 
 void ReverberationModel::take_memory(const ReverberationContext& context) const {
-  const std::vector<ScatteringField> heard = fields(context, Ground::means);
-  if (heard.empty()) return;
-  context.budget->take(ExpectedReverberation::need(heard, context.pulse.duration()));
-  const bool forgets = std::all_of(heard.begin(), heard.end(), [](const ScatteringField& field) {
-    return ReverberationStreams::serves(field);
-  });
-  if (!forgets) static_cast<void>(in_detail(heard, context));
-  // How many returns there are, and so whether they are heard as streams, is not known yet; those
-  // that a covariance serves seldom are.
+  const std::vector<ScatteringField> received = fields(context, Ground::means);
+  if (received.empty()) return;
+  context.budget->take(ExpectedReverberation::need(received, context.pulse.duration()));
+  const bool forgets =
+      std::all_of(received.begin(), received.end(),
+                  [](const ScatteringField& field) { return ReverberationStreams::serves(field); });
+  if (!forgets) static_cast<void>(in_detail(received, context));
+  // How many returns there are, and so whether they are received as streams, is not known yet;
+  // those that a covariance serves seldom are.
   if (!may_stream(scenario_, context)) return;
   const bool wherever = scenario_.reverberation.synthesis == ScattererSynthesis::streams;
   std::vector<const ScatteringField*> served;
-  for (const ScatteringField& field : heard)
+  for (const ScatteringField& field : received)
     if (ReverberationStreams::serves(field) &&
         (wherever || !ReverberationCovariance::serves(field)))
       served.push_back(&field);
   if (!served.empty())
-    context.budget->take(ReverberationStreams::need(served, stream_listener(scenario_, context)));
+    context.budget->take(ReverberationStreams::need(served, stream_listener(context)));
 }
 
 PingReverberation ReverberationModel::ping(const ReverberationContext& context) const {
-  std::vector<ScatteringField> heard = fields(context, Ground::means);
-  auto known = expected(heard, context);
-  auto by_covariance = covariance(heard, *known, context);
-  auto as_streams = streams(heard, *known, context);
+  std::vector<ScatteringField> received = fields(context, Ground::means);
+  auto known = expected(received, context);
+  auto by_covariance = covariance(received, *known, context);
+  auto as_streams = streams(received, *known, context);
   return {scenario_,
           context,
-          in_detail(std::move(heard), context),
+          in_detail(std::move(received), context),
           std::move(known),
           std::move(by_covariance),
           std::move(as_streams)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,9 +9,9 @@
 #include "raytrace/parallel/parallel.h"
 #include "reverb/uniform_of_bits.h"
 #include "sonar/reverberation/delay_bins.h"
-#include "sonar/reverberation/heard_places.h"
+#include "sonar/reverberation/received_places.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using StreamBlock = ReverberationStreams::Block;
@@ -71,7 +71,7 @@ Directions cells_of(Directions parts) noexcept {
   return parts;
 }
 
-/// What array and pulse cannot tell apart. Along each of its axes the array's ends are half[i] from
+/// What array and pulse cannot resolve. Along each of its axes the array's ends are half[i] from
 /// its middle: powers of its beams are correlations over no more than 2·half, and a sum over
 /// directions at steps of 2π·f·s·half below π is the integral. Doppler spectra are of correlations
 /// no longer than the pulse: so are sums at steps of less than 1/T. Cells are 2 rad and 0.75/T.
@@ -142,7 +142,7 @@ struct CellHash {
   std::size_t operator()(const Cell& cell) const noexcept { return cell.entity(); }
 };
 
-/// What is heard of a part of a cell: powers, the two sounds' product, sums weighted with the
+/// What is received of a part of a cell: powers, the two sounds' product, sums weighted with the
 /// powers.
 struct PartSum {
   Directions direction{};
@@ -253,12 +253,13 @@ struct GroundAround {
     sectors = static_cast<int>(std::ceil(std::max<double>(bearings, field.bearings)));
   }
 
-  /// Adds what is heard of one circle.
-  void hear(std::size_t circle, const AudibleLimits& limits, const PathInterference& interference,
-            HearingMemory& memory, std::vector<Heard>& heard) const {
+  /// Adds what is received of one circle.
+  void receive(std::size_t circle, const AudibleLimits& limits,
+               const PathInterference& interference, ReceptionMemory& memory,
+               std::vector<Received>& received) const {
     const double inner = edges[circle], outer = edges[circle + 1];
     const double ring =
-        field.heard_area(static_cast<std::uint32_t>(0.5 * (inner + outer) / field.grid.spacing));
+        field.received_area(static_cast<std::uint32_t>(0.5 * (inner + outer) / field.grid.spacing));
     const SheetEnds& ends = field.sheet.ends();
     for (int sector = 0; sector < sectors; ++sector) {
       const double width = 2.0 * pi / sectors;
@@ -280,28 +281,28 @@ struct GroundAround {
           const double towards = bearing + ((j + 0.5) / around - 0.5) * width;
           const Vec2 out(std::sin(towards), std::cos(towards));
           const auto piece = static_cast<std::uint64_t>((sector * along + i) * around + j);
-          asdic::hear(field,
-                      {.middle = middle + r * out,
-                       .outward = out,
-                       .length = length,
-                       .width = r * width / around,
-                       .area = field.share * field.share * r * length * width / around,
-                       .ring = ring,
-                       .chance = mixed(mixed(circle, field.boundary), piece)},
-                      limits, interference, false, memory, heard);
+          asdic::detail::receive(field,
+                                 {.middle = middle + r * out,
+                                  .outward = out,
+                                  .length = length,
+                                  .width = r * width / around,
+                                  .area = field.share * field.share * r * length * width / around,
+                                  .ring = ring,
+                                  .chance = mixed(mixed(circle, field.boundary), piece)},
+                                 limits, interference, false, memory, received);
         }
     }
   }
 };
 
-/// Puts what is heard into the cells of the blocks in which it is heard.
+/// Puts what is received into the cells of the blocks in which it is received.
 class Gatherer {
  public:
   Gatherer(const Resolution& resolution, std::span<const StreamBlock> blocks,
            std::span<const std::uint32_t> block_of, double bin)
       : resolution_(resolution), blocks_(blocks), block_of_(block_of), bin_(bin) {}
 
-  void add(const Heard& h, CellSums& sums) const {
+  void add(const Received& h, CellSums& sums) const {
     const double bins = static_cast<double>(block_of_.size());
     double first = std::max(0.0, (h.delay - 0.5 * h.extent) / bin_);
     const double last = std::min(bins, (h.delay + 0.5 * h.extent) / bin_);
@@ -412,7 +413,7 @@ MemoryNeed ReverberationStreams::need(std::span<const ScatteringField* const> fi
 std::array<Vec3, 3> ReverberationStreams::extents_of(std::span<const std::vector<Vec3>> shapes,
                                                      double frequency) {
   // Phases of sound along the array, between its ends and the middle [rad].
-  constexpr double alike = 0.1;                       // an array so short hears one direction
+  constexpr double alike = 0.1;                       // an array so short receives one direction
   constexpr double least = 0.9;                       // else at least: yet one cell
   constexpr double askew = 0.5;                       // of an end beside a rounded axis
   constexpr double finest = 8.0;                      // lengths to an octave
@@ -473,12 +474,12 @@ ReverberationStreams::ReverberationStreams(std::span<const ScatteringField* cons
     const std::size_t circles = ground.edges.size() - 1;
     std::vector<CellSums> parts((circles + together - 1) / together, CellSums(blocks));
     in_parallel(parts.size(), [&](std::size_t part) {
-      HearingMemory memory;
-      std::vector<Heard> heard;
+      ReceptionMemory memory;
+      std::vector<Received> received;
       for (std::size_t i = part * together; i < std::min(circles, (part + 1) * together); ++i) {
-        heard.clear();
-        ground.hear(i, limits, interference, memory, heard);
-        for (const Heard& h : heard) gatherer.add(h, parts[part]);
+        received.clear();
+        ground.receive(i, limits, interference, memory, received);
+        for (const Received& h : received) gatherer.add(h, parts[part]);
       }
     });
     for (CellSums& part : parts) sums.add(std::move(part));
@@ -531,4 +532,4 @@ std::size_t ReverberationStreams::bytes() const noexcept {
          intensity.capacity() * sizeof(float);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

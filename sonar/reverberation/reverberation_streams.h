@@ -12,20 +12,20 @@
 #include "reverb/scattering_field.h"
 #include "sonar/signal/pulse_coherence.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Reverberation as streams of noise: what source, sea and receiver in any geometry and motion
-/// send to an array, summed over what the array and the pulse can tell apart.
+/// send to an array, summed over what the array and the pulse can resolve.
 ///
-/// Delays are cut into blocks. What is heard in a block out of one cell of directions, with Doppler
-/// factors of one cell, is one stream: a wave of white Gaussian noise through the pulse as
+/// Delays are cut into blocks. What is received in a block out of one cell of directions, with
+/// Doppler factors of one cell, is one stream: a wave of white Gaussian noise through the pulse as
 /// that Doppler factor stretches it, with the power over delay of all its places and pairs of
 /// paths. Cells are as wide as lets sums over them be the integrals that they stand for: for the
 /// powers of beams and for Doppler spectra the trapezoidal rule has no error at such steps.
-/// A pair of paths and its reciprocal that are heard in phase are a stream out of two directions.
-/// docs/theory/reverberation.md, "Streams"
+/// A pair of paths and its reciprocal that are received in phase are a stream out of two
+/// directions. docs/theory/reverberation.md, "Streams"
 struct ReverberationStreams {
-  /// Who hears, and how finely.
+  /// Who receives, and how finely.
   struct Listener {
     std::array<Vec3, 3> extents = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< extents_of()
     std::size_t phones = 1;
@@ -47,7 +47,7 @@ struct ReverberationStreams {
     /// Pressure of each for each of two noises, Σ|weight|² = 1. One direction has one noise; two
     /// have one, too, as far as what comes from there is in phase.
     std::array<std::array<std::complex<double>, 2>, 2> weight = {};
-    double doppler = 1.0;  ///< frequency heard over frequency sent
+    double doppler = 1.0;  ///< frequency received over frequency sent
     double chance = 1.0;   ///< of this part and those before it
   };
   /// The noise of a cell: out of one of its parts in a ping, drawn by its power.
@@ -72,11 +72,11 @@ struct ReverberationStreams {
   /// \param shapes  [m], at least one; where they lie does not matter
   [[nodiscard]] static std::array<Vec3, 3> extents_of(std::span<const std::vector<Vec3>> shapes,
                                                       double frequency);
-  /// Whether a field may be heard so: scatterers without velocities of their own and without
+  /// Whether a field may be received so: scatterers without velocities of their own and without
   /// texture, weights of every ping's own, amplitudes of the centre frequency.
   [[nodiscard]] static bool serves(const ScatteringField& field) noexcept;
-  /// Returns that take as long to lay down one by one as a ping of the field's streams, roughly: a
-  /// sparse array tells very many directions apart.
+  /// Returns that take as long to grid one by one as a ping of the field's streams, roughly: a
+  /// sparse array resolves very many directions.
   [[nodiscard]] static double worth(const Listener& listener, const ScatteringField& field);
   /// What making them and a ping out of them takes beside the ping's samples, at most: a guess from
   /// the number of cells.
@@ -94,4 +94,4 @@ struct ReverberationStreams {
   std::vector<float> intensity;  ///< of each stream, [bins of its block] mean power [1/s]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "sonar/reverberation/path_interference.h"
 #include "sonar/reverberation/reverberation.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr int elevations = 6;  // ranges of arrival elevation, alike in its sine
@@ -37,7 +37,7 @@ double PingReverberation::sector_bin(const ScatteringField& field) const {
 void PingReverberation::add_sector(const ScatteringField& field, int sector,
                                    ReturnBlock& into) const {
   const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
-                                 context_.time, context_.ping);
+                                 context_.geometry.time(), context_.ping());
   const double bin = sector_bin(field);
   const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
   std::vector<Bin> bins(count * elevations);
@@ -101,9 +101,9 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
         weights(entity);
     for (const PathPair& pair : pairs.found)
       if (pair.out_index == full.out && pair.back_index == full.back) {
-        hear(field, pairs, pair, met, weight, into);
+        receive(field, pairs, pair, met, weight, into);
         const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
-        if (other) hear(field, pairs, *other, met, weight, into);
+        if (other) receive(field, pairs, *other, met, weight, into);
         break;
       }
   }
@@ -123,4 +123,4 @@ std::vector<PingReverberation::Block> PingReverberation::sector_blocks() const {
   return blocks;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,8 +4,9 @@
 #include <string>
 
 #include "core/error.h"
+#include "sonar/scenario/shapes/shapes.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 ReceiverArray line_array(int phones, double spacing, double heading, double pitch) {
   if (phones < 1)
@@ -27,4 +28,25 @@ ReceiverArray line_array(int phones, double spacing, double heading, double pitc
   return array;
 }
 
-}  // namespace asdic
+namespace {
+/// How a file says where the phones are, bit for bit.
+AnyArrayShape shape_of(const ReceiverArray& array) {
+  if (array.towed) return TowedShape{*array.towed};
+  PositionsShape shape{.positions = array.phones};
+  for (const std::vector<Vec3>& one : array.shapes) shape.shapes.push_back({one});
+  return shape;
+}
+}  // namespace
+
+void ReceiverArray::describe(Fields& field) {
+  field.name(name, "by which others name it");
+  field.reference("platform", platform, "platform", "that carries it");
+  AnyArrayShape shape = shape_of(*this);
+  field.one_of(required("kind"), shape, "how its phones lie");
+  if (field.reads()) std::visit([&](const auto& one) { one.build(*this); }, shape);
+  field.know("phones", static_cast<double>(phones.size()));
+  field(live("offset"), offset, quantity::coordinate, "from the platform; towed: of the tow point");
+  field("electronics", electronics, "what its electronics do");
+}
+
+}  // namespace asdic::detail

@@ -5,7 +5,9 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
+
+class Fields;
 
 /// What a phone's electronics do to its signal. Lists have one entry per phone, or are empty.
 struct Electronics {
@@ -19,15 +21,18 @@ struct Electronics {
   struct BandPass {
     int order = 4;
     double low = 0.0, high = 0.0;  ///< −3 dB [Hz]
+    void describe(Fields& field);
   };
   std::optional<BandPass> band_pass;
 
   struct Converter {
     int bits = 16;
     double full_scale = 1.0;  ///< peak pressure that is just not clipped [Pa]
+    void describe(Fields& field);
   };
   std::optional<Converter> converter;
 
+  void describe(Fields& field);
   [[nodiscard]] bool is_ideal() const noexcept {
     return gain_db.empty() && phase.empty() && gain_std_db == 0.0 && phase_std == 0.0 &&
            dead.empty() && !band_pass && !converter;
@@ -51,6 +56,8 @@ struct ReceiverArray {
                                           ///< `phones`; empty: it keeps its shape
   std::optional<TowedLine> towed;         ///< in place of `phones`
   Electronics electronics;
+
+  void describe(Fields& field);
 };
 
 /// A straight line of n phones around its centre.
@@ -59,4 +66,4 @@ struct ReceiverArray {
 /// whose first phone is the deepest
 [[nodiscard]] ReceiverArray line_array(int phones, double spacing, double heading, double pitch);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 
 #include "core/geometry.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A place on a track's path, `behind` its place at a time; straight on backwards where the path
@@ -69,7 +69,7 @@ Track trailing(const Track& tow, double behind, double heading) {
   std::vector<double> times = corner_times(tow.waypoints, behind);
   for (const Waypoint& corner : tow.waypoints) times.push_back(corner.time);
   std::sort(times.begin(), times.end());
-  constexpr double shortest = 1e-6;  // [s], between waypoints that are told apart
+  constexpr double shortest = 1e-6;  // [s], between waypoints that are resolved
   const auto same = [](double a, double b) { return b - a < shortest; };
   times.erase(std::unique(times.begin(), times.end(), same), times.end());
   track.waypoints.clear();
@@ -116,10 +116,6 @@ const std::vector<Vec3>& given_phones(const ReceiverArray& array, int ping) {
   return array.shapes[static_cast<std::size_t>(ping - 1) % array.shapes.size()];
 }
 
-bool rests(const Track& track) {
-  return track.waypoints.empty() && track.start.velocity.isZero(0.0);
-}
-
 }  // namespace
 
 Carried reference_of(const Scenario& scenario, int array) {
@@ -143,21 +139,6 @@ Carried middle_of(const Scenario& scenario, int array, int ping, PhoneRange phon
 
 Carried phone_of(const Scenario& scenario, int array, int ping, int phone) {
   return middle_of(scenario, array, ping, {static_cast<std::size_t>(phone), 1});
-}
-
-Carried reverberation_point(const Scenario& scenario, int transmitter, int array, double time,
-                            double frequency) {
-  constexpr double in_phase = 0.25, sea = 1500.0;  // [wavelengths], [m/s]
-  const Transmitter& sender = scenario.transmitters[static_cast<std::size_t>(transmitter)];
-  const Track& sent_from = scenario.platforms[static_cast<std::size_t>(sender.platform)].track;
-  const bool stays = sender.platform == array_of(scenario, array).platform ||
-                     (rests(sent_from) && rests(carrier_of(scenario, array)));
-  if (!stays || deforms(scenario, array)) return reference_of(scenario, array);
-  const double away = (transmitter_at(scenario, transmitter, time).position -
-                       array_at(scenario, array, time).position)
-                          .norm();
-  if (away * frequency <= in_phase * sea) return {sent_from, sender.offset};
-  return reference_of(scenario, array);
 }
 
 bool deforms(const Scenario& scenario, int array) {
@@ -200,4 +181,4 @@ std::vector<Vec3> phones_from(const Carried& point, const Scenario& scenario, in
   return phones;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Something that goes along a track, `offset` from it: an array's reference point or a phone.
 struct Carried {
@@ -20,8 +20,8 @@ struct Carried {
   }
 };
 
-/// An array's reference point, about which plane waves are heard: the middle of its phones (of all
-/// its shapes; of a towed line, the place on the path at their mean distance behind).
+/// An array's reference point, about which plane waves are received: the middle of its phones (of
+/// all its shapes; of a towed line, the place on the path at their mean distance behind).
 [[nodiscard]] Carried reference_of(const Scenario& scenario, int array);
 
 /// One of its phones. In a turn those of a towed line have each their own velocity. \param ping  of
@@ -40,14 +40,7 @@ struct PhoneRange {
 [[nodiscard]] std::vector<Vec3> phones_from(const Carried& point, const Scenario& scenario,
                                             int array, int ping, double time);
 
-/// The point about which the reverberation of a transmitter's ping is heard. The transmitter's own
-/// place, where it lies within a quarter of a wavelength of the phones' middle and stays there:
-/// then sound comes back along the paths that it went out on, and in phase. Elsewhere the reference
-/// point. \param time  of the ping, since the start of the scenario [s]   \param frequency  [Hz]
-[[nodiscard]] Carried reverberation_point(const Scenario& scenario, int transmitter, int array,
-                                          double time, double frequency);
-
 /// Whether its phones move against one another while they listen: a towed line that turns.
 [[nodiscard]] bool deforms(const Scenario& scenario, int array);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,15 +3,17 @@
 #include <string>
 #include <vector>
 
-#include "sonar/scenario/noise_settings.h"
+#include "sonar/noise_spectra/table.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A line of a ship's spectrum.
 struct Tonal {
   double frequency = 50.0;  ///< [Hz]
   double level_db = 150.0;  ///< of the source [dB re 1 µPa rms at 1 m]
+
+  void describe(Fields& field);
 };
 
 /// A ship that makes noise of its own: it neither transmits nor echoes.
@@ -25,9 +27,11 @@ struct Interferer {
   double slope_db_per_decade = -20.0;
   std::optional<NoiseTable> table;  ///< instead [dB re 1 µPa²/Hz at 1 m]
   std::vector<Tonal> tonals;
+
+  void describe(Fields& field);
 };
 
 /// One-sided spectral density of its broadband noise at 1 m [Pa²/Hz].
 [[nodiscard]] double source_density(const Interferer& ship, double frequency) noexcept;
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,31 +2,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "core/units.h"
+#include "sonar/noise_spectra/any_noise.h"
 
-namespace asdic {
-
-/// Wenz's ambient noise: turbulence, distant ships, wind (JASA 34, 1936, 1962), in Coates' fit.
-struct WenzNoise {
-  double shipping = 0.5;     ///< 0 (none) … 1 (heavy)
-  double wind_speed = 10.0;  ///< [m/s]
-};
-
-/// Knudsen, Alford & Emling's curves (J. Mar. Res. 7, 410, 1948): −17 dB a decade.
-struct KnudsenNoise {
-  double sea_state = 3.0;  ///< 0 … 6, between whole ones straight in dB
-};
-
-/// Measured levels: straight in dB over the logarithm of frequency, constant beyond the ends.
-struct NoiseTable {
-  std::vector<double> frequency;  ///< [n ≥ 1] increasing, above 0 [Hz]
-  std::vector<double> level_db;   ///< [n] [dB re 1 µPa²/Hz]
-};
-
-using NoiseLaw = std::variant<WenzNoise, KnudsenNoise, NoiseTable>;
+namespace asdic::detail {
 
 /// How the noise of one phone of an array is related to that of another.
 enum class NoiseCoherence {
@@ -50,19 +31,30 @@ struct NoiseDirections {
   std::vector<double> level_db;  ///< [n] power per solid angle, up to a constant [dB]
 };
 
-/// What the sea itself sounds like at the phones.
-struct NoiseSettings {
-  std::optional<double> spectral_level_db;  ///< white: NL [dB re 1 µPa²/Hz]
-  std::optional<NoiseLaw> law;              ///< or one of these. Neither: no noise
-  bool thermal = false;                     ///< the water's own thermal noise is added
+/// How noise is related from phone to phone, and where it comes from.
+struct NoiseField {
   NoiseCoherence coherence = NoiseCoherence::independent;
   NoiseDirections directions;
 
-  [[nodiscard]] bool any() const noexcept { return spectral_level_db || law; }
-  /// White and independent from phone to phone: needs no spectra (sonar/noise/noise.h).
+  void describe(Fields& field);
+};
+
+/// What the sea itself sounds like at the phones.
+struct NoiseSettings {
+  std::optional<AnyNoise> law;  ///< none: no noise
+  bool thermal = false;         ///< the water's own thermal noise is added
+  NoiseCoherence coherence = NoiseCoherence::independent;
+  NoiseDirections directions;
+
+  void describe(Fields& field);
+
+  [[nodiscard]] bool any() const noexcept { return law.has_value(); }
+  /// Of white noise without thermal noise, which has it at all frequencies [dB re 1 µPa²/Hz].
+  [[nodiscard]] std::optional<double> flat_level_db() const noexcept;
+  /// Flat and independent from phone to phone: needs no spectra (sonar/noise/noise.h).
   [[nodiscard]] bool plain() const noexcept {
-    return spectral_level_db && !thermal && coherence == NoiseCoherence::independent;
+    return flat_level_db() && coherence == NoiseCoherence::independent;
   }
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "reverb/forward_scatter.h"
 #include "reverb/scattering/motion.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 double fastest_water(const Environment& ocean) {
   double fastest = 0.0;
@@ -78,4 +78,4 @@ double doppler_bound(const Scenario& scenario) {
          rough_sea_doppler(scenario);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

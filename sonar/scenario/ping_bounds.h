@@ -1,7 +1,7 @@
 #pragma once
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Fastest that a track ever moves [m/s].
 [[nodiscard]] double fastest(const Track& track);
@@ -13,4 +13,4 @@ namespace asdic {
 /// Fastest speed of sound anywhere in the water [m/s].
 [[nodiscard]] double fastest_water(const Environment& ocean);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,29 +2,20 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 
-namespace asdic {
+namespace asdic::detail {
 
 PulseFrequencies pulse_frequencies(const Scenario& scenario) {
   PulseFrequencies all{.lowest = infinity, .highest = 0.0};
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const PulseSettings& pulse = pulse_of(scenario, static_cast<int>(t));
     PulseFrequencies one;
-    switch (pulse.kind) {
-      case PulseKind::cw:
-        one = {pulse.frequency, pulse.frequency};
-        break;
-      case PulseKind::lfm:
-      case PulseKind::hfm:
-        std::tie(one.lowest, one.highest) = std::minmax(pulse.start_frequency, pulse.end_frequency);
-        break;
-      case PulseKind::file: {
-        const Pulse sent(pulse);
-        const double half = 0.5 * sent.bandwidth_99();
-        one = {std::max(0.0, sent.centre_frequency() - half), sent.centre_frequency() + half};
-        break;
-      }
+    if (const auto through = frequencies_of(pulse.waveform)) {
+      one = *through;
+    } else {
+      const Pulse sent(pulse);
+      const double half = 0.5 * sent.bandwidth_99();
+      one = {std::max(0.0, sent.centre_frequency() - half), sent.centre_frequency() + half};
     }
     all.lowest = std::min(all.lowest, one.lowest);
     all.highest = std::max(all.highest, one.highest);
@@ -32,4 +23,4 @@ PulseFrequencies pulse_frequencies(const Scenario& scenario) {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

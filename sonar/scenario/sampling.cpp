@@ -5,14 +5,14 @@
 
 #include "sonar/scenario/ping_bounds.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Of all transmitters' pulses together.
 Band band_of_all(const Scenario& scenario) {
   Band all{.lowest = infinity, .highest = 0.0};
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
-    const Band one = heard_band(scenario, Pulse(pulse_of(scenario, static_cast<int>(t))));
+    const Band one = received_band(scenario, Pulse(pulse_of(scenario, static_cast<int>(t))));
     all.lowest = std::min(all.lowest, one.lowest);
     all.highest = std::max(all.highest, one.highest);
   }
@@ -21,7 +21,7 @@ Band band_of_all(const Scenario& scenario) {
 
 }  // namespace
 
-Band heard_band(const Scenario& scenario, const Pulse& pulse) {
+Band received_band(const Scenario& scenario, const Pulse& pulse) {
   const double doppler = doppler_bound(scenario), half = 0.5 * pulse.bandwidth_40db();
   return {.lowest = (pulse.centre_frequency() - half) * (1.0 - doppler),
           .highest = (pulse.centre_frequency() + half) * (1.0 + doppler)};
@@ -62,4 +62,4 @@ Recording recording_of(const Scenario& scenario) {
       .carrier = recorded_carrier(scenario)};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/recording.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Samples per second of what a scenario records: of the pressure, or of the complex baseband [Hz].
 [[nodiscard]] double recorded_rate(const Scenario& scenario);
@@ -16,14 +16,14 @@ namespace asdic {
 struct Band {
   double lowest = 0.0, highest = 0.0;
 };
-[[nodiscard]] Band heard_band(const Scenario& scenario, const Pulse& pulse);
+[[nodiscard]] Band received_band(const Scenario& scenario, const Pulse& pulse);
 
-/// Until when a ping is heard in its own record, since it is sent [s].
+/// Until when a ping is received in its own record, since it is sent [s].
 [[nodiscard]] inline double end_of_record(const Scenario& scenario) noexcept {
   return scenario.pings.recording_start + scenario.pings.recording_duration;
 }
 
-/// A ping's own record: as long as it is heard.
+/// A ping's own record: as long as it is received.
 [[nodiscard]] Recording recording_of(const Scenario& scenario);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,6 +1,6 @@
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time) {
   const Transmitter& one = scenario.transmitters[static_cast<std::size_t>(transmitter)];
   Kinematics place = scenario.platforms[static_cast<std::size_t>(one.platform)].track.at(time);
@@ -29,4 +29,4 @@ std::size_t first_channel(const Scenario& scenario, int array) {
   return channels;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -16,7 +16,7 @@
 #include "sonar/scenario/transmitter.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What is searched for. A path is kept when it is within all the limits.
 struct PropagationSettings {
@@ -24,11 +24,14 @@ struct PropagationSettings {
   std::optional<int> max_surface_bounces = {};
   std::optional<int> max_bottom_bounces = {};
   double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
-  bool direct_blast = true;            ///< arrays on other platforms hear the ping on its way
-  bool fathometer = false;  ///< those on the transmitter's own hear it mirrored by the boundaries
-  bool wide_band = false;   ///< echoes' losses and patterns at every frequency of the pulse
-  bool diffraction = true;  ///< echoes and direct sound where no ray goes, in stratified water
+  bool direct_blast = true;            ///< arrays on other platforms receive the ping on its way
+  bool fathometer =
+      false;               ///< those on the transmitter's own receive it mirrored by the boundaries
+  bool wide_band = false;  ///< echoes' losses and patterns at every frequency of the pulse
+  bool diffraction = true;       ///< echoes and direct sound where no ray goes, in stratified water
   bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
+
+  void describe(Fields& field);
 };
 
 /// All that a simulation needs, as plain data. Times in s, lengths in m, angles in rad.
@@ -74,4 +77,4 @@ struct Scenario {
 /// The channel of an array's first phone.
 [[nodiscard]] std::size_t first_channel(const Scenario& scenario, int array);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 double full_circle(double angle) noexcept {  // [0, 2π)
@@ -77,4 +77,4 @@ double strength_towards(const Target& target, const Vec3& place, double time) {
   return strength_db(target, aspect_of(-towards, towards, heading_of(target, time)));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

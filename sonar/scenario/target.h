@@ -9,7 +9,9 @@
 #include "core/units.h"
 #include "sonar/scenario/track.h"
 
-namespace asdic {
+namespace asdic::detail {
+
+class Fields;
 
 /// Strength over aspect: 0 is the bow, π/2 the starboard beam, π the stern. Straight lines in dB.
 ///
@@ -19,6 +21,7 @@ struct AspectTable {
   std::vector<double> aspect;       ///< [n] strictly increasing, 0 … 2π [rad]
   std::vector<double> strength_db;  ///< [n]
 
+  void describe(Fields& field);
   [[nodiscard]] double at(double aspect) const noexcept;  ///< \param aspect any angle [rad]
 };
 
@@ -27,11 +30,15 @@ struct Highlight {
   Vec3 offset = Vec3::Zero();  ///< forward, starboard, down of the body's reference point [m]
   double strength_db = 0.0;    ///< TS of it alone, where there is no table [dB]
   std::optional<AspectTable> aspect;
+
+  void describe(Fields& field);
 };
 
 /// The hull that hides highlights: an ellipse seen from above.
 struct Hull {
   double length = 100.0, beam = 10.0;  ///< whole axes [m]
+
+  void describe(Fields& field);
 };
 
 /// How the strength changes from ping to ping. The power of every highlight is exponential with its
@@ -55,6 +62,8 @@ struct Target {
   std::optional<Hull> hull;  ///< hides highlights; none: all are seen
   Fluctuation fluctuation = Fluctuation::none;
   int scan_pings = 1;  ///< pings of one transmitter in turn that make a scan
+
+  void describe(Fields& field);
 };
 
 /// Where the bow points at a time [rad, clockwise from north].
@@ -78,4 +87,4 @@ struct Target {
 /// The same as a sonar at `place` sees it at a time.
 [[nodiscard]] double strength_towards(const Target& target, const Vec3& place, double time);
 
-}  // namespace asdic
+}  // namespace asdic::detail

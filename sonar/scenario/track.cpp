@@ -3,7 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+#include "core/fields.h"
+#include "core/quantities.h"
+#include "core/text.h"
+
+namespace asdic::detail {
+
+void Waypoint::describe(Fields& field, const Waypoint* before) {
+  const bool held = field.checks() && before != nullptr;
+  field(required("time"), time, {.noun = "time", .unit = "s"}, "since the start of the scenario");
+  if (held && time <= before->time)
+    field.fault("time", "a time after the waypoint before it, " + to_text(before->time) + " s");
+  field(required("position"), position, quantity::coordinate, "where it is then");
+  if (!held) return;
+  const double speed = (position - before->position).norm() / (time - before->time);
+  constexpr double most = quantity::velocity.high;
+  if (speed > most)
+    field.fault("position", "at most " + to_text(most) + " m/s from the waypoint before it",
+                to_text(speed) + " m/s");
+}
+
+void Track::describe_waypoints(Fields& field) {
+  field("waypoints", waypoints, "places at times, the way between two of them straight");
+  if (field.checks() && waypoints.empty())
+    field.fault("waypoints", "at least one { time, position }");
+  if (field.reads()) start.position = waypoints.front().position;
+}
+
+void Track::describe(Fields& field) {
+  Fields::Ways ways;
+  if (const auto way = field.way(ways, {"waypoints"}, !waypoints.empty())) {
+    field.excludes("waypoints", {"position", "velocity"});
+    describe_waypoints(field);
+  }
+  if (const auto way = field.otherwise(ways, {"position", "velocity"})) {
+    field(required("position"), start.position, quantity::coordinate, "at the start");
+    field("velocity", start.velocity, quantity::velocity, "from then on");
+  }
+}
 
 Kinematics Track::at(double time) const {
   if (waypoints.empty())
@@ -42,4 +79,4 @@ std::optional<double> Track::course_at(double time) const {
   return course;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,11 +5,16 @@
 #include "core/kinematics.h"
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
+
+class Fields;
 
 struct Waypoint {
   double time = 0.0;  ///< since the start of the scenario [s]
   Vec3 position = Vec3::Zero();
+
+  /// \param before  the waypoint before it: later one by one, no faster than any vessel
+  void describe(Fields& field, const Waypoint* before);
 };
 
 /// Where something is at a time: from a start with a constant velocity, or straight from waypoint
@@ -17,6 +22,10 @@ struct Waypoint {
 struct Track {
   Kinematics start;                 ///< used when there are no waypoints
   std::vector<Waypoint> waypoints;  ///< strictly increasing in time
+
+  /// Of the table that holds the thing: `waypoints`, or `position` and `velocity`.
+  void describe(Fields& field);
+  void describe_waypoints(Fields& field);  ///< the first alone
 
   [[nodiscard]] Kinematics at(double time) const;
 
@@ -28,4 +37,4 @@ struct Track {
   [[nodiscard]] std::optional<double> course_at(double time) const;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

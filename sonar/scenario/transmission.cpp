@@ -6,7 +6,7 @@
 
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<Transmission> transmissions(const Scenario& scenario) {
   std::vector<Transmission> sent;
@@ -16,11 +16,11 @@ std::vector<Transmission> transmissions(const Scenario& scenario) {
     const auto& sweep =
         transmitter.elevations.empty() ? schedule.elevations : transmitter.elevations;
     const double interval = transmitter.interval.value_or(schedule.interval);
-    for (int turn = 1; turn <= schedule.count; ++turn) {
-      const auto n = static_cast<std::size_t>(turn - 1);
+    for (int own_ping = 1; own_ping <= schedule.count; ++own_ping) {
+      const auto n = static_cast<std::size_t>(own_ping - 1);
       sent.push_back(
           {.transmitter = static_cast<int>(t),
-           .turn = turn,
+           .own_ping = own_ping,
            .time = transmitter.first_ping_time + static_cast<double>(n) * interval,
            .elevation = sweep.empty() ? transmitter.elevation : sweep[n % sweep.size()]});
     }
@@ -41,4 +41,4 @@ Transmitter projector_of(const Scenario& scenario, const Transmission& sent) {
   return projector;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

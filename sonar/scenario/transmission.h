@@ -3,12 +3,12 @@
 
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// One ping of one transmitter.
 struct Transmission {
   int transmitter = 0;     ///< index in the scenario
-  int turn = 1;            ///< which of its own pings, from 1
+  int own_ping = 1;        ///< which of its own pings, from 1
   double time = 0.0;       ///< of the leading edge, since the start of the scenario [s]
   double elevation = 0.0;  ///< of the beam [rad]
 };
@@ -20,4 +20,4 @@ struct Transmission {
 /// The transmitter as it is for that ping: with its elevation.
 [[nodiscard]] Transmitter projector_of(const Scenario& scenario, const Transmission& sent);
 
-}  // namespace asdic
+}  // namespace asdic::detail

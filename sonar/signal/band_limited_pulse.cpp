@@ -8,7 +8,7 @@
 #include "sonar/signal/fft.h"
 #include "sonar/signal/pulse_spectrum.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double tail_error = 3e-5;      // of the peak, −90 dB
@@ -65,4 +65,4 @@ BandLimitedPulse::BandLimitedPulse(const Pulse& pulse, double sample_rate,
   half_duration_ = -first + 12.0 / rate;  // SampledSignal's own reach
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "sonar/signal/pulse.h"
 #include "sonar/signal/sampled_signal.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The pulse as the phones' anti-alias filter lets it through, around its middle:
 /// s₊(u + T/2) ≈ at(u)·e^{i2π f u}, f the centre frequency.
@@ -39,7 +39,7 @@ class BandLimitedPulse {
           std::span<double> imaginary) const noexcept {
     signal_.at(u, real, imaginary);
   }
-  /// Nothing is heard further than this from the middle [s].
+  /// Nothing is received further than this from the middle [s].
   [[nodiscard]] double half_duration() const noexcept { return half_duration_; }
   /// The spectrum is zero further than this from the centre frequency [Hz].
   [[nodiscard]] double half_band() const noexcept { return half_band_; }
@@ -50,4 +50,4 @@ class BandLimitedPulse {
   double centre_frequency_ = 0.0, half_duration_ = 0.0, half_band_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double response_error = 1e-4;  // of the response, −80 dB
@@ -46,4 +46,4 @@ BandNodes band_nodes(double centre, double half_width, double nepers, double del
                          nodes_for(nepers, pi * half_width * delay, response_error));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

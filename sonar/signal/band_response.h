@@ -5,11 +5,11 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What makes a return's amplitude a function of frequency: how far it went, and where its path
 /// left the transmitter.
-struct PathColour {
+struct PathResponse {
   double path_length = 0.0;                    ///< there and back [m]
   double bearing = 0.0;                        ///< of launch [rad]
   double elevation = 0.0;                      ///< of launch, positive up [rad]
@@ -40,4 +40,4 @@ struct BandNodes {
 /// transmitter's parts [s]
 [[nodiscard]] BandNodes band_nodes(double centre, double half_width, double nepers, double delay);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <complex>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// a·b of finite numbers: without the look at infinities that std::complex takes.
 template <class Real>
@@ -10,4 +10,4 @@ template <class Real>
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 enum class Kind { forward, inverse, real_forward, real_inverse };
@@ -159,4 +159,4 @@ template class ComplexFft<double>;
 template class RealFft<float>;
 template class RealFft<double>;
 
-}  // namespace asdic
+}  // namespace asdic::detail

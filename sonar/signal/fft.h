@@ -8,7 +8,7 @@
 
 #include "core/huge_pages.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Zeroed, 64-byte aligned memory: what every transform below reads and writes. It is cut out of a
 /// little more of malloc's: aligned_alloc of glibc before 2.38 leaves holes that nothing fits into,
@@ -98,4 +98,4 @@ extern template class ComplexFft<double>;
 extern template class RealFft<float>;
 extern template class RealFft<double>;
 
-}  // namespace asdic
+}  // namespace asdic::detail

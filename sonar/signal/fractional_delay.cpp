@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "sonar/signal/kaiser_window.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 FractionalDelay::FractionalDelay() : weights_((places + 1) * taps) {
   constexpr double beta = 10.0;  // 0.1102(A − 8.7) for A = 100 dB
@@ -39,4 +39,4 @@ std::complex<float> FractionalDelay::operator()(const float* at, float fraction)
   return {real, imaginary};
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <complex>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A complex signal between its samples: 16 taps of a sinc under a Kaiser window, out of a table of
 /// 1024 places that is straight between them.
@@ -24,4 +24,4 @@ class FractionalDelay {
   std::vector<float> weights_;  // [places + 1][taps]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "core/units.h"
 #include "sonar/signal/kaiser_window.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The taps of a windowed-sinc interpolator as functions of the place between two samples, each a
 /// polynomial: sinc and Kaiser window are smooth there, and degree 11 through Chebyshev nodes is
@@ -75,4 +75,4 @@ class InterpolationTaps {
   std::array<Weights, degree + 1> coefficient_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,51 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
+#include "core/check_settings.h"
 #include "core/error.h"
+#include "core/quantities.h"
 #include "core/units.h"
 #include "sonar/signal/fft.h"
 #include "sonar/signal/pulse_spectrum.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
-std::string in_units(double value, const char* unit) {
-  std::ostringstream text;
-  text << value << unit;
-  return text.str();
-}
-
-void require_positive(double value, const char* name, const char* unit) {
-  if (!(value > 0.0 && std::isfinite(value)))
-    throw InputError(
-        {.where = name, .got = in_units(value, unit), .expected = "a finite number above 0"});
-}
-
-void check(const PulseSettings& s) {
-  if (s.kind == PulseKind::file) {
-    require_positive(s.sample_rate, "sample_rate", " Hz");
-    if (s.samples.size() < 2)
-      throw InputError({.where = "samples",
-                        .got = std::to_string(s.samples.size()) + " samples",
-                        .expected = "at least 2"});
-    if (!std::all_of(s.samples.begin(), s.samples.end(), [](double x) { return std::isfinite(x); }))
-      throw InputError(
-          {.where = "samples", .got = "nan or infinity", .expected = "finite samples"});
-  } else {
-    require_positive(s.duration, "duration", " s");
-  }
-  if (s.kind == PulseKind::cw) require_positive(s.frequency, "frequency", " Hz");
-  if (s.kind == PulseKind::lfm || s.kind == PulseKind::hfm) {
-    require_positive(s.start_frequency, "start_frequency", " Hz");
-    require_positive(s.end_frequency, "end_frequency", " Hz");
-  }
-  if (s.window == PulseWindow::tukey && !(s.tukey_fraction >= 0.0 && s.tukey_fraction <= 1.0))
-    throw InputError({.where = "tukey_fraction",
-                      .got = in_units(s.tukey_fraction, ""),
-                      .expected = "a share between 0 and 1"});
+/// A sampled waveform has its own duration and edges.
+void take_own_length(PulseSettings& settings, const SoundSamples& own) {
+  settings.duration = own.duration();
+  settings.window = PulseWindow::none;
 }
 
 /// Amplitude of the window at t/T = x in [0, 1].
@@ -69,21 +40,9 @@ double window(const PulseSettings& s, double x) noexcept {
   return 1.0;
 }
 
-/// Phase of s₊ at t [rad], 0 at the leading edge.
-double phase(const PulseSettings& s, double t) noexcept {
-  if (s.kind == PulseKind::cw) return 2.0 * pi * s.frequency * t;
-  const double f1 = s.start_frequency, f2 = s.end_frequency;
-  const double slope = (f2 - f1) / s.duration;
-  if (s.kind == PulseKind::lfm) return 2.0 * pi * t * (f1 + 0.5 * slope * t);
-  // HFM: the period is linear in time, 1/f = 1/f₁ + b·t, so ∫f dt = ln(1 + b f₁ t)/b, written so
-  // that b = 0 is a tone. Kroszczyński, Proc. IEEE 57, 1260 (1969).
-  const double x = -slope / f2 * t;  // b f₁ t, b = (1/f₂ − 1/f₁)/T = −slope/(f₁ f₂)
-  return 2.0 * pi * f1 * t * (std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : std::log1p(x) / x);
-}
-
 /// The analytic signal of real samples, twice oversampled: FFT, negative frequencies dropped,
 /// positive ones doubled, inverse FFT of twice the length. Padded by as much silence again.
-std::vector<std::complex<double>> analytic_signal(const std::vector<double>& samples) {
+std::vector<std::complex<double>> analytic_signal(std::span<const double> samples) {
   const std::size_t n = samples.size(), length = 2 * fast_fft_length(n);
   FftBuffer<std::complex<double>> x(2 * length);
   std::copy(samples.begin(), samples.end(), x.data());
@@ -120,7 +79,7 @@ Widths widths_of(const Pulse& pulse) {
     return {bandwidth(spectrum, 40.0), bandwidth_of_energy(spectrum, 0.99),
             bandwidth_for_error(spectrum, 2e-4)};
   };
-  if (s.kind == PulseKind::file) return found();
+  if (samples_of(s.waveform)) return found();
   struct Known {
     PulseSettings settings;
     Widths widths;
@@ -137,7 +96,7 @@ Widths widths_of(const Pulse& pulse) {
 /// ∫|s₊|²dt [s]: in closed form, or by Parseval's theorem, Σ|C|²Δν.
 double energy_of(const Pulse& pulse) {
   const PulseSettings& s = pulse.settings();
-  if (s.kind == PulseKind::file) {
+  if (samples_of(s.waveform)) {
     const PulseSpectrum spectrum = pulse_spectrum(pulse, pulse.centre_frequency());
     double sum = 0.0;
     for (const auto& c : spectrum.bins) sum += std::norm(c) * spectrum.bin_width;
@@ -151,28 +110,39 @@ double energy_of(const Pulse& pulse) {
 
 }  // namespace
 
+void PulseSettings::describe(Fields& field) {
+  field.one_of(required("kind"), waveform, "what it is made of");
+  if (const auto own = samples_of(waveform)) {
+    if (field.reads()) take_own_length(*this, *own);
+    field.derived(duration);
+    return;
+  }
+  field(required("duration"), duration, quantity::duration,
+        "from the leading to the trailing edge");
+  if (field.reads() || field.exhaustive())
+    window = PulseWindow::none;  // a file without the key has none
+  field("window", window, "how the edges rise and fall");
+  if (const auto only = field.only("window", window, PulseWindow::tukey))
+    field("tukey_fraction", tukey_fraction, {.noun = "fraction", .low = 0.0, .high = 1.0},
+          "share of the duration in the two tapers together");
+}
+
 Pulse::Pulse(PulseSettings settings) : settings_(std::move(settings)) {
-  check(settings_);
-  switch (settings_.kind) {
-    case PulseKind::cw:
-      centre_frequency_ = settings_.frequency;
-      break;
-    case PulseKind::lfm:
-    case PulseKind::hfm:
-      centre_frequency_ = 0.5 * (settings_.start_frequency + settings_.end_frequency);
-      break;
-    case PulseKind::file: {
-      settings_.duration = static_cast<double>(settings_.samples.size()) / settings_.sample_rate;
-      auto fine = analytic_signal(settings_.samples);
-      double peak = 0.0;
-      for (const auto& s : fine) peak = std::max(peak, std::abs(s));
-      if (peak == 0.0)
-        throw InputError({.where = "samples", .got = "silence", .expected = "a sound"});
-      for (auto& s : fine) s /= peak;
-      centre_frequency_ = spectral_centre(fine, 2.0 * settings_.sample_rate);
-      file_signal_ = SampledSignal(fine, 0.0, 2.0 * settings_.sample_rate);
-      break;
-    }
+  check_settings(settings_);
+  if (const auto own = samples_of(settings_.waveform)) {
+    take_own_length(settings_, *own);
+    auto fine = analytic_signal(own->samples);
+    double peak = 0.0;
+    for (const auto& s : fine) peak = std::max(peak, std::abs(s));
+    if (peak == 0.0)
+      throw InputError({.where = "samples", .got = "silence", .expected = "a sound"});
+    for (auto& s : fine) s /= peak;
+    centre_frequency_ = spectral_centre(fine, 2.0 * own->sample_rate);
+    signal_ = SampledSignal(fine, 0.0, 2.0 * own->sample_rate);
+    sampled_ = true;
+  } else {
+    const PulseFrequencies through = *frequencies_of(settings_.waveform);
+    centre_frequency_ = 0.5 * (through.lowest + through.highest);
   }
   const Widths widths = widths_of(*this);
   bandwidth_40db_ = std::min(widths.down_40db, 2.0 * centre_frequency_);
@@ -191,8 +161,8 @@ bool Pulse::jumps_at_its_edges() const noexcept {
 std::complex<double> Pulse::analytic(double t) const noexcept {
   if (!(t >= 0.0 && t <= settings_.duration)) return 0.0;
   const double amplitude = window(settings_, t / settings_.duration);
-  if (settings_.kind == PulseKind::file) return amplitude * file_signal_.at(t);
-  return std::polar(amplitude, phase(settings_, t));
+  if (sampled_) return amplitude * signal_.at(t);
+  return std::polar(amplitude, phase_of(settings_.waveform, t, settings_.duration));
 }
 
 std::vector<float> replica(const Pulse& pulse, double sample_rate) {
@@ -216,4 +186,4 @@ std::vector<float> baseband_replica(const Pulse& pulse, double rate, double carr
   return samples;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

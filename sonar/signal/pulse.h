@@ -1,38 +1,29 @@
 #pragma once
 #include <complex>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "sonar/signal/sampled_signal.h"
+#include "sonar/signal/waveforms/waveforms.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-enum class PulseKind { cw, lfm, hfm, file };
 enum class PulseWindow { none, hann, tukey };
-inline constexpr std::string_view pulse_kind_words[] = {"cw", "lfm", "hfm", "file"};
-constexpr std::span<const std::string_view> words(PulseKind /*any*/) { return pulse_kind_words; }
 inline constexpr std::string_view pulse_window_words[] = {"none", "hann", "tukey"};
 constexpr std::span<const std::string_view> words(PulseWindow /*any*/) {
   return pulse_window_words;
 }
 
-/// What a pulse is made of, as a scenario says it.
+/// A pulse as a scenario says it: a waveform under a window.
 struct PulseSettings {
-  PulseKind kind = PulseKind::cw;
-  double frequency = 4000.0;  ///< CW: the tone [Hz]
-  double start_frequency =
-      3950.0;  ///< LFM, HFM: at the leading edge [Hz] (above the end frequency for a down-sweep)
-  double end_frequency = 4050.0;  ///< LFM, HFM: at the trailing edge [Hz]
-  double duration = 1.0;          ///< [s]
-  PulseWindow window = PulseWindow::hann;
+  AnyWaveform waveform = Cw{};
+  double duration = 1.0;  ///< [s]; a sampled waveform has its own
+  PulseWindow window =
+      PulseWindow::hann;        ///< of a sampled waveform none, and so of files that say none
   double tukey_fraction = 0.1;  ///< share of the duration in the two tapers together, 0..1
-  std::vector<double> samples =
-      {};                    ///< file: real pressure samples, scaled so that the peak envelope is 1
-  double sample_rate = 0.0;  ///< file: [Hz]
-  std::string file = {};     ///< file: where the samples came from, for the record
 
+  void describe(Fields& field);
   [[nodiscard]] bool operator==(const PulseSettings&) const = default;
 };
 
@@ -70,7 +61,8 @@ class Pulse {
   PulseSettings settings_;
   double centre_frequency_ = 0.0, bandwidth_40db_ = 0.0, bandwidth_99_ = 0.0;
   double sampled_bandwidth_ = 0.0, energy_ = 0.0;
-  SampledSignal file_signal_;  // analytic, twice oversampled, unit peak
+  bool sampled_ = false;
+  SampledSignal signal_;  // of a sampled one: analytic, twice oversampled, unit peak
 };
 
 /// Re s₊ sampled at the phones' rate: what a matched filter needs. \return
@@ -80,4 +72,4 @@ class Pulse {
 /// [2 × (ceil(duration·rate) + 1)] real and imaginary part in turn
 [[nodiscard]] std::vector<float> baseband_replica(const Pulse& pulse, double rate, double carrier);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 #include "sonar/signal/pulse.h"
 #include "sonar/signal/pulse_spectrum.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 // R(Δ) = Σ|C(ν)|²e^{i2πνΔ} / Σ|C|², over the band that holds 99 % of the energy.
 PulseCoherence::PulseCoherence(const Pulse& pulse) : duration_(pulse.duration()) {
@@ -63,4 +63,4 @@ std::shared_ptr<const PulseCoherence> pulse_coherence(const Pulse& pulse) {
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 class Pulse;
 
@@ -32,4 +32,4 @@ class PulseCoherence {
 /// That of a pulse, which each thread remembers for the last few: a millisecond to find.
 [[nodiscard]] std::shared_ptr<const PulseCoherence> pulse_coherence(const Pulse& pulse);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,14 +7,14 @@
 #include "sonar/signal/fft.h"
 #include "sonar/signal/pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Samples across the pulse: enough for the sweep four times over, and for the tapers' kinks.
 std::size_t analysis_intervals(const PulseSettings& s) {
-  if (s.kind == PulseKind::file) return 2 * s.samples.size();
-  const double sweep =
-      s.kind == PulseKind::cw ? 0.0 : std::abs(s.end_frequency - s.start_frequency);
+  if (const auto own = samples_of(s.waveform)) return 2 * own->samples.size();
+  const PulseFrequencies through = *frequencies_of(s.waveform);
+  const double sweep = through.highest - through.lowest;
   const double taper =
       s.window == PulseWindow::tukey && s.tukey_fraction > 0.0 ? s.tukey_fraction : 1.0;
   const double intervals = 4.0 * sweep * s.duration + std::clamp(1024.0 / taper, 4096.0, 65536.0);
@@ -65,7 +65,7 @@ PulseSpectrum analysed(const Pulse& pulse, double centre) {
 /// again and again: each thread keeps the last, found by equal settings.
 PulseSpectrum pulse_spectrum(const Pulse& pulse, double centre) {
   constexpr std::size_t most_kept = std::size_t{1} << 17;
-  if (pulse.settings().kind == PulseKind::file) return analysed(pulse, centre);
+  if (samples_of(pulse.settings().waveform)) return analysed(pulse, centre);
   struct Kept {
     PulseSettings settings;
     double centre = 0.0;
@@ -108,4 +108,4 @@ double bandwidth_for_error(const PulseSpectrum& spectrum, double error) {
   return 2 * k > n / 2 ? infinity : 2.0 * static_cast<double>(k + 1) * spectrum.bin_width;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <complex>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 class Pulse;
 
@@ -42,4 +42,4 @@ template <class OfPair>
 /// below `error` [Hz]; infinite if that is not reached within half of the analysed band.
 [[nodiscard]] double bandwidth_for_error(const PulseSpectrum& spectrum, double error);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <span>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// When, how finely and about which carrier the phones record. t = 0 is the leading edge of the
 /// pulse at the projector.
@@ -26,4 +26,4 @@ struct RecordSamples {
   std::span<float> pressure;  ///< [channels × samples × components of the recording] [Pa]
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

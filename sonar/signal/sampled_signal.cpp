@@ -4,7 +4,7 @@
 
 #include "sonar/signal/interpolation_taps.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// 16 taps: A = 2.285·15·2π(1 − ½) + 8 = 115 dB, β = 0.1102(A − 8.7).
@@ -67,4 +67,4 @@ void SampledSignal::at(std::span<const double> t, std::span<double> real,
   if (i < t.size()) one(i);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

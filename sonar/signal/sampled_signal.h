@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// A complex signal between its samples: band-limited interpolation, windowed sinc.
 ///
@@ -28,4 +28,4 @@ class SampledSignal {
   double first_ = 0.0, rate_ = 1.0, count_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

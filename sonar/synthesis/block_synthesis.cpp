@@ -5,18 +5,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <array>
 #include "core/error.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/sound_synthesis.h"
 #include "sonar/synthesis/spectrum_product.h"
 #include "sonar/synthesis/synthesis_bytes.h"
 
-namespace asdic {
+#include "raytrace/parallel/parallel.h"
+
+namespace asdic::detail {
+
 namespace {
 
 using Scratch = FftBuffer<std::complex<float>>;
 
-/// What transforming a grid of that length costs, counted in returns laid down for one node.
+/// What transforming a grid of that length costs, counted in returns gridded for one node.
 double cost_of_grid(std::size_t length) {
   const auto n = static_cast<double>(length);
   return 0.25 * n * std::log2(n);
@@ -24,7 +29,7 @@ double cost_of_grid(std::size_t length) {
 
 /// Bands cut as is cheapest for so many returns. Errors of very many add up as energies do: their
 /// impulses may be moved along the pulse's ridge, to an error that is meant so.
-/// \param pulses  [colours]   \param length  of a grid
+/// \param pulses  [responses]   \param length  of a grid
 std::vector<DopplerBand> cut_for(const DopplerExpansion& expansion,
                                  std::span<const BandLimitedPulse> pulses, std::size_t length,
                                  std::vector<DopplerBand> bands, double returns) {
@@ -137,14 +142,14 @@ BlockSynthesis::BlockSynthesis(const Synthesizer::Plan& plan, std::vector<Dopple
     : plan_(plan),
       source_(source),
       phones_(phones),
-      colours_(plan.pulses.size()),
+      responses_(plan.pulses.size()),
       bins_(2 * static_cast<std::size_t>(plan.highest_bin) + 1),
       returns_(std::move(bands),
                {.first = plan.recording.start - static_cast<double>(plan.lead) / plan.rate,
                 .rate = plan.rate,
                 .carrier = plan.carrier,
                 .samples = plan.length},
-               plan.pulse_duration, phones.size(), colours_),
+               plan.pulse_duration, phones.size(), responses_),
       beside_(samples_beside(returns_.latest() * plan.rate)),
       stride_(grid_stride(plan.length + 2 * beside_)),
       grid_{.kernel = plan.kernel,
@@ -183,9 +188,9 @@ std::vector<std::complex<float>> BlockSynthesis::spectra(
     const Synthesizer::Plan::Period& on) const {
   const std::size_t nodes = returns_.nodes.size();
   const std::size_t bins = 2 * static_cast<std::size_t>(on.highest_bin) + 1;
-  std::vector<std::complex<float>> found(colours_ * nodes * bins);
+  std::vector<std::complex<float>> found(responses_ * nodes * bins);
   tbb::enumerable_thread_specific<Scratch> workspaces;
-  in_parallel(colours_ * nodes, [&](std::size_t i) {
+  in_parallel(responses_ * nodes, [&](std::size_t i) {
     Scratch& scratch = workspaces.local();
     scratch.reserve(grid_stride(on.length));
     plan_.stretched_spectrum(plan_.pulses[i / nodes], returns_.nodes[i % nodes], on, scratch.data(),
@@ -194,9 +199,9 @@ std::vector<std::complex<float>> BlockSynthesis::spectra(
   return found;
 }
 
-void BlockSynthesis::add_product(const std::complex<float>* grid, std::size_t colour,
+void BlockSynthesis::add_product(const std::complex<float>* grid, std::size_t response,
                                  std::size_t node, std::complex<float>* sum) const {
-  multiply_add(grid, spectra_.data() + (colour * returns_.nodes.size() + node) * bins_,
+  multiply_add(grid, spectra_.data() + (response * returns_.nodes.size() + node) * bins_,
                plan_.length, static_cast<std::size_t>(plan_.highest_bin), sum);
 }
 
@@ -214,7 +219,7 @@ Baseband BlockSynthesis::run() {
                                  1);
   result.values.resize(phones_.size() * plan_.length);
   if (returns_.nodes.empty()) return result;
-  const std::size_t grids = phones_.size() * colours_ * returns_.nodes.size();
+  const std::size_t grids = phones_.size() * responses_ * returns_.nodes.size();
   // One batch for many phones: grids that stay in a thread's cache are faster.
   constexpr std::size_t many = 8;
   const bool keep = grids * stride_ * sizeof(std::complex<float>) <= most_kept &&
@@ -233,11 +238,11 @@ Baseband BlockSynthesis::run() {
     returns_.take(std::span(blocks_).first(batch.end - batch.begin));
     if (in_windows && !(in_windows = find_windows())) spectra_ = spectra(plan_.whole());
     if (keep)
-      lay_into_kept();
+      grid_into_kept();
     else if (in_windows)
-      lay_in_windows(result);
+      grid_in_windows(result);
     else
-      lay_and_transform(result);
+      grid_and_transform(result);
   }
   if (!in_windows) transform(keep, result);
   return result;
@@ -249,7 +254,7 @@ double BlockSynthesis::array_reach() const {
   return furthest * returns_.largest_slowness * plan_.rate;
 }
 
-/// Where the returns that all hear may be cut into segments for tasks of their own: a segment
+/// Where the returns that all receive may be cut into segments for tasks of their own: a segment
 /// reaches into the grid of its neighbours, but not across them.
 std::vector<std::size_t> BlockSynthesis::cuts(const OrderedReturns::Band& band) const {
   constexpr std::size_t most = 16, fewest = 2048;  // segments; returns in one
@@ -265,26 +270,26 @@ std::vector<std::size_t> BlockSynthesis::cuts(const OrderedReturns::Band& band) 
   return found;
 }
 
-void BlockSynthesis::lay_into_kept() {
+void BlockSynthesis::grid_into_kept() {
   // Segments in turn: no two of the same turn touch the same samples.
-  std::array<std::vector<Task>, 3> turns;
+  std::array<std::vector<Task>, 3> rounds;
   for (std::size_t b = 0; b < returns_.bands.size(); ++b) {
     const OrderedReturns::Band& band = returns_.bands[b];
     const std::vector<std::size_t> cut = cuts(band);
     for (std::size_t channel = 0; channel < phones_.size(); ++channel)
-      for (std::size_t colour = 0; colour < colours_; ++colour) {
+      for (std::size_t response = 0; response < responses_; ++response) {
         for (std::size_t i = 0; i + 1 < cut.size(); ++i)
-          turns[i % 2].push_back({b, channel, colour, cut[i], cut[i + 1]});
-        turns[2].push_back({b, channel, colour, band.ends[channel + 1], band.ends[channel + 2]});
+          rounds[i % 2].push_back({b, channel, response, cut[i], cut[i + 1]});
+        rounds[2].push_back({b, channel, response, band.ends[channel + 1], band.ends[channel + 2]});
       }
   }
-  for (const std::vector<Task>& turn : turns)
-    in_parallel(turn.size(), [&](std::size_t i) {
-      const Task& t = turn[i];
+  for (const std::vector<Task>& rotation : rounds)
+    in_parallel(rotation.size(), [&](std::size_t i) {
+      const Task& t = rotation[i];
       const OrderedReturns::Band& band = returns_.bands[t.band];
-      grid_.lay(returns_, band,
-                {.begin = t.begin, .end = t.end, .colour = t.colour, .nodes = band.nodes},
-                phones_[t.channel], kept(t.channel, t.colour, band.first_node));
+      grid_.add(returns_, band,
+                {.begin = t.begin, .end = t.end, .response = t.response, .nodes = band.nodes},
+                phones_[t.channel], kept(t.channel, t.response, band.first_node));
     });
 }
 
@@ -299,32 +304,32 @@ std::complex<float>* BlockSynthesis::transformed(const ComplexFft<float>& fft, s
   return grid + beside;
 }
 
-void BlockSynthesis::lay_and_transform(Baseband& result) {
+void BlockSynthesis::grid_and_transform(Baseband& result) {
   const ComplexFft<float> fft(plan_.length);
   tbb::enumerable_thread_specific<Scratch> workspaces;
   in_parallel(phones_.size(), [&](std::size_t channel) {
     Scratch& grids = workspaces.local();
     std::complex<float>* sum = result.values.data() + channel * plan_.length;
     for (const OrderedReturns::Band& band : returns_.bands) {
-      const bool heard =
+      const bool received =
           band.ends[1] > band.ends[0] || band.ends[channel + 2] > band.ends[channel + 1];
-      for (std::size_t m = 0; heard && m < band.nodes; m += ImpulseGrid::most_nodes) {
+      for (std::size_t m = 0; received && m < band.nodes; m += ImpulseGrid::most_nodes) {
         const std::size_t count = std::min(ImpulseGrid::most_nodes, band.nodes - m);
         grids.reserve(count * stride_);
-        for (std::size_t colour = 0; colour < colours_; ++colour) {
+        for (std::size_t response = 0; response < responses_; ++response) {
           std::fill_n(grids.data(), count * stride_, 0.0F);
           for (const std::size_t listener : {std::size_t{0}, channel + 1})
-            grid_.lay(returns_, band,
+            grid_.add(returns_, band,
                       {.begin = band.ends[listener],
                        .end = band.ends[listener + 1],
-                       .colour = colour,
+                       .response = response,
                        .first_node = m,
                        .nodes = count},
                       phones_[channel], grids.data());
           for (std::size_t i = 0; i < count; ++i) {
             const std::complex<float>* const bins =
                 transformed(fft, beside_, grids.data() + i * stride_);
-            add_product(bins, colour, band.first_node + m + i, sum);
+            add_product(bins, response, band.first_node + m + i, sum);
           }
         }
       }
@@ -332,12 +337,12 @@ void BlockSynthesis::lay_and_transform(Baseband& result) {
   });
 }
 
-/// Whatever has been laid down or summed up, to time.
+/// Whatever has been gridded or summed up, to time.
 void BlockSynthesis::transform(bool keep, Baseband& result) {
   const ComplexFft<float> fft(plan_.length);
   const std::size_t nodes = returns_.nodes.size();
   if (keep)
-    in_parallel(phones_.size() * colours_ * nodes,
+    in_parallel(phones_.size() * responses_ * nodes,
                 [&](std::size_t i) { transformed(fft, beside_, kept_.data() + i * stride_); });
   tbb::enumerable_thread_specific<Scratch> workspaces;
   in_parallel(phones_.size(), [&](std::size_t channel) {
@@ -345,12 +350,112 @@ void BlockSynthesis::transform(bool keep, Baseband& result) {
     row.reserve(stride_);
     std::complex<float>* values = result.values.data() + channel * plan_.length;
     std::copy_n(values, plan_.length, row.data());
-    for (std::size_t colour = 0; keep && colour < colours_; ++colour)
+    for (std::size_t response = 0; keep && response < responses_; ++response)
       for (std::size_t node = 0; node < nodes; ++node)
-        add_product(kept(channel, colour, node) + beside_, colour, node, row.data());
+        add_product(kept(channel, response, node) + beside_, response, node, row.data());
     fft.inverse(row.data());
     std::copy_n(row.data(), plan_.length, values);
   });
 }
 
-}  // namespace asdic
+bool BlockSynthesis::find_windows() {
+  std::vector<bool> taken(plan_.length + 1, false);
+  for (const double impulse : returns_.impulse) taken[returns_.sample_at(impulse)] = true;
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (taken[i]) samples.push_back(i);
+
+  // The lead is a pulse and its taps.
+  const std::size_t margin =
+      plan_.lead + beside_ + static_cast<std::size_t>(std::ceil(array_reach())) + 2;
+  const std::size_t before = windows_.length;
+  if (!windows_.fit(samples, margin, plan_.length)) return false;
+  if (windows_.length == before) return true;
+  const auto share = static_cast<double>(windows_.length) / static_cast<double>(plan_.length);
+  highest_of_window_ =
+      static_cast<std::ptrdiff_t>(std::ceil(static_cast<double>(plan_.highest_bin) * share));
+  const auto deconvolution = plan_.deconvolution_of(windows_.length, highest_of_window_);
+  spectra_ = spectra({.length = windows_.length,
+                      .lead = 0,
+                      .highest_bin = highest_of_window_,
+                      .deconvolution = deconvolution});
+  return true;
+}
+
+void BlockSynthesis::grid_in_windows(Baseband& result) {
+  const std::size_t length = windows_.length, stride = grid_stride(length);
+  const std::size_t width = windows_.width();
+  const auto highest = static_cast<std::size_t>(highest_of_window_), bins = 2 * highest + 1;
+  const auto first_of = [&](std::size_t begin, std::size_t end, std::size_t sample) {
+    while (begin < end) {  // of the returns, in order of their samples, the first at or after it
+      const std::size_t middle = begin + (end - begin) / 2;
+      if (returns_.sample_at(returns_.impulse[middle]) < sample)
+        begin = middle + 1;
+      else
+        end = middle;
+    }
+    return begin;
+  };
+  struct Workspace {
+    Scratch grids, sum;
+  };
+  const ComplexFft<float> fft(length);
+  tbb::enumerable_thread_specific<Workspace> workspaces;
+  in_parallel(phones_.size(), [&](std::size_t channel) {
+    auto& [grids, sum] = workspaces.local();
+    sum.reserve(stride);
+    std::complex<float>* row = result.values.data() + channel * plan_.length;
+    for (const std::size_t begin : windows_.begins) {
+      // Sample 0 of the window is this one of the whole grid.
+      const double origin = static_cast<double>(begin) - 0.5 * static_cast<double>(windows_.beside);
+      const double from_grids = origin + static_cast<double>(beside_);
+      ImpulseGrid here = grid_;
+      here.stride = stride;
+      here.length = length;
+      here.first += from_grids / plan_.rate;
+      here.first_position -= from_grids;
+      here.last_position -= from_grids;
+      std::fill_n(sum.data(), length, 0.0F);
+      for (const OrderedReturns::Band& band : returns_.bands) {
+        std::array<ImpulseGrid::Part, 2> parts;  // of all phones, of this one
+        for (std::size_t i = 0; i < 2; ++i) {
+          const std::size_t listener = i == 0 ? 0 : channel + 1;
+          const std::size_t from = first_of(band.ends[listener], band.ends[listener + 1], begin);
+          parts[i] = {.begin = from, .end = first_of(from, band.ends[listener + 1], begin + width)};
+        }
+        const bool received = parts[0].begin < parts[0].end || parts[1].begin < parts[1].end;
+        for (std::size_t m = 0; received && m < band.nodes; m += ImpulseGrid::most_nodes) {
+          const std::size_t count = std::min(ImpulseGrid::most_nodes, band.nodes - m);
+          grids.reserve(count * stride);
+          for (std::size_t response = 0; response < responses_; ++response) {
+            std::fill_n(grids.data(), count * stride, 0.0F);
+            for (ImpulseGrid::Part part : parts) {
+              part.response = response;
+              part.first_node = m;
+              part.nodes = count;
+              here.add(returns_, band, part, phones_[channel], grids.data());
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+              const std::size_t node = response * returns_.nodes.size() + band.first_node + m + i;
+              fft.forward(grids.data() + i * stride);
+              multiply_add(grids.data() + i * stride, spectra_.data() + node * bins, length,
+                           highest, sum.data());
+            }
+          }
+        }
+      }
+      fft.inverse(sum.data());
+      // An impulse on sample i of the whole grid is received at sample i − lead.
+      const auto n = static_cast<std::ptrdiff_t>(plan_.length);
+      std::ptrdiff_t to =
+          (static_cast<std::ptrdiff_t>(origin) - static_cast<std::ptrdiff_t>(plan_.lead)) % n;
+      if (to < 0) to += n;
+      for (std::size_t i = 0; i < length; ++i) {
+        row[to] += sum[i];
+        if (++to == n) to = 0;
+      }
+    }
+  });
+}
+
+}  // namespace asdic::detail

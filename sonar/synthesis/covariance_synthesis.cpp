@@ -16,7 +16,7 @@
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Scratch = FftBuffer<std::complex<float>>;
@@ -66,7 +66,7 @@ void multiply(std::span<const std::complex<float>> factor, const std::vector<flo
     for (std::size_t j = 0; j < rank; ++j) {
       const float a = factor[j * components + c].real(), b = factor[j * components + c].imag();
       const float *const x = &z[2 * j * row], *const y = x + row;
-      if (b == 0.0F)  // as where an array lies flat and hears all bearings
+      if (b == 0.0F)  // as where an array lies flat and receives all bearings
         for (std::size_t i = 0; i < row; ++i) {
           re[i] += a * x[i];
           im[i] += a * y[i];
@@ -81,16 +81,16 @@ void multiply(std::span<const std::complex<float>> factor, const std::vector<flo
   }
 }
 
-/// Sets one stretch's impulses x = F·z·√(I/rate) of all components.
+/// Sets one segment's impulses x = F·z·√(I/rate) of all components.
 /// \param grids  [components × stride]
-void draw_stretch(const ReverberationCovariance& of, std::size_t index, const CovarianceDraw& draw,
+void draw_segment(const ReverberationCovariance& of, std::size_t index, const CovarianceDraw& draw,
                   const DelayGrid& grid, std::complex<float>* grids, std::size_t stride) {
-  const ReverberationCovariance::Stretch& stretch = of.stretches[index];
-  const std::size_t rank = stretch.rank, components = of.components;
-  const std::size_t begin = grid.at(static_cast<double>(stretch.begin) * of.bin);
-  const std::size_t end = grid.at(static_cast<double>(stretch.end) * of.bin);
+  const ReverberationCovariance::Segment& segment = of.segments[index];
+  const std::size_t rank = segment.rank, components = of.components;
+  const std::size_t begin = grid.at(static_cast<double>(segment.begin) * of.bin);
+  const std::size_t end = grid.at(static_cast<double>(segment.end) * of.bin);
   if (rank == 0 || begin == end) return;
-  const auto factor = std::span(of.columns).subspan(stretch.first * components, rank * components);
+  const auto factor = std::span(of.columns).subspan(segment.first * components, rank * components);
   const std::size_t row = std::min(drawn, (end - begin + lanes - 1) / lanes * lanes);
   std::vector<float> normals(2 * rank * std::min(drawn, end - begin)), z(2 * rank * row);
   for (std::size_t start = begin; start < end; start += drawn) {
@@ -117,39 +117,42 @@ void draw_stretch(const ReverberationCovariance& of, std::size_t index, const Co
 /// [K × bins] the pulse through ℓ_k, over the FFT's length; beyond the band ℓ_k is as at its edge.
 std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_spectra(
     const BandNodes& band) const {
+  using Spectra = std::vector<std::complex<float>>;
   const Plan& plan = *plan_;
+  const auto make = [&] {
+    Spectra pulse(2 * static_cast<std::size_t>(plan.highest_bin) + 1);
+    Scratch scratch(plan.length);
+    plan.stretched_spectrum(plan.pulses.front(), {}, plan.whole(), scratch.data(), pulse);
+    // An impulse on a sample needs no spreading, nor what undoes it.
+    for (std::size_t i = 0; i < pulse.size(); ++i)
+      pulse[i] /= plan.deconvolution[i] * static_cast<float>(plan.length);
+    const std::size_t highest = bins_of(pulse), lowest = pulse.size() / 2 - highest;
+    const double period = static_cast<double>(plan.length) / plan.rate;
+    auto spectra = std::make_shared<Spectra>();
+    spectra->reserve(band.frequencies.size() * (2 * highest + 1));
+    for (std::size_t k = 0; k < band.frequencies.size(); ++k)
+      for (std::size_t i = 0; i <= 2 * highest; ++i) {
+        const double beside = (static_cast<double>(i) - static_cast<double>(highest)) / period;
+        const double frequency = std::clamp(plan.carrier + beside, band.centre - band.half_width,
+                                            band.centre + band.half_width);
+        spectra->push_back(pulse[lowest + i] * static_cast<float>(band.basis(k, frequency)));
+      }
+    return spectra;
+  };
+  if (memory_ == nullptr) return make();
   ExactKey key(Kept::covariance_spectra, plan.identity);
   key.add_all(band.centre, band.half_width, band.frequencies);
-  if (memory_ != nullptr)
-    if (auto known = memory_->find<std::vector<std::complex<float>>>(key)) return known;
-  std::vector<std::complex<float>> pulse(2 * static_cast<std::size_t>(plan.highest_bin) + 1);
-  Scratch scratch(plan.length);
-  plan.stretched_spectrum(plan.pulses.front(), {}, plan.whole(), scratch.data(), pulse);
-  // An impulse on a sample needs no spreading, nor what undoes it.
-  for (std::size_t i = 0; i < pulse.size(); ++i)
-    pulse[i] /= plan.deconvolution[i] * static_cast<float>(plan.length);
-  const std::size_t highest = bins_of(pulse), lowest = pulse.size() / 2 - highest;
-  const double period = static_cast<double>(plan.length) / plan.rate;
-  auto spectra = std::make_shared<std::vector<std::complex<float>>>();
-  spectra->reserve(band.frequencies.size() * (2 * highest + 1));
-  for (std::size_t k = 0; k < band.frequencies.size(); ++k)
-    for (std::size_t i = 0; i <= 2 * highest; ++i) {
-      const double beside = (static_cast<double>(i) - static_cast<double>(highest)) / period;
-      const double frequency = std::clamp(plan.carrier + beside, band.centre - band.half_width,
-                                          band.centre + band.half_width);
-      spectra->push_back(pulse[lowest + i] * static_cast<float>(band.basis(k, frequency)));
-    }
-  const std::size_t bytes = spectra->size() * sizeof(std::complex<float>);
-  if (memory_ != nullptr) return memory_->keep(key, std::move(spectra), bytes);
-  return spectra;
+  return memory_->remember(key, make, [](const Spectra& spectra) {
+    return spectra.size() * sizeof(Spectra::value_type);
+  });
 }
 
 Baseband Synthesizer::silence(const ReverberationCovariance& covariance,
                               std::vector<std::complex<float>> memory) const {
-  const std::size_t colours = covariance.band.frequencies.size();
+  const std::size_t responses = covariance.band.frequencies.size();
   const double bins = static_cast<double>(covariance_spectra(covariance.band)->size()) /
-                      static_cast<double>(colours);
-  return silence_of_band(covariance.components / colours, bins, std::move(memory));
+                      static_cast<double>(responses);
+  return silence_of_band(covariance.components / responses, bins, std::move(memory));
 }
 
 /// \param bins  of the period that its sound fills
@@ -171,10 +174,10 @@ Baseband Synthesizer::silence_of_band(std::size_t phones, double bins,
 void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
                                const CovarianceDraw& draw, Baseband& baseband) const {
   const Plan& plan = *plan_;
-  const std::size_t phones = baseband.channels, colours = covariance.band.frequencies.size();
-  assert(covariance.components == phones * colours && baseband.samples <= plan.length);
+  const std::size_t phones = baseband.channels, responses = covariance.band.frequencies.size();
+  assert(covariance.components == phones * responses && baseband.samples <= plan.length);
   const auto spectra = covariance_spectra(covariance.band);
-  const std::size_t bins = spectra->size() / colours, highest = bins / 2;
+  const std::size_t bins = spectra->size() / responses, highest = bins / 2;
   // White noise of any rate above the pulse's band is as good as another: it stands on the coarsest
   // grid of the period. An impulse stands in the pulse's middle.
   const std::size_t fine = baseband.samples;
@@ -189,8 +192,8 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
       .end = std::min(length, static_cast<std::size_t>(plan.last_position / plan.rate * rate) + 1)};
   const std::size_t stride = Scratch::row_stride(length);
   Scratch grids(covariance.components * stride);
-  in_parallel(covariance.stretches.size(), [&](std::size_t s) {
-    draw_stretch(covariance, s, draw, grid, grids.data(), stride);
+  in_parallel(covariance.segments.size(), [&](std::size_t s) {
+    draw_segment(covariance, s, draw, grid, grids.data(), stride);
   });
   const ComplexFft<float> coarse(length), fft(fine);
   struct Workspace {
@@ -202,7 +205,7 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
     sum.reserve(length);
     values.reserve(fine);
     std::fill_n(sum.data(), length, 0.0F);
-    for (std::size_t k = 0; k < colours; ++k) {
+    for (std::size_t k = 0; k < responses; ++k) {
       std::complex<float>* row = grids.data() + (k * phones + phone) * stride;
       coarse.forward(row);
       multiply_add(row, spectra->data() + k * bins, length, highest, sum.data());
@@ -216,4 +219,4 @@ void Synthesizer::add_gaussian(const ReverberationCovariance& covariance,
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

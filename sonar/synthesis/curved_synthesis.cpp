@@ -5,20 +5,20 @@
 
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/signal/phase_turn.h"
+#include "sonar/signal/rotate_back.h"
+#include "sonar/synthesis/rotating_phase.h"
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"
-#include "sonar/synthesis/turning.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double left_out = 3e-5;                        // of an echo, −90 dB
 constexpr std::size_t most_kept = std::size_t{8} << 20;  // bytes of waveforms at one time
 
-std::complex<float> turned(double cycles) {
-  const auto turn = static_cast<float>(2.0 * pi * (cycles - std::nearbyint(cycles)));
-  return {std::cos(turn), std::sin(turn)};
+std::complex<float> rotated(double cycles) {
+  const auto rotation = static_cast<float>(2.0 * pi * (cycles - std::nearbyint(cycles)));
+  return {std::cos(rotation), std::sin(rotation)};
 }
 
 /// A curved return on the baseband's grid: samples begin … end.
@@ -30,7 +30,7 @@ struct GridSpan {
 /// A return of amplitude 1, sample by sample.
 using Shape = std::vector<std::complex<float>>;
 
-/// A return as it is heard at a few lags about the array's reference point,
+/// A return as it is received at a few lags about the array's reference point,
 /// g(t − λ_k), g(τ) = A·c(u(τ))·e^{i2π(f·u(τ) − f_c·τ)}: between Chebyshev points λ_k of the
 /// phones' lags the band-limited g is a polynomial.
 struct Waveforms {
@@ -89,13 +89,13 @@ class CurvedSynthesis {
     return static_cast<std::size_t>((i % period + period) % period);
   }
 
-  /// Where a return is heard with lags between two; empty if nothing of it reaches the record.
+  /// Where a return is received with lags between two; empty if nothing of it reaches the record.
   [[nodiscard]] GridSpan span(const CurvedReturn& r, double lowest, double highest) const {
     const double longest = pulse_.half_duration() / (1.0 - plan_.max_doppler);
     const double ringing =
         (pulse_.half_duration() - 0.5 * plan_.pulse_duration) / (1.0 - plan_.max_doppler);
-    const double from = r.curve.first_heard() + lowest - ringing,
-                 to = r.curve.last_heard() + highest + ringing, middle = 0.5 * (from + to);
+    const double from = r.curve.first_received() + lowest - ringing,
+                 to = r.curve.last_received() + highest + ringing, middle = 0.5 * (from + to);
     const double record_end =
         start_ + static_cast<double>(plan_.recording.samples) / plan_.recording.sample_rate;
     if (middle < start_ - longest || middle > record_end + longest) return {};
@@ -111,16 +111,16 @@ class CurvedSynthesis {
     const Vec3 middle = 0.5 * (pieces.front().first_slowness + pieces.back().last_slowness);
     w.lowest = infinity;
     w.highest = -infinity;
-    double turned_by = 0.0;  // a lag is this far from that by the middle slowness, at most [s]
+    double rotated_by = 0.0;  // a lag is this far from that by the middle slowness, at most [s]
     for (const Vec3& x : phones_) {
       w.lowest = std::min(w.lowest, middle.dot(x));
       w.highest = std::max(w.highest, middle.dot(x));
       for (const DelayCurve::Piece& piece : pieces)
         for (const Vec3& s : {piece.first_slowness, piece.last_slowness})
-          turned_by = std::max(turned_by, std::abs((s - middle).dot(x)));
+          rotated_by = std::max(rotated_by, std::abs((s - middle).dot(x)));
     }
     // That is neglected in g, whose phase turns by 2π·half_band a second, not in e^{−i2πf_c λ}.
-    if (!(2.0 * pi * half_band_ * turned_by < left_out)) return w;
+    if (!(2.0 * pi * half_band_ * rotated_by < left_out)) return w;
     // e^{izx} through N Chebyshev points errs by about 4(z/2)^N/N! (doppler_expansion.h).
     const double z = pi * half_band_ * (w.highest - w.lowest);
     std::size_t nodes = 1;
@@ -135,7 +135,7 @@ class CurvedSynthesis {
                        0.5 * (w.highest - w.lowest) * std::cos(theta));
       w.barycentric.push_back(k % 2 == 0 ? std::sin(theta) : -std::sin(theta));
     }
-    w.span = span(r, w.lowest - turned_by, w.highest + turned_by);
+    w.span = span(r, w.lowest - rotated_by, w.highest + rotated_by);
     return w;
   }
 
@@ -143,21 +143,21 @@ class CurvedSynthesis {
   [[nodiscard]] Shape shape(const DelayCurve& curve, const Waveforms& w) const {
     Shape found;
     found.reserve(w.lags.size() * w.span.size());
-    std::array<double, Turning::block> heard, since, cycles, re,
+    std::array<double, RotatingPhase::block> received, since, cycles, re,
         im;  // since: from the pulse's middle, u
     for (const double lag : w.lags)
       for (std::ptrdiff_t i = w.span.begin; i < w.span.end;) {
-        const auto count = static_cast<std::size_t>(
-            std::min<std::ptrdiff_t>(w.span.end - i, static_cast<std::ptrdiff_t>(Turning::block)));
+        const auto count = static_cast<std::size_t>(std::min<std::ptrdiff_t>(
+            w.span.end - i, static_cast<std::ptrdiff_t>(RotatingPhase::block)));
         for (std::size_t j = 0; j < count; ++j)
-          heard[j] = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
-        curve.sent_at({heard.data(), count}, {since.data(), count});
+          received[j] = time(i + static_cast<std::ptrdiff_t>(j)) - lag;
+        curve.sent_at({received.data(), count}, {since.data(), count});
         for (std::size_t j = 0; j < count; ++j) {
           since[j] -= 0.5 * plan_.pulse_duration;
-          cycles[j] = plan_.carrier * heard[j] - pulse_.centre_frequency() * since[j];
+          cycles[j] = plan_.carrier * received[j] - pulse_.centre_frequency() * since[j];
         }
         pulse_.at({since.data(), count}, {re.data(), count}, {im.data(), count});
-        for (std::size_t j = 0; j < count; ++j) turn_back(cycles[j], re[j], im[j]);
+        for (std::size_t j = 0; j < count; ++j) rotate_back(cycles[j], re[j], im[j]);
         for (std::size_t j = 0; j < count; ++j)
           found.emplace_back(static_cast<float>(re[j]), static_cast<float>(im[j]));
         i += static_cast<std::ptrdiff_t>(count);
@@ -168,17 +168,17 @@ class CurvedSynthesis {
   /// The same, out of what is kept for that curve and those lags.
   [[nodiscard]] std::shared_ptr<const Shape> recalled(const DelayCurve& curve,
                                                       const Waveforms& w) const {
-    if (memory_ == nullptr) return std::make_shared<const Shape>(shape(curve, w));
+    const auto made = [&] { return std::make_shared<Shape>(shape(curve, w)); };
+    if (memory_ == nullptr) return made();
     ExactKey key(Kept::waveform, plan_.identity);
     key.add(w.span.begin).add(w.span.end);
     for (const double lag : w.lags) key.add(lag);
     for (const DelayCurve::Piece& piece : curve.pieces())
-      for (std::size_t i = 0; i < piece.heard.size(); ++i)
-        key.add(piece.heard[i]).add(piece.sent[i]);
-    if (auto kept = memory_->find<Shape>(key)) return kept;
-    auto made = std::make_shared<Shape>(shape(curve, w));
-    const std::size_t bytes = made->capacity() * sizeof(Shape::value_type);
-    return memory_->keep(key, std::move(made), bytes);
+      for (std::size_t i = 0; i < piece.received.size(); ++i)
+        key.add(piece.received[i]).add(piece.sent[i]);
+    return memory_->remember(key, made, [](const Shape& values) {
+      return values.capacity() * sizeof(Shape::value_type);
+    });
   }
 
   void evaluate(const CurvedReturn& r, Waveforms& w) const {
@@ -213,7 +213,7 @@ class CurvedSynthesis {
     return weight;
   }
 
-  /// g(t − λ)·e^{−i2πf_c λ(t)}, λ(t) straight in every stretch of the curve.
+  /// g(t − λ)·e^{−i2πf_c λ(t)}, λ(t) straight in every segment of the curve.
   void add_shared(const CurvedReturn& r, const Waveforms& w, std::size_t channel) {
     const Vec3& x = phones_[channel];
     const auto& pieces = r.curve.pieces();
@@ -228,24 +228,26 @@ class CurvedSynthesis {
       const auto end =
           p + 1 == pieces.size()
               ? w.span.end
-              : std::min(w.span.end, static_cast<std::ptrdiff_t>(std::floor(
-                                         (piece.heard.back() + last_lag - start_) * plan_.rate)) +
-                                         1);
+              : std::min(w.span.end,
+                         static_cast<std::ptrdiff_t>(
+                             std::floor((piece.received.back() + last_lag - start_) * plan_.rate)) +
+                             1);
       const double slope =
-          (last_lag - first_lag) / (piece.heard.back() - piece.heard.front());  // dλ/dt
-      const double cycles = plan_.carrier * (first_lag + slope * (time(i) - piece.heard.front()));
+          (last_lag - first_lag) / (piece.received.back() - piece.received.front());  // dλ/dt
+      const double cycles =
+          plan_.carrier * (first_lag + slope * (time(i) - piece.received.front()));
       const double per_sample = plan_.carrier * slope / plan_.rate;  // cycles
-      Turning turning(-cycles, -per_sample);
+      RotatingPhase rotating(-cycles, -per_sample);
       while (i < end) {
         const auto count = static_cast<std::size_t>(
-            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(Turning::block)));
-        std::array<float, 2 * Turning::block> sum{};
+            std::min<std::ptrdiff_t>(end - i, static_cast<std::ptrdiff_t>(RotatingPhase::block)));
+        std::array<float, 2 * RotatingPhase::block> sum{};
         for (std::size_t k = 0; k < weight.size(); ++k) {
           const float* value = reinterpret_cast<const float*>(
               w.values.data() + k * w.span.size() + static_cast<std::size_t>(i - w.span.begin));
           for (std::size_t j = 0; j < 2 * count; ++j) sum[j] += weight[k] * value[j];
         }
-        turning.turn(sum);
+        rotating.rotation(sum);
         for (std::size_t j = 0; j < count;) {  // up to where the period begins again
           const std::size_t until = std::min(count, j + plan_.length - at);
           float* out = reinterpret_cast<float*>(row + at);
@@ -262,15 +264,15 @@ class CurvedSynthesis {
   void add_alone(const CurvedReturn& r, std::size_t channel, bool own) {
     const Vec3 x = own ? Vec3(Vec3::Zero()) : phones_[channel];
     const auto& pieces = r.curve.pieces();
-    const GridSpan heard =
+    const GridSpan received =
         span(r, pieces.front().first_slowness.dot(x), pieces.back().last_slowness.dot(x));
     std::complex<float>* row = baseband_.values.data() + channel * plan_.length;
-    std::size_t at = place(heard.begin);
-    for (std::ptrdiff_t i = heard.begin; i < heard.end; ++i) {
+    std::size_t at = place(received.begin);
+    for (std::ptrdiff_t i = received.begin; i < received.end; ++i) {
       const double t = time(i);
       const double u = r.curve.sent_at(t, x) - 0.5 * plan_.pulse_duration;
       row[at] += std::complex<float>(r.straight.amplitude * pulse_.at(u)) *
-                 turned(pulse_.centre_frequency() * u - plan_.carrier * t);
+                 rotated(pulse_.centre_frequency() * u - plan_.carrier * t);
       if (++at == plan_.length) at = 0;
     }
   }
@@ -289,4 +291,4 @@ void Synthesizer::add_curved(std::span<const CurvedReturn> returns, std::span<co
   CurvedSynthesis(*plan_, phones, baseband, memory_).add(returns);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 // The bump is I₀(β√(1 − (2x/w)²)); its spectrum turns from growth to ripple at β = πwξ. That is put
@@ -60,4 +60,4 @@ double DelayKernel::spectrum(double frequency) const noexcept {
   return taps * std::sinh(root) / (root * peak);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -5,7 +5,7 @@
 #include "core/units.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What an FFT costs [1].
@@ -46,4 +46,4 @@ bool DelayWindows::fit(std::span<const std::size_t> samples, std::size_t margin,
   return true;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

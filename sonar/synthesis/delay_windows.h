@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 
-/// Stretches of a grid of impulses, all of one length, with an FFT each in place of the whole
-/// grid's: returns of a few rings are heard in a few of them. Pulses and phones reach beyond the
+/// Segments of a grid of impulses, all of one length, with an FFT each in place of the whole
+/// grid's: returns of a few rings are received in a few of them. Pulses and phones reach beyond the
 /// returns' samples on either side: so much of a window is left free of returns.
 /// docs/theory/synthesis.md, "Memory"
 struct DelayWindows {
@@ -25,4 +25,4 @@ struct DelayWindows {
                          std::size_t whole);
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

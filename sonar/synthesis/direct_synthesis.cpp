@@ -3,7 +3,7 @@
 
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<double> direct_synthesis(const Pulse& pulse, const Recording& recording,
                                      std::span<const Return> returns,
@@ -28,4 +28,4 @@ std::vector<double> direct_synthesis(const Pulse& pulse, const Recording& record
   return pressure;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double expansion_error = 3e-5;  // of the pulse's peak, −90 dB
@@ -80,7 +80,7 @@ DopplerExpansion::DopplerExpansion(const BandLimitedPulse& pulse)
     : highest_frequency_(pulse.centre_frequency() + pulse.half_band()) {
   constexpr int points = 128, fine = 8;
   for (int i = 0; i < points; ++i) {
-    double amplitude = 0.0;  // the most in this stretch, on either side
+    double amplitude = 0.0;  // the most in this segment, on either side
     for (int k = 0; k <= fine; ++k) {
       const double u = pulse.half_duration() * (i + k / double(fine)) / points;
       amplitude = std::max({amplitude, std::abs(pulse.at(u)), std::abs(pulse.at(-u))});
@@ -106,15 +106,15 @@ std::vector<DopplerBand> DopplerExpansion::bands(std::vector<double> dopplers) c
   std::vector<DopplerBand> found;
   if (dopplers.empty()) return found;
 
-  struct Stretch {
+  struct Segment {
     std::size_t first, last, cost;  // of `dopplers`, both inclusive
   };
-  const auto stretch = [&](std::size_t first, std::size_t last) {
-    return Stretch{first, last, nodes_needed(dopplers[last] - dopplers[first])};
+  const auto segment = [&](std::size_t first, std::size_t last) {
+    return Segment{first, last, nodes_needed(dopplers[last] - dopplers[first])};
   };
-  std::vector<Stretch> open = {stretch(0, dopplers.size() - 1)};
+  std::vector<Segment> open = {segment(0, dopplers.size() - 1)};
   while (!open.empty()) {
-    const Stretch s = open.back();
+    const Segment s = open.back();
     open.pop_back();
     const std::size_t distinct = s.last - s.first + 1;
     if (distinct <= s.cost) {  // a pass for each is no dearer
@@ -127,7 +127,7 @@ std::vector<DopplerBand> DopplerExpansion::bands(std::vector<double> dopplers) c
     for (std::size_t i = s.first; i < s.last; ++i)
       if (dopplers[i + 1] - dopplers[i] > dopplers[cut + 1] - dopplers[cut]) cut = i;
     if (s.cost > 1) {
-      const Stretch left = stretch(s.first, cut), right = stretch(cut + 1, s.last);
+      const Segment left = segment(s.first, cut), right = segment(cut + 1, s.last);
       if (left.cost + right.cost < s.cost) {
         open.insert(open.end(), {right, left});
         continue;
@@ -204,4 +204,4 @@ std::vector<DopplerBand> DopplerExpansion::cut(std::vector<DopplerBand> bands, d
   return narrower;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

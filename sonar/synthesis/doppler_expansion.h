@@ -7,9 +7,9 @@
 #include "sonar/signal/band_limited_pulse.h"
 #include "sonar/synthesis/doppler_ridge.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// A stretch of Doppler factors served by a few stretched pulses: s₊(ηu) ≈ Σ_m ℓ_m(η) s₊(η_m u).
+/// A segment of Doppler factors served by a few stretched pulses: s₊(ηu) ≈ Σ_m ℓ_m(η) s₊(η_m u).
 struct DopplerBand {
   double lowest = 1.0, highest = 1.0;
   std::vector<double> nodes;        ///< η_m, Chebyshev points of [lowest, highest]
@@ -17,11 +17,11 @@ struct DopplerBand {
   double ridge = 0.0;               ///< κ, along which impulses are moved [s]
 
   [[nodiscard]] double middle() const noexcept { return 0.5 * (lowest + highest); }
-  /// How much later than its pulse's middle a return's impulse is laid down: κ·(η − η_c) [s].
+  /// How much later than its pulse's middle a return's impulse is gridded: κ·(η − η_c) [s].
   [[nodiscard]] double late(double doppler) const noexcept { return ridge * (doppler - middle()); }
   /// By how much the impulse is turned then, and its pulse back [cycles]: with the tone of the
   /// band's middle the moved pulses differ the least.
-  [[nodiscard]] double turn(double doppler, double carrier) const noexcept {
+  [[nodiscard]] double rotation(double doppler, double carrier) const noexcept {
     return carrier * (middle() - 1.0) * late(doppler);
   }
 
@@ -32,8 +32,8 @@ struct DopplerBand {
 /// A stretched pulse, and where it stands to its impulse.
 struct DopplerNode {
   double doppler = 1.0;
-  double late = 0.0;  ///< by which the impulse is later than the pulse's middle [s]
-  double turn = 0.0;  ///< by which the pulse is turned back [cycles]
+  double late = 0.0;      ///< by which the impulse is later than the pulse's middle [s]
+  double rotation = 0.0;  ///< by which the pulse is turned back [cycles]
 };
 
 /// How many Chebyshev nodes a span of factors needs.
@@ -51,12 +51,12 @@ class DopplerExpansion {
   /// Covers the factors by the cheapest set of bands found: gaps are skipped, and a few distinct
   /// factors get a node each. \param dopplers in any order \return bands in rising order
   [[nodiscard]] std::vector<DopplerBand> bands(std::vector<double> dopplers) const;
-  /// Covers stretches of factors, which may overlap. \return bands in rising order
+  /// Covers segments of factors, which may overlap. \return bands in rising order
   [[nodiscard]] std::vector<DopplerBand> bands_over(std::vector<DopplerSpan> spans) const;
 
   /// Cuts bands into narrower ones, with more nodes in all but fewer for each return, as long as
   /// that is cheaper. \param returns  how many there are   \param grid_cost  what one more node
-  /// costs, counted in returns laid down for one node   \param ridge  along which impulses may be
+  /// costs, counted in returns gridded for one node   \param ridge  along which impulses may be
   /// moved, to its error; none: not
   [[nodiscard]] std::vector<DopplerBand> cut(std::vector<DopplerBand> bands, double returns,
                                              double grid_cost,
@@ -70,4 +70,4 @@ class DopplerExpansion {
   double highest_frequency_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/units.h"
-#include "sonar/signal/phase_turn.h"
+#include "sonar/signal/rotate_back.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double ridge_error = 1e-4;      // of the pulse, −80 dB
@@ -45,8 +45,8 @@ DopplerRidge::DopplerRidge(const BandLimitedPulse& pulse) : pulse_(pulse) {
   for (int i = 0; i < times; ++i) {
     const double t = (i + 0.5) * apart - pulse.half_duration();
     const std::complex<double> b = (pulse.at(t + step) - pulse.at(t - step)) / (2.0 * step);
-    const std::complex<double> turned(0.0, 2.0 * pi * pulse.centre_frequency() * t);
-    product += (std::conj(b) * (t * b + turned * pulse.at(t))).real();
+    const std::complex<double> rotated(0.0, 2.0 * pi * pulse.centre_frequency() * t);
+    product += (std::conj(b) * (t * b + rotated * pulse.at(t))).real();
     power += std::norm(b);
   }
   if (power > 0.0) slope_ = -product / power;
@@ -71,7 +71,7 @@ std::size_t DopplerRidge::nodes_needed(double span) const {
     pulse_.at(at, real, imaginary);
     for (std::size_t j = 0; j < ridge_points; ++j) {
       const double cycles = pulse_.centre_frequency() * shifts[j] * moved(shifts[j]);
-      turn_back(-cycles, real[j], imaginary[j]);
+      rotate_back(-cycles, real[j], imaginary[j]);
       all += (real[j] * real[j] + imaginary[j] * imaginary[j]) / double{ridge_points};
     }
     for (std::size_t n = 0; n < ridge_points; ++n) {
@@ -89,4 +89,4 @@ std::size_t DopplerRidge::nodes_needed(double span) const {
   return std::clamp<std::size_t>(count, 1, too_many);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

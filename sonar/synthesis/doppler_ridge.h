@@ -3,19 +3,19 @@
 
 #include "sonar/signal/band_limited_pulse.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// The delay that sounds most like a Doppler shift of a pulse: a sweep of f_c by the rate B/T that
-/// is heard with the factor η is, but for its ends, one that is heard f_c·(T/B)·(η − 1) earlier.
-/// Stretched pulses that are moved back by that differ little, and fewer of them span all.
+/// is received with the factor η is, but for its ends, one that is received f_c·(T/B)·(η − 1)
+/// earlier. Stretched pulses that are moved back by that differ little, and fewer of them span all.
 /// docs/theory/synthesis.md, "The ridge of sweeps"
 class DopplerRidge {
  public:
   /// \param pulse  longer-lived than this
   explicit DopplerRidge(const BandLimitedPulse& pulse);
 
-  /// κ: the pulse of the factor η is like that of 1 heard κ·(η − 1) later [s]. −f_c·T/B of a sweep
-  /// by B upwards, 0 of a tone.
+  /// κ: the pulse of the factor η is like that of 1 received κ·(η − 1) later [s]. −f_c·T/B of a
+  /// sweep by B upwards, 0 of a tone.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
   static constexpr std::size_t too_many = 25;
@@ -29,4 +29,4 @@ class DopplerRidge {
   double slope_ = 0.0;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

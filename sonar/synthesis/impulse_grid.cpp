@@ -2,17 +2,17 @@
 
 #include <algorithm>
 
-#include "sonar/signal/phase_turn.h"
+#include "sonar/signal/rotate_back.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
-using Lanes = DelayKernel::Lanes;
-constexpr auto not_heard = static_cast<std::size_t>(-1);
+using SimdFloats = DelayKernel::SimdFloats;
+constexpr auto not_received = static_cast<std::size_t>(-1);
 
 /// Returns that fall between the same two samples.
 struct Run {
-  const Lanes* taps;
+  const SimdFloats* taps;
   std::size_t count;
   const float* weights;  // ℓ_m(η) of the first
   std::size_t row;       // from the weights of one return to the next's
@@ -20,39 +20,41 @@ struct Run {
   /// grid m + j += Σ_r weights[r][m + j]·taps[r], j < nodes. \param stride of the grids [floats]
   template <std::size_t nodes>
   void add(std::size_t m, float* grid, std::size_t stride) const noexcept {
-    std::array<Lanes, nodes> sum;
+    std::array<SimdFloats, nodes> sum;
     for (std::size_t j = 0; j < nodes; ++j) sum[j].setZero();
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t j = 0; j < nodes; ++j) sum[j] += weights[r * row + m + j] * taps[r];
-    for (std::size_t j = 0; j < nodes; ++j) Eigen::Map<Lanes>(grid + (m + j) * stride) += sum[j];
+    for (std::size_t j = 0; j < nodes; ++j)
+      Eigen::Map<SimdFloats>(grid + (m + j) * stride) += sum[j];
   }
 };
 
 }  // namespace
 
-void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band& band,
+void ImpulseGrid::add(const OrderedReturns& returns, const OrderedReturns::Band& band,
                       const Part& part, const Vec3& phone,
                       std::complex<float>* grids) const noexcept {
-  const Lanes even = Lanes::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
-  const Lanes odd = 1.0F - even;
+  const SimdFloats even =
+      SimdFloats::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
+  const SimdFloats odd = 1.0F - even;
   const float unit_weight = 1.0F;
   const std::size_t row = band.nodes == 1 ? 0 : band.nodes;
   Block at;
-  std::array<Lanes, block> taps;
+  std::array<SimdFloats, block> taps;
   std::array<std::size_t, block> below;  // the sample at or below the impulse
   constexpr double first_on_grid = DelayKernel::taps;
   const auto last_on_grid = static_cast<double>(length - DelayKernel::taps);
 
   for (std::size_t start = part.begin; start < part.end; start += block) {
     const std::size_t n = std::min(block, part.end - start);
-    locate(returns, start, n, part.colour, phone, at);
+    locate(returns, start, n, part.response, phone, at);
     for (std::size_t i = 0; i < n; ++i) {
       const double position = at.position[i];
       const double middle = position - rate * returns.late[start + i];
-      const bool heard = middle >= first_position && middle <= last_position &&
-                         position >= first_on_grid && position <= last_on_grid;
-      below[i] = heard ? static_cast<std::size_t>(position) : not_heard;
-      if (!heard) continue;
+      const bool received = middle >= first_position && middle <= last_position &&
+                            position >= first_on_grid && position <= last_on_grid;
+      below[i] = received ? static_cast<std::size_t>(position) : not_received;
+      if (!received) continue;
       const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
       taps[i] = kernel.weights(fraction) * (at.real[i] * even + at.imag[i] * odd);
     }
@@ -62,7 +64,7 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
     // Sorted by sample, neighbours mostly fall between the same two: summed in registers.
     for (std::size_t i = 0, next = 0; i < n; i = next) {
       for (next = i + 1; next < n && below[next] == below[i];) ++next;
-      if (below[i] == not_heard) continue;
+      if (below[i] == not_received) continue;
       const Run run = {
           .taps = taps.data() + i, .count = next - i, .weights = weights + i * row, .row = row};
       float* grid = reinterpret_cast<float*>(grids + (below[i] - DelayKernel::before));
@@ -76,23 +78,23 @@ void ImpulseGrid::lay(const OrderedReturns& returns, const OrderedReturns::Band&
 }
 
 void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,
-                         std::size_t colour, const Vec3& phone, Block& at) const noexcept {
+                         std::size_t response, const Vec3& phone, Block& at) const noexcept {
   const double x = phone.x(), y = phone.y(), z = phone.z();
   const double* __restrict impulse = returns.impulse.data() + start;
   const double* __restrict late = returns.late.data() + start;
   const double* __restrict sx = returns.slowness_x.data() + start;
   const double* __restrict sy = returns.slowness_y.data() + start;
   const double* __restrict sz = returns.slowness_z.data() + start;
-  const float* __restrict re = returns.real.data() + colour * returns.size() + start;
-  const float* __restrict im = returns.imag.data() + colour * returns.size() + start;
+  const float* __restrict re = returns.real.data() + response * returns.size() + start;
+  const float* __restrict im = returns.imag.data() + response * returns.size() + start;
   for (std::size_t i = 0; i < n; ++i) {
     const double delay = impulse[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
     double a = re[i], b = im[i];
-    turn_back(carrier * (delay - late[i]), a, b);  // e^{−i2π f_c τ}
+    rotate_back(carrier * (delay - late[i]), a, b);  // e^{−i2π f_c τ}
     at.position[i] = (delay - first) * rate;
     at.real[i] = static_cast<float>(a);
     at.imag[i] = static_cast<float>(b);
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "raytrace/parallel/parallel.h"
-#include "sonar/signal/phase_turn.h"
+#include "sonar/signal/rotate_back.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Puts the indices `from` into the order of their keys, equal ones as they were.
@@ -22,17 +22,18 @@ void counting_sort(std::span<const std::uint32_t> from, std::span<const std::uin
 }  // namespace
 
 OrderedReturns::OrderedReturns(std::vector<DopplerBand> found, const Grid& grid,
-                               double pulse_duration, std::size_t channels, std::size_t colours)
+                               double pulse_duration, std::size_t channels, std::size_t responses)
     : expansion_(std::move(found)),
       grid_(grid),
       pulse_duration_(pulse_duration),
       channels_(channels),
-      colours_(colours) {
+      responses_(responses) {
   for (const DopplerBand& band : expansion_) {
     bands.push_back({.first_node = nodes.size(), .nodes = band.nodes.size(), .ends = {}});
     for (const double node : band.nodes)
-      nodes.push_back(
-          {.doppler = node, .late = band.late(node), .turn = band.turn(node, grid_.carrier)});
+      nodes.push_back({.doppler = node,
+                       .late = band.late(node),
+                       .rotation = band.rotation(node, grid_.carrier)});
   }
 }
 
@@ -40,7 +41,7 @@ std::size_t OrderedReturns::bytes_each() const noexcept {
   std::size_t most = 0;
   for (const Band& band : bands) most = std::max(most, band.nodes);
   return sizeof(Return) + 6 * sizeof(double) + 6 * sizeof(std::uint32_t) +
-         colours_ * 2 * sizeof(std::complex<float>) + (most > 1 ? most * sizeof(float) : 0);
+         responses_ * 2 * sizeof(std::complex<float>) + (most > 1 ? most * sizeof(float) : 0);
 }
 
 double OrderedReturns::latest() const noexcept {
@@ -59,7 +60,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   for (auto* keys : {&sample_, &group_, &by_sample_, &order_}) keys->resize(n);
   for (auto* array : {&impulse, &late, &slowness_x, &slowness_y, &slowness_z, &doppler_})
     array->resize(n);
-  for (auto* array : {&real, &imag}) array->resize(colours_ * n);
+  for (auto* array : {&real, &imag}) array->resize(responses_ * n);
 
   const auto middle_of = [&](const Return& r) {
     return r.delay + 0.5 * pulse_duration_ / r.doppler;
@@ -81,7 +82,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   });
   sort(n);
 
-  in_parallel_stretches(n, 8192, [&](std::size_t begin, std::size_t end) {
+  in_parallel_chunks(n, 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint64_t source = source_[order_[i]], in_block = source & 0xFFFFFFFFU;
       const ReturnBlock& block = blocks[source >> 32];
@@ -92,10 +93,10 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       slowness_x[i] = r.slowness.x();
       slowness_y[i] = r.slowness.y();
       slowness_z[i] = r.slowness.z();
-      for (std::size_t k = 0; k < colours_; ++k) {
-        const std::complex<float> amplitude = block.colours.empty()
+      for (std::size_t k = 0; k < responses_; ++k) {
+        const std::complex<float> amplitude = block.responses.empty()
                                                   ? std::complex<float>(r.amplitude)
-                                                  : block.colours[in_block * colours_ + k];
+                                                  : block.responses[in_block * responses_ + k];
         real[k * n + i] = amplitude.real();
         imag[k * n + i] = amplitude.imag();
       }
@@ -121,7 +122,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const Band& band = bands[b];
     const std::size_t from = band.ends.front();
-    in_parallel_stretches(band.ends.back() - from, 1024, [&](std::size_t begin, std::size_t end) {
+    in_parallel_chunks(band.ends.back() - from, 1024, [&](std::size_t begin, std::size_t end) {
       if (expansion_[b].ridge != 0.0) move(expansion_[b], from + begin, from + end);
       for (std::size_t i = begin; band.nodes > 1 && i < end; ++i) {
         const std::size_t row = band.first_weight + i * band.nodes;
@@ -137,12 +138,12 @@ void OrderedReturns::move(const DopplerBand& band, std::size_t begin, std::size_
     late[i] = band.late(doppler_[i]);
     impulse[i] += late[i];
   }
-  for (std::size_t k = 0; k < colours_; ++k) {
+  for (std::size_t k = 0; k < responses_; ++k) {
     float* const re = real.data() + k * n;
     float* const im = imag.data() + k * n;
     for (std::size_t i = begin; i < end; ++i) {
       double a = re[i], b = im[i];
-      turn_back(-band.turn(doppler_[i], grid_.carrier), a, b);
+      rotate_back(-band.rotation(doppler_[i], grid_.carrier), a, b);
       re[i] = static_cast<float>(a);
       im[i] = static_cast<float>(b);
     }
@@ -158,4 +159,4 @@ void OrderedReturns::sort(std::size_t n) {
   group_ends_.assign(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(groups));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

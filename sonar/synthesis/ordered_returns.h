@@ -9,10 +9,10 @@
 #include "sonar/paths/return_source.h"
 #include "sonar/synthesis/doppler_expansion.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Returns as the synthesis reads them: one array per quantity, sorted by Doppler band, then by who
-/// hears them, then by the sample of the grid in which they fall. Private to the synthesis. Its
+/// receives them, then by the sample of the grid in which they fall. Private to the synthesis. Its
 /// memory is used again from batch to batch.
 class OrderedReturns {
  public:
@@ -20,7 +20,7 @@ class OrderedReturns {
     std::size_t first_node = 0, nodes = 0;  ///< among the nodes of all bands
     std::size_t first_weight = 0;           ///< in `weights`: [returns of the band × nodes]
     std::vector<std::size_t>
-        ends;  ///< [2 + channels] begin; end of those all hear; of channel 0's …
+        ends;  ///< [2 + channels] begin; end of those all receive; of channel 0's …
   };
   /// Where the grid lies in time.
   struct Grid {
@@ -30,9 +30,9 @@ class OrderedReturns {
   };
 
   /// \param bands  that hold every Doppler factor   \param pulse_duration  not stretched [s]
-  /// \param colours  amplitudes of every return
+  /// \param frequency responses  amplitudes of every return
   OrderedReturns(std::vector<DopplerBand> bands, const Grid& grid, double pulse_duration,
-                 std::size_t channels, std::size_t colours);
+                 std::size_t channels, std::size_t responses);
 
   /// Takes the returns of a batch in place of what is there.
   void take(std::span<const ReturnBlock> blocks);
@@ -53,7 +53,7 @@ class OrderedReturns {
   std::vector<double> impulse;     ///< its delay at the reference point [s]
   std::vector<double> late;        ///< by which it is later than the pulse's middle [s]
   std::vector<double> slowness_x, slowness_y, slowness_z;  ///< [s/m]
-  std::vector<float> real, imag;                           ///< [colours × returns] amplitude
+  std::vector<float> real, imag;                           ///< [responses × returns] amplitude
   std::vector<float> weights;  ///< ℓ_m(η) of every return; none for a band of one node
   double largest_slowness = 0.0;
 
@@ -65,7 +65,7 @@ class OrderedReturns {
   std::vector<DopplerBand> expansion_;
   Grid grid_;
   double pulse_duration_;
-  std::size_t channels_, colours_;
+  std::size_t channels_, responses_;
   std::vector<std::uint64_t> source_;             // block << 32 | index in it
   std::vector<double> doppler_;                   // in order
   std::vector<std::uint32_t> sample_, group_;     // of each, as they came
@@ -74,4 +74,4 @@ class OrderedReturns {
   std::vector<std::size_t> group_ends_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Samples of a period on the grid that reverberation has for itself: at least so many, and a
 /// multiple of 16, since FFTW takes twice as long for odd ones.
@@ -14,4 +14,4 @@ namespace asdic {
          fast_fft_length(static_cast<std::size_t>(std::ceil(least / static_cast<double>(lanes))));
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "sonar/signal/interpolation_taps.h"
 #include "sonar/synthesis/delay_kernel.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// So much oversampled, a signal is interpolated to −97 dB by 12 taps under the window of the 24
 /// that 1.35 times take: A = 97 = 2.285·(taps − 1)·2π(1 − 1/oversampling) + 8, β = 0.1102(A − 8.7).
@@ -49,4 +49,4 @@ class PlaceWeights {
   std::vector<Weights> weights_;
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

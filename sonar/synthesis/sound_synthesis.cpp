@@ -8,7 +8,7 @@
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/fft.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// A channel's period at twice its rate.
@@ -73,4 +73,4 @@ void add_resampled(const Baseband& from, Baseband& to) {
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,12 +7,12 @@
 #include "sonar/signal/band_limited_pulse.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
-/// What phones hear of a sound that is no pulse: Synthesizer::baseband(), where `delay` of a return
-/// tells of the sound's middle (u = 0) and amplitudes are over the sound's own. Its peak should be
-/// about 1: errors are −90 dB of that.
-/// \param phones  [n] from the array's reference point [m]
+/// What phones receive of a sound that is no pulse: Synthesizer::baseband(), where `delay` of a
+/// return tells of the sound's middle (u = 0) and amplitudes are over the sound's own. Its peak
+/// should be about 1: errors are −90 dB of that. \param phones  [n] from the array's reference
+/// point [m]
 [[nodiscard]] Baseband baseband_of(const BandLimitedPulse& sound, const Recording& recording,
                                    double max_doppler, std::span<const Return> returns,
                                    std::span<const Vec3> phones);
@@ -30,4 +30,4 @@ namespace asdic {
 /// outside of that one's record fades out in its overlap.
 void add_resampled(const Baseband& from, Baseband& to);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -2,7 +2,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace asdic {
+namespace asdic::detail {
 
 /// sum[k] += grid[k]·spectrum[k] over the band, grid in FFT order.
 inline void multiply_add(const std::complex<float>* grid, const std::complex<float>* spectrum,
@@ -20,4 +20,4 @@ inline void multiply_add(const std::complex<float>* grid, const std::complex<flo
   part(0, highest_bin + 1, spectrum + highest_bin);
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

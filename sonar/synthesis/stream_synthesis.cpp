@@ -12,14 +12,14 @@
 #include "sonar/reverberation/reverberation_streams.h"
 #include "sonar/signal/band_response.h"
 #include "sonar/signal/complex_product.h"
-#include "sonar/signal/phase_turn.h"
 #include "sonar/signal/pulse_spectrum.h"
+#include "sonar/signal/rotate_back.h"
 #include "sonar/synthesis/own_grid.h"
 #include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 using Scratch = FftBuffer<std::complex<float>>;
@@ -41,14 +41,15 @@ struct Rows {
 };
 
 /// to += at·turn^k·sound over the bins k, |turn| = 1. \param bins  a whole number of lanes
-void add_turned(const float* __restrict re, const float* __restrict im, std::size_t bins,
-                std::complex<double> at, std::complex<double> turn, float* __restrict to_re,
-                float* __restrict to_im) {
+void add_rotated(const float* __restrict re, const float* __restrict im, std::size_t bins,
+                 std::complex<double> at, std::complex<double> rotation, float* __restrict to_re,
+                 float* __restrict to_im) {
   alignas(64) std::array<float, lanes> c, s;
   c[0] = 1.0F;
   s[0] = 0.0F;
-  for (std::size_t m = 1; m < lanes; m *= 2, turn = finite_product(turn, turn)) {  // turn = turn^m
-    const auto a = static_cast<float>(turn.real()), b = static_cast<float>(turn.imag());
+  for (std::size_t m = 1; m < lanes;
+       m *= 2, rotation = finite_product(rotation, rotation)) {  // turn = turn^m
+    const auto a = static_cast<float>(rotation.real()), b = static_cast<float>(rotation.imag());
     for (std::size_t l = 0; l < m; ++l) {
       c[m + l] = c[l] * a - s[l] * b;
       s[m + l] = c[l] * b + s[l] * a;
@@ -61,7 +62,7 @@ void add_turned(const float* __restrict re, const float* __restrict im, std::siz
       to_re[k + l] += re[k + l] * x - im[k + l] * y;
       to_im[k + l] += re[k + l] * y + im[k + l] * x;
     }
-    at = finite_product(at, turn);
+    at = finite_product(at, rotation);
   }
 }
 
@@ -78,7 +79,7 @@ struct PhonePlaces {
   }
 };
 
-/// How much later than the reference point phones hear a wave whose fronts are spheres about the
+/// How much later than the reference point phones receive a wave whose fronts are spheres about the
 /// point R·u, u = −s/|s|: |s|·(|R·u − x| − R) [s]. \param curvature  1/R [1/m]
 void find_lags(const Vec3& slowness, double curvature, const PhonePlaces& at,
                std::span<double> lags) noexcept {
@@ -192,8 +193,8 @@ struct StreamGrid {
   }
 };
 
-/// The pulse as Doppler factors stretch it, each in the bins about its own shifted carrier. Factors
-/// to a 32nd of what a pulse tells apart are shifted alike; shapes whose phases at the band's edges
+/// The pulse as Doppler factors segment it, each in the bins about its own shifted carrier. Factors
+/// to a 32nd of what a pulse resolves are shifted alike; shapes whose phases at the band's edges
 /// are alike to 0.04 rad are one.
 class StretchedPulses {
  public:
@@ -204,7 +205,7 @@ class StretchedPulses {
         highest_(static_cast<std::ptrdiff_t>(std::ceil(grid.own_half_band / spacing)) + 1),
         places_(std::ceil(16.0 * grid.pulse_duration * spacing)),
         // A sweep of the band B has the phase 2πf²T/B·η at f from its centre.
-        stretch_(0.05 / (2.0 * grid.own_half_band * grid.pulse_duration)) {}
+        segment_(0.05 / (2.0 * grid.own_half_band * grid.pulse_duration)) {}
 
   /// Bins of each; its carrier is the middle one.
   [[nodiscard]] std::size_t bins() const noexcept {
@@ -220,13 +221,13 @@ class StretchedPulses {
     const double shift = (grid_.centre * doppler - grid_.carrier) / spacing_;
     const double bin = std::floor(shift);
     const long place = std::min(std::lround((shift - bin) * places_), std::lround(places_));
-    const long stretch = std::lround((doppler - 1.0) / stretch_);
-    auto [known, is_new] = spectra_.try_emplace({stretch, place});
+    const long segment = std::lround((doppler - 1.0) / segment_);
+    auto [known, is_new] = spectra_.try_emplace({segment, place});
     if (is_new) {
       known->second.resize(stride());
       const double lowest =
           -static_cast<double>(highest_) - static_cast<double>(place) / places_;  // [bins]
-      pulse_.fill(lowest * spacing_, spacing_, 1.0 + static_cast<double>(stretch) * stretch_,
+      pulse_.fill(lowest * spacing_, spacing_, 1.0 + static_cast<double>(segment) * segment_,
                   spacing_, known->second);
     }
     return {static_cast<std::ptrdiff_t>(bin) - highest_, known->second.data()};
@@ -237,7 +238,7 @@ class StretchedPulses {
   const StreamGrid& grid_;
   double spacing_;
   std::ptrdiff_t highest_;
-  double places_, stretch_;  // to a bin; of factors
+  double places_, segment_;  // to a bin; of factors
   std::map<std::pair<long, long>, std::vector<std::complex<float>>> spectra_;
 };
 
@@ -302,7 +303,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
                        end = std::min(grid.end, grid.before(block_end) + 1);
   Piece piece;
   const double until = std::min(block_end, grid.delay_of(end));
-  // Blocks that were heard before the record begins have no impulse on its grid.
+  // Blocks that were received before the record begins have no impulse on its grid.
   if (begin >= end || block.first == block.last || !(until > grid.delay_of(begin))) return piece;
   const auto n = static_cast<std::size_t>(end - begin);
   const std::size_t length = grid_length(static_cast<double>(n + 2 * grid.guard));
@@ -319,21 +320,21 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   const ComplexFft<float> own_fft(own_length);
   Scratch noise_of(own_length);
   std::vector<float> power(power_of.steps()), normals(2 * power_of.steps());
-  Rows sound, heard;
+  Rows sound, received;
   sound.reset(1, own);
-  heard.reset(phones.size(), bins + 2 * stride);  // factors beyond the band are cut off
-  struct Turn {
+  received.reset(phones.size(), bins + 2 * stride);  // factors beyond the band are cut off
+  struct Rotation {
     double re = 1.0, im = 0.0;
   };
   const PhonePlaces places(phones);
   std::vector<double> late(phones.size());
-  std::vector<Turn> first(phones.size()), on(phones.size());
+  std::vector<Rotation> first(phones.size()), on(phones.size());
   for (std::size_t s = block.first; s < block.last; ++s) {
     const ReverberationStreams::Stream& stream = sea.streams[s];
     const ReverberationStreams::Part& part = sea.part_of(stream, draw.seed, draw.ping);
     const StretchedPulses::Shifted stretched = pulses.at(part.doppler);
     const std::ptrdiff_t place =
-        static_cast<std::ptrdiff_t>(stride + highest) + stretched.first;  // in the rows heard
+        static_cast<std::ptrdiff_t>(stride + highest) + stretched.first;  // in the rows received
     if (place < 0 || place > static_cast<std::ptrdiff_t>(bins + stride)) continue;
     const double lowest = grid.carrier + spacing * static_cast<double>(stretched.first);
     power_of.find(&sea.intensity[stream.first], power);
@@ -362,13 +363,13 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
           // An impulse stands in the middle of its step.
           const double delay = 0.5 * step + late[p];
           first[p] = on[p] = {};
-          turn_back(delay * lowest, first[p].re, first[p].im);
-          turn_back(delay * spacing, on[p].re, on[p].im);
+          rotate_back(delay * lowest, first[p].re, first[p].im);
+          rotate_back(delay * spacing, on[p].re, on[p].im);
         }
         for (std::size_t p = 0; p < phones.size(); ++p)
-          add_turned(sound.re(0), sound.im(0), stride,
-                     finite_product(part.weight[noise][wave], {first[p].re, first[p].im}),
-                     {on[p].re, on[p].im}, heard.re(p) + place, heard.im(p) + place);
+          add_rotated(sound.re(0), sound.im(0), stride,
+                      finite_product(part.weight[noise][wave], {first[p].re, first[p].im}),
+                      {on[p].re, on[p].im}, received.re(p) + place, received.im(p) + place);
       }
     }
   }
@@ -379,7 +380,7 @@ Piece piece_of(const ReverberationStreams& sea, const StreamBlock& block, const 
   Scratch scratch(length);
   for (std::size_t p = 0; p < phones.size(); ++p) {
     std::fill_n(scratch.data(), length, 0.0F);
-    const float *const re = heard.re(p) + stride, *const im = heard.im(p) + stride;
+    const float *const re = received.re(p) + stride, *const im = received.im(p) + stride;
     for (std::size_t k = 0; k < bins; ++k)
       scratch[k < highest ? length - highest + k : k - highest] = {re[k], im[k]};
     fft.inverse(scratch.data());
@@ -470,4 +471,4 @@ void Synthesizer::add_streams(const ReverberationStreams& sea, std::span<const V
   });
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

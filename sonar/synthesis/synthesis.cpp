@@ -7,11 +7,19 @@
 #include <cmath>
 #include <utility>
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
+#include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis_plan.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 Synthesizer::Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
                          const std::function<double(double)>& filter)
@@ -87,8 +95,8 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
   tbb::enumerable_thread_specific<PassbandScratch> workspaces;
   // e^{i2πf_c t} from the record's start, and the FFT's scale; Re z = (z + z*)/2 gives the half.
   const double cycles = plan.carrier * plan.recording.start;
-  const std::complex<double> turn = std::polar(0.5 * scale / static_cast<double>(plan.length),
-                                               2.0 * pi * (cycles - std::round(cycles)));
+  const std::complex<double> rotation = std::polar(0.5 * scale / static_cast<double>(plan.length),
+                                                   2.0 * pi * (cycles - std::round(cycles)));
   const auto all = static_cast<std::ptrdiff_t>(plan.passband_length);
 
   in_parallel(baseband.channels, [&](std::size_t channel) {
@@ -107,7 +115,7 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
     for (std::ptrdiff_t k = -plan.highest_bin; k <= plan.highest_bin; ++k) {
       const std::size_t from =
           static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(plan.length) : k);
-      const std::complex<float> half = std::complex<float>(turn) * scratch.baseband[from];
+      const std::complex<float> half = std::complex<float>(rotation) * scratch.baseband[from];
       put(plan.carrier_bin + k, half);
       put(-plan.carrier_bin - k, std::conj(half));
     }
@@ -118,4 +126,255 @@ void Synthesizer::add_passband(const Baseband& baseband, double scale,
   });
 }
 
-}  // namespace asdic
+namespace {
+
+/// Samples of the record that are interpolated at one time: their taps stay in the cache.
+constexpr std::size_t block = 128;
+
+/// Where the samples of a block lie between those of the baseband, and what turns them.
+struct Places {
+  std::size_t count = 0;
+  std::ptrdiff_t lowest = 0, highest = 0;   // of the baseband's samples under all taps
+  std::array<std::size_t, block> first;     // of those under a sample's taps, after the lowest
+  std::array<const float*, block> weights;  // [taps] each
+  std::array<std::complex<float>, block> rotation;
+};
+
+/// Complex samples of four phones, and the same moved about whole.
+using Four [[gnu::vector_size(32)]] = float;
+using Whole [[gnu::vector_size(32)]] = double;
+
+template <class SimdFloats>
+void load(const float* from, SimdFloats& lanes) noexcept {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+
+/// Adds four samples of four phones to their rows. \param sums  [samples × stride]
+void add_transposed(const float* sums, std::size_t stride, std::size_t phones, float* out,
+                    std::size_t row) noexcept {
+  std::array<Whole, 4> x;
+  for (std::size_t i = 0; i < 4; ++i) load(sums + i * stride, x[i]);
+  const Whole even = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
+  const Whole odd = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+  const Whole later_even = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
+  const Whole later_odd = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+  x = {__builtin_shufflevector(even, later_even, 0, 1, 4, 5),
+       __builtin_shufflevector(odd, later_odd, 0, 1, 4, 5),
+       __builtin_shufflevector(even, later_even, 2, 3, 6, 7),
+       __builtin_shufflevector(odd, later_odd, 2, 3, 6, 7)};
+  for (std::size_t n = 0; n < phones; ++n) {
+    Four sum, more;
+    load(out + n * row, sum);
+    std::memcpy(&more, &x[n], sizeof more);
+    sum += more;
+    std::memcpy(out + n * row, &sum, sizeof sum);
+  }
+}
+
+/// Adds a block's samples of some phones, side by side in lanes: Σ w_k·x_k, turned.
+/// \param fours  of phones side by side, of which `phones` from `channel` on are there
+/// \param samples  of the record, from the block's first on   \param row  from phone to phone
+template <std::size_t fours, std::size_t taps>
+void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phones,
+                 const Places& at, float* samples, std::size_t row) {
+  constexpr std::size_t stride = 8 * fours;
+  const auto period = static_cast<std::ptrdiff_t>(baseband.samples);
+  // [samples × phones], wrapped around the period; zero where there is no phone
+  const auto places = static_cast<std::size_t>(at.highest - at.lowest + 1);
+  const auto under = std::make_unique_for_overwrite<float[]>(places * stride);
+  if (phones < 4 * fours) std::fill_n(under.get(), places * stride, 0.0F);
+  for (std::size_t n = 0; n < phones; ++n) {
+    const auto x = baseband.channel(channel + n);
+    std::ptrdiff_t k = (at.lowest % period + period) % period;
+    float* to = under.get() + 2 * n;
+    for (std::size_t i = 0; i < places; ++i, to += stride) {
+      to[0] = x[static_cast<std::size_t>(k)].real();
+      to[1] = x[static_cast<std::size_t>(k)].imag();
+      if (++k == period) k = 0;
+    }
+  }
+  std::array<float, block * stride> sums;
+  for (std::size_t i = 0; i < at.count; ++i) {
+    std::array<Four, fours> sum{};
+    const float* from = under.get() + at.first[i] * stride;
+#pragma GCC unroll 24
+    for (std::size_t k = 0; k < taps; ++k)
+      for (std::size_t q = 0; q < fours; ++q) {
+        Four x;
+        load(from + k * stride + 8 * q, x);
+        sum[q] += at.weights[i][k] * x;
+      }
+    const float c = at.rotation[i].real(), s = at.rotation[i].imag();
+    const Four across = {-s, s, -s, s, -s, s, -s, s};
+    for (std::size_t q = 0; q < fours; ++q) {
+      const Four swapped = __builtin_shufflevector(sum[q], sum[q], 1, 0, 3, 2, 5, 4, 7, 6);
+      const Four rotated = sum[q] * c + swapped * across;
+      std::memcpy(&sums[i * stride + 8 * q], &rotated, sizeof rotated);
+    }
+  }
+  for (std::size_t n = 0; n < phones; n += 4) {
+    const std::size_t there = std::min<std::size_t>(4, phones - n);
+    float* const out = samples + n * row;
+    std::size_t i = 0;
+    for (; i + 4 <= at.count; i += 4)
+      add_transposed(&sums[i * stride + 2 * n], stride, there, out + 2 * i, row);
+    for (; i < at.count; ++i)
+      for (std::size_t k = 0; k < 2 * there; ++k)
+        out[k / 2 * row + 2 * i + k % 2] += sums[i * stride + 2 * n + k];
+  }
+}
+
+/// Whether a row has anything in its samples from `first` to `last`, which go on periodically.
+class Silence {
+ public:
+  explicit Silence(const Baseband& baseband)
+      : blocks_((baseband.samples + length - 1) / length), received_(blocks_, false) {
+    for (std::size_t n = 0; n < baseband.channels; ++n) {
+      const auto row = baseband.channel(n);
+      for (std::size_t b = 0; b < blocks_; ++b) {
+        const auto part = row.subspan(b * length, std::min(length, row.size() - b * length));
+        received_[b] = received_[b] || !all_zero(part);
+      }
+    }
+  }
+  [[nodiscard]] bool between(std::ptrdiff_t first, std::ptrdiff_t last, std::size_t period) const {
+    const auto n = static_cast<std::ptrdiff_t>(period);
+    for (std::ptrdiff_t i = first; i <= last; ++i)
+      if (received_[static_cast<std::size_t>((i % n + n) % n) / length]) return false;
+    return true;
+  }
+
+ private:
+  /// All bits but the signs, in lanes.
+  [[nodiscard]] static bool all_zero(std::span<const std::complex<float>> part) {
+    const float* x = reinterpret_cast<const float*>(part.data());
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < 2 * part.size(); ++i) bits |= std::bit_cast<std::uint32_t>(x[i]);
+    return (bits & 0x7FFFFFFFU) == 0;
+  }
+
+  static constexpr std::size_t length = 64;
+  std::size_t blocks_;
+  std::vector<bool> received_;
+};
+
+}  // namespace
+
+/// b(t) = (1/L) Σ_k X_k e^{i2πk(t − t₀)/P} about the synthesis' carrier; what leaves the new band
+/// is left out, as an anti-alias filter would.
+void Synthesizer::add_by_fft(const Baseband& baseband, double scale,
+                             std::span<float> samples) const {
+  const Plan& plan = *plan_;
+  const Recording& recording = plan.recording;
+  const double period = static_cast<double>(plan.passband_length) / recording.sample_rate;
+  const auto new_carrier_bin = static_cast<std::ptrdiff_t>(std::round(recording.carrier * period));
+  const double beside = recording.carrier - static_cast<double>(new_carrier_bin) / period;
+  const double cycles =
+      (plan.carrier - recording.carrier) * recording.start - recording.carrier * epoch_;
+  const std::complex<double> rotation = std::polar(scale / static_cast<double>(plan.length),
+                                                   2.0 * pi * (cycles - std::round(cycles)));
+  const ComplexFft<float> fft(plan.length), fine(plan.passband_length);
+  const auto all = static_cast<std::ptrdiff_t>(plan.passband_length);
+  struct Workspace {
+    FftBuffer<std::complex<float>> baseband, samples;
+  };
+  tbb::enumerable_thread_specific<Workspace> workspaces;
+  in_parallel(baseband.channels, [&](std::size_t channel) {
+    Workspace& scratch = workspaces.local();
+    scratch.baseband.reserve(plan.length);
+    scratch.samples.reserve(plan.passband_length);
+    std::copy_n(baseband.channel(channel).data(), plan.length, scratch.baseband.data());
+    fft.forward(scratch.baseband.data());
+    std::fill_n(scratch.samples.data(), plan.passband_length, 0.0F);
+    for (std::ptrdiff_t k = -plan.highest_bin; k <= plan.highest_bin; ++k) {
+      const std::ptrdiff_t place = plan.carrier_bin + k - new_carrier_bin;
+      if (2 * std::abs(place) >= all) continue;
+      const auto from =
+          static_cast<std::size_t>(k < 0 ? k + static_cast<std::ptrdiff_t>(plan.length) : k);
+      scratch.samples[static_cast<std::size_t>(place < 0 ? place + all : place)] =
+          std::complex<float>(rotation) * scratch.baseband[from];
+    }
+    fine.inverse(scratch.samples.data());
+    float* out = samples.data() + channel * recording.samples * 2;
+    for (std::size_t i = 0; i < recording.samples; ++i) {
+      const double t = static_cast<double>(i) / recording.sample_rate;
+      const std::complex<float> value =
+          scratch.samples[i] * std::complex<float>(std::polar(1.0, -2.0 * pi * beside * t));
+      out[2 * i] += value.real();
+      out[2 * i + 1] += value.imag();
+    }
+  });
+}
+
+namespace {
+
+/// Adds what is between a baseband's samples to the record's. \param to  samples of its period
+template <int n_taps>
+void interpolate_all(const Baseband& baseband, const Recording& recording, double epoch,
+                     std::size_t to, double scale, std::span<float> samples) {
+  const PlaceWeights<n_taps> weights(baseband.samples, to);
+  const double beside = baseband.carrier - recording.carrier;
+  const double from_start = beside * recording.start - recording.carrier * epoch;
+  const std::complex<double> rotation_step =
+      std::polar(1.0, 2.0 * pi * beside / recording.sample_rate);
+  const Silence silence(baseband);
+  const auto add = [&](std::size_t begin) {
+    Places at;
+    std::array<typename PlaceWeights<n_taps>::Weights, block> own;
+    at.count = std::min(block, recording.samples - begin);
+    const auto first = weights.place(begin), last = weights.place(begin + at.count - 1);
+    at.lowest = static_cast<std::ptrdiff_t>(first.below) - weights.before;
+    at.highest = static_cast<std::ptrdiff_t>(last.below) - weights.before + n_taps - 1;
+    if (silence.between(at.lowest, at.highest, baseband.samples)) return;
+    const double cycles = from_start + beside * static_cast<double>(begin) / recording.sample_rate;
+    std::complex<double> rotation = std::polar(scale, 2.0 * pi * (cycles - std::round(cycles)));
+    auto place = first;
+    for (std::size_t i = 0; i < at.count; ++i) {
+      at.first[i] = place.below - first.below;
+      at.weights[i] = weights.at(place, own[i]);
+      at.rotation[i] = std::complex<float>(rotation);
+      rotation *= rotation_step;
+      weights.next(place);
+    }
+    const std::size_t row = 2 * recording.samples;
+    for (std::size_t n = 0; n < baseband.channels;) {
+      const std::size_t left = baseband.channels - n, phones = std::min<std::size_t>(left, 16);
+      const auto part = phones > 8   ? interpolate<4, n_taps>
+                        : phones > 4 ? interpolate<2, n_taps>
+                                     : interpolate<1, n_taps>;
+      part(baseband, n, phones, at, samples.data() + n * row + 2 * begin, row);
+      n += phones;
+    }
+  };
+  in_parallel((recording.samples + block - 1) / block, [&](std::size_t b) { add(b * block); });
+}
+
+}  // namespace
+
+/// The same out of the baseband's samples, where its whole band lies within the recorded one.
+void Synthesizer::add_by_interpolation(const Baseband& baseband, double scale,
+                                       std::span<float> samples) const {
+  const auto add =
+      baseband.oversampling < oversampling_for_12_taps ? interpolate_all<24> : interpolate_all<12>;
+  add(baseband, plan_->recording, epoch_, plan_->passband_length, scale, samples);
+}
+
+/// Whether the whole band of the synthesis lies within the recorded one.
+bool Synthesizer::interpolates() const noexcept {
+  const Plan& plan = *plan_;
+  if (!plan.recording.is_complex()) return false;
+  const double period = static_cast<double>(plan.passband_length) / plan.recording.sample_rate;
+  const double furthest = std::abs(plan.carrier - plan.recording.carrier) +
+                          static_cast<double>(plan.highest_bin) / period;
+  return furthest <= 0.5 * plan.recording.sample_rate;
+}
+
+void Synthesizer::add_complex(const Baseband& baseband, double scale,
+                              std::span<float> samples) const {
+  if (interpolates())
+    add_by_interpolation(baseband, scale, samples);
+  else
+    add_by_fft(baseband, scale, samples);
+}
+
+}  // namespace asdic::detail

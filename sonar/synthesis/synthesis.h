@@ -12,7 +12,7 @@
 #include "sonar/signal/pulse.h"
 #include "sonar/signal/recording.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 struct BandNodes;
 struct CovarianceDraw;
@@ -55,8 +55,8 @@ class Synthesizer {
   /// centre [Hz]; none: 1. What is added up of several is of the same shape whatever the filter.
   Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
               const std::function<double(double)>& filter = {});
-  /// The same of several colours: what a source's returns are across the band is Σ_k a_k·(the pulse
-  /// through filter k).
+  /// The same of several frequency responses: what a source's returns are across the band is Σ_k
+  /// a_k·(the pulse through filter k).
   Synthesizer(const Pulse& pulse, const Recording& recording, double max_doppler,
               const std::vector<std::function<double(double)>>& filters);
   /// The first, unfiltered, out of what is kept for an equal pulse, recording and Doppler bound:
@@ -81,12 +81,13 @@ class Synthesizer {
   void add_curved(std::span<const CurvedReturn> returns, std::span<const Vec3> phones,
                   Baseband& baseband) const;
 
-  /// Nothing heard at some phones. \param memory  used for the samples, if it is large enough
+  /// Nothing received at some phones. \param memory  used for the samples, if it is large enough
   [[nodiscard]] Baseband silence(std::size_t phones,
                                  std::vector<std::complex<float>> memory = {}) const;
 
-  /// Nothing heard yet at a covariance's phones, on a grid for its sound alone: where samples are
-  /// interpolated from it, as coarse as its band and levels every 50 ms allow. Else as the other.
+  /// Nothing received yet at a covariance's phones, on a grid for its sound alone: where samples
+  /// are interpolated from it, as coarse as its band and levels every 50 ms allow. Else as the
+  /// other.
   [[nodiscard]] Baseband silence(const ReverberationCovariance& covariance,
                                  std::vector<std::complex<float>> memory = {}) const;
 
@@ -101,7 +102,7 @@ class Synthesizer {
                                  std::vector<std::complex<float>> memory = {}) const;
 
   /// Adds reverberation that is known as streams of noise, through the pulse. \param phones  [n]
-  /// relative to where the streams are heard, no further apart than they were made for [m]
+  /// relative to where the streams are received, no further apart than they were made for [m]
   /// \param baseband  of as many phones, one of this synthesizer's silences, at least
   void add_streams(const ReverberationStreams& sea, std::span<const Vec3> phones,
                    const CovarianceDraw& draw, Baseband& baseband) const;
@@ -125,7 +126,7 @@ class Synthesizer {
   [[nodiscard]] Baseband silence_of_band(std::size_t phones, double bins,
                                          std::vector<std::complex<float>> memory) const;
   /// Half the band of streams [bins of the period]: of any one about the pulse's frequency as it
-  /// hears it, of all about the carrier.
+  /// receives it, of all about the carrier.
   struct StreamBand {
     double one = 0.0, all = 0.0;
   };
@@ -147,4 +148,4 @@ class Synthesizer {
                                                    std::span<const Return> returns,
                                                    std::span<const Vec3> phones);
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-namespace asdic {
+namespace asdic::detail {
 
 class Synthesizer;
 
@@ -12,4 +12,4 @@ struct SynthesisBytes {
 };
 [[nodiscard]] SynthesisBytes synthesis_bytes(const Synthesizer& synthesizer, std::size_t phones);
 
-}  // namespace asdic
+}  // namespace asdic::detail

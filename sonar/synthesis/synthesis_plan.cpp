@@ -6,9 +6,10 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/settings_key.h"
 #include "core/units.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 std::string hertz(double value) {
@@ -69,9 +70,9 @@ std::vector<BandLimitedPulse> filtered(const Pulse& sent, const Recording& recor
 }
 
 /// The same, and after several the pulse itself: what all of them share is worked out for it.
-std::vector<BandLimitedPulse> colours(const Pulse& sent, const Recording& record,
-                                      double max_doppler,
-                                      std::vector<std::function<double(double)>> filters) {
+std::vector<BandLimitedPulse> responses(const Pulse& sent, const Recording& record,
+                                        double max_doppler,
+                                        std::vector<std::function<double(double)>> filters) {
   check(sent, record, max_doppler);
   if (filters.size() > 1) filters.emplace_back();
   return filtered(sent, record, max_doppler, filters);
@@ -90,10 +91,7 @@ Recording without_epoch(Recording recording) {
 /// All that a plan depends on; a file's name and the epoch change nothing.
 ExactKey key_of(const PulseSettings& pulse, const Recording& record, double max_doppler) {
   ExactKey key(Kept::synthesis, 0);
-  key.add(static_cast<int>(pulse.kind)).add(static_cast<int>(pulse.window));
-  key.add(pulse.frequency).add(pulse.start_frequency).add(pulse.end_frequency);
-  key.add(pulse.duration).add(pulse.tukey_fraction).add(pulse.sample_rate);
-  for (const double sample : pulse.samples) key.add(sample);
+  add_settings(key, pulse);
   key.add(record.sample_rate).add(record.start).add(record.samples).add(record.carrier);
   return key.add(max_doppler);
 }
@@ -104,21 +102,25 @@ std::shared_ptr<const Synthesizer::Plan> Synthesizer::Plan::recalled(const Pulse
                                                                      const Recording& record,
                                                                      double doppler,
                                                                      PropagationMemory& memory) {
-  const ExactKey key = key_of(sent.settings(), record, doppler);
-  if (auto kept = memory.find<Plan>(key)) return kept;
-  auto made =
-      std::make_shared<Plan>(sent, record, doppler, std::vector{std::function<double(double)>()});
-  // The pulse: two doubles for each of some 4·half_band samples a second; the expansion no more.
-  const BandLimitedPulse& pulse = made->pulses.front();
-  const double samples = 8.0 * pulse.half_band() * pulse.half_duration();
-  const std::size_t bytes = sizeof(Plan) + made->deconvolution.capacity() * sizeof(float) +
-                            static_cast<std::size_t>(4.0 * samples) * sizeof(double);
-  return memory.keep(key, std::move(made), bytes);
+  return memory.remember(
+      key_of(sent.settings(), record, doppler),
+      [&] {
+        return std::make_shared<Plan>(sent, record, doppler,
+                                      std::vector{std::function<double(double)>()});
+      },
+      [](const Plan& plan) {
+        // The pulse: two doubles for each of some 4·half_band samples a second; the expansion no
+        // more.
+        const BandLimitedPulse& pulse = plan.pulses.front();
+        const double samples = 8.0 * pulse.half_band() * pulse.half_duration();
+        return sizeof(Plan) + plan.deconvolution.capacity() * sizeof(float) +
+               static_cast<std::size_t>(4.0 * samples) * sizeof(double);
+      });
 }
 
 Synthesizer::Plan::Plan(const Pulse& sent, const Recording& record, double doppler,
                         const std::vector<std::function<double(double)>>& filters)
-    : Plan(colours(sent, record, doppler, filters), sent.duration(), record, doppler) {}
+    : Plan(responses(sent, record, doppler, filters), sent.duration(), record, doppler) {}
 
 Synthesizer::Plan::Plan(const BandLimitedPulse& sound, const Recording& record, double doppler)
     : Plan(std::vector{sound}, 0.0, record, doppler) {}
@@ -181,7 +183,7 @@ void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, const 
   for (std::ptrdiff_t j = first; j <= last; ++j) {
     const double t = static_cast<double>(j) / rate + node.late;
     // g(t) = s₊(ηt + T/2)·e^{−i2π f_c t}
-    const double cycles = (pulse.centre_frequency() * node.doppler - carrier) * t - node.turn;
+    const double cycles = (pulse.centre_frequency() * node.doppler - carrier) * t - node.rotation;
     const std::complex<double> g = pulse.at(node.doppler * t) * std::polar(1.0, 2.0 * pi * cycles);
     const std::ptrdiff_t place = (j - static_cast<std::ptrdiff_t>(on.lead)) % n;
     scratch[place < 0 ? place + n : place] = std::complex<float>(g);
@@ -193,4 +195,4 @@ void Synthesizer::Plan::stretched_spectrum(const BandLimitedPulse& pulse, const 
   }
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

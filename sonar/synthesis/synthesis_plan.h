@@ -12,7 +12,7 @@
 #include "sonar/synthesis/doppler_expansion.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// What a Synthesizer works out once: lengths, rates, the filtered pulse. Private to synthesis.
 ///
@@ -35,7 +35,7 @@ struct Synthesizer::Plan {
   Recording recording;     ///< but for the epoch, which changes nothing here: 0
   double max_doppler;
   double pulse_duration;                 ///< T, unstretched [s]
-  std::vector<BandLimitedPulse> pulses;  ///< [colours] through a filter each; alike but for that
+  std::vector<BandLimitedPulse> pulses;  ///< [responses] through a filter each; alike but for that
   DopplerExpansion expansion;
   const DelayKernel& kernel = DelayKernel::shared();
 
@@ -49,7 +49,7 @@ struct Synthesizer::Plan {
   double last_position = 0.0;        ///< of an impulse in the grid, in samples
   std::vector<float> deconvolution;  ///< [2·highest_bin + 1] 1/(kernel's spectrum · length)
 
-  /// A stretch of the grid, or all of it, with an FFT of its own.
+  /// A segment of the grid, or all of it, with an FFT of its own.
   struct Period {
     std::size_t length = 0;                ///< [samples]
     std::size_t lead = 0;                  ///< how much earlier than the impulse a pulse stands
@@ -68,9 +68,9 @@ struct Synthesizer::Plan {
                           std::span<std::complex<float>> spectrum) const;
 
  private:
-  /// \param sounds  [colours], and after several the one that none of them has filtered
+  /// \param sounds  [responses], and after several the one that none of them has filtered
   Plan(std::vector<BandLimitedPulse> sounds, double duration, const Recording& recording,
        double max_doppler);
 };
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -8,7 +8,7 @@
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 /// Where a surface duct ends, and from which frequency on rays in it are right.
@@ -81,4 +81,4 @@ std::string left_out_diffraction(const Scenario& scenario) {
   return "";
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -3,15 +3,15 @@
 #include "sonar/noise/noise_in_guide.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 
 std::string noise_from_below(const Scenario& scenario) {
-  constexpr double heard = 0.1;  // of what comes down
+  constexpr double received = 0.1;  // of what comes down
   if (!scenario.noise.any() || scenario.noise.coherence != NoiseCoherence::surface ||
       !varies_with_range(scenario.environment))
     return "";
   const SentUp most = sent_up(scenario.environment, pulse_frequencies(scenario).lowest);
-  if (most.share < heard) return "";
+  if (most.share < received) return "";
   char text[280];
   std::snprintf(
       text, sizeof text,
@@ -22,4 +22,4 @@ std::string noise_from_below(const Scenario& scenario) {
   return text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -4,7 +4,7 @@
 #include "sonar/scenario/sampling.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 /// What is recorded [Hz].
@@ -26,15 +26,16 @@ std::string noise_table_band(const Scenario& scenario) {
   const Band recorded = recorded_band(scenario);
   const double inside = std::min(last, recorded.highest) - std::max(first, recorded.lowest);
   constexpr double most_outside = 0.05;  // of the recorded band: its first Hz are in no table
-  const bool heard = pulse.lowest >= first && pulse.highest <= last;
-  if (heard && inside >= (1.0 - most_outside) * (recorded.highest - recorded.lowest)) return "";
+  const bool received = pulse.lowest >= first && pulse.highest <= last;
+  if (received && inside >= (1.0 - most_outside) * (recorded.highest - recorded.lowest)) return "";
   char text[256];
   std::snprintf(text, sizeof text,
                 "noise: levels from %g to %g Hz stand for %s from %g to %g Hz; beyond their ends "
                 "the first and last level are held",
-                first, last, heard ? "a recorded band" : "a pulse",
-                heard ? recorded.lowest : pulse.lowest, heard ? recorded.highest : pulse.highest);
+                first, last, received ? "a recorded band" : "a pulse",
+                received ? recorded.lowest : pulse.lowest,
+                received ? recorded.highest : pulse.highest);
   return text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -1,4 +1,4 @@
-// Sound that is heard as plane waves by an array that is too long or too bent for them.
+// Sound that is received as plane waves by an array that is too long or too bent for them.
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -12,7 +12,7 @@
 #include "sonar/scenario/transmission.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 const ReceiverArray& array_of(const Scenario& scenario, int array) {
@@ -66,22 +66,20 @@ bool has_still_sea(const ReverberationSettings& sea) {
 
 std::string reverberation_plane_waves(const Scenario& scenario) {
   const ReverberationSettings& sea = scenario.reverberation;
-  // Elsewhere streams have round fronts, and groups of phones hear scatterers by themselves.
+  // Elsewhere streams have round fronts, and groups of phones receive scatterers by themselves.
   if (!sea.enabled || sea.synthesis != ScattererSynthesis::covariance ||
       scenario.arrays.size() != 1 || scenario.propagation.exact_per_phone || !has_still_sea(sea))
     return "";
-  const Listening here{.scenario = scenario};
-  const Kinematics hears = array_at(scenario, 0, 0.0);
-  if (array_of(scenario, 0).phones.size() < 2 || !hears.velocity.isZero()) return "";
+  const Kinematics receives = array_at(scenario, 0, 0.0);
+  if (array_of(scenario, 0).phones.size() < 2 || !receives.velocity.isZero()) return "";
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
-    const int sender = static_cast<int>(t);
+    const PingGeometry geometry(scenario, {.transmitter = static_cast<int>(t)}, 1);
     const PulseFrequencies band = pulse_frequencies(scenario);
-    const Carried point =
-        reverberation_point(scenario, sender, 0, 0.0, 0.5 * (band.lowest + band.highest));
-    if (point.at(0.0).position != transmitter_at(scenario, sender, 0.0).position) continue;
-    const Front front =
-        nearest_reverberation(here, sender, pulse_of(scenario, sender).duration, band.highest);
-    const double error = one_group(here, front, point).error;
+    const Carried point = geometry.reverberation_point(0, 0.5 * (band.lowest + band.highest));
+    if (point.at(0.0).position != geometry.source().position) continue;
+    const double duration = pulse_of(scenario, static_cast<int>(t)).duration;
+    const Front front = nearest_reverberation(geometry, 0, duration, band.highest);
+    const double error = one_group(listening(geometry, 0), front, point).error;
     if (error <= reverberation_periods) continue;
     const double far = front.length * error / reverberation_periods;
     char text[320];
@@ -90,7 +88,7 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
                   "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
                   "\"automatic\" they are not",
                   array_of(scenario, 0).name.c_str(), error,
-                  2.0 * far / speed_at(scenario, hears.position));
+                  2.0 * far / speed_at(scenario, receives.position));
     return text;
   }
   return "";
@@ -125,8 +123,8 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
     for (std::size_t i = 0; i < std::min(closely, bent.size()) && bent[i].first > 0.0; ++i)
       change = std::max(change, coherence_change(scenario, array, bent[i].second, quarter,
                                                  2.0 * pi * highest / c, field));
-    constexpr double heard = 0.1;
-    if (change <= heard) continue;
+    constexpr double received = 0.1;
+    if (change <= received) continue;
     char text[256];
     std::snprintf(text, sizeof text,
                   "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
@@ -138,4 +136,4 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
   return "";
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -2,12 +2,12 @@
 
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 
 std::string pulse_band(const Scenario& scenario) {
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const PulseSettings& settings = pulse_of(scenario, static_cast<int>(t));
-    if (settings.kind == PulseKind::file) continue;
+    if (samples_of(settings.waveform)) continue;
     const Pulse pulse(settings);
     if (0.5 * pulse.bandwidth_40db() < pulse.centre_frequency()) continue;
     char text[160];
@@ -20,4 +20,4 @@ std::string pulse_band(const Scenario& scenario) {
   return "";
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

@@ -3,7 +3,7 @@
 #include "reverb/scattering/energy.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 namespace {
 
 /// The greatest share of a law, in all directions, at some grazing angles and where.
@@ -42,4 +42,4 @@ std::string scattering_energy(const Scenario& scenario) {
   return text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

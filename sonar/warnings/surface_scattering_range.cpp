@@ -3,7 +3,7 @@
 #include "reverb/scattering/validity.h"
 #include "sonar/warnings/warnings.h"
 
-namespace asdic::checks {
+namespace asdic::detail::checks {
 
 std::string surface_scattering_range(const Scenario& scenario) {
   const ReverberationSettings& sea = scenario.reverberation;
@@ -17,4 +17,4 @@ std::string surface_scattering_range(const Scenario& scenario) {
   return text.empty() ? "" : "reverberation.surface.kind: " + text;
 }
 
-}  // namespace asdic::checks
+}  // namespace asdic::detail::checks

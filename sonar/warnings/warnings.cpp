@@ -1,6 +1,6 @@
 #include "sonar/warnings/warnings.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 std::vector<std::string> warnings(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
@@ -14,4 +14,4 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   return all;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,7 +6,7 @@
 #include "sonar/scenario/pulse_frequencies.h"
 #include "sonar/scenario/scenario.h"
 
-namespace asdic {
+namespace asdic::detail {
 
 /// Of a sonar's scenario, its ocean included: what a user should know before he trusts a number, in
 /// one line each, "KEY: what is the matter". Every check is a file of this folder.
@@ -36,4 +36,4 @@ namespace checks {
 [[nodiscard]] std::string scattering_energy(const Scenario& scenario);
 
 }  // namespace checks
-}  // namespace asdic
+}  // namespace asdic::detail

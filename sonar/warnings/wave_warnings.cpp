@@ -13,7 +13,7 @@
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/scenario/sampling.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// What is told of legs that are no rays: how far their level changes across the pulse.
@@ -192,12 +192,13 @@ std::string dark_ground(const Scenario& scenario, const PropagationPaths& paths,
 
 }  // namespace
 
-std::vector<std::string> wave_warnings(const Scenario& scenario, const PropagationPaths& paths,
-                                       const Transmission& sent, const Pulse& heard, int array) {
-  const Vec3 source = transmitter_at(scenario, sent.transmitter, sent.time).position,
-             receiver = array_at(scenario, array, sent.time).position;
+std::vector<std::string> wave_warnings(const PingGeometry& geometry, const PropagationPaths& paths,
+                                       const Pulse& received, int array) {
+  const Scenario& scenario = geometry.scenario();
+  const Vec3 &source = geometry.source().position,
+             &receiver = geometry.reference_place(array).position;
   const auto judged = [&](const Vec3& from, const Vec3& to) {
-    const double centre = heard.centre_frequency();
+    const double centre = received.centre_frequency();
     const PathLimits limits = limits_of(
         scenario.propagation,
         enough_bounces(paths, scenario.propagation, from, to, centre, end_of_record(scenario)));
@@ -212,8 +213,8 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
     for (const Arrival& path : arrivals) {
       if (path.kind == ArrivalKind::ray || std::norm(path.amplitude) < matters * energy) continue;
       const AcrossThePulse one =
-          across_the_pulse(paths, {.from = from, .to = to, .path = path, .limits = limits}, heard,
-                           scenario.propagation.wide_band);
+          across_the_pulse(paths, {.from = from, .to = to, .path = path, .limits = limits},
+                           received, scenario.propagation.wide_band);
       worst.change_db = std::max(worst.change_db, one.change_db);
       worst.error = std::max(worst.error, one.error);
     }
@@ -221,22 +222,21 @@ std::vector<std::string> wave_warnings(const Scenario& scenario, const Propagati
   };
   std::vector<std::string> found;
   if (!paths.layered() || !scenario.propagation.diffraction) return found;
-  for (const Target& target : scenario.targets) {
-    const Vec3 place = target.track.at(sent.time).position;
-    const std::string name = "target \"" + target.name + "\"";
+  for (int t = 0; t < static_cast<int>(scenario.targets.size()); ++t) {
+    const Vec3 place = geometry.target_at(t, 0.0).position;
+    const std::string name =
+        "target \"" + scenario.targets[static_cast<std::size_t>(t)].name + "\"";
     const AcrossThePulse there = judged(source, place), home = judged(place, receiver);
     add_warnings({line_of(there, name), line_of(home, name),
                   line_of_share(std::max(there.corners, home.corners), name, beside_corners),
                   line_of_share(std::max(there.caustics, home.caustics), name, at_caustics)},
                  found);
   }
-  const bool apart = scenario.transmitters[static_cast<std::size_t>(sent.transmitter)].platform !=
-                     scenario.arrays[static_cast<std::size_t>(array)].platform;
-  if (scenario.propagation.direct_blast && apart)
+  if (scenario.propagation.direct_blast && !geometry.is_own(array))
     add_warnings({line_of(judged(source, receiver), "an array")}, found);
   if (scenario.reverberation.enabled)
-    add_warnings({dark_ground(scenario, paths, source, heard.centre_frequency())}, found);
+    add_warnings({dark_ground(scenario, paths, source, received.centre_frequency())}, found);
   return found;
 }
 
-}  // namespace asdic
+}  // namespace asdic::detail

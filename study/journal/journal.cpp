@@ -1,10 +1,13 @@
 #include "study/journal/journal.h"
 
+#include <algorithm>
 #include "core/error.h"
 #include "study/journal/journal_database.h"
 #include "study/measures/row_bytes.h"
 
-namespace asdic::study {
+#include "study/journal/journal.h"
+
+namespace asdic::detail::study {
 
 Journal::Journal(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {
   impl_->check_format();
@@ -12,23 +15,23 @@ Journal::Journal(const std::filesystem::path& path) : impl_(std::make_unique<Imp
   impl_->start();
 }
 
-Journal::Journal(const std::filesystem::path& path, const Imprint& imprint)
+Journal::Journal(const std::filesystem::path& path, const Fingerprint& fingerprint)
     : impl_(std::make_unique<Impl>(path)) {
-  if (impl_->meta("format").empty()) impl_->take_over(imprint);
+  if (impl_->meta("format").empty()) impl_->take_over(fingerprint);
   impl_->check_format();
   impl_->identity = impl_->meta("identity");
   if (const std::int64_t rows = impl_->count_rows();
-      impl_->identity != imprint.identity && rows > 0)
+      impl_->identity != fingerprint.identity && rows > 0)
     throw InputError(
         {.where = path.string(),
          .got = (rows == 1 ? "a realisation" : std::to_string(rows) + " realisations") +
-                " of another study" + how_changed(impl_->meta("study"), imprint.text) +
+                " of another study" + how_changed(impl_->meta("study"), fingerprint.text) +
                 " (identity " + impl_->identity + ")",
-         .expected = "those of this one (identity " + imprint.identity +
+         .expected = "those of this one (identity " + fingerprint.identity +
                      "): --fresh throws them away and begins anew, another -o keeps "
                      "them"});
-  if (impl_->identity != imprint.identity) impl_->take_over(imprint);
-  if (impl_->meta("columns") != to_json(imprint.columns))
+  if (impl_->identity != fingerprint.identity) impl_->take_over(fingerprint);
+  if (impl_->meta("columns") != to_json(fingerprint.columns))
     throw InputError({.where = path.string(),
                       .got = "rows with other columns, of another version of asdic",
                       .expected = "those of this one; --fresh begins anew"});
@@ -40,7 +43,7 @@ Journal::~Journal() {
   try {
     if (impl_->database.get() != nullptr) impl_->close();
   } catch (const std::exception&) {
-    // whoever wants to hear of it calls close()
+    // whoever wants to receive of it calls close()
   }
 }
 
@@ -145,4 +148,35 @@ void Journal::series(IndexRange range, const std::function<void(Row&&)>& take) c
   }
 }
 
-}  // namespace asdic::study
+// Where journals lie beside a study's file.
+
+std::filesystem::path journal_of(const std::filesystem::path& output) {
+  return output.string() + ".journal";
+}
+
+std::filesystem::path journal_of(const std::filesystem::path& output, int rank) {
+  return output.string() + ".rank" + std::to_string(rank) + ".journal";
+}
+
+std::vector<std::filesystem::path> journals_of(const std::filesystem::path& output) {
+  std::vector<std::filesystem::path> found;
+  const std::string stem = output.filename().string() + ".";
+  const auto folder = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(stem) || !name.ends_with(".journal")) continue;
+    const std::string middle = name.substr(stem.size() - 1, name.size() - stem.size() - 7);
+    if (middle.empty() || middle.starts_with(".rank")) found.push_back(output.parent_path() / name);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void remove_journal(const std::filesystem::path& path) {
+  std::error_code ignored;
+  for (const char* suffix : {"-wal", "-shm", "-hand", ""})
+    std::filesystem::remove(path.string() + suffix, ignored);
+}
+
+}  // namespace asdic::detail::study

@@ -3,10 +3,10 @@
 #include <functional>
 #include <memory>
 
-#include "study/journal/imprint.h"
+#include "study/journal/fingerprint.h"
 #include "study/sampling/index_set.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Rows on their way into a file, safe against a crash: an SQLite database in WAL mode
 /// (docs/formats/study-results.md, "the journal").
@@ -21,10 +21,10 @@ class Journal {
   /// One without rows is anybody's: it becomes this study's.
   /// \throws InputError if it holds rows of another study (both identities are told), or is
   /// damaged; RunError if another process has it, or the disk says no
-  Journal(const std::filesystem::path& path, const Imprint& imprint);
+  Journal(const std::filesystem::path& path, const Fingerprint& fingerprint);
   /// Opens one that exists, whatever its study.
   explicit Journal(const std::filesystem::path& path);
-  ~Journal();  ///< commits; faults are lost (call close() to hear of them)
+  ~Journal();  ///< commits; faults are lost (call close() to receive of them)
   Journal(Journal&&) noexcept;
   Journal& operator=(Journal&&) noexcept;
 
@@ -67,4 +67,4 @@ class Journal {
 /// Takes a journal and what SQLite keeps beside it away.
 void remove_journal(const std::filesystem::path& path);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "study/measures/row_bytes.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 constexpr std::string_view format = "asdic journal 2";
@@ -33,14 +33,14 @@ Journal::Impl::Impl(const std::filesystem::path& path) : database(path) {
   database.execute("COMMIT");
 }
 
-void Journal::Impl::take_over(const Imprint& imprint) {
+void Journal::Impl::take_over(const Fingerprint& fingerprint) {
   database.execute("BEGIN");
-  set_meta("identity", imprint.identity);
-  set_meta("columns", to_json(imprint.columns));
-  set_meta("study", imprint.text);
+  set_meta("identity", fingerprint.identity);
+  set_meta("columns", to_json(fingerprint.columns));
+  set_meta("study", fingerprint.text);
   set_meta("format", std::string(format));
   database.execute("COMMIT");
-  identity = imprint.identity;
+  identity = fingerprint.identity;
 }
 
 void Journal::Impl::check_format() {
@@ -197,4 +197,4 @@ void Journal::Impl::close() {
   database.close();
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -9,7 +9,7 @@
 #include "study/journal/sqlite.h"
 
 // Inside of Journal, for its own .cpp files.
-namespace asdic::study {
+namespace asdic::detail::study {
 
 struct Journal::Impl {
   explicit Impl(const std::filesystem::path& path);
@@ -25,7 +25,7 @@ struct Journal::Impl {
   }
 
   /// From now on it is this study's.
-  void take_over(const Imprint& imprint);
+  void take_over(const Fingerprint& fingerprint);
 
   [[nodiscard]] std::int64_t count_rows() const {
     sqlite::Statement count(database, "SELECT COUNT(*) FROM row");
@@ -69,4 +69,4 @@ struct Journal::Impl {
   std::jthread committer;  // the last: it is joined before the rest goes
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 #include "study/journal/journal.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 // Lines of one length, each written by one call.
@@ -169,4 +169,4 @@ void forget_deaths(const std::filesystem::path& output, const std::filesystem::p
     if (journal != but) std::filesystem::remove(hand_of(journal), ignored);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// How many processes died while they made a row, by its index.
 using Deaths = std::map<std::uint64_t, int>;
@@ -74,4 +74,4 @@ void forget_deaths(const std::filesystem::path& output, const std::filesystem::p
 /// The file beside a journal.
 [[nodiscard]] std::filesystem::path hand_of(const std::filesystem::path& journal);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

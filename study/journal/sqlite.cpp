@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/input_file.h"
+#include "io/files/input_file.h"
 
-namespace asdic::study::sqlite {
+namespace asdic::detail::study::sqlite {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::span<const std::byte> Statement::blob(int column) const {
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
 }
 
-}  // namespace asdic::study::sqlite
+}  // namespace asdic::detail::study::sqlite

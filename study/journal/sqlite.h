@@ -9,7 +9,7 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 // As much of SQLite as the journal needs. For its own .cpp files.
-namespace asdic::study::sqlite {
+namespace asdic::detail::study::sqlite {
 
 /// A connection; faults of SQLite's become RunError, or InputError where the file is damaged.
 class Database {
@@ -57,4 +57,4 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-}  // namespace asdic::study::sqlite
+}  // namespace asdic::detail::study::sqlite

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geometry.h"
+#include "processing/matched_filter.h"
 #include "processing/normaliser.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/scenario/sampling.h"
@@ -14,27 +15,21 @@
 #include "sonar/signal/fft.h"
 #include "study/plan/no_value.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
-
-/// When, how fast and from where one phone hears the echo.
-struct Heard {
-  std::size_t channel = 0;  // of the record
-  double delay = 0.0;       // [s]
-};
 
 /// What is listened for: the strongest path of a target.
 struct Listened {
   double delay = 0.0, doppler = 1.0;
   Vec3 slowness = Vec3::Zero();  // [s/m]
-  std::vector<Heard> phones;
+  std::vector<MatchedFilterAt::Phone> phones;
 };
 
 const EchoPath* strongest(const PingRecord& record, int array, int target, int channel) {
   const EchoPath* best = nullptr;
   for (const EchoPath& echo : record.echoes)
     if (echo.array == array && echo.target == target &&
-        (channel == Return::all_channels || echo.heard.channel == channel) &&
+        (channel == Return::all_channels || echo.received.channel == channel) &&
         (best == nullptr || echo.level_db > best->level_db))
       best = &echo;
   return best;
@@ -50,9 +45,9 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
   Vec3 slowness = Vec3::Zero();
   const EchoPath* loudest = strongest(record, array, target, Return::all_channels);
   if (loudest != nullptr) {
-    all.delay = loudest->heard.delay;
-    all.doppler = loudest->heard.doppler;
-    slowness = loudest->heard.slowness;
+    all.delay = loudest->received.delay;
+    all.doppler = loudest->received.doppler;
+    slowness = loudest->received.slowness;
   } else {
     const Vec3 place = record.targets[static_cast<std::size_t>(target)].position;
     const double c = simulator.paths().speed_at(reference);
@@ -63,96 +58,31 @@ Listened listened(const PingSimulator& simulator, const PingRecord& record,
   for (std::size_t n = 0; n < phones; ++n) {
     if (plan.phone && static_cast<std::size_t>(*plan.phone) != n) continue;
     double delay = all.delay + slowness.dot(record.phones[first + n] - reference);
-    if (loudest != nullptr && loudest->heard.channel != Return::all_channels)
+    if (loudest != nullptr && loudest->received.channel != Return::all_channels)
       if (const EchoPath* own = strongest(record, array, target, static_cast<int>(n)))
-        delay = own->heard.delay +  // a path of each phone's own, told at the reference point
-                own->heard.slowness.dot(record.phones[first + n] - reference);
+        delay = own->received.delay +  // a path of each phone's own, told at the reference point
+                own->received.slowness.dot(record.phones[first + n] - reference);
     all.phones.push_back({first + n, delay});
   }
   return all;
 }
 
-/// The stretched pulse as each phone would record it, conjugate: what samples are multiplied with.
-/// Samples count from the start of the whole record, of which some may be made.
-class Template {
- public:
-  Template(const Recording& whole, const Pulse& pulse, const Listened& echo)
-      : whole_(whole), echo_(echo) {
-    const Recording& r = whole;
-    length_ =
-        static_cast<std::ptrdiff_t>(std::ceil(pulse.duration() / echo.doppler * r.sample_rate)) + 1;
-    weights_.resize(echo.phones.size() * static_cast<std::size_t>(length_));
-    for (std::size_t n = 0; n < echo.phones.size(); ++n) {
-      // The first sample at or after this phone's leading edge.
-      const double edge = (echo.phones[n].delay - r.start) * r.sample_rate;
-      first_.push_back(static_cast<std::ptrdiff_t>(std::ceil(edge)));
-      for (std::ptrdiff_t k = 0; k < length_; ++k) {
-        const double t = r.start + static_cast<double>(first_[n] + k) / r.sample_rate;
-        std::complex<double> w =
-            std::conj(pulse.analytic(echo.doppler * (t - echo.phones[n].delay)));
-        if (r.is_complex()) w *= std::polar(1.0, 2.0 * pi * r.carrier * (t + r.epoch));
-        weights_[n * static_cast<std::size_t>(length_) + static_cast<std::size_t>(k)] = w;
-        energy_ += std::norm(w);
-      }
-    }
-  }
+/// What the filter needs so many samples after the echo.
+SampleRange needed_by(const MatchedFilterAt& filter, std::ptrdiff_t shift) {
+  return {.first = filter.first() + shift,
+          .count = static_cast<std::size_t>(filter.end() - filter.first())};
+}
 
-  /// The record has all that the filter needs so many samples after the echo.
-  [[nodiscard]] bool inside(std::ptrdiff_t shift) const {
-    return within({.first = 0, .count = whole_.samples}, shift);
-  }
-  /// So has this part of it.
-  [[nodiscard]] bool within(const SampleRange& part, std::ptrdiff_t shift) const {
-    const auto end = part.first + static_cast<std::ptrdiff_t>(part.count);
-    return std::all_of(first_.begin(), first_.end(), [&](std::ptrdiff_t first) {
-      return first + shift >= part.first && first + shift + length_ <= end;
-    });
-  }
-  /// What the filter needs so many samples after the echo.
-  [[nodiscard]] SampleRange needed(std::ptrdiff_t shift) const {
-    const auto [least, most] = std::minmax_element(first_.begin(), first_.end());
-    return {.first = *least + shift, .count = static_cast<std::size_t>(*most - *least + length_)};
-  }
+/// A part of the record has all of that.
+bool holds(const SampleRange& part, const MatchedFilterAt& filter, std::ptrdiff_t shift) {
+  return filter.first() + shift >= part.first &&
+         filter.end() + shift <= part.first + static_cast<std::ptrdiff_t>(part.count);
+}
 
-  /// |y|² so many samples after the echo. \param part  that the record holds   \param shift  within
-  /// it
-  [[nodiscard]] double answer(const PingRecord& record, const SampleRange& part,
-                              std::ptrdiff_t shift) const {
-    const Recording& r = record.recording;
-    std::complex<double> sum = 0.0;
-    for (std::size_t n = 0; n < first_.size(); ++n) {
-      const std::ptrdiff_t begin = first_[n] + shift - part.first;
-      const std::complex<double>* w = weights_.data() + n * static_cast<std::size_t>(length_);
-      const float* p =
-          record.pressure.data() +
-          (echo_.phones[n].channel * r.samples + static_cast<std::size_t>(begin)) * r.components();
-      for (std::ptrdiff_t k = 0; k < length_; ++k)
-        sum += r.is_complex()
-                   ? w[k] * std::complex<double>(static_cast<double>(p[2 * k]),
-                                                 static_cast<double>(p[2 * k + 1]))
-                   : 2.0 * w[k] * static_cast<double>(p[k]);  // p₊ = 2p, its negative half aside
-    }
-    return std::norm(sum) / (energy_ * energy_);
-  }
-
-  /// E|y|² of white noise that is independent from phone to phone. \param density [Pa²/Hz]
-  [[nodiscard]] double noise(double density) const {
-    return 2.0 * density * whole_.sample_rate / energy_;
-  }
-
- private:
-  const Recording whole_;
-  const Listened& echo_;
-  std::ptrdiff_t length_ = 0;
-  std::vector<std::ptrdiff_t> first_;          // [phones]
-  std::vector<std::complex<double>> weights_;  // [phones × length]
-  double energy_ = 0.0;                        // Σ|w|²
-};
-
-/// Times at which the array hears the ping: echoes of any target, and the ping on its way out.
+/// Times at which the array receives the ping: echoes of any target, and the ping on its way out.
 class Busy {
  public:
-  /// \param duration  of the pulse as it is heard [s]
+  /// \param duration  of the pulse as it is received [s]
   Busy(const PingSimulator& simulator, const PingRecord& record, const Listened& echo, int array,
        double duration)
       : rate_(record.recording.sample_rate) {
@@ -161,15 +91,15 @@ class Busy {
     // ring and for Doppler.
     const double apart = 1.1 * duration;
     double reach = 0.0;
-    for (const Heard& phone : echo.phones)
+    for (const MatchedFilterAt::Phone& phone : echo.phones)
       reach = std::max(reach, (record.phones[phone.channel] - reference).norm());
     for (const EchoPath& other : record.echoes) {
       if (other.array != array) continue;
       double spread = 0.0;  // in time over the phones, once they are steered at the target
-      for (const Heard& phone : echo.phones)
-        spread = std::max(spread, std::abs((other.heard.slowness - echo.slowness)
+      for (const MatchedFilterAt::Phone& phone : echo.phones)
+        spread = std::max(spread, std::abs((other.received.slowness - echo.slowness)
                                                .dot(record.phones[phone.channel] - reference)));
-      add(other.heard.delay - echo.delay, apart + spread);
+      add(other.received.delay - echo.delay, apart + spread);
     }
     const double c = simulator.paths().speed_at(reference);
     for (const ManyEchoes& many : record.many_echoes)  // whose pairs are not all listed
@@ -182,7 +112,7 @@ class Busy {
           add(path.delay - echo.delay, apart + 2.0 * reach / c);
   }
 
-  /// The filter hears nothing of them when it listens so many samples after the echo.
+  /// The filter receives nothing of them when it listens so many samples after the echo.
   [[nodiscard]] bool free(std::ptrdiff_t shift) const {
     const double t = static_cast<double>(shift) / rate_;
     return std::none_of(spans_.begin(), spans_.end(),
@@ -200,15 +130,16 @@ class Busy {
 /// The nearest free cells on both sides, whole cells away: `reference_cells` on either; where the
 /// record has fewer on one side, the other makes up for them. Empty where there are fewer than
 /// half of what is asked for: a threshold over a handful of cells detects next to nothing.
-std::vector<std::ptrdiff_t> reference_cells(const MatchedFilterPlan& plan, const Template& filter,
-                                            const Busy& busy, std::ptrdiff_t at,
-                                            std::ptrdiff_t cell) {
+std::vector<std::ptrdiff_t> reference_cells(const MatchedFilterPlan& plan,
+                                            const SampleRange& record,
+                                            const MatchedFilterAt& filter, const Busy& busy,
+                                            std::ptrdiff_t at, std::ptrdiff_t cell) {
   const auto guard = static_cast<std::ptrdiff_t>(plan.guard_cells);
   const auto wanted = static_cast<std::size_t>(plan.reference_cells);
   const auto side = [&](std::ptrdiff_t step) {
     std::vector<std::ptrdiff_t> found;
     for (std::ptrdiff_t shift = at + (guard + 1) * step;
-         found.size() < 2 * wanted && filter.inside(shift); shift += step)
+         found.size() < 2 * wanted && holds(record, filter, shift); shift += step)
       if (busy.free(shift)) found.push_back(shift);
     return found;
   };
@@ -236,7 +167,7 @@ class TargetFilter {
                  .samples = whole_.samples,
                  .carrier = whole_.carrier,
                  .epoch = record.recording.epoch},
-                pulse_, echo_),
+                pulse_, echo_.doppler, echo_.phones),
         duration_(pulse_.duration() / echo_.doppler),
         busy_(simulator, record, echo_, array, duration_),
         cell_(
@@ -244,7 +175,7 @@ class TargetFilter {
   TargetFilter(const TargetFilter&) = delete;
   TargetFilter& operator=(const TargetFilter&) = delete;
 
-  [[nodiscard]] const Template& filter() const noexcept { return filter_; }
+  [[nodiscard]] const MatchedFilterAt& filter() const noexcept { return filter_; }
 
   /// A time and the cells that it is compared with [samples after the echo].
   struct Place {
@@ -253,10 +184,11 @@ class TargetFilter {
   };
   /// Not known: outside the record or with too few free cells.
   [[nodiscard]] std::optional<Place> place(std::ptrdiff_t at) const {
-    if (!filter_.inside(at)) return std::nullopt;
+    const SampleRange record{.first = 0, .count = whole_.samples};
+    if (!holds(record, filter_, at)) return std::nullopt;
     Place found{.at = at, .around = {}};
     if (plan_.background == MatchedFilterPlan::Background::noise) return found;
-    found.around = reference_cells(plan_, filter_, busy_, at, cell_);
+    found.around = reference_cells(plan_, record, filter_, busy_, at, cell_);
     return found.around.empty() ? std::nullopt : std::optional(found);
   }
   /// Tries the places without an echo, the nearest first and of two the earlier, until one will do.
@@ -275,8 +207,8 @@ class TargetFilter {
   Recording whole_;
   const Pulse& pulse_;
   Listened echo_;
-  Template filter_;
-  double duration_;  // of the pulse as it is heard [s]
+  MatchedFilterAt filter_;
+  double duration_;  // of the pulse as it is received [s]
   Busy busy_;
   std::ptrdiff_t cell_;  // [samples]
 };
@@ -323,7 +255,7 @@ SampleRange samples_for_filter(const PingSimulator& simulator, const PingRecord&
     const TargetFilter one(simulator, record, plan, array, static_cast<int>(target));
     const auto include = [&](const TargetFilter::Place& place) {
       const auto add = [&](std::ptrdiff_t shift) {
-        const SampleRange needed = one.filter().needed(shift);
+        const SampleRange needed = needed_by(one.filter(), shift);
         first = std::min(first, needed.first);
         end = std::max(end, needed.first + static_cast<std::ptrdiff_t>(needed.count));
       };
@@ -348,27 +280,30 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
                            double false_alarm_probability) {
   const Scenario& scenario = simulator.scenario();
   const TargetFilter one(simulator, record, plan, array, target);
-  const Template& filter = one.filter();
+  const MatchedFilterAt& filter = one.filter();
   const SampleRange part = part_of(simulator, record);
   const double density =
       noise_density(scenario.noise, simulator.pulse(record.transmitter).centre_frequency());
 
+  const auto answer_at = [&](std::ptrdiff_t shift) {
+    return filter.answer(record.pressure, record.recording.samples, part.first, shift);
+  };
   const auto compare = [&](const TargetFilter::Place& place, double& statistic, double& threshold) {
     statistic = threshold = no_value;
-    if (!filter.within(part, place.at)) return false;
+    if (!holds(part, filter, place.at)) return false;
     if (plan.background == MatchedFilterPlan::Background::noise) {
-      statistic = filter.answer(record, part, place.at) / filter.noise(density);
+      statistic = answer_at(place.at) / filter.noise(density);
       threshold = -std::log(false_alarm_probability);
       return true;
     }
     double sum = 0.0;
     for (const std::ptrdiff_t shift : place.around) {
-      if (!filter.within(part, shift)) return false;
-      sum += filter.answer(record, part, shift);
+      if (!holds(part, filter, shift)) return false;
+      sum += answer_at(shift);
     }
     if (!(sum > 0.0)) return false;
     const auto cells = static_cast<double>(place.around.size());
-    statistic = filter.answer(record, part, place.at) * cells / sum;
+    statistic = answer_at(place.at) * cells / sum;
     threshold = cfar_multiplier(false_alarm_probability, cells);
     return true;
   };
@@ -382,4 +317,4 @@ FilterAnswer filter_answer(const PingSimulator& simulator, const PingRecord& rec
   return answer;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 #include "sonar/ping/ping.h"
 #include "study/plan/measure_plan.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// What the matched filter says of one target.
 struct FilterAnswer {
@@ -34,4 +34,4 @@ struct FilterAnswer {
                                              const PingRecord& record,
                                              const MatchedFilterPlan& plan, int array);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -1,24 +1,33 @@
 #pragma once
+#include <array>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "sonar/ping/ping.h"
-#include "study/measures/realisation.h"
+#include "study/measures/kinds/detection_signal_excess.h"
+#include "study/measures/kinds/levels.h"
+#include "study/measures/kinds/matched_filter.h"
+#include "study/measures/kinds/of_the_receiver.h"
+#include "study/measures/kinds/series_level.h"
+#include "study/measures/kinds/strongest_path.h"
+#include "study/measures/measure.h"
 #include "study/plan/study.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
-/// A measure of a target's levels: needs no samples.
-struct LevelMeasure {
-  std::string_view key;  ///< in [measure]
-  std::string_view column, unit, meaning;
-  double (*of)(const TargetSummary& target);
-};
-[[nodiscard]] std::span<const LevelMeasure> level_measures();
+template <Measure... M>
+inline constexpr std::array<AnyMeasure, sizeof...(M)> measure_list{any_measure<M>()...};
+
+/// Every measure, in the order of the columns. A new one is one file and one name here.
+inline constexpr std::span<const AnyMeasure> all_measures =
+    measure_list<EchoLevel, ReverberationLevel, NoiseLevel, EchoToBackground, SignalExcess, Paths,
+                 EchoTime, DetectionSignalExcess, StrongestPath, MatchedFilterAnswer,
+                 DetectionByReceiver, LocalisationError, FalseAlarms, SeriesLevel>;
 
 /// The columns of a study's measures. \param scenario  of any realisation: its targets
-[[nodiscard]] std::vector<Column> measure_columns(const Study& study, const Scenario& scenario);
+[[nodiscard]] std::vector<Column> measure_columns(
+    const Study& study, const Scenario& scenario,
+    std::span<const AnyMeasure> measures = all_measures);
 
 /// What one realisation's ping measures.
 struct Measured {
@@ -26,6 +35,7 @@ struct Measured {
   PingRecord record;           ///< with samples, where the plan needs any
 };
 /// \param simulator  of the realisation's scenario   \throws InputError
-[[nodiscard]] Measured measure(const Study& study, const PingSimulator& simulator);
+[[nodiscard]] Measured measure(const Study& study, const PingSimulator& simulator,
+                               std::span<const AnyMeasure> measures = all_measures);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

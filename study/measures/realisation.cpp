@@ -9,12 +9,12 @@
 #include "core/memory_budget.h"
 #include "core/random.h"
 #include "io/scenario/propagation.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "study/measures/measures.h"
 #include "study/measures/row_memory.h"
 #include "study/measures/sampler.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// The seed of a realisation's own streams: noise, weights, fluctuations.
@@ -135,7 +135,7 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     Scenario scenario = scenario_of(tree, study.scenario_path);
     scenario.seed = seed_of(study, index);
     PingSimulator simulator(std::move(scenario), shared, budget.share(bytes, "a row's share"));
-    simulator.hears_one_ping();
+    simulator.receives_one_ping();
     Measured measured = measure(study, simulator);
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
@@ -154,4 +154,4 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
   return row;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,7 +6,7 @@
 
 #include "study/plan/study.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// A column of a study's table.
 struct Column {
@@ -68,4 +68,4 @@ class Realiser {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -8,7 +8,7 @@
 #include "sonar/signal/pulse.h"
 #include "study/plan/no_value.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 ArrayRecording recording_of(const Scenario& scenario, const PingRecord& record, int array) {
@@ -58,18 +58,18 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   const Scenario& scenario = simulator.scenario();
   const Recording& recording = record.recording;
   ProcessingSettings chosen = settings;
-  if (chosen.detector.first_time <= 0.0)  // not while it transmits
+  if (chosen.detector.first_time.value_or(0.0) <= 0.0)  // not while it transmits
     chosen.detector.first_time = recording.start + simulator.pulse(record.transmitter).duration();
   const PingProcessor processor(scenario, replicas_of(simulator, recording), chosen);
   const ProcessedArray processed = processor.process(recording_of(scenario, record, array));
   const std::vector<TrueEcho> echoes = true_echoes(record, array);
   const double end =
       recording.start + static_cast<double>(recording.samples) / recording.sample_rate;
-  const PingScore score =
-      score_detections(processed.result.detections, echoes,
-                       true_targets(scenario, record.ping, record.start_time, echoes),
-                       processed.shape, processed.places.array, processor.resolution(processed),
-                       chosen.detector.first_time, std::min(chosen.detector.last_time, end));
+  const PingScore score = score_detections(
+      processed.result.detections, echoes,
+      true_targets(scenario, record.ping, record.start_time, echoes), processed.shape,
+      processed.places.array, processor.resolution(processed), *chosen.detector.first_time,
+      std::min(chosen.detector.last_time.value_or(end), end));
   ReceiverAnswers answers{.false_alarms = score.false_alarms};
   for (const TargetScore& target : score.targets) {
     ReceiverAnswer answer{.hit = target.hit,
@@ -89,4 +89,4 @@ ReceiverAnswers receiver_answers(const PingSimulator& simulator, const PingRecor
   return answers;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 #include "sonar/ping/ping.h"
 #include "study/plan/measure_plan.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// What the whole receiver makes of one target.
 struct ReceiverAnswer {
@@ -25,4 +25,4 @@ struct ReceiverAnswers {
                                                const PingRecord& record,
                                                const ProcessingSettings& settings, int array);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

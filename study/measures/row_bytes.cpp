@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "io/digest.h"
+#include "io/files/digest.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 std::string_view view(std::span<const std::byte> bytes) {
@@ -75,4 +75,4 @@ void one_kind_of_nan(std::vector<double>& values) {
     if (std::isnan(value)) value = std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

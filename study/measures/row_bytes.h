@@ -9,7 +9,7 @@
 #include "study/measures/realisation.h"
 
 // Rows as a journal keeps them: bytes, and checksums that find damage.
-namespace asdic::study {
+namespace asdic::detail::study {
 
 template <class T>
 [[nodiscard]] std::span<const std::byte> bytes_of(const std::vector<T>& values) {
@@ -40,4 +40,4 @@ template <class T>
 /// A missing number has the same bits however it came about.
 void one_kind_of_nan(std::vector<double>& values);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -8,7 +8,7 @@
 #include "core/memory_budget.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Some of the memory, while it lives.
 class RowMemory::Hold {
@@ -64,4 +64,4 @@ void RowMemory::within(const std::function<void(double bytes)>& make) {
   usual_ = bytes > first ? bytes : std::max(share_, forgotten * usual_);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 #include <functional>
 #include <mutex>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// What rows that are made at a time take together is no more than the process may.
 ///
@@ -32,4 +32,4 @@ class RowMemory {
   double free_, usual_;
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

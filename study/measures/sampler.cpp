@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 std::size_t dimensions_of(const Study& study) {
@@ -115,4 +115,4 @@ Scenario example_of(const Study& study) {
   throw InputError(*first);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -10,7 +10,7 @@
 #include "study/plan/study.h"
 #include "study/sampling/design.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Draws the inputs of realisations and writes them into scenarios.
 class Sampler {
@@ -54,4 +54,4 @@ class Sampler {
 [[nodiscard]] InputError told(const InputError& error, const std::filesystem::path& file,
                               std::uint64_t index, const std::string& drawn);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -9,7 +9,7 @@
 #include "sonar/noise/noise_in_guide.h"
 #include "study/measures/echo_filter.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// The phones that are added, and where the beam looks.
@@ -68,13 +68,13 @@ const EchoPath* loudest(const PingRecord& record, int array, int target) {
 
 double detection_signal_excess_db(const PingSimulator& simulator, const PingRecord& record,
                                   const ListeningReceiver& receiver, int target) {
-  const TargetSummary& heard = record.summary[static_cast<std::size_t>(target)];
-  if (!heard.present || heard.paths == 0) return -infinity;
-  if (heard.array != receiver.array) return std::nan("");
+  const TargetSummary& received = record.summary[static_cast<std::size_t>(target)];
+  if (!received.present || received.paths == 0) return -infinity;
+  if (received.array != receiver.array) return std::nan("");
   const Scenario& scenario = simulator.scenario();
   const Pulse& pulse = simulator.pulse(record.transmitter);
   Beam beam{.phones = {},
-            .slowness = loudest(record, receiver.array, target)->heard.slowness,
+            .slowness = loudest(record, receiver.array, target)->received.slowness,
             .angular_frequency = 2.0 * pi * pulse.centre_frequency()};
   const std::size_t first = first_channel(scenario, receiver.array);
   const std::size_t count = scenario.arrays[static_cast<std::size_t>(receiver.array)].phones.size();
@@ -88,10 +88,10 @@ double detection_signal_excess_db(const PingSimulator& simulator, const PingReco
   const double reverberation_gain =
       db_from_power(energy * noise_bandwidth(pulse)) + gain_over_reverberation(beam);
   const double background =
-      db_from_power(power_from_db(heard.reverberation_db - reverberation_gain) +
-                    power_from_db(heard.noise_db - noise_gain));
-  return heard.echo_peak_db - background -
+      db_from_power(power_from_db(received.reverberation_db - reverberation_gain) +
+                    power_from_db(received.noise_db - noise_gain));
+  return received.echo_peak_db - background -
          detection_threshold_db(receiver.false_alarm_probability, receiver.cells);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -3,7 +3,7 @@
 
 #include "sonar/ping/ping.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// The receiver that a signal excess is of: matched filter, conventional beam straight at the
 /// echo's strongest path, threshold over the background.
@@ -22,10 +22,10 @@ struct ListeningReceiver {
 /// EL, RL, NL the levels of the ping's summary, E = ∫|s₊|²dt, B₄₀ the width that NL is of, B = E²
 /// over ∫|S|⁴df; A_n, A_r the array gains against the scenario's noise and against reverberation
 /// that comes alike from all bearings; DT of detection_threshold_db() at P_d = 0.5. Where no path
-/// reaches the array −∞; NaN where another array hears the echo louder, whose levels these are.
+/// reaches the array −∞; NaN where another array receives the echo louder, whose levels these are.
 /// docs/theory/studies.md, eq. (8)–(10).
 [[nodiscard]] double detection_signal_excess_db(const PingSimulator& simulator,
                                                 const PingRecord& record,
                                                 const ListeningReceiver& receiver, int target);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

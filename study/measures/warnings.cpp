@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "raytrace/warnings/warnings.h"
 #include "sonar/ping/ping.h"
 #include "study/measures/sampler.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 Judgement judge(const Study& study) {
   constexpr std::uint64_t most = 32;
@@ -40,4 +40,4 @@ Judgement judge(const Study& study) {
   return judgement;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 
 #include "study/plan/study.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// What a user should know of a study before he trusts its numbers.
 struct Judgement {
@@ -21,4 +21,4 @@ struct Judgement {
 /// A function of the study alone: all parts of it say the same.
 [[nodiscard]] Judgement judge(const Study& study);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

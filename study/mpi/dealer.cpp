@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/text.h"
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 namespace {
 
 constexpr std::uint64_t largest_block = 256;
@@ -38,8 +38,8 @@ void Dealer::take(std::vector<Row>&& rows) {
   }
 }
 
-void Dealer::hear(const Message& message) {
-  heard_[static_cast<std::size_t>(message.rank)] = Clock::now();
+void Dealer::handle(const Message& message) {
+  received_[static_cast<std::size_t>(message.rank)] = Clock::now();
   switch (message.tag) {
     case Tag::more:
       if (const auto block = next_block())
@@ -74,10 +74,10 @@ void Dealer::stop_all() {
 void Dealer::check_silence() const {
   for (int rank = 1; rank < session_.size(); ++rank) {
     if (gone_.contains(rank)) continue;
-    const auto silent = Clock::now() - heard_[static_cast<std::size_t>(rank)];
+    const auto silent = Clock::now() - received_[static_cast<std::size_t>(rank)];
     if (silent > run_.silence)
       throw RunError("rank " + std::to_string(rank) + " has not been heard of for " +
-                     asdic::to_text(run_.silence.count()) +
+                     asdic::detail::to_text(run_.silence.count()) +
                      " s: it is taken for dead; the journals hold what was made, and the same "
                      "command goes on");
   }
@@ -90,7 +90,7 @@ std::uint64_t Dealer::deal() {
   while (true) {
     const bool over = worker.over();  // before new_rows(): then those are the last
     take(worker.new_rows());
-    while (const std::optional<Message> message = receive()) hear(*message);
+    while (const std::optional<Message> message = receive()) handle(*message);
     if (run_.stop.stop_requested() || estimate_.enough() || !fault_.empty()) stop_all();
     if (stopping_) worker.stop();
     if (over && static_cast<int>(gone_.size()) + 1 == session_.size()) break;
@@ -126,4 +126,4 @@ void Dealer::throw_fault() const {
                     .expected = text.substr(second + 1) + rank});
 }
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

@@ -9,12 +9,12 @@
 #include "study/mpi/worker.h"
 #include "study/runs/run_study.h"
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 inline constexpr auto pause = std::chrono::milliseconds(1);         ///< between looks at messages
 inline constexpr auto tell_every = std::chrono::milliseconds(200);  ///< rows, and progress
 
-/// Rank 0: deals the indices, hears of the rows, works too.
+/// Rank 0: deals the indices, receives of the rows, works too.
 class Dealer {
  public:
   Dealer(const Work& work, const StudyRun& run, const Session& session, IndexSet missing,
@@ -26,7 +26,7 @@ class Dealer {
         left_(missing_.size()),
         estimate_(estimate),
         progress_(std::move(progress)),
-        heard_(static_cast<std::size_t>(session.size()), Clock::now()) {}
+        received_(static_cast<std::size_t>(session.size()), Clock::now()) {}
 
   /// \return rows that all ranks made \throws what any of them threw
   std::uint64_t deal();
@@ -35,7 +35,7 @@ class Dealer {
   using Clock = std::chrono::steady_clock;
 
   std::optional<IndexRange> next_block();
-  void hear(const Message& message);
+  void handle(const Message& message);
   void take(std::vector<Row>&& rows);
   void stop_all();
   void check_silence() const;
@@ -50,7 +50,7 @@ class Dealer {
   std::uint64_t offset_ = 0;
   OrderedEstimate& estimate_;
   Progress progress_;
-  std::vector<Clock::time_point> heard_;
+  std::vector<Clock::time_point> received_;
   std::set<int> gone_, told_no_more_;
   bool stopping_ = false;
   std::uint64_t made_ = 0;
@@ -58,4 +58,4 @@ class Dealer {
   int faulty_ = 0;
 };
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

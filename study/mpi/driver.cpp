@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "study/mpi/dealer.h"
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -128,4 +128,4 @@ StudyOutcome run_study(const Work& work, const StudyRun& run, const Session& ses
   return follow(work, run, session);
 }
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

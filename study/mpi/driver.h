@@ -4,7 +4,7 @@
 #include "study/runs/run_study.h"
 
 // Studies over MPI: the only place that knows it. docs/formats/study-results.md, "How a run goes"
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 /// run_study() by all ranks together. Rank 0 deals blocks of indices to whoever has few left
 /// (itself too), so that uneven work balances; each rank writes a journal of its own beside the
@@ -14,4 +14,4 @@ namespace asdic::study::mpi {
 /// \throws InputError, RunError; at rank 0 what another rank threw, too
 StudyOutcome run_study(const Work& work, const StudyRun& run, const Session& session);
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

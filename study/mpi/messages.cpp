@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 namespace {
 
 template <class T>
@@ -88,4 +88,4 @@ std::string text_of(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

@@ -9,7 +9,7 @@
 #include "study/sampling/index_set.h"
 
 // What ranks say to one another.
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 enum class Tag : int {
   more = 1,  ///< to rank 0: give me indices
@@ -38,4 +38,4 @@ void send(int rank, Tag tag, const std::vector<std::byte>& bytes = {});
 [[nodiscard]] std::vector<std::byte> packed(const std::string& text);
 [[nodiscard]] std::string text_of(const std::vector<std::byte>& bytes);
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 Session::Session(int& argc, char**& argv) {
   int level = 0;
@@ -54,4 +54,4 @@ void Session::abort(int status) const {
   std::abort();
 }
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

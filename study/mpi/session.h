@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 /// MPI from here to the end of the program. Its calls are made by this thread alone.
 class Session {
@@ -26,4 +26,4 @@ class Session {
   int rank_ = 0, size_ = 1;
 };
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

@@ -2,7 +2,7 @@
 
 #include <tbb/task_arena.h>
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 void IndexQueue::push(IndexRange range) {
   const std::lock_guard lock(mutex_);
@@ -33,7 +33,7 @@ std::uint64_t IndexQueue::left() {
 }
 
 Worker::Worker(const Work& work, const StudyRun& run, int rank)
-    : journal_(journal_of(run.output, rank), work.imprint),
+    : journal_(journal_of(run.output, rank), work.fingerprint),
       hand_(journal_.path()),
       in_flight_(work.in_flight > 0
                      ? work.in_flight
@@ -89,4 +89,4 @@ std::uint64_t Worker::made() {
   return made_;
 }
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

@@ -9,7 +9,7 @@
 #include "study/journal/journal.h"
 #include "study/runs/run_study.h"
 
-namespace asdic::study::mpi {
+namespace asdic::detail::study::mpi {
 
 /// Indices on their way to the threads of a rank.
 class IndexQueue {
@@ -59,4 +59,4 @@ class Worker {
   std::thread thread_;
 };
 
-}  // namespace asdic::study::mpi
+}  // namespace asdic::detail::study::mpi

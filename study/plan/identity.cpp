@@ -1,11 +1,11 @@
 #include <filesystem>
 
-#include "io/digest.h"
+#include "io/files/digest.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_writer.h"
 #include "study/plan/study.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// Values without where they were written; what files hold, not what they are called.
@@ -56,4 +56,4 @@ std::string identity(const Study& study) {
   return sha256(text);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

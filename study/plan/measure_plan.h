@@ -1,12 +1,14 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "processing/ping_processor.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// A matched filter where and when the target's echo is known to come: its answer there, and where
 /// there is no echo. docs/theory/studies.md
@@ -31,35 +33,43 @@ struct DetectionPlan {
   double false_alarm_probability = 1e-4;  ///< of a cell
 };
 
+/// What measures take beside the levels of a ping.
+struct Needs {
+  bool targets = false;         ///< a scenario with targets
+  bool samples = false;         ///< all that the array records
+  bool matched_filter = false;  ///< [measure.matched_filter], and the samples that it looks at
+  bool receiver = false;        ///< [measure.receiver], and all samples
+};
+
 /// What is measured in every realisation.
 struct MeasurePlan {
-  int ping = 1;                          ///< of the scenario, counted from 1
-  int array = 0;                         ///< an index
-  std::vector<std::size_t> levels;       ///< which of level_measures()
-  bool strongest_path = false;           ///< its delay, level, Doppler factor, angles
-  bool detection_signal_excess = false;  ///< over the threshold that `detection` sets
-  bool series_level = false;             ///< rms and peak of what the phones record
-  bool matched = false;                  ///< the matched filter's answers are columns
-  MatchedFilterPlan matched_filter;      ///< and how they are had
+  int ping = 1;                      ///< of the scenario, counted from 1
+  int array = 0;                     ///< an index
+  std::vector<std::string> wanted;   ///< the measures whose keys are true
+  Needs needs;                       ///< of any of these
+  MatchedFilterPlan matched_filter;  ///< how the matched filter's answers are had
   std::optional<DetectionPlan> detection;
-  bool localisation = false;       ///< how far off the receiver's place is
   ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
   std::uint64_t series_every = 0;  ///< the time series of every k-th index; 0: none
 
+  [[nodiscard]] bool wants(std::string_view measure) const {
+    return std::find(wanted.begin(), wanted.end(), measure) != wanted.end();
+  }
   /// Whether there is anything that needs samples, and not levels alone.
   [[nodiscard]] bool needs_samples() const noexcept {
-    return series_level || matched || detection || localisation || series_every > 0;
+    return needs.samples || uses_matched_filter() || uses_receiver() || series_every > 0;
   }
   [[nodiscard]] bool uses_receiver() const noexcept {
-    return localisation || (detection && detection->by == DetectionPlan::By::receiver);
+    return needs.receiver || (detection && detection->by == DetectionPlan::By::receiver);
   }
   [[nodiscard]] bool uses_matched_filter() const noexcept {
-    return matched || (detection && detection->by == DetectionPlan::By::matched_filter);
+    return needs.matched_filter ||
+           (detection && detection->by == DetectionPlan::By::matched_filter);
   }
   /// Whether of the samples only those count that a matched filter looks at.
   [[nodiscard]] bool filter_alone() const noexcept {
-    return uses_matched_filter() && !uses_receiver() && !series_level && series_every == 0;
+    return uses_matched_filter() && !uses_receiver() && !needs.samples && series_every == 0;
   }
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

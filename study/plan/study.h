@@ -11,7 +11,7 @@
 #include "study/sampling/design.h"
 #include "study/sampling/variable.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// What becomes of a realisation whose drawn values make no scenario (a target below the bottom).
 enum class OnError { stop, skip };
@@ -50,4 +50,4 @@ struct Study {
 /// the summary and on_error never do.
 [[nodiscard]] std::string identity(const Study& study);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

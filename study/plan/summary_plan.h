@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// How the interval of a proportion is had.
 enum class ProportionInterval { wilson, clopper_pearson };
@@ -30,4 +30,4 @@ struct SummaryPlan {
   bool sensitivity = true;  ///< of every measure to every input
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

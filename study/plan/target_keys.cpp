@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/geometry.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// "target.2.range" → 2 and "range"; "target.2" → 2 and "".
@@ -78,4 +78,4 @@ void make_room(const std::vector<Variable>& variables, const std::filesystem::pa
                as_it_stands.targets[t].track.start.position);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 
 #include "study/plan/study.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Makes room in a scenario for keys that vary: a target whose range, bearing or depth does is put
 /// by range, bearing and depth from the platform where it was put by its position; one whose
@@ -13,4 +13,4 @@ namespace asdic::study {
 void make_room(const std::vector<Variable>& variables, const std::filesystem::path& path,
                TomlValue& scenario);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

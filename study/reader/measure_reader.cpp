@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "io/settings/reader.h"
 #include "sonar/scenario/transmission.h"
 #include "study/measures/measures.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
-
-constexpr Quantity probability{.noun = "probability", .low = 0.0, .high = 0.5, .above = true};
 
 /// `true`, or a table of settings. \return whether it is wanted
 bool read_wanted(TomlTable& table, const std::string& key) {
@@ -33,37 +32,37 @@ DetectionPlan read_detection(TomlTable& measures) {
   TomlTable table = measures.table("detection");
   if (table.choice("by", {"matched_filter", "receiver"}, "matched_filter") == "receiver")
     plan.by = DetectionPlan::By::receiver;
-  plan.false_alarm_probability = table.number("false_alarm_probability", probability,
-                                              plan.by == DetectionPlan::By::receiver ? 1e-6 : 1e-4);
+  plan.false_alarm_probability =
+      table.number("false_alarm_probability", false_alarm_probability_of_cell,
+                   plan.by == DetectionPlan::By::receiver ? 1e-6 : 1e-4);
   table.finish();
   return plan;
 }
 
-/// The settings of `asdic process`.
-void read_receiver(TomlTable table, ProcessingSettings& s) {
-  NormaliserSettings& normaliser = s.detector.normaliser;
-  if (table.choice("beamformer", {"conventional", "mvdr"}, "conventional") == "mvdr")
-    s.detector.beamformer = Beamformer::mvdr;
-  s.detector.hann_shading = table.choice("shading", {"none", "hann"}, "none") == "hann";
-  if (table.choice("normaliser", {"split-window", "cell-averaging"}, "split-window") ==
-      "cell-averaging")
-    normaliser.method = Normaliser::cell_averaging;
-  const Quantity cells{.noun = "number of cells", .low = 0.0, .high = 1e4};
-  normaliser.guard_cells = table.number("guard_cells", cells, normaliser.guard_cells);
-  normaliser.reference_cells =
-      table.number("reference_cells", {.noun = "number of cells", .low = 1.0, .high = 1e4},
-                   normaliser.reference_cells);
-  const Quantity speed{.noun = "speed", .unit = "m/s", .low = 0.0, .high = 600.0};
-  s.max_speed = table.number("max_speed", speed, s.max_speed);
-  const Quantity time{.noun = "time", .unit = "s", .low = 0.0, .high = 1e6};
-  s.detector.first_time = table.number("from", time, 0.0);
-  if (table.has("until")) s.detector.last_time = table.number("until", time);
-  if (table.has("target_depth"))
-    s.target_depth = table.number("target_depth", {.noun = "depth", .unit = "m", .low = 0.0});
-  if (table.has("range_speed"))
-    s.range_speed = table.number("range_speed",
-                                 {.noun = "speed", .unit = "m/s", .low = 1000.0, .high = 2000.0});
-  table.finish();
+/// The settings of `asdic process`, but for tracks. Of a detection by the receiver the probability
+/// of a false alarm is the detection's own.
+void read_receiver(TomlTable table, MeasurePlan& plan) {
+  const std::string key = "false_alarm_probability";
+  const bool by_receiver = plan.detection && plan.detection->by == DetectionPlan::By::receiver;
+  if (by_receiver && table.has_quietly(key))
+    throw table.fault(key, "no \"" + key + "\" beside a detection by the receiver, which has it");
+  KnownSettings known;
+  read_settings(std::move(table), plan.receiver, known);
+  if (by_receiver)
+    plan.receiver.detector.normaliser.false_alarm_probability =
+        plan.detection->false_alarm_probability;
+}
+
+/// The measures whose keys are true, and what they need.
+void read_measures(TomlTable& table, MeasurePlan& plan) {
+  for (const AnyMeasure& measure : all_measures) {
+    if (measure.name.empty() || !table.flag(std::string(measure.name), false)) continue;
+    plan.wanted.emplace_back(measure.name);
+    plan.needs.targets |= measure.needs.targets;
+    plan.needs.samples |= measure.needs.samples;
+    plan.needs.matched_filter |= measure.needs.matched_filter;
+    plan.needs.receiver |= measure.needs.receiver;
+  }
 }
 
 /// "none", "all", or k: of every k-th realisation.
@@ -82,17 +81,11 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   plan.ping = static_cast<int>(table.integer("ping", 1, pings, 1));
   plan.array = static_cast<int>(
       table.integer("array", 0, static_cast<std::int64_t>(scenario.arrays.size()) - 1, 0));
-  for (std::size_t i = 0; i < level_measures().size(); ++i)
-    if (table.flag(std::string(level_measures()[i].key), false)) plan.levels.push_back(i);
-  plan.strongest_path = table.flag("strongest_path", false);
-  plan.series_level = table.flag("series_level", false);
-  plan.matched = table.flag("snr_matched", false);
+  read_measures(table, plan);
   if (read_wanted(table, "detection")) plan.detection = read_detection(table);
-  plan.detection_signal_excess = table.flag("detection_signal_excess", false);
-  if (plan.detection_signal_excess && !plan.detection)
-    throw table.fault("detection_signal_excess",
+  if (plan.wants(DetectionSignalExcess::name) && !plan.detection)
+    throw table.fault(std::string(DetectionSignalExcess::name),
                       "a detection with it, whose receiver and false-alarm probability it is of");
-  plan.localisation = table.flag("localisation_error", false);
   plan.series_every = read_series(table);
   const auto phones =
       static_cast<int>(scenario.arrays[static_cast<std::size_t>(plan.array)].phones.size());
@@ -101,20 +94,15 @@ MeasurePlan read_measure(TomlTable table, const Scenario& scenario) {
   read_matched_filter(table.table("matched_filter"), phones, plan.matched_filter);
   if (table.has("receiver") && !plan.uses_receiver())
     throw table.fault("receiver", "localisation_error or a detection by the receiver with it");
-  read_receiver(table.table("receiver"), plan.receiver);
-  if (plan.detection)
-    plan.receiver.detector.normaliser.false_alarm_probability =
-        plan.detection->by == DetectionPlan::By::receiver
-            ? plan.detection->false_alarm_probability
-            : plan.receiver.detector.normaliser.false_alarm_probability;
+  read_receiver(table.table("receiver"), plan);
   table.finish();
-  const bool nothing = plan.levels.empty() && !plan.strongest_path && !plan.needs_samples();
+  const bool nothing = plan.wanted.empty() && !plan.needs_samples();
   if (nothing) throw table.fault("echo_level", "at least one measure, echo_level = true say");
-  if (scenario.targets.empty() && (!plan.levels.empty() || plan.strongest_path ||
-                                   plan.uses_matched_filter() || plan.uses_receiver()))
+  if (scenario.targets.empty() &&
+      (plan.needs.targets || plan.uses_matched_filter() || plan.uses_receiver()))
     throw table.fault("echo_level", "series_level or time_series alone: the scenario has no target",
                       "a measure of targets");
   return plan;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

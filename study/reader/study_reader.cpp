@@ -2,7 +2,7 @@
 #include <array>
 
 #include "io/scenario/document.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 #include "study/measures/sampler.h"
@@ -13,7 +13,7 @@
 #include "study/reader/vary_reader.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 constexpr std::array<std::string_view, 5> study_tables{"study", "set", "vary", "measure",
@@ -122,4 +122,4 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return study;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 
 #include "core/text.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 std::vector<std::string> names_of(const std::vector<Column>& columns) {
@@ -104,4 +104,4 @@ SummaryPlan read_summary(TomlTable table, const TomlValue* value,
   return plan;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -3,11 +3,11 @@
 #include "study/measures/realisation.h"
 #include "study/plan/summary_plan.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// [summary]. \param value  the table itself, or null   \param columns  of the rows, which axes
 /// name   \throws InputError
 [[nodiscard]] SummaryPlan read_summary(TomlTable table, const TomlValue* value,
                                        const std::vector<Column>& columns);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,11 +6,11 @@
 
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "study/reader/vary_profiles.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 constexpr Quantity any{};
@@ -228,4 +228,4 @@ AnyLaw read_law(TomlTable& table, const TomlValue& value, const Variable& variab
   return read_number_law(name, table);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

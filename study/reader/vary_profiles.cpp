@@ -5,10 +5,10 @@
 
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// Modes out of the file itself or of a CSV file with columns depth, mode_1, mode_2, …
@@ -150,4 +150,4 @@ ChoiceLaw read_casts(TomlTable& table, const TomlValue& value, const Variable& v
   return law;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -3,7 +3,7 @@
 #include "study/plan/study.h"
 #include "study/sampling/variable.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// law = "profile_eof": the scenario's profile and modes of it, each with a normal amplitude.
 /// \throws InputError
@@ -16,4 +16,4 @@ namespace asdic::study {
 /// The key that these laws write, where [vary] names none of its own.
 inline constexpr const char* profile_key = "environment.sound_speed";
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

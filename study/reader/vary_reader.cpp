@@ -7,7 +7,7 @@
 #include "study/reader/vary_laws.h"
 #include "study/reader/vary_profiles.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// The line of "study.toml:12"; overrides come last.
@@ -104,7 +104,7 @@ Variable read_variable(const TomlEntry& entry, const Study& study) {
 }
 
 /// Two variables of one name take the whole of their keys as names.
-void tell_apart(std::vector<Variable>& variables) {
+void distinguish(std::vector<Variable>& variables) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const std::string name = variables[i].name;
     const auto alike = [&](const Variable& v) { return v.name == name; };
@@ -143,9 +143,9 @@ std::vector<Variable> read_vary(const TomlValue& document, const Study& study) {
   });
   std::vector<Variable> variables;
   for (const TomlEntry* entry : entries) variables.push_back(read_variable(*entry, study));
-  tell_apart(variables);
+  distinguish(variables);
   check_columns(variables);
   return variables;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

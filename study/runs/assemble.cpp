@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 void add(Table& table, const Row& row) {
@@ -19,46 +19,46 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-std::vector<Stretch> stretches(const std::vector<const Journal*>& journals, IndexRange range) {
-  std::vector<Stretch> all;
+std::vector<Segment> segments(const std::vector<const Journal*>& journals, IndexRange range) {
+  std::vector<Segment> all;
   IndexSet taken;
   for (std::size_t j = 0; j < journals.size(); ++j) {
     const IndexSet here = journals[j]->done().within(range);
     IndexSet more;
-    for (const IndexRange& stretch : here.ranges()) {
-      const IndexSet open = taken.missing(stretch);
+    for (const IndexRange& segment : here.ranges()) {
+      const IndexSet open = taken.missing(segment);
       for (const IndexRange& piece : open.ranges()) {
         all.push_back({piece, j});
         more.add(piece);
       }
     }
-    for (const IndexRange& stretch : more.ranges()) taken.add(stretch);
+    for (const IndexRange& segment : more.ranges()) taken.add(segment);
   }
   std::sort(all.begin(), all.end(),
-            [](const Stretch& a, const Stretch& b) { return a.range.first < b.range.first; });
+            [](const Segment& a, const Segment& b) { return a.range.first < b.range.first; });
   return all;
 }
 
-bool assemble(OutputFile& output, const Imprint& imprint, IndexRange range,
+bool assemble(OutputFile& output, const Fingerprint& fingerprint, IndexRange range,
               const std::vector<const Journal*>& journals, const Summarise& summarise,
               const std::string& stopped_by) {
-  StudyResults results{.imprint = imprint, .range = range, .stopped_by = stopped_by};
-  results.table.columns = imprint.columns;
-  results.table.values.resize(imprint.columns.size());
+  StudyResults results{.fingerprint = fingerprint, .range = range, .stopped_by = stopped_by};
+  results.table.columns = fingerprint.columns;
+  results.table.values.resize(fingerprint.columns.size());
   SeriesSource series;
   std::vector<std::size_t> home;  // [kept] which journal
-  for (const Stretch& stretch : stretches(journals, range)) {
-    const Journal& journal = *journals[stretch.journal];
-    journal.rows(stretch.range, false, [&](Row&& row) {
+  for (const Segment& segment : segments(journals, range)) {
+    const Journal& journal = *journals[segment.journal];
+    journal.rows(segment.range, false, [&](Row&& row) {
       add(results.table, row);
       if (!row.valid && results.faults.size() < most_faults)
         results.faults.push_back(std::to_string(row.index) + ": " + one_line(row.fault));
     });
-    journal.series(stretch.range, [&](Row&& row) {
+    journal.series(segment.range, [&](Row&& row) {
       series.index.push_back(row.index);
       series.shapes.push_back(std::move(row.pressure_shape));
       series.timing.push_back(row.timing);
-      home.push_back(stretch.journal);
+      home.push_back(segment.journal);
     });
   }
   series.pressure = [&](std::size_t k) {
@@ -75,4 +75,4 @@ bool assemble(OutputFile& output, const Imprint& imprint, IndexRange range,
   return results.complete();
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

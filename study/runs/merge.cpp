@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "core/error.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,20 +40,21 @@ class Parts {
   std::size_t here_ = 0;
 };
 
-void check_same_study(const StudyFile& part, const Imprint& imprint, const std::string& first) {
-  const Imprint& its = part.imprint();
-  if (its.identity != imprint.identity)
+void check_same_study(const StudyFile& part, const Fingerprint& fingerprint,
+                      const std::string& first) {
+  const Fingerprint& its = part.fingerprint();
+  if (its.identity != fingerprint.identity)
     throw InputError(
         {.where = part.path().string(),
          .got = "a part of another study (identity " + its.identity + ")",
-         .expected = "one of the study of " + first + " (identity " + imprint.identity + ")"});
-  if (to_json(its.columns) != to_json(imprint.columns))
+         .expected = "one of the study of " + first + " (identity " + fingerprint.identity + ")"});
+  if (to_json(its.columns) != to_json(fingerprint.columns))
     throw InputError({.where = part.path().string(),
                       .got = "other columns than " + first + ", by another version of asdic",
                       .expected = "parts of one version"});
 }
 
-/// What a part holds, as stretches of indices.
+/// What a part holds, as segments of indices.
 void add_pieces(std::size_t part, const std::vector<std::uint64_t>& index,
                 std::vector<Piece>& pieces) {
   for (std::size_t row = 0; row < index.size(); ++row) {
@@ -86,7 +87,7 @@ void check_gaps(const IndexSet& missing, std::uint64_t count) {
 
 /// A part that stopped early says so: what it lacks is missing, not forgotten.
 struct Gathered {
-  Imprint imprint;
+  Fingerprint fingerprint;
   std::vector<Piece> pieces;
   std::vector<Session> sessions;
 };
@@ -95,9 +96,10 @@ Gathered gather(Parts& parts) {
   Gathered all;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const StudyFile& part = parts.at(p);
-    if (p == 0) all.imprint = part.imprint();
-    check_same_study(part, all.imprint, parts.name(0));
-    all.imprint.realisations = std::max(all.imprint.realisations, part.imprint().realisations);
+    if (p == 0) all.fingerprint = part.fingerprint();
+    check_same_study(part, all.fingerprint, parts.name(0));
+    all.fingerprint.realisations =
+        std::max(all.fingerprint.realisations, part.fingerprint().realisations);
     part.verify();
     add_pieces(p, part.index(), all.pieces);
     for (const Session& session : part.sessions()) all.sessions.push_back(session);
@@ -202,20 +204,20 @@ void PartsCollector::add(const Piece& piece) {
 }  // namespace
 
 MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
-                  const SummariseImprint& summarise, const MergeOptions& options) {
+                  const SummariseFingerprint& summarise, const MergeOptions& options) {
   Parts parts(paths);
   Gathered all = gather(parts);
   check_once(all.pieces, parts);
-  const IndexRange range{0, all.imprint.realisations};
+  const IndexRange range{0, all.fingerprint.realisations};
   IndexSet there;
   for (const Piece& piece : all.pieces) there.add(piece.range);
   const IndexSet missing = there.missing(range);
   if (!options.allow_gaps) check_gaps(missing, range.size());
 
-  StudyResults results{.imprint = all.imprint, .range = range, .sessions = all.sessions};
-  if (options.text) results.imprint.text = *options.text;
-  results.table.columns = all.imprint.columns;
-  results.table.values.resize(all.imprint.columns.size());
+  StudyResults results{.fingerprint = all.fingerprint, .range = range, .sessions = all.sessions};
+  if (options.text) results.fingerprint.text = *options.text;
+  results.table.columns = all.fingerprint.columns;
+  results.table.values.resize(all.fingerprint.columns.size());
   SeriesSource series;
   PartsCollector collector(parts, results, series,
                            output.target().has_parent_path() ? output.target().parent_path() : ".");
@@ -228,7 +230,7 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
   }
   series.pressure = [&](std::size_t k) { return parts.at(kept[k].part).series(kept[k].row); };
   results.reuse = take_reuse(results.table);
-  results.summary = summarise(results.imprint, results.table);
+  results.summary = summarise(results.fingerprint, results.table);
   if (options.copy) catalogue.clear();
   write_study_file(output, results, series, catalogue);
   MergeReport report{
@@ -239,9 +241,9 @@ MergeReport merge(const std::vector<fs::path>& paths, OutputFile& output,
 }
 
 MergeReport merge(const std::vector<fs::path>& paths, const fs::path& output,
-                  const SummariseImprint& summarise, const MergeOptions& options) {
+                  const SummariseFingerprint& summarise, const MergeOptions& options) {
   OutputFile file(output, {.own = own::hdf5, .inputs = paths});
   return merge(paths, file, summarise, options);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

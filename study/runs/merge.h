@@ -6,7 +6,7 @@
 
 #include "study/runs/assemble.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 struct MergeOptions {
   bool copy = false;        ///< all data in one file; else a catalogue that refers to the parts
@@ -21,17 +21,18 @@ struct MergeReport {
 };
 
 /// The summary is made of what the first part tells of the study.
-using SummariseImprint = std::function<Summary(const Imprint& imprint, const Table& table)>;
+using SummariseFingerprint =
+    std::function<Summary(const Fingerprint& fingerprint, const Table& table)>;
 
 /// Puts parts of a study together, in the order of their indices whatever order they are given in.
 /// \throws InputError for a part of another study, a part that is not what its manifest says, an
 /// index in two parts, or one in none
 MergeReport merge(const std::vector<std::filesystem::path>& parts, OutputFile& output,
-                  const SummariseImprint& summarise, const MergeOptions& options = {});
+                  const SummariseFingerprint& summarise, const MergeOptions& options = {});
 
 /// The same into a file of this name, which may hold a result of asdic's.
 MergeReport merge(const std::vector<std::filesystem::path>& parts,
-                  const std::filesystem::path& output, const SummariseImprint& summarise,
+                  const std::filesystem::path& output, const SummariseFingerprint& summarise,
                   const MergeOptions& options = {});
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

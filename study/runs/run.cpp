@@ -10,7 +10,7 @@
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// What travels through the pipeline.
@@ -76,4 +76,4 @@ std::uint64_t run(const Realise& realise, const NextIndex& next, const RowSink& 
   return done;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

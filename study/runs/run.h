@@ -6,7 +6,7 @@
 
 #include "study/measures/realisation.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Makes the row of an index: thread-safe, a pure function.
 using Realise = std::function<Row(std::uint64_t index)>;
@@ -29,4 +29,4 @@ struct RunOptions {
 std::uint64_t run(const Realise& realise, const NextIndex& next, const RowSink& sink,
                   const RunOptions& options = {});
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,12 +5,12 @@
 #include <chrono>
 
 #include "core/error.h"
-#include "io/output/own_files.h"
+#include "io/hdf5/own_files.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 Work work_of(const Study& study, const Realise& realise) {
-  return {.imprint = imprint_of(study),
+  return {.fingerprint = fingerprint_of(study),
           .realise =
               [realise](std::uint64_t index) {
                 Row row = realise(index);
@@ -39,11 +39,11 @@ Work work_of(const Study& study, const Realiser& realiser) {
 Journals::Journals(const std::filesystem::path& output, const Work& work,
                    const std::filesystem::path& own, bool retry) {
   if (!own.empty()) {
-    journals_.push_back(std::make_unique<Journal>(own, work.imprint));
+    journals_.push_back(std::make_unique<Journal>(own, work.fingerprint));
     own_ = journals_.front().get();
   }
   for (const std::filesystem::path& path : journals_of(output))
-    if (path != own) journals_.push_back(std::make_unique<Journal>(path, work.imprint));
+    if (path != own) journals_.push_back(std::make_unique<Journal>(path, work.fingerprint));
   if (work.skips && !retry) return;
   for (const auto& journal : journals_) journal->drop_skipped();
 }
@@ -68,8 +68,8 @@ std::vector<const Journal*> Journals::all() const {
 }
 
 void Journals::rows(IndexRange range, const std::function<void(Row&&)>& take) const {
-  for (const Stretch& stretch : stretches(all(), range))
-    journals_[stretch.journal]->rows(stretch.range, false, take);
+  for (const Segment& segment : segments(all(), range))
+    journals_[segment.journal]->rows(segment.range, false, take);
 }
 
 void Journals::close() {
@@ -89,15 +89,15 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
     return InputError({.where = output.string(),
                        .got = got,
                        .expected = "no such file, or results of this study (identity " +
-                                   work.imprint.identity +
+                                   work.fingerprint.identity +
                                    "); another output, or --fresh to write over it"});
   };
   try {
     const StudyFile file(output);
-    if (file.imprint().identity != work.imprint.identity)
+    if (file.fingerprint().identity != work.fingerprint.identity)
       throw refuse("results of another study" +
-                   how_changed(file.imprint().text, work.imprint.text) + " (identity " +
-                   file.imprint().identity + ")");
+                   how_changed(file.fingerprint().text, work.fingerprint.text) + " (identity " +
+                   file.fingerprint().identity + ")");
     const IndexRange there = file.range();
     const bool whole = file.complete() && file.stopped_by().empty();
     if (there.first < range.first || there.end > range.end || (until && whole))
@@ -106,8 +106,8 @@ Existing look_at(const std::filesystem::path& output, const Work& work, IndexRan
                         .expected = "none beyond the " + index_text(range) +
                                     " that are asked for, which would be all that is kept; another "
                                     "output, or --fresh to write over it"});
-    const bool same = whole && there == range && file.imprint().text == work.imprint.text &&
-                      file.imprint().overrides == work.imprint.overrides;
+    const bool same = whole && there == range && file.fingerprint().text == work.fingerprint.text &&
+                      file.fingerprint().overrides == work.fingerprint.overrides;
     return same ? Existing::complete : Existing::partial;
   } catch (const InputError& fault) {
     if (fault.fault().expected.ends_with("--fresh to write over it")) throw;
@@ -281,11 +281,11 @@ std::string until_text(double half_width) {
 
 void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& estimate,
                   Journals& journals, OutputFile& output, StudyOutcome& outcome) {
-  Imprint imprint = work.imprint;
+  Fingerprint fingerprint = work.fingerprint;
   std::string stopped_by;
   if (run.until && estimate.enough() && *estimate.enough() < run.range.size()) {
     outcome.range.end = run.range.first + *estimate.enough();
-    imprint.realisations = outcome.range.end;
+    fingerprint.realisations = outcome.range.end;
     stopped_by = until_text(*run.until);
     outcome.stopped_early = true;
   }
@@ -293,7 +293,7 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
   outcome.left_out = estimate.left_out();
   outcome.question = estimate.name();
   outcome.complete =
-      assemble(output, imprint, outcome.range, journals.all(), work.summarise, stopped_by);
+      assemble(output, fingerprint, outcome.range, journals.all(), work.summarise, stopped_by);
   outcome.written = true;
   std::vector<Session> sessions;
   for (const Journal* journal : journals.all())
@@ -367,4 +367,4 @@ StudyOutcome run_study(const Work& work, const StudyRun& run) {
   return outcome;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -12,11 +12,11 @@
 #include "study/runs/run.h"
 #include "study/summary/until.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// A study as the machinery sees it: what it is, how a row is made, what is made of rows.
 struct Work {
-  Imprint imprint{};
+  Fingerprint fingerprint{};
   Realise realise{};
   Summarise summarise{};
   std::function<RunningEstimate()> estimate{};  ///< without a row
@@ -136,4 +136,4 @@ void write_output(const Work& work, const StudyRun& run, const OrderedEstimate& 
 void import_rows(const std::filesystem::path& file, IndexRange range, bool skipped,
                  Journal& journal);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "io/digest.h"
+#include "io/files/digest.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 using Json = nlohmann::json;
@@ -56,7 +56,7 @@ StudyFile::StudyFile(const std::filesystem::path& path)
     const Json manifest = Json::parse(manifest_);
     range_ = {manifest.at("first"), manifest.at("end")};
     complete_ = manifest.at("complete");
-    imprint_ = {
+    fingerprint_ = {
         .identity = manifest.at("identity"),
         .title = file_.attribute_text("", "title"),
         .seed = std::stoull(file_.attribute_text("", "seed")),
@@ -111,7 +111,7 @@ std::vector<std::uint64_t> StudyFile::index() const {
 }
 
 Table StudyFile::table() const {
-  Table table{.columns = imprint_.columns, .index = index(), .valid = {}, .values = {}};
+  Table table{.columns = fingerprint_.columns, .index = index(), .valid = {}, .values = {}};
   const auto valid = file_.read<std::int8_t>("valid");
   table.valid.assign(valid.begin(), valid.end());
   for (const Column& column : table.columns)
@@ -228,11 +228,12 @@ void StudyFile::check_each_part() const {
   for (const std::filesystem::path& name : parts()) {
     const StudyFile part(name);
     part.verify();
-    if (part.imprint().identity != imprint_.identity)
-      throw InputError({.where = name.string(),
-                        .got = "a part of another study (identity " + part.imprint().identity + ")",
-                        .expected = "the one that " + path().string() +
-                                    " was merged of (identity " + imprint_.identity + ")"});
+    if (part.fingerprint().identity != fingerprint_.identity)
+      throw InputError(
+          {.where = name.string(),
+           .got = "a part of another study (identity " + part.fingerprint().identity + ")",
+           .expected = "the one that " + path().string() + " was merged of (identity " +
+                       fingerprint_.identity + ")"});
   }
 }
 
@@ -284,4 +285,4 @@ void StudyFile::verify() const {
   }
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

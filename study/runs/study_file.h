@@ -7,18 +7,18 @@
 #include <variant>
 #include <vector>
 
-#include "io/hdf5_file.h"
-#include "io/output/output_file.h"
-#include "study/journal/imprint.h"
+#include "io/files/output_file.h"
+#include "io/hdf5/hdf5_file.h"
+#include "study/journal/fingerprint.h"
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
 
 // The file of a study, or of a part of one: docs/formats/study-results.md.
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// All that such a file tells but the time series, which are too large to be held.
 struct StudyResults {
-  Imprint imprint{};
+  Fingerprint fingerprint{};
   IndexRange range{};        ///< that the file was to hold
   std::string stopped_by{};  ///< "--until 0.02": why it holds fewer than the study asks for
   Table table{};             ///< sorted by index; inputs and measures
@@ -64,7 +64,7 @@ class StudyFile {
   explicit StudyFile(const std::filesystem::path& path);
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
-  [[nodiscard]] const Imprint& imprint() const noexcept { return imprint_; }
+  [[nodiscard]] const Fingerprint& fingerprint() const noexcept { return fingerprint_; }
   [[nodiscard]] IndexRange range() const noexcept { return range_; }
   [[nodiscard]] bool complete() const noexcept { return complete_; }
   [[nodiscard]] std::string stopped_by() const;
@@ -95,7 +95,7 @@ class StudyFile {
   void check_each_part() const;
 
   Hdf5File file_;
-  Imprint imprint_;
+  Fingerprint fingerprint_;
   IndexRange range_;
   bool complete_ = false;
   std::string manifest_;
@@ -113,4 +113,4 @@ struct SeriesDataset {
   return shape.size() < 2 ? 0 : 1;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

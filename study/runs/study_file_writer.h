@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "io/digest.h"
+#include "io/files/digest.h"
 #include "io/hdf5/scale.h"
 #include "study/runs/study_file.h"
 
 // Inside of write_study_file(), for its own .cpp files.
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Writes the parts of a study's file one after the other, and notes each in the manifest.
 class StudyFileWriter {
@@ -99,4 +99,4 @@ class StudyFileWriter {
   std::map<std::string, Noted> noted_;
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "study/sampling/sobol.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 std::string_view name(Design design) noexcept {
   switch (design) {
@@ -81,4 +81,4 @@ void PointDesign::point(std::uint64_t index, std::span<double> u) const noexcept
   }
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// How the points of the input space are chosen. docs/theory/designs.md
 enum class Design { random, latin_hypercube, sobol, grid };
@@ -38,4 +38,4 @@ class PointDesign {
 [[nodiscard]] double uniform_draw(std::uint64_t seed, std::uint64_t index,
                                   std::uint32_t dimension) noexcept;
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

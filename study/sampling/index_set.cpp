@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 std::string index_text(const IndexRange& range) {
   return std::to_string(range.first) + ":" + std::to_string(range.end);
@@ -70,4 +70,4 @@ std::string index_text(const IndexSet& set) {
   return text;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

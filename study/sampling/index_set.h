@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Indices first … end − 1 of realisations.
 struct IndexRange {
@@ -46,4 +46,4 @@ class IndexSet {
 /// "0:100, 200:300 and 7 more"; "none".
 [[nodiscard]] std::string index_text(const IndexSet& set);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

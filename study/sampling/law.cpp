@@ -6,7 +6,7 @@
 
 #include "core/units.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 Tails tails_of(const Uniform& law, double x) noexcept {
@@ -140,4 +140,4 @@ double CutLaw::distribution(double x) const noexcept {
                              : (at_low_.upper - t.upper) / share();
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

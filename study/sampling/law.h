@@ -3,7 +3,7 @@
 #include <limits>
 #include <variant>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// An interval, or one value.
 struct Span {
@@ -72,4 +72,4 @@ class CutLaw {
 /// Inverse of the standard normal distribution by its smaller tail. \param p  P(Z > z), 0 < p ≤ ½
 [[nodiscard]] double normal_upper_quantile(double p) noexcept;
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

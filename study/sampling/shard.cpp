@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 std::optional<std::uint64_t> whole_number(std::string_view text) {
@@ -78,4 +78,4 @@ IndexRange parse_shard(const std::string& text, std::uint64_t count,
   return shard(numbers->first, numbers->end, count);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 
 #include "study/sampling/index_set.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// "A:B" of --realisations: indices A … B − 1, counted from 0.
 /// \param count  realisations of the study
@@ -25,4 +25,4 @@ using Environment = std::function<std::optional<std::string>(const std::string& 
 /// The I-th of N parts, I from 1.
 [[nodiscard]] IndexRange shard(std::uint64_t i, std::uint64_t n, std::uint64_t count) noexcept;
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// A primitive polynomial x^s + a₁x^(s−1) + … + a_(s−1)x + 1 over GF(2), its inner coefficients as
@@ -127,4 +127,4 @@ std::uint32_t owen_scrambled(std::uint32_t digits, std::uint64_t seed,
   return result;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

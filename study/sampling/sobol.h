@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 inline constexpr std::size_t most_sobol_dimensions = 64;
 
@@ -16,4 +16,4 @@ inline constexpr std::size_t most_sobol_dimensions = 64;
 [[nodiscard]] std::uint32_t owen_scrambled(std::uint32_t digits, std::uint64_t seed,
                                            std::uint32_t dimension) noexcept;
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 std::string last_name(std::string_view key) { return std::string(key.substr(key.rfind('.') + 1)); }
@@ -191,4 +191,4 @@ void apply(const Variable& variable, std::span<const double> values, std::size_t
              variable.law);
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -11,7 +11,7 @@
 #include "io/text/toml_value.h"
 #include "study/sampling/law.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// A number of a continuous law, the same at all keys.
 struct NumberLaw {
@@ -91,4 +91,4 @@ void append_values(const Variable& variable, std::span<const double> u, std::siz
 void apply(const Variable& variable, std::span<const double> values, std::size_t choice,
            TomlValue& scenario);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -8,7 +8,7 @@
 #include "study/plan/no_value.h"
 #include "study/sampling/law.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// The continued fraction of I_x(a, b), for x < (a + 1)/(a + b + 2).
@@ -124,4 +124,4 @@ double correlation(std::span<const double> a, std::span<const double> b) noexcep
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 
 #include "study/plan/summary_plan.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 struct Interval {
   double low = 0.0, high = 0.0;
@@ -59,4 +59,4 @@ class Moments {
 /// Pearson's correlation; 0 where either does not vary.
 [[nodiscard]] double correlation(std::span<const double> a, std::span<const double> b) noexcept;
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -4,7 +4,7 @@
 #include "study/summary/summary.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 RunningEstimate::RunningEstimate(const Study& study) : level_(study.summary.confidence) {
   const std::vector<Column> all = columns(study);
@@ -48,4 +48,4 @@ std::optional<Estimate> RunningEstimate::estimate() const {
                   .count = count_};
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

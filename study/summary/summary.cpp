@@ -9,7 +9,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 bool is_proportion(const Column& column) noexcept {
   const auto is = [&](std::string_view name) {
@@ -123,4 +123,4 @@ Summary summary_of(const Study& study, const Table& table) {
           .intervals = std::move(intervals)};
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 
 #include "study/measures/realisation.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// Rows of a study, by column; sorted by index.
 struct Table {
@@ -63,4 +63,4 @@ class RunningEstimate {
   double mean_ = 0.0, squares_ = 0.0;  // Welford
 };
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 constexpr std::size_t few_values = 20;    // of an axis whose values are bins of their own …
@@ -200,4 +200,4 @@ std::vector<SummaryTable> tables_by(const Study& study, const std::vector<Summar
   return all;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

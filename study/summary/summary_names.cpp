@@ -4,7 +4,7 @@
 #include "core/error.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// Rows that fall into bins, or few enough of them to be taken value by value: both ways of naming
@@ -76,4 +76,4 @@ void check_summary_names(const Study& study) {
   }
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

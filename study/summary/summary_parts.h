@@ -5,7 +5,7 @@
 
 #include "study/summary/summary.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 // The tables of a summary, one function each. docs/theory/studies.md
 
@@ -45,4 +45,4 @@ void check_summary_names(const Study& study);
 [[nodiscard]] std::vector<SummaryTable> sensitivity_table(const SummaryPlan& plan,
                                                           const Table& table);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -5,7 +5,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 constexpr std::size_t most_points = 200;
@@ -110,4 +110,4 @@ std::vector<SummaryTable> roc_tables(const SummaryPlan& plan, const Table& table
   return all;
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

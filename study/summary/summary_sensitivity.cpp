@@ -5,7 +5,7 @@
 #include "study/summary/intervals.h"
 #include "study/summary/summary_parts.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 namespace {
 
 /// First-order index S = Var(E[Y|X])/Var(Y) by groups of rows of like x, the share of the variance
@@ -149,4 +149,4 @@ std::vector<SummaryTable> convergence_table(const SummaryPlan& plan, const Table
   return {made};
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

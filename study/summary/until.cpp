@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "study/sampling/design.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 bool is_look(std::uint64_t count) noexcept {
   if (count < 100) return false;
@@ -47,4 +47,4 @@ void check_until(const Study& study) {
                         "there are, so it cannot stop early"});
 }
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

@@ -6,7 +6,7 @@
 #include "study/sampling/index_set.h"
 #include "study/summary/summary.h"
 
-namespace asdic::study {
+namespace asdic::detail::study {
 
 /// When a study has seen enough: the confidence interval of its first answer is as narrow as asked
 /// for, looked at after fixed numbers of realisations only, those with one digit that is not 0,
@@ -50,4 +50,4 @@ class OrderedEstimate {
 /// \throws InputError ("--until") for designs whose points depend on how many there are
 void check_until(const Study& study);
 
-}  // namespace asdic::study
+}  // namespace asdic::detail::study

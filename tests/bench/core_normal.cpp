@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 void normals(benchmark::State& state) {
@@ -29,4 +29,4 @@ void normals_one_by_one(benchmark::State& state) {
 BENCHMARK(normals_one_by_one);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -33,7 +33,7 @@ extern "C" [[gnu::noinline]] void asdic_counted(const std::function<void()>& ker
   asm volatile("" ::: "memory");
 }
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Keeps the compiler from leaving out what nobody reads.
@@ -129,7 +129,7 @@ Kernel scatterers(double spread, std::size_t count = 10'000, int phones = 4) {
   const Returns returns =
       support::RandomReturns{.count = count, .last = seconds, .spread = spread}.make();
   const auto synthesizer = std::make_shared<const Synthesizer>(
-      Pulse({.kind = PulseKind::cw, .duration = 1.0}), recording, spread);
+      Pulse({.waveform = Cw{}, .duration = 1.0}), recording, spread);
   return [returns, synthesizer, array = line_array(phones, 0.1875, 0.0, 0.0)] {
     keep(synthesizer->baseband(returns, array.phones));
   };
@@ -137,7 +137,7 @@ Kernel scatterers(double spread, std::size_t count = 10'000, int phones = 4) {
 
 /// 10 s of Wenz's noise, 4 phones at 16 kHz.
 Kernel noise(NoiseCoherence coherence) {
-  const NoiseSettings wenz{.spectral_level_db = {}, .law = WenzNoise{}, .thermal = true};
+  const NoiseSettings wenz{.law = WenzNoise{}, .thermal = true};
   const auto block = std::make_shared<const BlockNoise>(
       [wenz](double f) { return noise_density(wenz, f); }, 16000.0, 0.0,
       line_array(4, 0.1875, 0.0, 0.3).phones, coherence, NoiseDirections{}, 1500.0, NoiseKey{});
@@ -151,7 +151,7 @@ Kernel noise(NoiseCoherence coherence) {
 Scenario one_minute() {
   Scenario s = support::thesis(support::deep_ocean("pchip").water);
   s.environment.absorption = Thorp{};
-  s.transmitters[0].taper = Taper::hann;
+  std::get<LineBeam>(s.transmitters[0].beam).taper = Taper::hann;
   s.targets = {support::target({23e3, 9e3, 125.0}, 30.0, {-4.0, 0.0, 0.0})};
   s.reverberation.enabled = true;
   s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
@@ -203,25 +203,25 @@ const std::vector<Named> kernels = {
 };
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail
 
 int main(int count, char** argument) {
   if (count < 2) {
-    for (const auto& kernel : asdic::kernels) std::puts(kernel.name);
+    for (const auto& kernel : asdic::detail::kernels) std::puts(kernel.name);
     return 0;
   }
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   std::size_t scatterers = 0;
   int phones = 0;
   if (std::sscanf(argument[1], "scatterers:%zu:%d", &scatterers, &phones) == 2) {
-    const asdic::Kernel run = asdic::scatterers(5e-4, scatterers, phones);
+    const asdic::detail::Kernel run = asdic::detail::scatterers(5e-4, scatterers, phones);
     run();
     asdic_counted(run, 1);
     return 0;
   }
-  for (const auto& kernel : asdic::kernels) {
+  for (const auto& kernel : asdic::detail::kernels) {
     if (std::strcmp(kernel.name, argument[1]) != 0) continue;
-    const asdic::Kernel run = kernel.make();
+    const asdic::detail::Kernel run = kernel.make();
     run();
     asdic_counted(run, count > 2 ? std::atoi(argument[2]) : 1);
     return 0;

@@ -8,8 +8,8 @@
 #include "raytrace/runs/arrivals_run.h"
 
 // Arrivals of the two deep-source cases, search alone, on one core. BELLHOP at a step of 5 m, whose
-// delays are right to 2 µs: 4.55 and 4.57 s (tests/data/bellhop-perf/README.md).
-namespace asdic {
+// delays are right to 2 µs: 4.55 and 4.57 s (tests/bench/data/bellhop-perf/README.md).
+namespace asdic::detail {
 namespace {
 
 void arrivals(benchmark::State& state, const char* name, double bellhop_seconds) {
@@ -32,4 +32,4 @@ void BM_DeepSourcePchip(benchmark::State& state) {
 BENCHMARK(BM_DeepSourcePchip)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,14 +9,14 @@
 
 // The coherent field of 5000 beams on 501 × 201 receivers to 100 km, tracing and accumulation;
 // threads as told. BELLHOP on one core of the same class of machine: hat 0.63 s, Gaussian 1.8 s, at
-// a step of 500 m (tests/data/bellhop-perf/README.md).
-namespace asdic {
+// a step of 500 m (tests/bench/data/bellhop-perf/README.md).
+namespace asdic::detail {
 namespace {
 
 void field(benchmark::State& state, const char* name, FieldMethod method) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(0)));
-  const auto root = std::filesystem::path(ASDIC_TEST_DATA) / "bellhop-perf" / name;
+  const auto root = std::filesystem::path(ASDIC_OWN_DATA) / "bellhop-perf" / name;
   const PropagationCase run_case = bellhop::read_case(root).run_case;
   const RayTracer tracer(run_case.environment, run_case.frequency);
   const BeamFan fan =
@@ -44,4 +44,4 @@ void BM_HatFieldPlain(benchmark::State& state) {
 BENCHMARK(BM_HatFieldPlain)->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

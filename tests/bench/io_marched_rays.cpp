@@ -14,7 +14,7 @@
 // step of 5 m that the goals name (and one more for every facet and every line of the water, for it
 // shortens its steps there), at its 10 M steps/s; `..._converged` at the step of the case's
 // converged run.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 struct ReferenceCase {
@@ -67,4 +67,4 @@ void BM_MarchedRays(benchmark::State& state) {
 BENCHMARK(BM_MarchedRays)->DenseRange(0, 4)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

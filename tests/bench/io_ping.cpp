@@ -6,13 +6,13 @@
 #include <memory>
 #include <string>
 
-#include "io/ping_file.h"
-#include "io/scenario_reader.h"
+#include "io/ping/ping_file.h"
+#include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
 
 // The ping of the thesis: 60 s on 16 phones at 16 kHz, with target, reverberation and noise,
 // written to HDF5.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 double peak_memory_mb() {
@@ -100,4 +100,4 @@ void levels_of_ping(benchmark::State& state) {
 BENCHMARK(levels_of_ping)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -9,7 +9,7 @@
 #include "processing/matched_filter.h"
 #include "sonar/scenario/array.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double rate = 16000.0, seconds = 60.0;
@@ -20,10 +20,9 @@ void detections(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(state.range(0)));
   const auto swept = static_cast<double>(state.range(1));
-  const PulseSettings tone{.kind = PulseKind::cw, .duration = 1.0};
-  const PulseSettings sweep{.kind = PulseKind::lfm,
-                            .start_frequency = 4000.0 - 0.5 * swept,
-                            .end_frequency = 4000.0 + 0.5 * swept,
+  const PulseSettings tone{.waveform = Cw{}, .duration = 1.0};
+  const PulseSettings sweep{.waveform = Lfm{.start_frequency = 4000.0 - 0.5 * swept,
+                                            .end_frequency = 4000.0 + 0.5 * swept},
                             .duration = 1.0,
                             .window = PulseWindow::tukey};
   const Replica pulse(std::span<const float>(replica(Pulse(swept > 0.0 ? sweep : tone), rate)),
@@ -34,9 +33,9 @@ void detections(benchmark::State& state) {
   const std::vector<double> bank = doppler_bank(pulse, 0.0214);
   const double width = 2.0 * (0.0214 * 4000.0 + 0.75 * pulse.bandwidth());
   for (auto _ : state) {
-    const Baseband heard =
+    const Baseband received =
         to_baseband(pressure, 16, rate, 0.0, {.centre = 4000.0, .width = width}, 1.1);
-    benchmark::DoNotOptimize(detect(heard, array.phones, 1500.0, pulse, bank, {}));
+    benchmark::DoNotOptimize(detect(received, array.phones, 1500.0, pulse, bank, {}));
   }
   state.counters["filters"] = static_cast<double>(bank.size());
   state.counters["times real time"] =
@@ -48,4 +47,4 @@ BENCHMARK(detections)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

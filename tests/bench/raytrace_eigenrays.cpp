@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/units.h"
+#include "raytrace/paths/boundary_paths.h"
 #include "raytrace/paths/eigenrays.h"
-#include "raytrace/paths/ground_paths.h"
 #include "raytrace/paths/ray_fan.h"
 #include "raytrace/paths/trace_ray.h"
 #include "raytrace/runs/arrivals_run.h"
@@ -14,7 +14,7 @@
 
 // Eigenrays, many receivers, and the surface patches of a whole ping, in the deep ocean of the
 // thesis: source at 4500 m, target at 125 m and 30 km.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr const char* laws[] = {"c-linear", "n2-linear", "spline", "pchip", "munk"};
@@ -53,8 +53,8 @@ void BM_SurfacePathsOfAPing(benchmark::State& state) {
   const EigenraySolver solver(deep_ocean(state.range(0)));
   std::size_t paths = 0;
   for (auto _ : state)
-    paths += ground_paths(solver, 4500.0, BoundaryKind::surface, 70.0, 46e3, 4000.0,
-                          {.max_surface_bounces = 1, .max_bottom_bounces = 1})
+    paths += boundary_paths(solver, 4500.0, BoundaryKind::surface, 70.0, 46e3, 4000.0,
+                            {.max_surface_bounces = 1, .max_bottom_bounces = 1})
                  .size();
   state.counters["paths/s"] =
       benchmark::Counter(static_cast<double>(paths), benchmark::Counter::kIsRate);
@@ -164,4 +164,4 @@ void BM_EigenraysToANewDepth(benchmark::State& state) {
 BENCHMARK(BM_EigenraysToANewDepth)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -10,7 +10,7 @@
 // The marching solver's rates: dynamic rays (with delay, q, p, bounces and caustics) of fans over
 // shelves, slopes, ridges, swell and fronts, on one core. A segment goes from line to line of the
 // water, to a boundary or a turning point.
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// Where rays pass one range; nothing is stored.
@@ -67,4 +67,4 @@ void BM_SteepFan(benchmark::State& state) {
 BENCHMARK(BM_SteepFan)->DenseRange(0, 9)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -6,13 +6,13 @@
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/scenario/array.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double rate = 16000.0;
 
 BlockNoise noise_of(NoiseCoherence coherence) {
-  const NoiseSettings wenz{.spectral_level_db = {}, .law = WenzNoise{}, .thermal = true};
+  const NoiseSettings wenz{.law = WenzNoise{}, .thermal = true};
   return {[wenz](double f) { return noise_density(wenz, f); },
           rate,
           0.0,
@@ -48,4 +48,4 @@ void factors(benchmark::State& state) {
 BENCHMARK(factors)->DenseRange(1, 2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -11,7 +11,7 @@
 #include "support/deep_ocean.h"
 #include "support/thesis.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 /// The full density at 100 Hz of bandwidth: rings for a Hann-windowed LFM, 36 sectors, one minute;
@@ -20,7 +20,7 @@ struct FullDensity {
   explicit FullDensity(bool bistatic, double speed)
       : scenario(support::thesis(SoundSpeedProfile::isovelocity(1500.0))),
         paths(scenario.environment, scenario.transect),
-        pulse({.kind = PulseKind::lfm, .duration = 1.0}),
+        pulse({.waveform = Lfm{}, .duration = 1.0}),
         pattern(scenario.transmitters[0], 0.375) {
     scenario.platforms[0].track.start.position = {0.0, 0.0, 1000.0};
     scenario.platforms[0].track.start.velocity = {speed, 0.0, 0.0};
@@ -49,7 +49,10 @@ void full_density(benchmark::State& state) {
   const ReverberationModel model(sea.scenario, sea.paths, sea.pulse);
   const double span = 2.2 * double(state.range(1)) / 1300.0;
   const Synthesizer synthesizer(sea.pulse, sea.minute, span);
-  const ReverberationContext context{.pattern = sea.pattern, .pulse = sea.pulse, .latest = 60.0};
+  const ReverberationContext context{.geometry = PingGeometry(sea.scenario, {}, 1),
+                                     .pattern = sea.pattern,
+                                     .pulse = sea.pulse,
+                                     .latest = 60.0};
   static_cast<void>(model.ping(context));  // the fans, traced once
   std::size_t scatterers = 0, returns = 0;
   for (auto _ : state) {
@@ -75,7 +78,10 @@ void scatter(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
   const FullDensity sea(state.range(0) != 0, double(state.range(1)));
   const ReverberationModel model(sea.scenario, sea.paths, sea.pulse);
-  const ReverberationContext context{.pattern = sea.pattern, .pulse = sea.pulse, .latest = 60.0};
+  const ReverberationContext context{.geometry = PingGeometry(sea.scenario, {}, 1),
+                                     .pattern = sea.pattern,
+                                     .pulse = sea.pulse,
+                                     .latest = 60.0};
   const PingReverberation ping = model.ping(context);
   for (auto _ : state) benchmark::DoNotOptimize(ping.returns());
 }
@@ -93,16 +99,12 @@ BENCHMARK(scatter)
 Scenario one_minute(double sweep, PulseWindow window) {
   Scenario s = support::thesis(support::deep_ocean("pchip").water);
   s.environment.absorption = Thorp{};
-  s.transmitters[0].taper = Taper::hann;
+  std::get<LineBeam>(s.transmitters[0].beam).taper = Taper::hann;
   s.pulse.duration = 1.0;
   s.pulse.window = window;
-  if (sweep > 0.0) {
-    s.pulse.kind = PulseKind::lfm;
-    s.pulse.start_frequency = 4000.0 - 0.5 * sweep;
-    s.pulse.end_frequency = 4000.0 + 0.5 * sweep;
-  }
+  if (sweep > 0.0) s.pulse.waveform = Lfm{4000.0 - 0.5 * sweep, 4000.0 + 0.5 * sweep};
   s.arrays[0] = line_array(16, 0.1875, 0.0, 0.0);
-  s.noise.spectral_level_db = 40.0;
+  s.noise.law = WhiteNoise{40.0};
   s.reverberation.enabled = true;
   s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = 1;
   s.pings.count = 1000;
@@ -147,4 +149,4 @@ BENCHMARK(ping_sequence)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -7,7 +7,7 @@
 #include "sonar/synthesis/synthesis.h"
 #include "support/random_returns.h"
 
-namespace asdic {
+namespace asdic::detail {
 namespace {
 
 constexpr double rate = 16000.0, seconds = 60.0;
@@ -19,8 +19,8 @@ Returns reverberation(std::size_t count, double spread) {
   return support::RandomReturns{.count = count, .last = seconds, .spread = spread}.make();
 }
 
-const PulseSettings hann_tone = {.kind = PulseKind::cw, .duration = 1.0};
-const PulseSettings hann_sweep = {.kind = PulseKind::lfm, .duration = 1.0};
+const PulseSettings hann_tone = {.waveform = Cw{}, .duration = 1.0};
+const PulseSettings hann_sweep = {.waveform = Lfm{}, .duration = 1.0};
 
 /// 100 000 patches at 16 phones. Argument: span of Doppler factors, ±n·10⁻⁴.
 void baseband(benchmark::State& state, const PulseSettings& settings) {
@@ -50,11 +50,9 @@ void wide_sweep(benchmark::State& state) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
   const ReceiverArray many = line_array(static_cast<int>(state.range(1)), 0.1875, 0.0, 0.0);
   const Returns returns = reverberation(static_cast<std::size_t>(state.range(0)), 0.0);
-  const Synthesizer synthesizer(Pulse({.kind = PulseKind::lfm,
-                                       .start_frequency = 3000.0,
-                                       .end_frequency = 7000.0,
-                                       .duration = 1.0}),
-                                minute, 0.0);
+  const Synthesizer synthesizer(
+      Pulse({.waveform = Lfm{.start_frequency = 3000.0, .end_frequency = 7000.0}, .duration = 1.0}),
+      minute, 0.0);
   for (auto _ : state) benchmark::DoNotOptimize(synthesizer.baseband(returns, many.phones));
   state.counters["returns·phones/s"] = benchmark::Counter(
       double(returns.size() * many.phones.size()), benchmark::Counter::kIsIterationInvariantRate);
@@ -104,4 +102,4 @@ void planning(benchmark::State& state) {
 BENCHMARK(planning)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace asdic
+}  // namespace asdic::detail

@@ -4,7 +4,7 @@
 // .arr: what can be read is written, and the same bytes come of it from then on.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   std::string first, second;
   if (fuzz::refuses([&] {
         first = bellhop::arrivals_file_bytes(

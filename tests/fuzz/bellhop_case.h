@@ -2,7 +2,7 @@
 #include "fuzz/fuzz_target.h"
 #include "io/bellhop/case_writer.h"
 
-namespace asdic::fuzz {
+namespace asdic::detail::fuzz {
 
 /// Reads a case; one that is read can be written, and what is written can be read.
 inline void read_and_write(const bellhop::Texts& texts) {
@@ -27,4 +27,4 @@ inline bellhop::Texts small_case(const char* top, const char* bottom, const char
           .companions = {}};
 }
 
-}  // namespace asdic::fuzz
+}  // namespace asdic::detail::fuzz

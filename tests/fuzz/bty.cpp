@@ -3,12 +3,12 @@
 // .bty and .ati: the same text as the sea floor, then as the sea surface of a small case.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string text(asdic::fuzz::text(data, size));
-  asdic::bellhop::Texts bottom = asdic::fuzz::small_case("CVW", "A~", "CG");
+  const std::string text(asdic::detail::fuzz::text(data, size));
+  asdic::detail::bellhop::Texts bottom = asdic::detail::fuzz::small_case("CVW", "A~", "CG");
   bottom.companions.emplace_back(".bty", text);
-  asdic::fuzz::read_and_write(bottom);
-  asdic::bellhop::Texts surface = asdic::fuzz::small_case("CVW ~", "A", "CG");
+  asdic::detail::fuzz::read_and_write(bottom);
+  asdic::detail::bellhop::Texts surface = asdic::detail::fuzz::small_case("CVW ~", "A", "CG");
   surface.companions.emplace_back(".ati", text);
-  asdic::fuzz::read_and_write(surface);
+  asdic::detail::fuzz::read_and_write(surface);
   return 0;
 }

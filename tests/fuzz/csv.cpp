@@ -7,7 +7,7 @@
 // Numbers in columns: what is read is finite, and every column is as long as there are lines.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   static const fuzz::Scratch folder;
   const auto path = folder.write("fuzz.csv", data, size);
   CsvTable table;

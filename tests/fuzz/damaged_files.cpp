@@ -11,13 +11,13 @@
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
-#include "io/input_file.h"
+#include "io/climatology/netcdf_grid.h"
+#include "io/files/input_file.h"
 #include "io/isolated/child.h"
-#include "io/netcdf_grid.h"
-#include "io/ping_file.h"
+#include "io/ping/ping_file.h"
 #include "io/processing/recordings.h"
-#include "io/result_file.h"
-#include "io/scenario_reader.h"
+#include "io/result/result_file.h"
+#include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
 #include "study/runs/study_file.h"
 #include "support/synthetic_study.h"
@@ -30,7 +30,7 @@
 
 namespace {
 
-using namespace asdic;
+using namespace asdic::detail;
 using Bytes = std::string;
 
 /// A small file that is whole, and all that may be asked of one.

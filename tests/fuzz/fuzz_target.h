@@ -11,7 +11,7 @@
 /// What libFuzzer calls, and replay.cpp where there is no libFuzzer.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-namespace asdic::fuzz {
+namespace asdic::detail::fuzz {
 
 inline std::string_view text(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
@@ -39,4 +39,4 @@ inline void insist(bool holds, const char* law) {
   std::abort();
 }
 
-}  // namespace asdic::fuzz
+}  // namespace asdic::detail::fuzz

@@ -1,11 +1,11 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 
 // The file that a scenario includes.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   static const fuzz::Scratch folder;
   folder.write("ocean.toml", data, size);
   static const std::string scenario = R"(include = "ocean.toml"

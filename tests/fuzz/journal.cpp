@@ -6,7 +6,7 @@
 // says, and their time series the shape that they say.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   static const fuzz::Scratch folder;
   study::remove_journal(folder / "fuzz.journal");
   const auto path = folder.write("fuzz.journal", data, size);

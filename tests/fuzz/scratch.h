@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace asdic::fuzz {
+namespace asdic::detail::fuzz {
 
 /// A folder in memory for readers that want files, gone with the program.
 class Scratch {
@@ -46,4 +46,4 @@ class Scratch {
   std::filesystem::path folder_;
 };
 
-}  // namespace asdic::fuzz
+}  // namespace asdic::detail::fuzz

@@ -13,8 +13,8 @@
 
 namespace {
 
-using namespace asdic;
-using namespace asdic::serve;
+using namespace asdic::detail;
+using namespace asdic::detail::serve;
 
 constexpr SessionLimits limits{.line_bytes = 4096, .nesting = 8};
 
@@ -71,7 +71,7 @@ bool refused(Work work) {
 void carry_out(const Command& command) {
   check(command.fields, 1);
   read_back(command.fields);
-  if (command.kind != CommandKind::update) return;
+  if (command.name != "update") return;
   LiveScenario live = sea();
   static_cast<void>(refused([&] { live.update(command.fields, 0.0); }));
 }

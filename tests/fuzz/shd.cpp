@@ -5,7 +5,7 @@
 // the bytes of one with senseless ranges may change.)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   std::string first;
   if (fuzz::refuses([&] {
         first =

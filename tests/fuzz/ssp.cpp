@@ -3,8 +3,8 @@
 // .ssp, range-dependent water.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  asdic::bellhop::Texts texts = asdic::fuzz::small_case("QVW", "A", "CG");
-  texts.companions.emplace_back(".ssp", asdic::fuzz::text(data, size));
-  asdic::fuzz::read_and_write(texts);
+  asdic::detail::bellhop::Texts texts = asdic::detail::fuzz::small_case("QVW", "A", "CG");
+  texts.companions.emplace_back(".ssp", asdic::detail::fuzz::text(data, size));
+  asdic::detail::fuzz::read_and_write(texts);
   return 0;
 }

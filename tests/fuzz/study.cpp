@@ -5,7 +5,7 @@
 // A study file, with the files that its seeds name beside it: its scenario, casts, modes.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   static const fuzz::Scratch folder(ASDIC_FUZZ_COMPANIONS);
   const auto path = folder.write("fuzz.toml", data, size);
   study::Study study;

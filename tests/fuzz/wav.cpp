@@ -3,12 +3,12 @@
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
-#include "io/wav.h"
+#include "io/wav/wav.h"
 
 // A pulse out of a file of sound: finite samples, the loudest of which is 1.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace asdic;
+  using namespace asdic::detail;
   static const fuzz::Scratch folder;
   const auto path = folder.write("fuzz.wav", data, size);
   SampledPulse pulse;

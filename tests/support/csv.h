@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -9,9 +10,10 @@
 #include <string_view>
 #include <vector>
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
-/// A table out of tests/data: one header line with the names of the columns, then rows.
+/// A table out of tests/data or the data of a folder of tests: one header line with the columns,
+/// then rows.
 ///
 ///     const support::Csv csv("physics-reference/munk_profile.csv");
 ///     for (std::size_t row = 0; row < csv.rows(); ++row) use(csv["depth_m"][row]);
@@ -23,7 +25,7 @@ namespace asdic::support {
 class Csv {
  public:
   explicit Csv(const std::string& name) : name_(name) {
-    std::ifstream file(std::string(ASDIC_TEST_DATA) + "/" + name);
+    std::ifstream file(path_of(name));
     if (!file) throw std::runtime_error("cannot open test data " + name);
     for (std::string line; std::getline(file, line);) {
       if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -52,6 +54,16 @@ class Csv {
   }
 
  private:
+  /// In tests/data, else in the only tests/*/data that has it.
+  static std::filesystem::path path_of(const std::string& name) {
+    const std::filesystem::path shared = std::filesystem::path(ASDIC_TEST_DATA) / name;
+    if (exists(shared)) return shared;
+    for (const auto& folder :
+         std::filesystem::directory_iterator(std::filesystem::path(ASDIC_TEST_DATA) / ".."))
+      if (const auto own = folder.path() / "data" / name; exists(own)) return own;
+    return shared;
+  }
+
   static std::vector<std::string> split(const std::string& line) {
     std::vector<std::string> cells;
     std::istringstream stream(line);
@@ -91,4 +103,4 @@ class Csv {
   std::vector<std::vector<double>> numbers_;    // [column][row]
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

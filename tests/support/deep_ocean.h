@@ -4,7 +4,7 @@
 
 #include "raytrace/ocean/environment.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// The deep ocean of the thesis, 5395 m over a fluid bottom: Munk's law, or its 31 samples, as a
 /// measured profile would be, under a rule of interpolation. \param law  "munk" or a rule's name
@@ -38,4 +38,4 @@ inline Environment munk_in_layers(int layers) {
   return ocean;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -8,7 +8,7 @@
 
 #include "raytrace/ocean/sound_speed.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Where a ray is, and the beam it carries.
 struct RayPoint {
@@ -259,4 +259,4 @@ class RayIntegrator {
   std::size_t interval_ = 0;
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -1,4 +1,4 @@
-# Shared by tests/validation/cli_interrupt.sh and scripts/deep_check.sh: what an interrupted run may leave behind.
+# Shared by tests/app/validation/cli_interrupt.sh and scripts/deep_check.sh: what an interrupted run may leave behind.
 # Wants $ASDIC, the program. Sourced, not run.
 
 fail() { echo "FAILED: $*" >&2; exit 1; }

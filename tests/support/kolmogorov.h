@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Kolmogorov's distance of samples from a law, sup|F_n − F|. P(√n·D > x) = 2·exp(−2x²): 1e-6 at x
 /// = 2.69. \param law  F(x)
@@ -22,4 +22,4 @@ double kolmogorov_distance(std::vector<Number> samples, Law&& law) {
 /// F of an intensity of mean 1 whose envelope is Rayleigh's.
 inline double exponential_law(double x) { return 1.0 - std::exp(-x); }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <string>
 
-#include "io/output/output_file.h"
+#include "io/files/output_file.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// What the writing of a result has left beside it: parts and a lock, "" if there are none.
 inline std::string left_of(const std::filesystem::path& target) {
@@ -15,4 +15,4 @@ inline std::string left_of(const std::filesystem::path& target) {
   return names;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -10,7 +10,7 @@
 #include "sonar/signal/fft.h"
 #include "sonar/synthesis/synthesis.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// What an observer measures who has the phones' samples and nothing else.
 
@@ -24,17 +24,17 @@ inline Baseband demodulate(const PingRecord& record, double carrier, double half
   const double bin = record.recording.sample_rate / length;
   const auto centre = std::llround(carrier / bin), half = std::llround(half_band / bin);
   const ComplexFft<double> back(fast_fft_length(static_cast<std::size_t>(8 * half)));
-  Baseband heard{.carrier = static_cast<double>(centre) * bin,
-                 .sample_rate = bin * static_cast<double>(back.length()),
-                 .start = record.recording.start,
-                 .channels = record.phones.size(),
-                 .samples = back.length(),
-                 .recorded = static_cast<std::size_t>(static_cast<double>(back.length()) *
-                                                      static_cast<double>(n) / length)};
-  heard.values.reserve(heard.channels * heard.samples);
+  Baseband received{.carrier = static_cast<double>(centre) * bin,
+                    .sample_rate = bin * static_cast<double>(back.length()),
+                    .start = record.recording.start,
+                    .channels = record.phones.size(),
+                    .samples = back.length(),
+                    .recorded = static_cast<std::size_t>(static_cast<double>(back.length()) *
+                                                         static_cast<double>(n) / length)};
+  received.values.reserve(received.channels * received.samples);
   FftBuffer<double> samples(forward.length());
   FftBuffer<std::complex<double>> bins(forward.bins()), mixed(back.length());
-  for (std::size_t channel = 0; channel < heard.channels; ++channel) {
+  for (std::size_t channel = 0; channel < received.channels; ++channel) {
     samples.clear();
     for (std::size_t i = 0; i < n; ++i)
       samples[i] = static_cast<double>(record.pressure[channel * n + i]);
@@ -45,19 +45,20 @@ inline Baseband demodulate(const PingRecord& record, double carrier, double half
           2.0 / length * bins[static_cast<std::size_t>(centre + j)];
     back.inverse(mixed.data());
     // The mixer's phase is that of t = 0 of the ping.
-    const auto turn = std::polar(1.0, -2.0 * pi * heard.carrier * heard.start);
+    const auto turn = std::polar(1.0, -2.0 * pi * received.carrier * received.start);
     for (std::size_t i = 0; i < back.length(); ++i)
-      heard.values.emplace_back(std::complex<float>(mixed[i] * turn));
+      received.values.emplace_back(std::complex<float>(mixed[i] * turn));
   }
-  return heard;
+  return received;
 }
 
 /// The mean over the phones: a beam at broadside. [recorded]
-inline std::vector<std::complex<double>> broadside(const Baseband& heard) {
-  std::vector<std::complex<double>> sum(heard.recorded);
-  for (std::size_t n = 0; n < heard.channels; ++n)
+inline std::vector<std::complex<double>> broadside(const Baseband& received) {
+  std::vector<std::complex<double>> sum(received.recorded);
+  for (std::size_t n = 0; n < received.channels; ++n)
     for (std::size_t i = 0; i < sum.size(); ++i)
-      sum[i] += std::complex<double>(heard.channel(n)[i]) / static_cast<double>(heard.channels);
+      sum[i] +=
+          std::complex<double>(received.channel(n)[i]) / static_cast<double>(received.channels);
   return sum;
 }
 
@@ -66,11 +67,11 @@ struct Peak {
   double time = 0.0;      ///< [s]
   double level_db = 0.0;  ///< envelope/√2 [dB re 1 µPa]
 };
-inline Peak peak(const Baseband& heard, std::span<const std::complex<double>> row, double from,
+inline Peak peak(const Baseband& received, std::span<const std::complex<double>> row, double from,
                  double to) {
   Peak best{.level_db = -infinity};
   for (std::size_t i = 0; i < row.size(); ++i) {
-    const double t = heard.start + static_cast<double>(i) / heard.sample_rate;
+    const double t = received.start + static_cast<double>(i) / received.sample_rate;
     const double level = db_from_amplitude(std::abs(row[i]) / std::numbers::sqrt2 / micropascal);
     if (t >= from && t < to && level > best.level_db) best = {.time = t, .level_db = level};
   }
@@ -79,14 +80,14 @@ inline Peak peak(const Baseband& heard, std::span<const std::complex<double>> ro
 
 /// Frequency [Hz] by the slope of the phase between two times, weighted by the power: the
 /// centroid of the spectrum (Parseval), ∫ Im(b* ḃ)/∫|b|²/2π, by the pair product at one step.
-inline double frequency(const Baseband& heard, std::span<const std::complex<double>> row,
+inline double frequency(const Baseband& received, std::span<const std::complex<double>> row,
                         double from, double to) {
   std::complex<double> turn = 0.0;
   for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-    const double t = heard.start + static_cast<double>(i) / heard.sample_rate;
+    const double t = received.start + static_cast<double>(i) / received.sample_rate;
     if (t >= from && t < to) turn += row[i + 1] * std::conj(row[i]);
   }
-  return heard.carrier + std::arg(turn) * heard.sample_rate / (2.0 * pi);
+  return received.carrier + std::arg(turn) * received.sample_rate / (2.0 * pi);
 }
 
 /// One-sided spectral density by Welch's method, Hann windows of `length` half overlapped,
@@ -114,4 +115,4 @@ inline std::vector<double> welch(const PingRecord& record, std::size_t length, d
   return density;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -110,8 +110,8 @@ def write(path, s: Settings):
 
 def write_root(f, s, result):
     n = result["pressure"].shape[2]
-    f.attrs.update(filetype="asdic ping", version=f"{s.version}.0", title="Synthetic ping in deep water",
-                   program_version="0.1.0",
+    f.attrs.update(filetype="asdic ping", version="1.0" if s.version == 1 else "2.1",
+                   title="Synthetic ping in deep water", program_version="0.1.0",
                    build="none", seed=s.seed, scenario_sha256="0" * 64,
                    complete=int((s.pings_requested or s.pings) == s.pings),
                    pings_requested=s.pings_requested or s.pings)
@@ -161,6 +161,8 @@ def write_root(f, s, result):
     replica.attrs.update(kind="lfm" if s.bandwidth else "cw", centre_frequency_hz=s.frequency,
                          bandwidth_hz=s.bandwidth + 6.0 / s.pulse, duration_s=s.pulse,
                          window="hann", source_level_db=s.source_level, **told)
+    if s.version > 1:
+        replica.attrs["sweep_hz"] = s.bandwidth
     text = f.create_dataset("scenario", data="title = \"synthetic\"\n")
     text.attrs["long_name"] = "the scenario file"
 

@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Becomes whatever a member needs.
 struct Anything {
@@ -25,4 +25,4 @@ consteval int member_count() {
   return static_cast<int>(n);
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

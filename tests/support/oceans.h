@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/environment.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// An ocean that is not layered, and a fan that suits it.
 struct CurvedOcean {
@@ -77,4 +77,4 @@ inline std::vector<CurvedOcean> curved_oceans() {
   return all;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

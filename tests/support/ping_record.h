@@ -1,10 +1,10 @@
 #pragma once
 #include <cmath>
 
-#include "io/scenario_reader.h"
+#include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping_record.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A small sea with a target: isovelocity, four phones.
 inline Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
@@ -73,10 +73,10 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
                          .bearing = radians(90.0),
                          .range = 3000.0,
                          .arrivals = {direct, bounced}});
-  EchoPath echo{.target = 0, .outgoing = 0, .returning = 1, .level_db = 90.0, .heard = {}};
-  echo.heard.delay = 4.0;
-  echo.heard.doppler = 1.001;
-  echo.heard.slowness = Vec3(-std::cos(radians(5.0)), 0.0, std::sin(radians(5.0))) / 1500.0;
+  EchoPath echo{.target = 0, .outgoing = 0, .returning = 1, .level_db = 90.0, .received = {}};
+  echo.received.delay = 4.0;
+  echo.received.doppler = 1.001;
+  echo.received.slowness = Vec3(-std::cos(radians(5.0)), 0.0, std::sin(radians(5.0))) / 1500.0;
   record.echoes.push_back(echo);
   for (int i = 0; i < 4500; ++i)
     record.patches.push_back(
@@ -97,4 +97,4 @@ inline PingRecord small_record(const Scenario& scenario, int ping) {
   return record;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -6,7 +6,7 @@
 
 #include "raytrace/ocean/environment.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Rays by fourth-order Runge–Kutta steps of a fixed, small length, for any ocean: simple, slow and
 /// independent of raytrace/tracing. Boundaries, and lines where the gradient of the speed jumps,
@@ -145,4 +145,4 @@ class PlainRays {
   double step_;
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A scenario without reverberation, fluctuation or curved rays, as text: one straight path there
 /// and back at 1500 m/s, white noise, two phones. Studies put their own tables before it.
@@ -42,4 +42,4 @@ samples = "baseband"
 recording_duration = 8.0
 )";
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

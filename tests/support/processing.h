@@ -6,7 +6,7 @@
 #include "processing/truth.h"
 #include "sonar/ping/ping.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// What one array of a simulated ping recorded, as a file would hold it.
 inline ArrayRecording recording_of(const Scenario& scenario, const PingRecord& record,
@@ -34,4 +34,18 @@ inline std::vector<Replica> replicas_of(const PingSimulator& simulator) {
   return replicas;
 }
 
-}  // namespace asdic::support
+/// Tracks of the contacts of all pings at their first array. \param side  of its axis: 0 the right
+inline std::vector<ContactTrack> tracks_of(const PingSimulator& simulator,
+                                           const ProcessingSettings& settings, int side = 0) {
+  const PingProcessor processor(simulator.scenario(), replicas_of(simulator), settings);
+  std::vector<std::vector<Contact>> contacts;
+  std::vector<double> times;
+  run_pings(simulator, [&](PingRecord&& record) {
+    const ProcessedArray done = processor.process(recording_of(simulator.scenario(), record));
+    contacts.push_back(processor.contacts(done, record.start_time, side));
+    times.push_back(record.start_time);
+  });
+  return track_contacts(contacts, times, settings.tracker);
+}
+
+}  // namespace asdic::detail::support

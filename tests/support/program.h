@@ -9,7 +9,7 @@
 
 #include "support/temporary_directory.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// What a program said and how it ended.
 struct Outcome {
@@ -81,4 +81,4 @@ recording_duration = 5.0
 sample_rate = 4000.0
 )";
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "sonar/paths/returns.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Returns of random phase and level spread over a time and a band of Doppler factors, for tests.
 struct RandomReturns {
@@ -34,4 +34,4 @@ struct RandomReturns {
   }
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -12,7 +12,7 @@
 #include "sonar/synthesis/synthesis.h"
 #include "support/thesis.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// 1500 m/s everywhere, a vehicle at 4500 m, 4 kHz, 220 dB all round, one phone, no bounces: the
 /// sea of reverb_isovelocity.csv but for its pulse.
@@ -60,28 +60,27 @@ class ReverberantSea {
 
   [[nodiscard]] PingReverberation ping(std::uint32_t ping, double time = 0.0, int array = 0) const {
     return model_.ping(
-        {.pattern = *pattern_,
+        {.geometry = PingGeometry(scenario_, {.time = time}, static_cast<int>(ping)),
+         .pattern = *pattern_,
          .pulse = pulse_,
          .array = array,
-         .time = time,
-         .ping = ping,
          .latest = scenario_.pings.recording_start + scenario_.pings.recording_duration,
          .phones = drawn() ? std::span<const Vec3>(scenario_.arrays[0].phones)
                            : std::span<const Vec3>()});
   }
-  [[nodiscard]] Baseband hear(std::span<const Return> returns) const {
+  [[nodiscard]] Baseband receive(std::span<const Return> returns) const {
     return synthesizer_.baseband(returns, scenario_.arrays[0].phones);
   }
   /// One scatterer after the other, unless the scenario asks for the covariance or for streams.
-  [[nodiscard]] Baseband hear(std::uint32_t number, double time = 0.0) const {
+  [[nodiscard]] Baseband receive(std::uint32_t number, double time = 0.0) const {
     const PingReverberation scattered = ping(number, time);
-    Baseband heard = synthesizer_.baseband(scattered, scenario_.arrays[0].phones);
+    Baseband received = synthesizer_.baseband(scattered, scenario_.arrays[0].phones);
     const CovarianceDraw draw{.seed = scenario_.seed, .ping = number};
     if (scattered.covariance() != nullptr)
-      synthesizer_.add_gaussian(*scattered.covariance(), draw, heard);
+      synthesizer_.add_gaussian(*scattered.covariance(), draw, received);
     if (scattered.streams() != nullptr)
-      synthesizer_.add_streams(*scattered.streams(), scenario_.arrays[0].phones, draw, heard);
-    return heard;
+      synthesizer_.add_streams(*scattered.streams(), scenario_.arrays[0].phones, draw, received);
+    return received;
   }
 
  private:
@@ -100,9 +99,9 @@ class ReverberantSea {
 };
 
 /// The complex envelope of a phone at a time, nearest sample.
-inline std::complex<double> at(const Baseband& heard, std::size_t channel, double t) {
-  const auto i = static_cast<std::size_t>(std::lround((t - heard.start) * heard.sample_rate));
-  return std::complex<double>(heard.channel(channel)[i]);
+inline std::complex<double> at(const Baseband& received, std::size_t channel, double t) {
+  const auto i = static_cast<std::size_t>(std::lround((t - received.start) * received.sample_rate));
+  return std::complex<double>(received.channel(channel)[i]);
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -4,7 +4,7 @@
 
 #include "raytrace/cases/propagation_case.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Tells the first thing in which two cases differ; "" if every number is the same.
 class CaseComparison {
@@ -135,4 +135,4 @@ class CaseComparison {
   std::string first_;
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

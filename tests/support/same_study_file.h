@@ -4,9 +4,9 @@
 #include <bit>
 #include <filesystem>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// Attributes that hold references, whose bits are places in the file.
 inline bool is_reference(const std::string& key) {
@@ -68,4 +68,4 @@ inline void expect_same_study(const std::filesystem::path& first,
   }
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -5,7 +5,7 @@
 #include "serve/session.h"
 #include "support/temporary_directory.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A small sea, as tests of `asdic serve` ping it: complex baseband, nothing that takes long.
 inline constexpr const char* served_scenario = R"(title = "SECRET title"
@@ -89,4 +89,4 @@ class Served {
   std::unique_ptr<serve::Session> session_;
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -8,7 +8,7 @@
 #include "raytrace/ocean/environment.h"
 #include "support/oceans.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// An ocean over a slope, and the receivers that a search is asked for: every depth at every range.
 struct SlopingSea {
@@ -91,4 +91,4 @@ inline std::vector<SlopingSea> sloping_seas() {
   return all;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

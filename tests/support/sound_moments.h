@@ -8,7 +8,7 @@
 
 #include "support/reverberant_sea.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// ⟨b_m* b_n⟩/expected power over pings and independent times, one sample a step.
 struct Moments {
@@ -21,10 +21,10 @@ inline Moments moments(const ReverberantSea& sea, int pings, double from, double
   const PingReverberation first = sea.ping(1);
   const double level = sea.scenario().transmitters[0].source_level_db;
   for (std::uint32_t ping = 1; ping <= std::uint32_t(pings); ++ping) {
-    const Baseband heard = sea.hear(ping);
+    const Baseband received = sea.receive(ping);
     for (double t = from; t < to; t += step, found.count += 1.0) {
       Eigen::VectorXcd b(phones);
-      for (Eigen::Index n = 0; n < phones; ++n) b[n] = at(heard, std::size_t(n), t);
+      for (Eigen::Index n = 0; n < phones; ++n) b[n] = at(received, std::size_t(n), t);
       b /= std::sqrt(power_from_db(first.expected_db(t) - level));
       found.mean += b.conjugate() * b.transpose();
     }
@@ -57,22 +57,22 @@ inline std::complex<double> cross_spectrum(const std::vector<Baseband>& pings, s
                                            double frequency) {
   std::complex<double> sum = 0.0;
   double count = 0.0;
-  for (const Baseband& heard : pings)
+  for (const Baseband& received : pings)
     for (double start = from; start + length < to; start += length, count += 1.0) {
       std::complex<double> a = 0.0, b = 0.0;
-      const auto first = static_cast<std::size_t>((start - heard.start) * heard.sample_rate);
-      const auto samples = static_cast<std::size_t>(length * heard.sample_rate);
+      const auto first = static_cast<std::size_t>((start - received.start) * received.sample_rate);
+      const auto samples = static_cast<std::size_t>(length * received.sample_rate);
       for (std::size_t i = 0; i < samples; ++i) {
         const double u = (double(i) + 0.5) / double(samples);
         const std::complex<double> w =
             std::polar((0.5 - 0.5 * std::cos(2.0 * pi * u)) * std::pow(start, 1.5),
-                       -2.0 * pi * frequency * double(i) / heard.sample_rate);
-        a += w * std::complex<double>(heard.channel(m)[first + i]);
-        b += w * std::complex<double>(heard.channel(n)[first + i]);
+                       -2.0 * pi * frequency * double(i) / received.sample_rate);
+        a += w * std::complex<double>(received.channel(m)[first + i]);
+        b += w * std::complex<double>(received.channel(n)[first + i]);
       }
       sum += std::conj(a) * b;
     }
   return sum / count;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

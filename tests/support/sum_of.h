@@ -5,7 +5,7 @@
 #include "core/units.h"
 #include "raytrace/ocean/arrivals.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// The pressure that all arrivals make together at one frequency [1/m × 1 m].
 inline std::complex<double> sum_of(const Arrivals& arrivals, double frequency) {
@@ -15,4 +15,4 @@ inline std::complex<double> sum_of(const Arrivals& arrivals, double frequency) {
   return sum;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -6,7 +6,7 @@
 #include "study/runs/run_study.h"
 #include "support/program.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A study without a sea: rows that cost next to nothing, so that what carries them can be tested
 /// with 10⁵ of them. x is uniform, y = x + noise, every 7th row is skipped if asked for, and
@@ -42,7 +42,7 @@ struct SyntheticStudy {
   [[nodiscard]] study::Work work() const {
     using study::Column;
     study::Work work;
-    work.imprint = {
+    work.fingerprint = {
         .identity = identity,
         .title = "synthetic",
         .seed = 1,
@@ -86,4 +86,4 @@ echo_level = true
   }
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A new directory that goes away with its owner.
 class TemporaryDirectory {
@@ -37,4 +37,4 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -2,7 +2,7 @@
 #include <cctype>
 #include <string>
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A name of a case as Google Test takes it: letters and digits alone.
 inline std::string test_id(std::string name) {
@@ -10,4 +10,4 @@ inline std::string test_id(std::string name) {
   return name;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -1,7 +1,7 @@
 #pragma once
 #include "sonar/ping/ping.h"
 
-namespace asdic::support {
+namespace asdic::detail::support {
 
 /// A transmitter on one platform, an array on another, open water: the direct blast alone.
 inline Scenario two_platforms() {
@@ -11,12 +11,10 @@ inline Scenario two_platforms() {
   s.platforms = {{.name = "ship", .track = {}}, {.name = "buoy", .track = {}}};
   s.platforms[0].track.start.position = {0.0, 0.0, 100.0};
   s.platforms[1].track.start.position = {900.0, 1200.0, 300.0};
-  s.transmitters[0] = {.source_level_db = 200.0, .taper = Taper::omnidirectional};
+  s.transmitters[0] = {.source_level_db = 200.0, .beam = LineBeam{.taper = Taper::omnidirectional}};
   s.arrays[0] = line_array(3, 0.5, 0.0, 0.0);
   s.arrays[0].platform = 1;
-  s.pulse = {.kind = PulseKind::lfm,
-             .start_frequency = 950.0,
-             .end_frequency = 1050.0,
+  s.pulse = {.waveform = Lfm{.start_frequency = 950.0, .end_frequency = 1050.0},
              .duration = 0.2,
              .window = PulseWindow::hann};
   s.reverberation.enabled = false;
@@ -26,4 +24,4 @@ inline Scenario two_platforms() {
   return s;
 }
 
-}  // namespace asdic::support
+}  // namespace asdic::detail::support

@@ -12,7 +12,7 @@ import sys
 
 OPENS = re.compile(r"^(inline )?namespace ([\w:]+) \{$")
 CLOSES = re.compile(r"^\}  // namespace")
-CLASS = re.compile(r"^(?:struct|class) (?:alignas\(\d+\) )?(\w+)(?: final)?(?: : [^{;]*)?(?: \{|$)")
+CLASS = re.compile(r"^(?:struct|class) (?:alignas\(\d+\) |ASDIC_API )?(\w+)(?: final)?(?: : [^{;]*)?(?: \{|$)")
 
 
 def classes(header):

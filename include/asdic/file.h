@@ -1,0 +1,57 @@
+#pragma once
+
+/// \file
+/// Ping files (HDF5, docs/formats/ping.md): what `asdic ping` writes and `asdic process`, `info`
+/// and `plot` read, with the scenario in it.
+///
+/// ```cpp
+/// asdic::Scenario scenario = asdic::Scenario::read("deep_ocean.toml");
+/// scenario.set("pings.recording_duration", 36.0);
+/// asdic::write_ping("one.h5", scenario, asdic::ping(scenario));
+/// const asdic::Ping ping = asdic::read_ping("one.h5");
+/// std::cout << ping.channels() << " phones of \"" << ping.scenario().get("title").text() <<
+/// "\"\n";
+/// ```
+
+#include <filesystem>
+#include <memory>
+
+#include "asdic/export.h"
+#include "asdic/ping.h"
+#include "asdic/scenario.h"
+
+namespace asdic {
+
+/// Writes pings as they are made: beside the file under a name of its own, which takes the file's
+/// name by finish(). A file that asdic did not write is not written over.
+class ASDIC_API PingWriter {
+ public:
+  /// \throws InputError if there must be no such file, RunError if there cannot be
+  PingWriter(const std::filesystem::path& path, const Scenario& scenario);
+  PingWriter(PingWriter&&) noexcept;
+  PingWriter& operator=(PingWriter&&) noexcept;
+  /// Without finish(): there is no file, and what was written stays beside it for `asdic recover`.
+  ~PingWriter();
+
+  /// \param ping  of the writer's scenario, made here   \throws InputError, RunError
+  void append(const Ping& ping);
+  void finish();
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// A file of one ping. Its /scenario is scenario.to_toml().
+ASDIC_API void write_ping(const std::filesystem::path& path, const Scenario& scenario,
+                          const Ping& ping);
+/// A file of all pings of a scenario: what `asdic ping` does.
+ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario);
+
+/// A ping of a file. Of a continuous record: all that is listened to of it, over the pings that
+/// follow. \param number  as the file counts, from 1   \throws InputError, RunError
+[[nodiscard]] ASDIC_API Ping read_ping(const std::filesystem::path& path, int number = 1);
+/// How many pings it holds.
+[[nodiscard]] ASDIC_API int pings_in(const std::filesystem::path& path);
+
+}  // namespace asdic

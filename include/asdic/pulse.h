@@ -1,0 +1,60 @@
+#pragma once
+
+/// \file
+/// What a transmitter sends. `scenario.set("pulse", …)` for all of them,
+/// `scenario.set("transmitter.0.pulse", …)` for one.
+///
+/// ```cpp
+/// asdic::Scenario scenario;
+/// scenario.set("pulse", asdic::Lfm{.start_frequency = 3500.0,
+///                                  .end_frequency = 4500.0,
+///                                  .duration = 0.5,
+///                                  .window = "tukey",
+///                                  .tukey_fraction = 0.1});
+/// std::cout << scenario.to_toml();
+/// scenario.set("pulse.duration", 1.0);
+/// ```
+
+#include <optional>
+#include <string>
+
+#include "asdic/value.h"
+
+namespace asdic {
+
+/// One frequency.
+struct ASDIC_API Cw {
+  double frequency = 0.0;                     ///< [Hz]
+  double duration = 0.0;                      ///< [s]
+  std::string window = "none";                ///< none, hann, tukey
+  std::optional<double> tukey_fraction = {};  ///< of the duration; 0.1
+  operator Value() const;
+};
+
+/// A sweep whose frequency goes linearly with time.
+struct ASDIC_API Lfm {
+  double start_frequency = 0.0;  ///< [Hz]
+  double end_frequency = 0.0;    ///< [Hz]; below the first: a down-sweep
+  double duration = 0.0;         ///< [s]
+  std::string window = "none";
+  std::optional<double> tukey_fraction = {};
+  operator Value() const;
+};
+
+/// A sweep whose period goes linearly with time: it keeps its shape under Doppler.
+struct ASDIC_API Hfm {
+  double start_frequency = 0.0;  ///< [Hz]
+  double end_frequency = 0.0;    ///< [Hz]
+  double duration = 0.0;         ///< [s]
+  std::string window = "none";
+  std::optional<double> tukey_fraction = {};
+  operator Value() const;
+};
+
+/// Samples in a file: a mono WAV, or CSV with the header time,pressure. Scaled to a peak of 1.
+struct ASDIC_API PulseFile {
+  std::string file;
+  operator Value() const;
+};
+
+}  // namespace asdic

@@ -1,0 +1,56 @@
+#pragma once
+
+/// \file
+/// Monte Carlo studies: what nature or the enemy decides is drawn, each draw is simulated, and
+/// probabilities come with their intervals (docs/formats/study.md).
+///
+/// ```cpp
+/// const asdic::StudyResult pd =
+///     asdic::study("studies/known_answer.toml", "pd.h5", {.changes = {"study.realisations=100"}});
+/// std::cout << pd.rows() << " rows, " << pd.question << " is " << pd.value << " (" << pd.low
+///           << " to " << pd.high << ")\n";
+/// std::cout << pd.columns.front() << " of the first: " << pd.values.front().front() << '\n';
+/// ```
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "asdic/export.h"
+
+namespace asdic {
+
+struct StudyOptions {
+  std::vector<std::string> changes = {};  ///< "key.path=value" each, as of --set
+  bool fresh = false;                     ///< begins anew, whatever results are there
+  /// Told now and then how many rows are done, and of how many.
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress = {};
+};
+
+/// The table of a study: a row a realisation.
+struct ASDIC_API StudyResult {
+  std::vector<std::string> columns{};         ///< what varies, then what is measured
+  std::vector<std::string> units{};           ///< [columns] "" of what has none
+  std::vector<std::vector<double>> values{};  ///< [columns][rows]; NaN: not known
+  bool complete = false;                      ///< all rows are there
+  std::string question{};                     ///< that the study answers first: "pd"; "": none
+  double value = 0.0, low = 0.0, high = 0.0;  ///< the answer, and its confidence interval
+  std::vector<std::string> warnings{};
+
+  [[nodiscard]] std::size_t rows() const noexcept;
+  /// \throws InputError if there is no such column
+  [[nodiscard]] const std::vector<double>& column(const std::string& name) const;
+};
+
+/// Runs a study into a file, as `asdic study` does: rows that are there are not made again, so a
+/// study that was stopped goes on. \throws InputError, RunError
+[[nodiscard]] ASDIC_API StudyResult study(const std::filesystem::path& file,
+                                          const std::filesystem::path& output,
+                                          const StudyOptions& options = {});
+/// The table of a study's file.
+[[nodiscard]] ASDIC_API StudyResult read_study(const std::filesystem::path& output);
+
+}  // namespace asdic

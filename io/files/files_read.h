@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+
+namespace asdic::detail {
+
+/// While it lives, every file that io opens for reading is noted (by device and inode), so that no
+/// result is written over one of them: the scenario, and whatever it names. The program has one for
+/// each command; a library that has none notes nothing. One at a time.
+class FilesRead {
+ public:
+  FilesRead();
+  ~FilesRead();
+  FilesRead(const FilesRead&) = delete;
+  FilesRead& operator=(const FilesRead&) = delete;
+};
+
+/// A file is about to be read. From any thread.
+void note_read(const std::filesystem::path& path);
+
+/// The name under which a file has been read, whatever it is called here (links of both kinds).
+[[nodiscard]] std::optional<std::filesystem::path> read_before(const std::filesystem::path& path);
+
+}  // namespace asdic::detail

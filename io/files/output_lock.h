@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+
+namespace asdic::detail {
+
+/// The right to write a result: one process at a time has it, from before the work until the result
+/// has its name.
+///
+/// It is a lock of the system (flock) on TARGET.lock, which tells who has it and goes with it. The
+/// system frees it when the process ends, however it ends; a TARGET.lock that is left is taken
+/// over. Independent of HDF5's own locks. A file system without locks gives the right to everybody:
+/// results are whole there too, the last one stays.
+class OutputLock {
+ public:
+  /// \throws RunError telling process, host and since when if somebody has it, or if the folder
+  /// cannot be written; InputError for a TARGET.lock that is not asdic's
+  explicit OutputLock(const std::filesystem::path& target);
+  ~OutputLock();
+  OutputLock(OutputLock&& other) noexcept;
+  OutputLock& operator=(OutputLock&&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+};
+
+}  // namespace asdic::detail

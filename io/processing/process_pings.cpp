@@ -1,0 +1,190 @@
+#include "io/processing/process_pings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/geometry.h"
+#include "raytrace/propagation.h"
+#include "sonar/scenario/carried.h"
+
+namespace asdic::detail {
+namespace {
+
+/// "0.5", one digit behind the point.
+std::string tenths(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+/// "2.5", six digits at most.
+std::string six_digits(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The target that most of a track's detections are of.
+int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>& pings) {
+  std::map<int, int> votes;
+  for (const TrackPoint& p : track.points)
+    if (p.detection >= 0)
+      ++votes[pings[static_cast<std::size_t>(p.ping)]
+                  ->score.owner[static_cast<std::size_t>(p.detection)]];
+  const auto most = std::max_element(
+      votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == votes.end() ? -1 : most->first;
+}
+
+/// What a user should know of a towed line that bends while it listens: beams are formed for the
+/// shape in the middle of the record. Empty if no phone moves by an eighth of a wavelength from
+/// there. \param end  of the record, since the ping [s]
+std::string bending(const PingProcessor& processor, const ProcessedArray& made,
+                    const ArrayRecording& received, double end) {
+  const Scenario& scenario = processor.scenario();
+  if (!deforms(scenario, received.array)) return "";
+  const auto phones = [&](double time) {
+    return phones_at(scenario, received.array, received.ping, time);
+  };
+  const std::vector<Vec3> middle = phones(received.ping_time + 0.5 * (received.start + end)),
+                          later = phones(received.ping_time + end);
+  double moved = 0.0, turned = 0.0;
+  for (std::size_t n = 0; n < middle.size(); ++n) {
+    const double off = (later[n] - middle[n]).norm();
+    moved = std::max(moved, off);
+    turned = std::max(turned, off / std::max(middle[n].norm(), 0.25 * made.shape.length));
+  }
+  const double wavelength =
+      made.sound_speed / processor.replica(received.transmitter).centre_frequency();
+  if (moved < 0.125 * wavelength) return "";
+  return "array " + std::to_string(received.array) + ", ping " + std::to_string(received.ping) +
+         ": the line turns and bends by up to " + tenths(moved) +
+         " m while it listens; beams are those of its shape in the middle of the record, and "
+         "bearings may be up to " +
+         tenths(degrees(std::min(turned, pi))) + " degrees off";
+}
+
+double error_of(const ProcessedTrack& made, const TrackPoint& p, const ProcessedPing& ping,
+                const Scenario& scenario) {
+  if (made.target < 0) return none;
+  const Vec3 truth =
+      scenario.targets[static_cast<std::size_t>(made.target)].track.at(p.time).position;
+  if (made.has_bearing) return (p.position - truth.head<2>()).norm();
+  // A range is from where the array received it; a track that coasts, from where it would have.
+  const double received =
+      p.detection >= 0 ? ping.array.result.detections[static_cast<std::size_t>(p.detection)].time
+                       : 2.0 * (p.time - ping.ping_time);
+  const Track& array = ping.array.places.array;
+  return std::abs(p.position.y() - separation(array.at(received).position, truth).range);
+}
+
+void track_array(const PingProcessor& processor, const std::vector<const ProcessedPing*>& pings,
+                 const std::vector<int>& first_rows, ProcessedRun& run) {
+  bool sides = false, bearings = true;
+  for (const ProcessedPing* ping : pings)
+    for (const Detection& d : ping->array.result.detections) {
+      sides = sides || d.locations.size() > 1;
+      bearings = bearings && (d.locations.empty() || !std::isnan(d.locations[0].bearing));
+    }
+  for (int side = 0; side < (sides ? 2 : 1); ++side) {
+    std::vector<std::vector<Contact>> contacts;
+    std::vector<double> times;
+    for (const ProcessedPing* ping : pings) {
+      contacts.push_back(processor.contacts(ping->array, ping->ping_time, side));
+      std::erase_if(contacts.back(), [&](const Contact& c) {
+        const int owner = ping->score.owner[static_cast<std::size_t>(c.detection)];
+        return owner == direct_sound || owner == another_ping;
+      });
+      times.push_back(ping->ping_time);
+    }
+    for (ContactTrack& track : track_contacts(contacts, times, processor.settings().tracker)) {
+      ProcessedTrack made{.array = pings.front()->array.array,
+                          .side = side,
+                          .ambiguous = sides,
+                          .has_bearing = bearings,
+                          .track = std::move(track)};
+      made.target = owner_of(made.track, pings);
+      for (TrackPoint& p : made.track.points) {
+        const auto k = static_cast<std::size_t>(p.ping);
+        made.rows.push_back(p.detection < 0 ? -1 : first_rows[k] + p.detection);
+        made.error.push_back(error_of(made, p, *pings[k], processor.scenario()));
+        p.ping = pings[k]->array.ping;
+      }
+      run.tracks.push_back(std::move(made));
+    }
+  }
+}
+
+}  // namespace
+
+ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor& processor,
+                           std::optional<int> ping, const std::function<void(int)>& done,
+                           const std::function<bool()>& proceed) {
+  ProcessedRun run;
+  run.warnings = recordings.scenario().notes;
+  const std::size_t first = ping ? recordings.row_of(*ping) : 0;
+  const std::size_t end = ping ? first + 1 : recordings.pings();
+  const int arrays = static_cast<int>(recordings.scenario().arrays.size());
+  double last_end = 0.0;
+  for (std::size_t row = first; row < end; ++row)
+    last_end = std::max(last_end, recordings.end(row));
+  if (const double from = processor.settings().detector.first_time.value_or(0.0); from >= last_end)
+    throw InputError(
+        {.where = "--from",
+         .got = six_digits(from) + " s",
+         .expected = "a time before the record's end, " + six_digits(last_end) + " s"});
+  for (std::size_t row = first; row < end; ++row) {
+    for (int array = 0; array < arrays; ++array) {
+      if (!proceed()) throw Interrupted();
+      ProcessedPing made{.transmitter = recordings.transmitter(row),
+                         .ping_time = recordings.ping_time(row)};
+      std::vector<TrueEcho> echoes = recordings.echoes(row, array);
+      const ArrayRecording received = recordings.recording(row, array);
+      if (recordings.not_finite() > 0)
+        run.warnings.push_back("pressure of ping " + std::to_string(received.ping) + ", array " +
+                               std::to_string(array) + ": " +
+                               std::to_string(recordings.not_finite()) +
+                               " samples are not finite and were taken as silence");
+      made.array = processor.process(received, proceed, echoes);
+      if (const std::string bends = bending(processor, made.array, received, recordings.end(row));
+          !bends.empty())
+        run.warnings.push_back(bends);
+      for (std::size_t i = 0; i < echoes.size(); ++i)
+        echoes[i].threshold_db = made.array.result.thresholds_db[i];
+      made.truth = recordings.targets(row, echoes);
+      const DetectorSettings& searched = processor.settings().detector;
+      made.score =
+          score_detections(made.array.result.detections, echoes, made.truth, made.array.shape,
+                           made.array.places.array, processor.resolution(made.array),
+                           searched.first_time.value_or(0.0),
+                           std::min(searched.last_time.value_or(infinity), recordings.end(row)));
+      if (row == first)
+        made.map_range =
+            processor.ranges_at(made.array, made.transmitter, made.array.result.maps.time);
+      run.pings.push_back(std::move(made));
+    }
+    done(static_cast<int>(row - first) + 1);
+  }
+  for (int array = 0; array < arrays; ++array) {
+    std::vector<const ProcessedPing*> of_array;
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < run.pings.size(); ++k)
+      if (run.pings[k].array.array == array) {
+        of_array.push_back(&run.pings[k]);
+        rows.push_back(first_row(run, k));
+      }
+    if (of_array.size() > 1) track_array(processor, of_array, rows, run);
+  }
+  if (const std::string lack = processor.lack(); !lack.empty()) run.warnings.push_back(lack);
+  return run;
+}
+
+}  // namespace asdic::detail

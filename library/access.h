@@ -1,0 +1,63 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "asdic/error.h"
+#include "asdic/scenario.h"
+#include "core/error.h"
+#include "io/text/toml_value.h"
+
+// How the public classes (include/asdic) and the rest of the project see one another.
+namespace asdic {
+
+class Physics;
+
+/// Where values come from that no file holds.
+inline constexpr const char* set_in_cpp = "set in C++";
+
+struct Value::Data {
+  detail::TomlValue value;
+};
+
+struct Scenario::Data {
+  detail::TomlValue document{};       ///< with its include and overrides in it
+  std::filesystem::path path{};       ///< files it names are relative to its folder
+  std::optional<std::string> text{};  ///< of the file, as long as nothing was changed
+  mutable std::mutex mutex{};
+  mutable std::shared_ptr<Physics> physics{};  ///< made of it when it is first needed
+};
+
+struct Access {
+  [[nodiscard]] static Value made(detail::TomlValue value);
+  [[nodiscard]] static const detail::TomlValue& tree(const Value& value);
+  /// The same of a value that a document is to hold. \throws InputError for nothing
+  [[nodiscard]] static const detail::TomlValue& given(const Value& value);
+  [[nodiscard]] static const Scenario::Data& data(const Scenario& scenario) {
+    return *scenario.data_;
+  }
+  /// As Scenario::parse(), with changes as of --set.
+  [[nodiscard]] static Scenario parsed(std::string_view text, const std::filesystem::path& name,
+                                       std::span<const std::string> changes);
+  [[nodiscard]] static Physics& physics(const Scenario& scenario);
+};
+
+/// A scenario as a file.
+[[nodiscard]] std::string document_text(const Scenario::Data& data);
+
+/// Does work of the project's, whose errors leave as those of asdic/error.h.
+template <class Work>
+auto translated(const Work& work) {
+  try {
+    return work();
+  } catch (const detail::InputError& error) {
+    const detail::InputFault& fault = error.fault();
+    throw InputError(fault.where, fault.got, fault.expected);
+  } catch (const detail::RunError& error) {
+    throw RunError(error.what());
+  }
+}
+
+}  // namespace asdic

@@ -1,0 +1,66 @@
+#include "asdic/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+
+namespace asdic {
+namespace {
+
+/// "FILE:LINE", perhaps ":COLUMN", and "KEY" of "FILE:LINE: KEY".
+struct OriginAndKey {
+  std::string origin, key;
+};
+OriginAndKey place_of(const std::string& where) {
+  const auto colon = where.find(": ");
+  if (colon != std::string::npos) return {where.substr(0, colon), where.substr(colon + 2)};
+  for (const std::string_view option : {"--set ", "--"})  // a change, or an option of the program
+    if (where.starts_with(option)) return {"", where.substr(option.size())};
+  const bool is_file = !where.empty() && std::isdigit(static_cast<unsigned char>(where.back())) &&
+                       where.find(':') != std::string::npos;
+  return is_file ? OriginAndKey{where, ""} : OriginAndKey{"", where};
+}
+
+/// Takes ":12" off the end of a text. \return 12
+std::optional<int> take_number(std::string& text) {
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || colon + 1 == text.size() || text.size() - colon > 10) return {};
+  if (!std::all_of(text.begin() + static_cast<std::ptrdiff_t>(colon) + 1, text.end(),
+                   [](unsigned char c) { return std::isdigit(c) != 0; }))
+    return {};
+  const int number = std::stoi(text.substr(colon + 1));
+  text.resize(colon);
+  return number;
+}
+
+/// File and line of an origin; "" and 0 where it is none.
+std::pair<std::string, int> file_and_line(const std::string& where) {
+  std::string file = place_of(where).origin;
+  const std::optional<int> last = take_number(file);
+  if (!last) return {"", 0};
+  const std::optional<int> before = take_number(file);  // then `last` was the column
+  return {file, before.value_or(*last)};
+}
+
+}  // namespace
+
+InputError::InputError(std::string where, std::string found, std::string expected)
+    : std::runtime_error(
+          detail::InputError({.where = where, .got = found, .expected = expected}).what()),
+      where_(std::move(where)),
+      found_(std::move(found)),
+      expected_(std::move(expected)) {}
+InputError::~InputError() = default;
+
+std::string InputError::file() const { return file_and_line(where_).first; }
+int InputError::line() const { return file_and_line(where_).second; }
+std::string InputError::key() const { return place_of(where_).key; }
+
+RunError::RunError(const std::string& what) : std::runtime_error(what) {}
+RunError::~RunError() = default;
+
+}  // namespace asdic

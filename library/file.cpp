@@ -1,0 +1,109 @@
+#include "asdic/file.h"
+
+#include <thread>
+
+#include "io/hdf5/own_files.h"
+#include "io/ping/drawn_rays.h"
+#include "io/ping/ping_file.h"
+#include "io/ping/provenance.h"
+#include "io/processing/recordings.h"
+#include "library/physics.h"
+#include "library/ping_access.h"
+
+namespace asdic {
+namespace {
+
+/// The scenario inside a ping file. \param recordings  has read and checked it
+Scenario scenario_in(const detail::PingRecordings& recordings) {
+  const detail::Scenario& read = recordings.scenario();
+  return Access::parsed(read.text, read.path, read.overrides);
+}
+
+/// One row of a file, all arrays side by side.
+detail::PingRecord record_of(const detail::PingRecordings& file, std::size_t row) {
+  detail::PingRecord record;
+  record.ping = file.number(row);
+  record.transmitter = file.transmitter(row);
+  record.start_time = file.ping_time(row);
+  for (std::size_t array = 0; array < file.scenario().arrays.size(); ++array) {
+    const detail::ArrayRecording received = file.recording(row, static_cast<int>(array));
+    record.phones.insert(record.phones.end(), received.phones.begin(), received.phones.end());
+    record.pressure.insert(record.pressure.end(), received.pressure.begin(),
+                           received.pressure.end());
+    for (const std::complex<float> sample : received.envelope)
+      record.pressure.insert(record.pressure.end(), {sample.real(), sample.imag()});
+    record.recording.sample_rate = received.sample_rate;
+    record.recording.start = received.start;
+    record.recording.carrier = received.carrier.value_or(0.0);
+  }
+  record.recording.samples =
+      record.pressure.size() / record.phones.size() / record.recording.components();
+  return record;
+}
+
+detail::Provenance here() {
+  return detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+}
+
+}  // namespace
+
+struct PingWriter::Data {
+  Scenario scenario;
+  detail::PingFileWriter writer;
+  int pings = 0, written = 0;
+};
+
+PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenario)
+    : data_(translated([&] {
+        detail::OutputFile output(path, {.own = detail::own::hdf5, .option = "path"});
+        const detail::PingSimulator& simulator = Access::physics(scenario).ready_to_ping();
+        detail::PingFileWriter writer(std::move(output), simulator.scenario(), here());
+        writer.write_rays(detail::drawn_rays(simulator));
+        return std::unique_ptr<Data>(new Data{scenario, std::move(writer), simulator.pings(), 0});
+      })) {}
+PingWriter::PingWriter(PingWriter&&) noexcept = default;
+PingWriter& PingWriter::operator=(PingWriter&&) noexcept = default;
+PingWriter::~PingWriter() = default;
+
+void PingWriter::append(const Ping& ping) {
+  const Ping::Data& made = PingAccess::data(ping);
+  if (made.from_file)
+    throw InputError("ping", "a ping that was read from a file", "one that was made here");
+  if (made.scenario.to_toml() != data_->scenario.to_toml())
+    throw InputError("ping", "a ping of another scenario", "one of the file's scenario");
+  translated([&] { data_->writer.append(made.record); });
+  ++data_->written;
+}
+
+void PingWriter::finish() {
+  translated([&] { data_->writer.finish(data_->written == data_->pings); });
+}
+
+void write_ping(const std::filesystem::path& path, const Scenario& scenario, const Ping& ping) {
+  PingWriter writer(path, scenario);
+  writer.append(ping);
+  writer.finish();
+}
+
+void write_pings(const std::filesystem::path& path, const Scenario& scenario) {
+  PingWriter writer(path, scenario);
+  Pinger(scenario).run([&](const Ping& ping) { writer.append(ping); });
+  writer.finish();
+}
+
+Ping read_ping(const std::filesystem::path& path, int number) {
+  return translated([&] {
+    const detail::PingRecordings file(path);
+    const std::size_t row = file.row_of(number);
+    std::vector<std::vector<detail::TrueEcho>> truth;
+    for (std::size_t array = 0; array < file.scenario().arrays.size(); ++array)
+      truth.push_back(file.echoes(row, static_cast<int>(array)));
+    return PingAccess::made(scenario_in(file), record_of(file, row), std::move(truth), true);
+  });
+}
+
+int pings_in(const std::filesystem::path& path) {
+  return translated([&] { return static_cast<int>(detail::PingFile(path).pings()); });
+}
+
+}  // namespace asdic

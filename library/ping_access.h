@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "asdic/ping.h"
+#include "library/access.h"
+#include "processing/scoring.h"
+#include "sonar/ping/ping_record.h"
+
+namespace asdic {
+
+struct Ping::Data {
+  Scenario scenario{};
+  detail::PingRecord record{};  ///< of a ping out of a file: what a receiver needs of it
+  bool from_file = false;
+  std::vector<std::vector<detail::TrueEcho>> truth{};  ///< [arrays]
+  std::vector<Vector> phones{};                        ///< [channels] [m]
+  std::vector<Echo> echoes{};
+};
+
+struct PingAccess {
+  /// \param truth  [arrays] what each of them receives
+  [[nodiscard]] static Ping made(const Scenario& scenario, detail::PingRecord record,
+                                 std::vector<std::vector<detail::TrueEcho>> truth, bool from_file);
+  [[nodiscard]] static const Ping::Data& data(const Ping& ping) { return *ping.data_; }
+};
+
+}  // namespace asdic

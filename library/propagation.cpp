@@ -1,0 +1,133 @@
+#include "library/propagation.h"
+
+#include <cmath>
+
+#include "asdic/field.h"
+#include "asdic/rays.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "io/scenario/scenario_reader.h"
+#include "raytrace/ocean/slice.h"
+#include "raytrace/paths/trace_ray.h"
+
+namespace asdic {
+namespace {
+
+/// Launch elevations of a fan [rad].
+std::vector<double> elevations_of(const Fan& fan) {
+  std::vector<double> result = fan.elevations;
+  if (result.empty())
+    for (int i = 0; i < fan.count; ++i)
+      result.push_back(fan.count == 1
+                           ? fan.lowest
+                           : std::lerp(fan.lowest, fan.highest, double(i) / (fan.count - 1)));
+  for (const double elevation : result)
+    if (!(std::abs(elevation) < 0.5 * detail::pi))
+      throw InputError("elevation", detail::to_text(elevation) + " rad",
+                       "an angle between -pi/2 and pi/2, both excluded");
+  return result;
+}
+
+Ray shown(const detail::RayPath& ray) {
+  Ray result{.launch_elevation = ray.launch_elevation,
+             .final_elevation = ray.final_elevation,
+             .path_length = ray.path_length,
+             .surface_bounces = ray.surface_bounces,
+             .bottom_bounces = ray.bottom_bounces,
+             .turns = ray.turns};
+  for (const detail::RayPoint& point : ray.points) {
+    result.range.push_back(point.range);
+    result.depth.push_back(point.depth);
+    result.time.push_back(point.time);
+  }
+  return result;
+}
+
+/// The ocean along the transect, and a depth in it to start from.
+struct Plane {
+  detail::Environment ocean;
+  double source_depth;
+};
+Plane plane_of(const Scenario& scenario) {
+  const Scenario::Data& data = Access::data(scenario);
+  std::vector<std::string> notes;
+  if (!detail::has_sonar(data.document)) {
+    const detail::PropagationCase run = run_case_of(scenario, notes);
+    return {run.environment, run.source_depths.front()};
+  }
+  const detail::Scenario sonar = detail::scenario_of(data.document, data.path);
+  const detail::Vec3 platform = sonar.platforms[0].track.at(0.0).position;
+  return {
+      detail::slice(sonar.environment, sonar.transect.range_of(platform.x(), platform.y()), 1.0),
+      platform.z()};
+}
+
+}  // namespace
+
+detail::PropagationCase run_case_of(const Scenario& scenario, std::vector<std::string>& notes) {
+  const Scenario::Data& data = Access::data(scenario);
+  return detail::propagation_case_of(data.document, data.path, notes);
+}
+
+detail::PropagationResult run_of(const Scenario& scenario,
+                                 const detail::PropagationCase& run_case) {
+  const Scenario::Data& data = Access::data(scenario);
+  try {
+    return detail::run(run_case, {}, detail::budget_of(data.document));
+  } catch (const detail::InputError& error) {
+    throw detail::told_of_scenario(error, data.document, data.path);
+  }
+}
+
+std::vector<Ray> rays(const Scenario& scenario, const Fan& fan) {
+  return translated([&] {
+    const Plane plane = plane_of(scenario);
+    const double depth = fan.source_depth.value_or(plane.source_depth),
+                 top = plane.ocean.surface.depth_at(0.0), bottom = plane.ocean.bottom.depth_at(0.0);
+    if (!(depth >= top && depth <= bottom))
+      throw InputError(
+          "source_depth", detail::to_text(depth) + " m",
+          "a depth between " + detail::to_text(top) + " and " + detail::to_text(bottom) + " m");
+    std::vector<Ray> result;
+    for (const double elevation : elevations_of(fan))
+      result.push_back(
+          shown(detail::trace_ray(plane.ocean, depth, elevation, fan.range, 50.0, fan.bounces)));
+    return result;
+  });
+}
+
+EvenlySpaced::operator Value() const {
+  return Value::table({{"first", first}, {"last", last}, {"count", count}});
+}
+
+double Field::loss_db(std::size_t row, std::size_t column, std::size_t source) const {
+  const std::size_t rows = irregular ? 1 : depths.size();
+  if (row >= rows || column >= ranges.size() || source >= source_depths.size())
+    throw InputError("receiver",
+                     "row " + std::to_string(row) + ", column " + std::to_string(column) +
+                         ", source " + std::to_string(source),
+                     "below " + std::to_string(rows) + ", " + std::to_string(ranges.size()) + ", " +
+                         std::to_string(source_depths.size()));
+  const std::complex<double> p = pressure[(source * rows + row) * ranges.size() + column];
+  return -detail::db_from_amplitude(std::abs(p));
+}
+
+Field field(const Scenario& scenario) {
+  return translated([&] {
+    Field result;
+    detail::PropagationCase run = run_case_of(scenario, result.warnings);
+    run.task = detail::Task::field;
+    detail::PropagationResult found = run_of(scenario, run);
+    result.frequency = run.frequency;
+    result.source_depths = run.source_depths;
+    result.depths = run.receivers.depths;
+    result.ranges = run.receivers.ranges;
+    result.irregular = run.receivers.irregular;
+    result.pressure = std::move(found.field);
+    result.beam_error_db = found.beam_error_db;
+    result.warnings.insert(result.warnings.end(), found.notes.begin(), found.notes.end());
+    return result;
+  });
+}
+
+}  // namespace asdic

@@ -1,0 +1,81 @@
+#include "asdic/study.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "io/ping/provenance.h"
+#include "library/access.h"
+#include "study/plan/study.h"
+#include "study/runs/run_study.h"
+#include "study/runs/study_file.h"
+
+namespace asdic {
+namespace {
+
+StudyResult shown(const detail::study::StudyFile& file) {
+  detail::study::Table table = file.table();
+  StudyResult result{.complete = file.complete(), .warnings = file.fingerprint().warnings};
+  for (const detail::study::Column& column : table.columns) {
+    result.columns.push_back(column.name);
+    result.units.push_back(column.unit == "1" ? "" : column.unit);
+  }
+  result.values = std::move(table.values);
+  return result;
+}
+
+/// The answer to the study's first question, out of its rows.
+void answer(const detail::study::Study& study, const detail::study::Table& table,
+            StudyResult& result) {
+  detail::study::RunningEstimate estimate(study);
+  for (std::size_t i = 0; i < table.index.size(); ++i) {
+    detail::study::Row row{.index = table.index[i], .valid = table.valid[i] != 0};
+    for (const std::vector<double>& column : table.values) row.values.push_back(column[i]);
+    estimate.add(row);
+  }
+  const std::optional<detail::study::Estimate> found = estimate.estimate();
+  if (!found) return;
+  result.question = found->name;
+  result.value = found->value;
+  result.low = found->low;
+  result.high = found->high;
+}
+
+}  // namespace
+
+std::size_t StudyResult::rows() const noexcept { return values.empty() ? 0 : values[0].size(); }
+
+const std::vector<double>& StudyResult::column(const std::string& name) const {
+  const auto at = std::find(columns.begin(), columns.end(), name);
+  if (at != columns.end()) return values[static_cast<std::size_t>(at - columns.begin())];
+  std::string known;
+  for (const std::string& one : columns) known += (known.empty() ? "" : ", ") + one;
+  throw InputError("column", '"' + name + '"', "one of " + known);
+}
+
+StudyResult study(const std::filesystem::path& file, const std::filesystem::path& output,
+                  const StudyOptions& options) {
+  return translated([&] {
+    const detail::study::Study plan = detail::study::read_study(file, options.changes);
+    const detail::study::Realiser realiser(plan);
+    const detail::study::Work work = detail::study::work_of(plan, realiser);
+    detail::study::StudyRun run{.output = output, .range = {0, plan.realisations}};
+    run.fresh = options.fresh;
+    run.session.made =
+        detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+    run.session.study_path = std::filesystem::absolute(file).string();
+    if (options.progress)
+      run.progress = [&](const detail::study::Progress& p) { options.progress(p.done, p.total); };
+    const detail::study::StudyOutcome outcome = detail::study::run_study(work, run);
+    if (options.progress) options.progress(outcome.before + outcome.made, outcome.total);
+    const detail::study::StudyFile written(output);
+    StudyResult result = shown(written);
+    answer(plan, written.table(), result);
+    return result;
+  });
+}
+
+StudyResult read_study(const std::filesystem::path& output) {
+  return translated([&] { return shown(detail::study::StudyFile(output)); });
+}
+
+}  // namespace asdic

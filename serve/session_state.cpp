@@ -1,0 +1,62 @@
+#include "serve/session_state.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/scenario/document.h"
+#include "io/scenario/propagation.h"
+
+namespace asdic::detail::serve {
+namespace {
+
+constexpr std::size_t most_simulators = 4;  // of waveforms that take turns
+
+std::string padded(int number, int width) {
+  std::string digits = std::to_string(number);
+  return std::string(static_cast<std::size_t>(std::max(0, width - int(digits.size()))), '0') +
+         digits;
+}
+
+}  // namespace
+
+SessionState::SessionState(const SessionSettings& common, std::function<double()> seconds)
+    : settings(common),
+      clock(std::move(seconds)),
+      start(clock()),
+      live(settings.scenario, settings.data, settings.limits),
+      schedule(live.state().scenario),
+      budget_(budget_of(scenario::read_document(settings.scenario.text, settings.scenario.path,
+                                                settings.scenario.overrides))
+                  .share(static_cast<double>(settings.limits.memory_bytes), "memory_bytes")),
+      propagation_(std::make_shared<SharedPropagation>(settings.limits.kept_bytes)) {}
+
+double SessionState::now() const {
+  if (settings.pace.by_the_clock()) return (clock() - start) * *settings.pace.factor;
+  return schedule.next(live.state().scenario).time;
+}
+
+const PingSimulator& SessionState::simulator_of(LiveScenario::State state) {
+  const auto found = std::find_if(simulators_.begin(), simulators_.end(),
+                                  [&](const Simulator& one) { return one.key == state.key; });
+  if (found != simulators_.end()) {
+    simulators_.splice(simulators_.begin(), simulators_, found);
+  } else {
+    auto made = std::make_unique<PingSimulator>(std::move(state.scenario), propagation_, budget_);
+    if (!std::exchange(judged_, true)) made->judge_paths();
+    simulators_.push_front({.key = std::move(state.key), .simulator = std::move(made)});
+    if (simulators_.size() > most_simulators) simulators_.pop_back();
+  }
+  return *simulators_.front().simulator;
+}
+
+std::filesystem::path SessionState::next_file() {
+  for (int n = 1; folder_.empty(); ++n) {
+    const auto folder = settings.output / ("session-" + padded(n, 4));
+    std::error_code error;
+    if (std::filesystem::create_directory(folder, error)) folder_ = folder;
+    if (error) throw RunError(folder.string() + ": " + error.message());
+  }
+  return folder_ / ("ping-" + padded(pings + 1, 6) + ".h5");
+}
+
+}  // namespace asdic::detail::serve

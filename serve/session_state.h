@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/ping/ping_file.h"
+#include "serve/latency.h"
+#include "serve/live_scenario.h"
+#include "serve/pace.h"
+#include "serve/ping_schedule.h"
+#include "serve/session_limits.h"
+#include "sonar/paths/shared_propagation.h"
+#include "sonar/ping/ping.h"
+
+namespace asdic::detail::serve {
+
+/// What all sessions of a server have in common.
+struct SessionSettings {
+  ScenarioSource scenario;
+  DataFolder data;
+  std::filesystem::path output;  ///< folder for files of pings; empty: none are written
+  SessionLimits limits;
+  Pace pace;
+  Provenance provenance;
+  /// Told what is not for clients: why a file could not be written.
+  std::function<void(const std::string&)> report = [](const std::string&) {};
+};
+
+/// One line of JSON, without its end, and what follows it.
+struct Answer {
+  std::string line;
+  std::vector<float> samples = {};  ///< little-endian float32 after the line; none: nothing follows
+  bool last = false;                ///< the connection is closed after it
+};
+
+/// What a session is in the middle of: what its commands look at, and change.
+class SessionState {
+ public:
+  /// \param settings  outlive it   \param clock  seconds of a clock that never goes back
+  /// \throws InputError if the scenario is wrong
+  SessionState(const SessionSettings& settings, std::function<double()> clock);
+
+  const SessionSettings& settings;
+  std::function<double()> clock;
+  double start;  ///< of the session, on the clock
+  LiveScenario live;
+  PingSchedule schedule;
+  int pings = 0;  ///< done
+  LatencyLog latency;
+
+  [[nodiscard]] double now() const;  ///< of the scenario [s]
+  /// A simulator of a scenario, or the one that was made of it not long ago.
+  const PingSimulator& simulator_of(LiveScenario::State state);
+  /// For the next ping: sessions write into folders of their own, which nobody had before, so
+  /// nothing is overwritten.
+  [[nodiscard]] std::filesystem::path next_file();
+
+ private:
+  struct Simulator {
+    std::string key;
+    std::unique_ptr<PingSimulator> simulator;
+  };
+
+  bool judged_ = false;                             // what bounces leave out: at the first ping
+  MemoryBudget budget_;                             // of a ping
+  std::shared_ptr<SharedPropagation> propagation_;  // what was traced
+  std::list<Simulator> simulators_;                 // the latest used first
+  std::filesystem::path folder_;                    // of this session's files
+};
+
+}  // namespace asdic::detail::serve

@@ -1,0 +1,78 @@
+#include "sonar/ping/asked_arrivals.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "sonar/echoes/echo.h"
+#include "sonar/scenario/sampling.h"
+
+namespace asdic::detail {
+namespace {
+
+/// A depth that was asked for. \throws InputError unless it lies in the water at that range
+double depth_in_water(const Environment& plane, const char* what, double depth, double range) {
+  const double top = plane.surface.depth_at(range), bottom = plane.bottom.depth_at(range);
+  if (depth >= top && depth <= bottom) return depth;
+  throw InputError(
+      {.where = what,
+       .got = to_text(depth) + " m",
+       .expected = "a depth between " + to_text(top) + " and " + to_text(bottom) + " m"});
+}
+
+}  // namespace
+
+Vec3 source_of(const PingSimulator& simulator, int ping) {
+  if (ping < 1 || ping > simulator.pings())
+    throw InputError({.where = "ping",
+                      .got = std::to_string(ping),
+                      .expected = "a ping from 1 to " + std::to_string(simulator.pings())});
+  const Transmission& sent = simulator.transmission(ping);
+  return transmitter_at(simulator.scenario(), sent.transmitter, sent.time).position;
+}
+
+Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver) {
+  const Scenario& scenario = simulator.scenario();
+  const Vec3 platform = source_of(simulator, ping);
+  const PropagationPaths& paths = simulator.paths();
+  const double bearing = receiver.bearing  ? *receiver.bearing
+                         : paths.layered() ? 0.0
+                                           : scenario.transect.bearing;
+  const auto plane = paths.solver(paths.plane(platform, bearing));
+  Leg leg{.kind = Leg::Kind::source_to_receiver, .bearing = bearing, .range = receiver.range};
+  const double from = depth_in_water(plane->environment(), "source_depth",
+                                     receiver.source_depth.value_or(platform.z()), 0.0);
+  const double to =
+      depth_in_water(plane->environment(), "receiver_depth", receiver.depth, receiver.range);
+  const double frequency = receiver.frequency.value_or(simulator.pulse().centre_frequency());
+  const Vec3 source(platform.x(), platform.y(), from),
+      end(platform.x() + receiver.range * std::sin(bearing),
+          platform.y() + receiver.range * std::cos(bearing), to);
+  const PathLimits limits = limits_of(
+      scenario.propagation,
+      enough_bounces(paths, scenario.propagation, source, end, frequency, end_of_record(scenario)));
+  leg.arrivals = paths.layered() ? paths.find(source, end, frequency, limits)
+                                 : plane->find(from, to, receiver.range, frequency, limits);
+  return leg;
+}
+
+std::vector<Leg> legs_of_targets(const PingSimulator& simulator, int ping,
+                                 std::optional<int> target, std::optional<double> frequency) {
+  const Scenario& scenario = simulator.scenario();
+  const double c = simulator.paths().speed_at(source_of(simulator, ping));
+  const Transmission& sent = simulator.transmission(ping);
+  const PingGeometry geometry(scenario, sent, ping);
+  const Transmitter transmitter = simulator.transmitter(ping);
+  const double f = frequency.value_or(simulator.pulse(sent.transmitter).centre_frequency());
+  const BeamPattern pattern(transmitter, c / f, c, geometry.source_heading());
+  const EchoContext context{
+      .paths = simulator.paths(), .geometry = geometry, .pattern = pattern, .frequency = f};
+  std::vector<Leg> legs;
+  for (int i = 0; i < static_cast<int>(scenario.targets.size()); ++i) {
+    if (target && *target != i) continue;
+    for (Leg& leg : target_echoes(context, i).legs) legs.push_back(std::move(leg));
+  }
+  return legs;
+}
+
+}  // namespace asdic::detail

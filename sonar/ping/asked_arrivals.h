@@ -1,0 +1,33 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "sonar/paths/leg.h"
+#include "sonar/ping/ping.h"
+
+namespace asdic::detail {
+
+/// A receiver that somebody asks about.
+struct AskedReceiver {
+  double range = 0.0;                    ///< horizontal, from the source [m]
+  double depth = 0.0;                    ///< [m]
+  std::optional<double> source_depth{};  ///< [m]; none: the transmitter's
+  std::optional<double> bearing{};       ///< [rad]; none: along the transect, or north
+  std::optional<double> frequency{};     ///< of the losses [Hz]; none: the pulse's centre
+};
+
+/// Where the transmitter of a ping is when it sends. \param ping  from 1
+/// \throws InputError ("ping") if there is no such
+[[nodiscard]] Vec3 source_of(const PingSimulator& simulator, int ping);
+
+/// Eigenrays from where a ping is sent to any depth and range.
+/// \throws InputError ("ping", "source_depth", "receiver_depth") for a place out of the water
+[[nodiscard]] Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver);
+
+/// Eigenrays of a ping to the targets and from them to the arrays.
+/// \param target  this one alone, from 0   \param frequency  of the losses [Hz]; none: the pulse's
+[[nodiscard]] std::vector<Leg> legs_of_targets(const PingSimulator& simulator, int ping,
+                                               std::optional<int> target = {},
+                                               std::optional<double> frequency = {});
+
+}  // namespace asdic::detail

@@ -1,0 +1,69 @@
+#include "sonar/scenario/beams/line_beam.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/propagation_memory.h"
+#include "core/text.h"
+#include "core/units.h"
+
+namespace asdic::detail {
+namespace {
+
+double sinc(double u) noexcept {  // sin(πu)/(πu)
+  const double x = pi * u;
+  return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
+}
+
+/// sinc(u)/(1 − u²). At u = ±1 the zero of the sine cancels that of 1 − u²:
+/// sin(πu) = sin(π(1 − u)), so the pattern is sinc(1 − |u|)/(|u|(1 + |u|)), stable at |u| = 1.
+double hann_pattern(double u) noexcept {
+  const double a = std::abs(u);
+  return a < 0.5 ? sinc(a) / (1.0 - a * a) : sinc(1.0 - a) / (a * (1.0 + a));
+}
+
+}  // namespace
+
+void LineBeam::describe(Fields& field) {
+  field.excludes("a vertical line", {"bearing_deg", "bearing_from", "projector", "table"});
+  field("taper", taper, "of the line; omnidirectional is no line");
+  if (taper == Taper::omnidirectional)
+    return field.excludes("omnidirectional taper", {"beamwidth_deg"});
+  field(live(required("beamwidth")), beamwidth, AngleQuantity{"beamwidth", 0.01, 179.0},
+        "full width at -3 dB of the line when it is not steered");
+}
+
+std::string LineBeam::text(double elevation) const {
+  if (taper == Taper::omnidirectional) return "omnidirectional";
+  std::ostringstream text;
+  text << "elevation " << degrees(elevation) << " deg, beamwidth " << degrees(beamwidth) << " deg";
+  return text.str();
+}
+
+LinePattern::LinePattern(Taper taper, double beamwidth, const BeamMount& mount)
+    : taper_(taper), wavelength_(mount.wavelength), sound_speed_(mount.sound_speed) {
+  if (taper_ == Taper::omnidirectional) return;
+  if (!(beamwidth > 0.0 && beamwidth < pi))
+    throw InputError(
+        {.where = "beamwidth", .got = to_text(beamwidth), .expected = "between 0 and pi rad"});
+  // u where the pattern is 1/√2: half of the full −3 dB width.
+  const double half_power = taper_ == Taper::hann ? 0.7202912901 : 0.4429464707;
+  length_over_wavelength_ = half_power / std::sin(0.5 * beamwidth);
+  if (mount.reference > 0.0) length_over_wavelength_ *= mount.reference / mount.wavelength;
+  sin_axis_ = std::sin(mount.elevation);
+}
+
+double LinePattern::at(double elevation) const noexcept {
+  if (taper_ == Taper::omnidirectional) return 1.0;
+  const double u = length_over_wavelength_ * (std::sin(elevation) - sin_axis_);
+  return taper_ == Taper::rectangular ? sinc(u) : hann_pattern(u);
+}
+
+void LinePattern::add_to(ExactKey& key) const {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [taper, wavelength, sound_speed, length, axis] = *this;
+  key.add(static_cast<int>(taper)).add_all(wavelength, sound_speed, length, axis);
+}
+
+}  // namespace asdic::detail

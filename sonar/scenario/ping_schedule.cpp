@@ -1,0 +1,41 @@
+#include "sonar/scenario/ping_schedule.h"
+
+#include "core/fields.h"
+#include "core/quantities.h"
+
+namespace asdic::detail {
+
+void PingSchedule::describe(Fields& field) {
+  constexpr Quantity rate{
+      .noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e7, .above = true};
+  field("count", count, 1, 1'000'000, "of each transmitter");
+  field("interval", interval,
+        {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true},
+        "from ping to ping of one transmitter");
+  field("elevations", elevations, quantity::elevation,
+        "of the transmitter in each ping, repeated as needed");
+  if (field.checks() && !elevations.empty() && field.known("transmitter.has_elevation") > 0.0)
+    field.fault("elevations", "no elevations_deg beside transmitter.elevation_deg");
+  field(live("recording_duration"), recording_duration, quantity::duration,
+        "a ping is heard that long after its start");
+  field(live("recording_start"), recording_start,
+        {.noun = "time", .unit = "s", .low = 0.0, .high = 1e5}, "of a record, after the ping");
+  field("samples", samples, "what the samples of the phones are");
+  if (const auto only = field.only("samples", samples, Samples::pressure)) {
+    field.excludes("samples = \"pressure\"", {"carrier", "baseband_rate"});
+    field("sample_rate", sample_rate, rate, "of pressure");
+  }
+  if (const auto only = field.only("samples", samples, Samples::baseband)) {
+    field.excludes("samples = \"baseband\"", {"sample_rate"});
+    field("carrier", carrier, quantity::frequency, "without it the middle of the pulses");
+    field("baseband_rate", baseband_rate, rate,
+          "without it the pulses' band with its Doppler shifts");
+  }
+  field("continuous", continuous, "one stream for each phone, without gaps between pings");
+  field("blanking", blanking,
+        "whether arrays on the transmitter's platform hear nothing while it transmits");
+  if (field.checks() && continuous && recording_start > 0.0)
+    field.fault("recording_start", "0 in a continuous stream, which has no gaps");
+}
+
+}  // namespace asdic::detail

@@ -1,0 +1,12 @@
+#include "sonar/scenario/platform.h"
+
+#include "core/fields.h"
+
+namespace asdic::detail {
+
+void Platform::describe(Fields& field) {
+  field.name(name, "by which transmitters and arrays name it");
+  track.describe(field);
+}
+
+}  // namespace asdic::detail

@@ -1,0 +1,36 @@
+#include "core/fields.h"
+#include "sonar/scenario/scenario.h"
+
+namespace asdic::detail {
+namespace {
+
+/// wide_band, as files say it.
+enum class BandOfLosses { narrow, wide };
+constexpr std::string_view band_of_losses_words[] = {"narrow", "wide"};
+constexpr std::span<const std::string_view> words(BandOfLosses /*any*/) {
+  return band_of_losses_words;
+}
+
+}  // namespace
+
+void PropagationSettings::describe(Fields& field) {
+  field(or_word("max_surface_bounces", "auto"), max_surface_bounces, 0, 1000,
+        "of a path; without a number as many as there is sound in");
+  field(or_word("max_bottom_bounces", "auto"), max_bottom_bounces, 0, 1000,
+        "of a path; without a number as many as there is sound in");
+  field("max_launch_angle", max_launch_angle,
+        AngleQuantity{.noun = "angle", .low_deg = 0.0, .high_deg = 90.0, .above = true},
+        "of a path, from the horizontal");
+  field("direct_blast", direct_blast, "whether arrays on other platforms hear the ping on its way");
+  field("fathometer", fathometer,
+        "whether those on the transmitter's own hear it mirrored by the boundaries");
+  BandOfLosses band = wide_band ? BandOfLosses::wide : BandOfLosses::narrow;
+  field("band", band,
+        "losses and patterns of echoes at the centre, or at every frequency of the pulse");
+  if (field.reads()) wide_band = band == BandOfLosses::wide;
+  field("exact_per_phone", exact_per_phone,
+        "eigenrays to every phone, also where a plane wave is enough");
+  field("diffraction", diffraction, "whether sound goes where no ray does, in stratified water");
+}
+
+}  // namespace asdic::detail

@@ -1,0 +1,15 @@
+#pragma once
+#include <variant>
+
+#include "sonar/signal/waveforms/cw.h"
+#include "sonar/signal/waveforms/hfm.h"
+#include "sonar/signal/waveforms/lfm.h"
+#include "sonar/signal/waveforms/sampled_pulse.h"
+#include "sonar/signal/waveforms/waveform.h"
+
+namespace asdic::detail {
+
+/// Every waveform. A new one is its files and one name here (docs/develop/settings.md).
+using AnyWaveform = std::variant<Cw, Lfm, Hfm, SampledPulse>;
+
+}  // namespace asdic::detail

@@ -1,0 +1,32 @@
+#include "study/measures/kinds/matched_filter.h"
+
+#include <cmath>
+
+#include "study/measures/echo_filter.h"
+
+namespace asdic::detail::study {
+
+void MatchedFilterAnswer::of_target(const MeasuredPing& ping, std::size_t target, Collector& to) {
+  const MeasurePlan& plan = ping.plan;
+  FilterAnswer answer;
+  if (ping)
+    answer = filter_answer(*ping.simulator, *ping.record, plan.matched_filter, plan.array,
+                           static_cast<int>(target),
+                           plan.detection ? plan.detection->false_alarm_probability : 1e-4);
+  if (plan.detection && plan.detection->by == DetectionPlan::By::matched_filter) {
+    const auto over = [](double statistic, double threshold) {
+      if (std::isnan(statistic)) return no_value;  // not known, which is not the same as missed
+      return statistic > threshold ? 1.0 : 0.0;
+    };
+    to.add("detected", "1", "matched filter over its threshold at the echo's time; NaN: not known",
+           over(answer.present, answer.threshold));
+    to.add("false_alarm", "1", "matched filter over its threshold where there is no echo",
+           over(answer.absent, answer.absent_threshold));
+  }
+  to.add("snr_matched_db", "dB", "matched filter over its background at the echo's time",
+         db_from_power(answer.present));
+  to.add("snr_absent_db", "dB", "matched filter over its background where there is no echo",
+         db_from_power(answer.absent));
+}
+
+}  // namespace asdic::detail::study

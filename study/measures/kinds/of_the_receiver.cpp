@@ -1,0 +1,22 @@
+#include "study/measures/kinds/of_the_receiver.h"
+
+namespace asdic::detail::study {
+
+void DetectionByReceiver::of_target(const MeasuredPing& ping, std::size_t target, Collector& to) {
+  const ReceiverAnswer& answer = ping.receiver.targets[target];
+  to.add("detected", "1", "a detection of the receiver is the target's", answer.hit ? 1.0 : 0.0);
+  to.add("detection_snr_db", "dB", "of the loudest detection that is the target's", answer.snr_db);
+}
+
+void LocalisationError::of_target(const MeasuredPing& ping, std::size_t target, Collector& to) {
+  const ReceiverAnswer& answer = ping.receiver.targets[target];
+  to.add("position_error", "m", "horizontal, of the better of two sides", answer.position_error);
+  to.add("range_error", "m", "found less true, from the array", answer.range_error);
+  to.add("bearing_error_deg", "degrees", "found less true", degrees(answer.bearing_error));
+}
+
+void FalseAlarms::of_ping(const MeasuredPing& ping, Collector& to) {
+  to.add("false_alarms", "1", "detections that are no target's", ping.receiver.false_alarms);
+}
+
+}  // namespace asdic::detail::study

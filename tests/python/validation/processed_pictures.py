@@ -1,0 +1,252 @@
+#!/usr/bin/env python3
+"""The pictures of what `asdic process` found: drawn for every kind of array, true to the file, left
+out in words where there is nothing to show.
+
+    ASDIC=build/ci/bin/asdic processed_pictures.py
+"""
+import contextlib
+import io
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "python")]
+
+from asdic_pictures import bearing_time, command, processed, range_bearing, style  # noqa: E402
+from asdic_pictures.data import PingFile  # noqa: E402
+
+style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+FOUND = ["ambiguity", "detections", "range_bearing", "tracks"]
+
+SCENARIO = """
+title = "a small sea"
+[environment]
+wind_speed = 5.0
+[environment.sound_speed]
+kind = "isovelocity"
+speed = 1500.0
+[environment.bottom]
+depth = 1000.0
+kind = "rigid"
+[environment.absorption]
+kind = "none"
+[platform]
+position = [0.0, 0.0, 200.0]
+[transmitter]
+source_level_db = 210.0
+taper = "omnidirectional"
+[pulse]
+kind = "cw"
+frequency = 1000.0
+duration = 0.25
+[array]
+{array}
+[[target]]
+name = "rock"
+position = [2000.0, 1500.0, 400.0]
+velocity = [-5.0, 0.0, 0.0]
+strength_db = 15.0
+[noise]
+spectral_level_db = 50.0
+[reverberation]
+enabled = false
+[propagation]
+max_surface_bounces = 0
+max_bottom_bounces = 0
+[pings]
+count = 5
+interval = 20.0
+recording_duration = 5.0
+sample_rate = 2500.0
+"""
+ARRAYS = {
+    "horizontal": 'kind = "horizontal"\nphones = 8\nspacing = 0.75',
+    "vertical": 'kind = "vertical"\nphones = 8\nspacing = 0.75',
+    "volume": 'kind = "positions"\npositions = [' + ", ".join(
+        f"[{np.sin(a):.3f}, {np.cos(a):.3f}, {z}]" for a in np.arange(6) * np.pi / 3
+        for z in (-0.4, 0.4)) + "]",
+    "one": 'kind = "horizontal"\nphones = 1\nspacing = 0.75',
+}
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="asdic_processed_"))
+        self.addCleanup(shutil.rmtree, self.folder, True)
+
+    def make(self, array, *options):
+        path = self.folder / "sea.h5"
+        (self.folder / "sea.toml").write_text(SCENARIO.format(array=ARRAYS[array]))
+        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q"],
+                      ["process", "sea.h5", "--target-depth", "400m", "-q", *options]):
+            subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
+        return path
+
+    def plot(self, path, *options):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = command.main([str(path), "-o", str(self.folder / "pictures"), *options])
+        self.assertEqual((code, err.getvalue()), (0, ""))
+        drawn = sorted(p.stem for p in (self.folder / "pictures").iterdir() if p.stem in FOUND)
+        return drawn, out.getvalue()
+
+
+class EveryPicture(Case):
+    def test_of_a_horizontal_line(self):
+        self.assertEqual(self.plot(self.make("horizontal"))[0], FOUND)
+
+    def test_of_a_vertical_line(self):
+        drawn, said = self.plot(self.make("vertical"))
+        self.assertEqual(drawn, ["ambiguity", "detections", "tracks"])
+        self.assertIn("range_bearing.png: left out, the array tells no bearing", said)
+
+    def test_of_a_volume(self):
+        self.assertEqual(self.plot(self.make("volume"))[0], FOUND)
+
+    def test_of_one_phone(self):
+        drawn, _ = self.plot(self.make("one"))
+        self.assertEqual(drawn, ["ambiguity", "detections", "tracks"])
+
+    def test_without_maps(self):
+        drawn, said = self.plot(self.make("horizontal", "--no-maps"))
+        self.assertEqual(drawn, ["tracks"])
+        self.assertEqual(said.count("processed without maps"), 3)
+
+
+class SeveralArrays(Case):
+    """An upright array 300 m astern, a line to the north and one to the east."""
+
+    ARRAYS = """[[array]]
+name = "upright"
+offset = [0.0, -300.0, 0.0]
+kind = "vertical"
+phones = 4
+spacing = 0.75
+[[array]]
+name = "north line"
+kind = "horizontal"
+phones = 8
+spacing = 0.75
+[[array]]
+name = "east line"
+kind = "horizontal"
+phones = 8
+spacing = 0.75
+heading_deg = 90.0
+"""
+
+    def make_several(self):
+        text = SCENARIO.format(array="@").replace("[array]\n@\n", self.ARRAYS)
+        (self.folder / "sea.toml").write_text(text)
+        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q", "--pings", "1"],
+                      ["process", "sea.h5", "--target-depth", "400m", "-q"]):
+            subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
+        return self.folder / "sea.h5"
+
+    def test_each_is_steered_alone(self):
+        """A line's axis is its sine from broadside, clockwise: minus the cosine of the angle
+        between the line and the target. By a quarter of a beam, 1/8 of the sine."""
+        with PingFile(self.make_several()) as data:
+            for name, along in (("north line", [0, 1, 0]), ("east line", [1, 0, 0])):
+                data.select_array(data.choose_array(name))
+                self.assertEqual(data.channels, 8)
+                where, _, db = bearing_time.record(data, 0)
+                self.assertEqual(where.kind, "horizontal")
+                off = data.targets(0)[0][2] - data.phones(0).mean(axis=0)
+                loud = np.unravel_index(np.nanargmax(db), db.shape)[0]
+                self.assertAlmostEqual(where.coordinate[loud], -off @ along / np.linalg.norm(off),
+                                       delta=0.03)
+            data.select_array(0)
+            self.assertEqual((data.channels, bearing_time.record(data, 0)[0].kind), (4, "vertical"))
+
+    def test_the_first_and_what_tells_bearings(self):
+        drawn, said = self.plot(self.make_several())
+        self.assertEqual(drawn, ["ambiguity", "detections", "range_bearing"])
+        self.assertRegex(said, "bearing_time.png: .* upright\n")
+        self.assertRegex(said, "range_bearing.png: .* north line\n")
+        self.assertIn('3 arrays, "upright", "north line", "east line": --array NAME', said)
+
+    def test_the_chosen_one(self):
+        path = self.make_several()
+        said = self.plot(path, "--array", "east line")[1]
+        for name in ("pressure", "bearing_time", "detections", "range_bearing"):
+            self.assertRegex(said, f"{name}.png: .* east line\n")
+        out = subprocess.run([os.environ["ASDIC"], "plot", str(path), "--array", "west line"],
+                             capture_output=True, text=True)
+        self.assertEqual(out.returncode, 2)
+        self.assertIn('found no array "west line", expected one of "upright", "north line", '
+                      '"east line"', out.stderr)
+
+
+    def test_apart_from_the_sender_a_delay_is_another_range_in_every_bearing(self):
+        """300 m from the sender, both sides: where a delay and a beam meet, sound takes that long
+        there and back by straight rays of 1500 m/s, to a table's step of ranges (10 ms)."""
+        self.ARRAYS = self.ARRAYS.replace("kind", "offset = [300.0, 0.0, 0.0]\nkind").replace(
+            "offset = [0.0, -300.0, 0.0]\n", "")
+        path = self.make_several()
+        drawn, _ = self.plot(path, "--array", "north line")
+        self.assertIn("range_bearing", drawn)
+        with PingFile(path) as data:
+            data.select_array(1)
+            m = processed.maps(data, 0)
+            self.assertIsNone(m.range)
+            self.assertEqual(len(m.beam_range), 2)
+            centre = data.phones(0).mean(axis=0)
+            for side, span in zip((1.0, -1.0), m.beam_range):
+                across = side * np.array([m.axis[1], -m.axis[0], 0.0])
+                for row, cosine in enumerate(m.angle):
+                    look = cosine * m.axis + np.sqrt(max(0.0, 1.0 - cosine**2)) * across
+                    known = np.isfinite(span[row])
+                    place = centre + span[row][known, None] * look
+                    place[:, 2] = 400.0
+                    way = (np.linalg.norm(place - data.platform(0), axis=1)
+                           + np.linalg.norm(place - centre, axis=1))
+                    self.assertGreater(known.sum(), 100)
+                    self.assertLess(np.abs(way / 1500.0 - m.time[known]).max(), 0.01)
+
+
+class WhatTheyShow(Case):
+    def test_detections_lie_where_the_map_is_loud(self):
+        """The target's detection, in its beam and column of the map: within one of either."""
+        with PingFile(self.make("horizontal")) as data:
+            m, t = processed.maps(data, 0), processed.detections(data, 0)
+            mine = int(np.flatnonzero(t["target"] == 0)[0])
+            row = np.argmin(np.abs(m.angle - m.angle_of(t)[mine]))
+            column = np.argmin(np.abs(m.time - t["time"][mine]))
+            near = m.beam_db[max(row - 1, 0): row + 2, max(column - 1, 0): column + 2]
+            self.assertGreater(near.max(), t["snr_db"][mine] - 2.0)
+            # The map's range at that time is the detection's, within a column.
+            span = m.range[range_bearing.rising(m.range)]
+            self.assertAlmostEqual(m.range[column], t["range"][mine], delta=2 * np.diff(span).max())
+
+    def test_tracks_keep_to_the_truth(self):
+        """The track of the target: 5 m/s to the west from 2 km east."""
+        with PingFile(self.make("horizontal")) as data:
+            mine = [t for t in processed.tracks(data) if t["target"][0] == 0 and t["side"][0] == 0]
+            self.assertTrue(mine)
+            last = {k: v[-1] for k, v in mine[0].items()}
+            self.assertAlmostEqual(last["x"], 2000.0 - 5.0 * last["time"], delta=60.0)
+            self.assertAlmostEqual(last["y"], 1500.0, delta=60.0)
+
+    def test_left_over_pictures_are_removed(self):
+        path = self.make("horizontal")
+        self.plot(path)
+        with h5py.File(path, "r+") as f:
+            del f["processed"]
+        drawn, said = self.plot(path)
+        self.assertEqual(drawn, [])
+        self.assertNotIn("is not processed", said)
+
+
+if __name__ == "__main__":
+    if not os.environ.get("ASDIC"):
+        sys.exit("ASDIC names no program")
+    unittest.main(verbosity=1)

@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+"""The pictures of a study: each is drawn, shows what the file holds, and fits; bad input is told
+plainly. The file is made here, in the form of docs/formats/study-results.md.
+"""
+import contextlib
+import io
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "python")]
+
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")
+import matplotlib.image  # noqa: E402
+from asdic_pictures import command, study_data, study_pictures, style  # noqa: E402
+
+style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+
+INPUTS = {"range": "m", "wind_speed": "m/s", "kind": "1"}
+MEASURES = {"echo_level_db": "dB re 1 µPa", "detected": "1", "bearing_error_deg": "degrees"}
+
+
+def plot(*arguments):
+    """→ exit code, standard output, standard error"""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = command.main([str(a) for a in arguments])
+    return code, out.getvalue(), err.getvalue()
+
+
+def table(f, name, title, **columns):
+    """A table of the summary; a column is its values, or (values, unit), or (values, unit, labels)."""
+    group = f.create_group(f"summary/{name}")
+    group.attrs["title"] = title
+    group.attrs.create("columns", list(columns), dtype=h5py.string_dtype())
+    for key, column in columns.items():
+        column = column if isinstance(column, tuple) else (column,)
+        values, unit, labels = (*column, *("1", None)[len(column) - 1:])
+        group[key] = np.asarray(values, float)
+        group[key].attrs.update(units=unit, long_name=key)
+        if labels:
+            group[key].attrs.create("labels", labels, dtype=h5py.string_dtype())
+
+
+def estimate(name, value, half=0.1):
+    value = np.asarray(value, float)
+    return {name: value, f"{name}_low": value - half, f"{name}_high": value + half}
+
+
+def write(path, rows=400, skipped=0, inputs=INPUTS, complete=True):
+    """Detection falls from 0.9 at 10 km to 0.1 at 40 km; the echo's level by 20 dB over that."""
+    random = np.random.default_rng(1)
+    with h5py.File(path, "w") as f:
+        f.attrs.update(filetype="asdic study", version="1.0", title="a search", complete=int(complete))
+        f["index"], valid = np.arange(rows), np.ones(rows, "i1")
+        valid[:skipped] = 0
+        f["valid"] = valid
+        for name, unit in (*inputs.items(), *MEASURES.items()):
+            values = {"range": random.uniform(10e3, 40e3, rows), "kind": np.arange(rows) % 3,
+                      "detected": np.arange(rows) % 2}.get(name, random.normal(50.0, 5.0, rows))
+            d = f.create_dataset(f"table/{name}", data=np.asarray(values, float))
+            d.attrs.update(units=unit, long_name=name,
+                           role="measure" if name in MEASURES else "input")
+            if name == "kind":
+                d.attrs.create("labels", ["cw", "lfm", "hfm"], dtype=h5py.string_dtype())
+        r, pd = np.array([15e3, 25e3, 35e3]), [0.9, 0.5, 0.1]
+        bins = {"range": (r, "m"), "range_low": (r - 5e3, "m"), "range_high": (r + 5e3, "m"),
+                "count": np.full(3, rows / 3)}
+        table(f, "pd_by_range", "", **bins, **estimate("pd", pd))
+        table(f, "means_by_range", "", **bins, **estimate("echo_level_db", [60.0, 50.0, 40.0], 2.0))
+        table(f, "pd_by_kind", "", kind=([0, 1, 2], "1", ["cw", "lfm", "hfm"]),
+              count=np.full(3, rows / 3), **estimate("pd", [0.4, 0.5, 0.6]))
+        grid = [np.repeat(r, 2), np.tile([3.0, 9.0], 3)]
+        table(f, "pd_by_range_and_wind_speed", "", range=(grid[0], "m"),
+              range_low=(grid[0] - 5e3, "m"), range_high=(grid[0] + 5e3, "m"),
+              wind_speed=(grid[1], "m/s"), wind_speed_low=(grid[1] - 3, "m/s"),
+              wind_speed_high=(grid[1] + 3, "m/s"), count=np.full(6, rows / 6),
+              **estimate("pd", [0.95, 0.85, 0.6, 0.4, 0.2, 0.0]))
+        pfa = np.geomspace(1e-4, 1.0, 30)
+        table(f, "roc", "", threshold=-pfa, pfa=pfa, **estimate("pd", pfa ** 0.2, 0.05))
+        count = np.unique(np.geomspace(2, rows, 20).astype(int))
+        table(f, "convergence", "", count=count, **estimate("pd", 0.5 + 0.3 / count))
+        pairs = [(m, i) for m in range(len(MEASURES)) for i in range(len(inputs))]
+        table(f, "sensitivity", "", measure=([m for m, _ in pairs], "1", list(MEASURES)),
+              input=([i for _, i in pairs], "1", list(inputs)),
+              first_order=np.linspace(-0.01, 0.9, len(pairs)),
+              rank_correlation=np.linspace(-0.9, 0.9, len(pairs)))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(style.plt.close, "all")
+        self.folder = Path(folder.name)
+        self.file = self.folder / "study.h5"
+
+    def figures(self, **options):
+        write(self.file, **options)
+        return dict(study_pictures.draw(study_data.read(str(self.file))))
+
+    def texts_apart(self, axes):
+        """No two words of an axis of names, nor two numbers of a map, lie over one another."""
+        axes.figure.canvas.draw()
+        boxes = [t.get_window_extent() for t in axes.texts if t.get_text().strip()]
+        for i, one in enumerate(boxes):
+            for other in boxes[:i]:
+                self.assertFalse(one.overlaps(other))
+
+
+class MoreMeasuresThanPanels(Case):
+    def test_what_is_left_out_is_told(self):
+        write(self.file)
+        names = [f"path_{k}" for k in range(10)] + ["series_rms_db", "echo_level_db",
+                                                    "position_error", "range_error",
+                                                    "bearing_error_deg"]
+        with h5py.File(self.file, "r+") as f:
+            del f["summary/means_by_range"]
+            columns = {}
+            for name in names:
+                columns.update(estimate(name, [3.0, 2.0, 1.0]))
+            table(f, "means_by_range", "", range=([15e3, 25e3, 35e3], "m"),
+                  count=np.full(3, 100.0), **columns)
+        fig = dict(study_pictures.draw(study_data.read(str(self.file))))["means_by_range"]
+        self.assertEqual(len(fig.axes), 12)
+        self.assertIn("12 of 15 measures", fig._suptitle.get_text())
+        self.assertTrue(any("osition error" in a.get_ylabel() for a in fig.axes))
+
+
+class EveryPictureIsDrawn(Case):
+    def test_all_of_them(self):
+        write(self.file)
+        code, out, err = plot(self.file, "-o", self.folder / "pictures")
+        self.assertEqual((code, err), (0, ""))
+        names = ["convergence", "histograms", "means_by_range", "pd_by_kind", "pd_by_range",
+                 "pd_by_range_and_wind_speed", "roc", "sensitivity"]
+        pictures = sorted((self.folder / "pictures").iterdir())
+        self.assertEqual([p.name for p in pictures], [f"{n}.png" for n in names])
+        for path in pictures:
+            self.assertIn(f"{path}: ", out)
+            image = matplotlib.image.imread(path)[:, :, :3]
+            self.assertGreaterEqual(min(image.shape[:2]), 380, path)
+            self.assertGreater(image.std(), 0.02, path)
+
+    def test_a_summary_that_was_not_asked_for(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            for name in list(f["summary"]):
+                del f["summary"][name]
+        code, out, err = plot(self.file, "-o", self.folder / "pictures")
+        self.assertEqual((code, err), (0, ""))
+        self.assertEqual([p.name for p in (self.folder / "pictures").iterdir()], ["histograms.png"])
+
+
+class WhatThePicturesShow(Case):
+    def test_probabilities_stand_over_the_middles_of_their_bins(self):
+        axes = self.figures()["pd_by_range"].axes[0]
+        np.testing.assert_allclose(axes.lines[0].get_xydata(), [[15, 0.9], [25, 0.5], [35, 0.1]])
+        self.assertEqual(axes.get_xlim(), (10.0, 40.0))  # kilometres, all of the bins
+        self.assertEqual(axes.get_xlabel(), "range / km")
+        self.assertEqual(axes.get_ylabel(), "probability of detection")
+        low, high = axes.get_ylim()
+        self.assertLess(low, 0.0)
+        self.assertGreaterEqual(high, 1.0)
+
+    def test_the_band_is_the_interval(self):
+        axes = self.figures()["pd_by_range"].axes[0]
+        outline = axes.collections[0].get_paths()[0].vertices
+        np.testing.assert_allclose([outline[:, 1].min(), outline[:, 1].max()], [0.0, 1.0], atol=1e-12)
+
+    def test_names_are_ticks(self):
+        axes = self.figures()["pd_by_kind"].axes[0]
+        self.assertEqual([t.get_text() for t in axes.get_xticklabels()], ["cw", "lfm", "hfm"])
+
+    def test_a_map_has_its_cells_where_they_belong(self):
+        fig = self.figures()["pd_by_range_and_wind_speed"]
+        mesh = fig.axes[0].collections[0]
+        np.testing.assert_allclose(np.ma.filled(mesh.get_array()).reshape(2, 3),
+                                   [[0.95, 0.6, 0.2], [0.85, 0.4, 0.0]])  # wind upwards
+        self.assertEqual(fig.axes[0].get_ylabel(), "wind speed / m/s")
+        self.texts_apart(fig.axes[0])
+
+    def test_units_are_not_said_twice(self):
+        axes = self.figures()["histograms"].axes
+        labels = [a.get_xlabel() for a in axes]
+        self.assertIn("bearing error / degrees", labels)
+        self.assertIn("echo level / dB re 1 µPa", labels)
+
+    def test_a_heading_says_what_is_missing(self):
+        write(self.file, skipped=3, complete=False)
+        self.assertEqual(study_data.read(str(self.file)).heading(),
+                         "a search · 400 realisations (3 skipped, not complete)")
+
+    def test_columns_come_as_the_study_has_them(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            f["manifest"] = json.dumps({"columns": [{"name": n} for n in ("range", "wind_speed", "kind")]})
+        self.assertEqual([c.name for c in study_data.read(str(self.file)).columns][:3],
+                         ["range", "wind_speed", "kind"])
+
+    def test_columns_that_do_not_fit_are_counted(self):
+        many = {f"input_{i}": "m" for i in range(12)}
+        fig = self.figures(inputs=many)["histograms"]
+        self.assertEqual(len(fig.axes), 12)
+        self.assertIn("12 of 15 columns", fig._suptitle.get_text())
+
+    def test_numbers_of_many_inputs_have_room(self):
+        for count in (3, 6, 7, 12):
+            with self.subTest(count=count):
+                fig = self.figures(inputs={f"input_{i}": "m" for i in range(count)})["sensitivity"]
+                for axes in fig.axes[:2]:
+                    self.texts_apart(axes)
+                style.plt.close(fig)
+
+
+class BadInput(Case):
+    def refused(self, words):
+        code, out, err = plot(self.file, "-o", self.folder / "pictures")
+        self.assertEqual((code, out), (2, ""), err)
+        self.assertEqual(len(err.strip().splitlines()), 1, err)
+        self.assertRegex(err, words)
+
+    def test_nothing_valid(self):
+        write(self.file, rows=5, skipped=5)
+        self.refused("found 5 realisations, and none of them valid, expected ")
+
+    def test_a_part_that_is_not_there(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            f["index"][7] = -1
+        self.refused("found rows of a part that is not there, expected ")
+
+    def test_parts_of_the_file_that_are_missing(self):
+        for name in ("index", "valid", "table", "summary"):
+            with self.subTest(name=name):
+                write(self.file)
+                with h5py.File(self.file, "r+") as f:
+                    del f[name]
+                self.refused("found what cannot be read .*, expected a whole file")
+
+    def test_a_newer_format(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            f.attrs["version"] = "2.0"
+        self.refused("found version 2.0 of the format, expected version 1")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

@@ -1,0 +1,97 @@
+#include "sonar/paths/moving_paths.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "raytrace/paths/eigenrays.h"
+
+namespace asdic::detail {
+namespace {
+
+/// A thermocline of 0.3 m/s a metre under a mixed layer.
+EigenraySolver thermocline() {
+  Environment ocean;
+  const std::array<double, 4> depth = {0.0, 50.0, 150.0, 4000.0};
+  const std::array<double, 4> speed = {1520.0, 1520.0, 1490.0, 1555.0};
+  ocean.water = SoundSpeedProfile::table(depth, speed, Interpolation::c_linear);
+  ocean.bottom = {.depth = 4000.0, .material = FluidHalfSpace{}};
+  return EigenraySolver(ocean);
+}
+
+bool same_history(const Arrival& a, const Arrival& b) {
+  return a.surface_bounces == b.surface_bounces && a.bottom_bounces == b.bottom_bounces &&
+         a.upper_turns == b.upper_turns && a.lower_turns == b.lower_turns &&
+         a.caustics == b.caustics;
+}
+
+/// The path after the source has sunk from z by `sunk` in steps so small that its delay and its
+/// launch angle, which then change by little, resolve it; none if it ends on the way.
+std::optional<Arrival> followed(const EigenraySolver& sea, Arrival path, double z, double sunk,
+                                double receiver, double range, const PathLimits& limits) {
+  constexpr int steps = 100;
+  for (int i = 1; i <= steps; ++i) {
+    const Arrivals now = sea.find(z + sunk * i / steps, receiver, range, 3000.0, limits);
+    const Arrival* next = nullptr;
+    double least = 1.0;
+    for (const Arrival& a : now) {
+      const double strange = std::abs(a.delay - path.delay) / 1e-4 +  // 15 cm
+                             std::abs(a.launch_elevation - path.launch_elevation) / radians(1.0);
+      if (same_history(a, path) && strange < least) least = strange, next = &a;
+    }
+    if (next == nullptr) return std::nullopt;
+    path = *next;
+  }
+  return path;
+}
+
+// The source sinks by 3 m: its speed of sound falls by 0.9 m/s, so that a ray that left level
+// leaves under acos(1 − 6e-4) = 2°, and was lost when launch angles within a degree were asked for.
+// Its horizontal slowness has changed by no more than 2e-4. None may be lost, or taken for another.
+TEST(SamePath, IsTheOneOfTheSameSlownessWhereALevelRayTurns) {
+  const EigenraySolver sea = thermocline();
+  const PathLimits limits{.max_surface_bounces = 1, .max_bottom_bounces = 1};
+  int followable = 0, lost_by_angle = 0;
+  for (const double z : {110.0, 120.0, 130.0, 140.0})
+    for (const double receiver : {200.0, 400.0})
+      for (double range = 4000.0; range < 20000.0; range += 1500.0) {
+        const Arrivals before = sea.find(z, receiver, range, 3000.0, limits);
+        const Arrivals after = sea.find(z + 3.0, receiver, range, 3000.0, limits);
+        for (const Arrival& path : before) {
+          const auto truth = followed(sea, path, z, 3.0, receiver, range, limits);
+          if (!truth) continue;
+          ++followable;
+          const Arrival* found = same_path(after, path, true);
+          ASSERT_NE(found, nullptr) << z << ' ' << receiver << ' ' << range;
+          EXPECT_EQ(found->delay, truth->delay) << z << ' ' << receiver << ' ' << range;
+          if (same_path(after, path, false) == nullptr) ++lost_by_angle;
+        }
+      }
+  EXPECT_GT(followable, 300);
+  EXPECT_GE(lost_by_angle, 8);
+}
+
+// In a duct, paths of one history leave upwards and downwards with almost the same slowness; sign
+// and slowness resolve them. In open water the direct path passes through the level, and there
+// the sign must not matter.
+TEST(SamePath, KeepsUpAndDownApartButNotAtTheLevel) {
+  const double c = 1500.0;
+  const auto path = [&](double elevation) {
+    Arrival a;
+    a.launch_elevation = radians(elevation);
+    a.horizontal_slowness = std::cos(radians(elevation)) / c;
+    return a;
+  };
+  const Arrivals pair = {path(5.0), path(-5.1)};
+  EXPECT_EQ(same_path(pair, path(5.08), true), &pair[0]);
+  EXPECT_EQ(same_path(pair, path(-5.02), true), &pair[1]);
+  const Arrivals almost_level = {path(0.6), path(-0.3)};
+  EXPECT_EQ(same_path(almost_level, path(0.3), true), &almost_level[0]);
+  const Arrivals level = {path(-0.2)};
+  EXPECT_EQ(same_path(level, path(0.3), true), &level[0]);
+  EXPECT_EQ(same_path(level, path(30.0), true), nullptr);
+}
+
+}  // namespace
+}  // namespace asdic::detail
