@@ -54,15 +54,22 @@ Interrupt::~Interrupt() { on_all(SIG_DFL); }
 
 bool Interrupt::requested() noexcept { return signalled; }
 
-StopOnInterrupt::StopOnInterrupt(std::string told) {
-  watcher_ = std::jthread([this, told = std::move(told)](const std::stop_token& over) {
+StopOnInterrupt::StopOnInterrupt() : StopOnInterrupt(std::string()) {}
+
+StopOnInterrupt::StopOnInterrupt(std::string told) : told_(std::move(told)) {
+  watcher_ = std::jthread([this](const std::stop_token& over) {
     std::unique_lock lock(mutex_);
     while (!over.stop_requested() && !signalled)
       over_.wait_for(lock, over, std::chrono::milliseconds(10), [] { return signalled.load(); });
     if (!signalled) return;
-    if (!told.empty()) say(told);
+    if (!told_.empty()) say(told_);
     stop_.request_stop();
   });
+}
+
+void StopOnInterrupt::tell(std::string told) {
+  const std::lock_guard lock(mutex_);
+  told_ = std::move(told);
 }
 
 StopOnInterrupt::~StopOnInterrupt() {

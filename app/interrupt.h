@@ -24,16 +24,21 @@ class Interrupt {
 /// The same for what waits for a stop token: a thread watches what the handler has noted.
 class StopOnInterrupt {
  public:
-  /// \param told  a line on standard error when the first comes; "": none
-  explicit StopOnInterrupt(std::string told = {});
+  StopOnInterrupt();
+  /// \param told  a line on standard error when the first comes
+  explicit StopOnInterrupt(std::string told);
   ~StopOnInterrupt();
   StopOnInterrupt(const StopOnInterrupt&) = delete;
   StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+  /// From now on, the line on standard error when the first comes.
+  void tell(std::string told);
 
   [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
  private:
   Interrupt interrupt_;
+  std::string told_;  ///< "": none
   std::stop_source stop_;
   std::mutex mutex_;
   std::condition_variable_any over_;  ///< wakes the watcher before its time

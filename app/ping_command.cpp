@@ -69,20 +69,21 @@ int ping(const PingOptions& options) {
   const std::filesystem::path path =
       options.output.empty() ? std::filesystem::path(options.scenario.path).stem().string() + ".h5"
                              : options.output;
+  StopOnInterrupt interrupt;  // before there is a file that it would leave
   OutputFile output(path, rules_for(path, options.force, options.scenario.path));
   if (!options.quiet) {
     warn(scenario.notes);
     tell_of_parts(path);
   }
   const std::string part = output.part().string();
+  interrupt.tell(
+      fmt::format("asdic: stopping now, the pings in hand are left; Ctrl-C again ends at once, "
+                  "then {} holds those before",
+                  part));
 
   const int threads = options.threads.value_or(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  const StopOnInterrupt interrupt(
-      fmt::format("asdic: stopping now, the pings in hand are left; Ctrl-C again ends at once, "
-                  "then {} holds those before",
-                  part));
   const auto call_off = [&](const auto& work) {
     try {
       until_stopped(interrupt.token(), work);
