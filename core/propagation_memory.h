@@ -22,6 +22,7 @@ enum class Kept : std::uint64_t {
   followed_legs,
   pulse_moments,
   boundary_fan,
+  path_groups,
   synthesis,
   waveform,
   expected_reverberation,

@@ -1,9 +1,9 @@
 #include "reverb/scattering_sheet.h"
 
 #include <algorithm>
-
-#include <algorithm>
+#include <array>
 #include <numbers>
+
 #include "raytrace/parallel/stop.h"
 #include "reverb/uniform_of_bits.h"
 
@@ -37,45 +37,46 @@ double bundle_draw(std::uint64_t chance, std::size_t bundle) noexcept {
   return uniform_of_bits(mixed(chance, bundle));
 }
 
-TakenPath drawn_of(std::span<const BoundaryPath> paths, const PathBundle& bundle,
-                   std::uint32_t index, double uniform) noexcept {
-  const DrawnPath drawn = draw(bundle, paths, uniform);
-  const double own = std::norm(paths[drawn.path].amplitude);
-  return {
-      .path = drawn.path, .bundle = index, .gain = own > 0.0 ? std::sqrt(drawn.power / own) : 0.0};
-}
+/// ⁴√σ of sound that comes and goes under one angle, over that angle. A law of the form g(θ_in)·
+/// g(θ_out) under its square root is told by it; others are between angles that are near each
+/// other.
+class BackscatterTable {
+ public:
+  template <class Law>
+  explicit BackscatterTable(const Law& at) {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const double root = static_cast<double>(i) * step;
+      const double angle = std::min(root * root, 0.5 * pi);
+      values_[i] = std::sqrt(
+          std::sqrt(at(sines_of({.grazing_in = angle, .grazing_out = angle, .azimuth = pi}))));
+    }
+  }
+  [[nodiscard]] double operator()(double grazing) const noexcept {
+    const double at = std::sqrt(std::clamp(grazing, 0.0, 0.5 * pi)) / step;
+    const auto i = std::min(static_cast<std::size_t>(at), values_.size() - 2);
+    return std::lerp(values_[i], values_[i + 1], at - static_cast<double>(i));
+  }
 
-/// The paths of a cell that are followed: all, or one of each bundle.
-void take(std::span<const BoundaryPath> paths, std::span<const PathBundle> bundles,
-          std::uint64_t chance, std::vector<TakenPath>& taken) {
-  taken.clear();
-  if (bundles.empty()) {
-    for (std::uint32_t i = 0; i < paths.size(); ++i) taken.push_back({.path = i});
-    return;
-  }
-  for (std::uint32_t b = 0; b < bundles.size(); ++b) {
-    if (bundles[b].count == 1)
-      taken.push_back({.path = bundles[b].first});
-    else if (bundles[b].power > 0.0)
-      taken.push_back(drawn_of(paths, bundles[b], b, bundle_draw(chance, b)));
-  }
-}
+ private:
+  // Over √θ: near the horizon σ goes like a power of θ.
+  static constexpr std::size_t size = 1024;
+  static constexpr double step = 1.2534 / (size - 1);  // √(π/2), and a little
+  std::array<double, size> values_{};
+};
 
 }  // namespace
 
 bool ScatteringSheet::bundled() const noexcept {
-  const auto has = [](const BoundaryFan& fan) {
-    return std::any_of(fan.planes.begin(), fan.planes.end(),
-                       [](const FanPlane& plane) { return plane.paths->bundled(); });
-  };
-  return has(*out_) || has(*back_);
+  return groups_.out->bundled() || groups_.back->bundled();
 }
 
 ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
                                  std::shared_ptr<const BoundaryFan> back, Law law,
-                                 const SheetEnds& ends, const TransmitPattern& pattern)
+                                 const SheetEnds& ends, const TransmitPattern& pattern,
+                                 Groups groups)
     : out_(std::move(out)),
       back_(std::move(back)),
+      groups_(std::move(groups)),
       law_(std::move(law)),
       ends_(ends),
       pattern_(pattern),
@@ -94,6 +95,14 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
         for (const BandPoint& point : ends_.band) at.push_back(one.at(point.frequency));
       },
       law_);
+  if (!groups_.out)
+    groups_.out = std::make_shared<FanGroups>(*out_, PathResolution{}, ends_.frequency);
+  if (!groups_.back)
+    groups_.back = out_ == back_
+                       ? groups_.out
+                       : std::make_shared<FanGroups>(*back_, PathResolution{}, ends_.frequency);
+  weigh(Way::out);
+  weigh(Way::back);
   if (!azimuthally_symmetric_pattern_) return;
   const auto ask = [&](const TransmitPattern& at) {
     for (const BoundaryPath& path : out_->planes.front().paths->all())
@@ -101,6 +110,30 @@ ScatteringSheet::ScatteringSheet(std::shared_ptr<const BoundaryFan> out,
   };
   ask(pattern_);
   for (const BandPoint& point : ends_.band) ask(*point.pattern);
+}
+
+void ScatteringSheet::weigh(Way way) {
+  const FanGroups& groups = way == Way::out ? *groups_.out : *groups_.back;
+  if (!groups.added()) return;
+  const BoundaryFan& fan = way == Way::out ? *out_ : *back_;
+  const BackscatterTable backscatter =
+      std::visit([](const auto& at) { return BackscatterTable(at.front()); }, at_);
+  std::vector<std::vector<float>>& weights = way == Way::out ? out_weights_ : back_weights_;
+  for (std::size_t p = 0; p < fan.planes.size(); ++p) {
+    const BoundaryPaths& paths = *fan.planes[p].paths;
+    std::vector<float>& of_plane = weights.emplace_back(paths.size(), 1.0F);
+    for (std::size_t cell = 0; cell < paths.cells(); ++cell) {
+      const std::span<const BoundaryPath> here = paths.paths(cell);
+      const auto first = static_cast<std::size_t>(here.data() - paths.all().data());
+      for (const PathGroup& group : groups.planes[p].groups(cell)) {
+        const double strongest = backscatter(here[group.strongest].grazing);
+        if (group.count < 2 || !(strongest > 0.0)) continue;
+        for (const std::uint32_t i : groups.planes[p].members(group))
+          if (i != group.strongest)
+            of_plane[first + i] = static_cast<float>(backscatter(here[i].grazing) / strongest);
+      }
+    }
+  }
 }
 
 /// What is sent along a path out. \param point  0: the centre, then those of the band
@@ -125,13 +158,14 @@ bool ScatteringSheet::azimuthally_symmetric() const noexcept {
          (ends_.source.position - ends_.receiver.position).head<2>().norm() < 1e-3;
 }
 
-ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& end,
-                                          const Vec2& place, bool bearing) const noexcept {
+ScatteringSheet::Leg ScatteringSheet::leg(Way way, const Vec2& end, const Vec2& place,
+                                          bool bearing) const noexcept {
+  const BoundaryFan& fan = way == Way::out ? *out_ : *back_;
   Leg found;
-  const Vec2 way = place - end;
-  const double range = way.norm();
+  const Vec2 towards = place - end;
+  const double range = towards.norm();
   found.range = range;
-  found.direction = range > 0.0 ? Vec2(way / range) : Vec2(0.0, 1.0);
+  found.direction = range > 0.0 ? Vec2(towards / range) : Vec2(0.0, 1.0);
   if (bearing || fan.planes.size() > 1)
     found.bearing = std::atan2(found.direction.x(), found.direction.y());
   const FanPlane& plane = fan.towards(found.bearing);
@@ -139,13 +173,67 @@ ScatteringSheet::Leg ScatteringSheet::leg(const BoundaryFan& fan, const Vec2& en
   const double cells = paths.grid().at(range);
   if (!(cells < static_cast<double>(paths.cells()))) return found;
   const auto cell = static_cast<std::size_t>(cells);
+  const auto number = static_cast<std::size_t>(&plane - fan.planes.data());
   found.paths = paths.paths(cell);
-  found.bundles = paths.bundles(cell);
+  found.grouped = &(way == Way::out ? *groups_.out : *groups_.back).planes[number];
+  found.groups = found.grouped->groups(cell);
+  found.bundles = found.grouped->bundles(cell);
   found.beyond = range - paths.range(cell);
   if (!plane.tilt.empty()) found.tilt = &plane.tilt[cell];
   found.first = static_cast<std::size_t>(found.paths.data() - paths.all().data());
   found.ends = plane.ends.data() + found.first;
+  const auto& weights = way == Way::out ? out_weights_ : back_weights_;
+  if (!weights.empty()) found.weights = weights[number].data() + found.first;
   return found;
+}
+
+TakenGroup ScatteringSheet::drawn_of(const Leg& leg, std::uint32_t bundle,
+                                     std::uint64_t chance) noexcept {
+  const DrawnGroup drawn = draw(leg.bundles[bundle], leg.groups, bundle_draw(chance, bundle));
+  return {.group = drawn.group, .bundle = bundle, .gain = drawn.gain};
+}
+
+void ScatteringSheet::take(const Leg& leg, std::uint64_t chance, std::vector<TakenGroup>& taken) {
+  taken.clear();
+  if (leg.bundles.empty()) {
+    for (std::uint32_t i = 0; i < leg.groups.size(); ++i) taken.push_back({.group = i});
+    return;
+  }
+  for (std::uint32_t b = 0; b < leg.bundles.size(); ++b) {
+    if (leg.bundles[b].count == 1)
+      taken.push_back({.group = leg.bundles[b].first});
+    else
+      taken.push_back(drawn_of(leg, b, chance));
+  }
+}
+
+void ScatteringSheet::sum_up(Way way, const Leg& leg, const TakenGroup& taken, double below,
+                             double stretched, std::complex<double>* sums) const noexcept {
+  const PathGroup& group = leg.groups[taken.group];
+  const std::size_t points = ends_.band.size();
+  // A · D, with the absorption of a point of the band.
+  const auto pressure = [&](std::uint32_t i, std::size_t point) {
+    const BoundaryPath& path = leg.paths[i];
+    std::complex<double> p = path.amplitude;
+    if (way == Way::out) p *= beam(leg, i, point);
+    if (point > 0) p *= std::exp(-ends_.band[point - 1].more_nepers * path.length);
+    return p * taken.gain;
+  };
+  for (std::size_t k = 0; k <= points; ++k) sums[k] = pressure(group.strongest, k);
+  if (group.count == 1) return;
+  const auto delay_of = [&](std::uint32_t i) {
+    return delay_beyond(leg.paths[i], leg.beyond) + leg.ends[i].down * below;
+  };
+  const double first = delay_of(group.strongest);
+  for (const std::uint32_t i : leg.grouped->members(group)) {
+    if (i == group.strongest) continue;
+    const double later = stretched * (delay_of(i) - first);
+    const double weight = double(leg.weights[i]);
+    for (std::size_t k = 0; k <= points; ++k) {
+      const double f = k == 0 ? ends_.frequency : ends_.band[k - 1].frequency;
+      sums[k] += weight * pressure(i, k) * std::polar(1.0, -2.0 * pi * f * later);
+    }
+  }
 }
 
 void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const AudibleLimits* limits,
@@ -156,17 +244,17 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   pairs.responses.clear();
   const std::size_t points = ends_.band.size();
   const Leg out =
-      leg(*out_, ends_.source.position.head<2>(), place, !azimuthally_symmetric_pattern_);
+      leg(Way::out, ends_.source.position.head<2>(), place, !azimuthally_symmetric_pattern_);
   if (out.paths.empty()) return;
   const Vec2 receiver = ends_.receiver.position.head<2>();
-  Leg back = one_place_ ? out : leg(*back_, receiver, place, false);
+  Leg back = one_place_ ? out : leg(Way::back, receiver, place, false);
   if (back.paths.empty()) return;
   // Where the receiver is when the first path is received: all others are received metres from
   // there.
   double received = 0.0;
   if (receiver_moves_) {
     received = out.paths.front().delay + back.paths.front().delay;
-    back = leg(*back_, ends_.receiver_at(received).head<2>(), place, false);
+    back = leg(Way::back, ends_.receiver_at(received).head<2>(), place, false);
     if (back.paths.empty()) return;
   }
   const Vec2 coming = -back.direction;
@@ -181,9 +269,9 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
   constexpr double same_turn = 1e-6;  // [rad]
   const bool one_cell = one_fan() && out.first == back.first;
   const bool drawn = !out.bundles.empty() || !back.bundles.empty();
-  take(out.paths, out.bundles, chance, pairs.out_taken_);
-  // In one cell the same paths stand for the bundles of both ways: reciprocal pairs meet.
-  take(back.paths, back.bundles, one_cell ? chance : ~chance, pairs.back_taken_);
+  take(out, chance, pairs.out_taken_);
+  // In one cell the same groups stand for the bundles of both ways: reciprocal pairs meet.
+  take(back, one_cell ? chance : ~chance, pairs.back_taken_);
   const std::size_t outs = pairs.out_taken_.size(), backs = pairs.back_taken_.size();
   if (drawn || out.tilt || back.tilt || pairs.sheet_ != this || pairs.out_ != out.first ||
       pairs.back_ != back.first || std::abs(pairs.turn_ - turn) > same_turn ||
@@ -194,25 +282,42 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
     pairs.turn_ = turn;
     pairs.sigma_.assign(outs * backs * (1 + points), -1.0);
   }
+  // Differences of delay are those of a source that lies still: the pulse is stretched as it goes.
+  const PathEnds& leaving = out.ends[out.groups[pairs.out_taken_.front().group].strongest];
+  const Vec3 way(leaving.launch_level * out.direction.x(), leaving.launch_level * out.direction.y(),
+                 leaving.launch_down);
+  const double stretched = 1.0 / (1.0 - ends_.source.velocity.dot(way));
+  const auto sum_all = [&](Way leg_way, const Leg& leg, std::span<const TakenGroup> taken,
+                           std::vector<std::complex<double>>& sums) {
+    sums.resize(taken.size() * (1 + points));
+    for (std::size_t t = 0; t < taken.size(); ++t)
+      sum_up(leg_way, leg, taken[t], below, stretched, &sums[t * (1 + points)]);
+  };
+  sum_all(Way::out, out, pairs.out_taken_, pairs.sent_);
+  sum_all(Way::back, back, pairs.back_taken_, pairs.home_);
   for (std::size_t m = 0; m < outs; ++m) {
-    const TakenPath& first = pairs.out_taken_[m];
-    const std::size_t i = first.path;
+    const TakenGroup& first = pairs.out_taken_[m];
+    const std::size_t i = out.groups[first.group].strongest;
     const BoundaryPath& a = out.paths[i];
     const PathEnds& a_ends = out.ends[i];
-    const std::complex<double> sent = a.amplitude * beam(out, i, 0) * first.gain;
-    if (sent == 0.0 && points == 0) continue;
+    const std::complex<double>* const sent = &pairs.sent_[m * (1 + points)];
+    if (sent[0] == 0.0 && points == 0) continue;
     const Grazing grazing_in = grazing_of(a, a_ends, out.tilt);
     const double there = delay_beyond(a, out.beyond) + a_ends.down * below;
     for (std::size_t n = 0; n < backs; ++n) {
-      // Pairs within a bundle are those of two draws: that of a path with itself is one of many.
-      const TakenPath& other = pairs.back_taken_[n];
+      // Pairs within a bundle are those of two draws: that of a group with itself is one of many.
+      const TakenGroup& other = pairs.back_taken_[n];
       const bool of_many = first.of_many() || other.of_many();
       const bool one_bundle = of_many && one_cell && first.bundle == other.bundle;
-      const TakenPath second = one_bundle
-                                   ? drawn_of(back.paths, back.bundles[first.bundle], first.bundle,
-                                              bundle_draw(~chance, first.bundle))
-                                   : other;
-      const std::size_t j = second.path;
+      const std::complex<double>* home = &pairs.home_[n * (1 + points)];
+      TakenGroup second = other;
+      if (one_bundle) {
+        second = drawn_of(back, first.bundle, ~chance);
+        pairs.other_home_.resize(1 + points);
+        sum_up(Way::back, back, second, below, stretched, pairs.other_home_.data());
+        home = pairs.other_home_.data();
+      }
+      const std::size_t j = back.groups[second.group].strongest;
       const BoundaryPath& b = back.paths[j];
       const PathEnds& b_ends = back.ends[j];
       double delay = there + delay_beyond(b, back.beyond) + b_ends.down * below;
@@ -235,10 +340,10 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       }
       if (delay > ends_.latest) continue;
       const double least = limits ? limits->at(delay) : 0.0;
-      // A path of a bundle with another of it is received twice where its reciprocal is in phase.
+      // A group of a bundle with another of it is received twice where its reciprocal is in phase.
       const bool twice = one_bundle && in_phase_ && i != j;
-      const double gain = twice ? second.gain * std::sqrt(2.0) : second.gain;
-      const double before = std::norm(sent) * std::norm(b.amplitude) * gain * gain;
+      const double gain = twice ? std::sqrt(2.0) : 1.0;
+      const double before = std::norm(sent[0]) * std::norm(home[0]) * gain * gain;
       if (limits && points == 0 && before * ring * strongest <= least) continue;
       const Grazing grazing_out = grazing_of(b, b_ends, back.tilt);
       double* const sigma = &pairs.sigma_[(m * backs + n) * (1 + points)];
@@ -259,11 +364,8 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
       }
       double power = before * sigma[0];
       for (std::size_t k = 0; k < points; ++k) {
-        const BandPoint& point = ends_.band[k];
         const std::complex<double> there_and_back =
-            a.amplitude * beam(out, i, k + 1) * b.amplitude *
-            (first.gain * gain * std::sqrt(sigma[k + 1]) *
-             std::exp(-point.more_nepers * (a.length + b.length)));
+            sent[k + 1] * home[k + 1] * (gain * std::sqrt(sigma[k + 1]));
         pairs.responses.push_back(there_and_back);
         power = std::max(power, std::norm(there_and_back));
       }
@@ -278,7 +380,7 @@ void ScatteringSheet::pairs_at(const Vec2& place, PathPairs& pairs, const Audibl
                              .out_ends = &a_ends,
                              .back_ends = &b_ends,
                              .delay = delay,
-                             .amplitude = sent * b.amplitude * (std::sqrt(sigma[0]) * gain),
+                             .amplitude = sent[0] * home[0] * (std::sqrt(sigma[0]) * gain),
                              .power = power,
                              .cross_section = sigma[0],
                              .grazing_in = grazing_in.angle,

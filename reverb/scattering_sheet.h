@@ -11,6 +11,7 @@
 #include "core/kinematics.h"
 #include "reverb/boundary_fans.h"
 #include "reverb/doppler_span.h"
+#include "reverb/path_groups.h"
 #include "reverb/receiver_leg.h"
 #include "reverb/reverberation_settings.h"
 #include "reverb/scatterer_field.h"
@@ -26,17 +27,19 @@ struct BandPoint {
   double more_nepers = 0.0;                  ///< absorption over that at the centre [Np/m]
 };
 
-/// A way for sound to take from the source to a scatterer and on to the receiver.
+/// A way for sound to take from the source to a scatterer and on to the receiver: a path, or a
+/// group of paths that is received as one, on either leg.
 struct PathPair {
-  const BoundaryPath* out = nullptr;
+  const BoundaryPath* out = nullptr;            ///< the strongest of its group
   const BoundaryPath* back = nullptr;           ///< as launched from the receiver
   std::uint32_t out_index = 0, back_index = 0;  ///< among the paths of their cells
   const PathEnds* out_ends = nullptr;
   const PathEnds* back_ends = nullptr;
-  double delay = 0.0;                    ///< of the leading edge when it is received [s]
-  std::complex<double> amplitude = 0.0;  ///< D·A_out·A_back·√σ [1/m] of a scatterer of 1 m²
-  double power = 0.0;                    ///< |amplitude|², the largest in the band
-  double cross_section = 0.0;            ///< [1/sr], volume: times the sheet's thickness
+  double delay = 0.0;  ///< of the leading edge when it is received [s]
+  /// D·A_out·A_back·√σ [1/m] of a scatterer of 1 m², summed over the groups.
+  std::complex<double> amplitude = 0.0;
+  double power = 0.0;                          ///< |amplitude|², the largest in the band
+  double cross_section = 0.0;                  ///< [1/sr], volume: times the sheet's thickness
   double grazing_in = 0.0, grazing_out = 0.0;  ///< to the boundary itself [rad]
   double area = 1.0;                           ///< of the boundary over its horizontal projection
   Vec2 leaving = Vec2::Zero();                 ///< unit vector from the source to the scatterer
@@ -48,10 +51,10 @@ struct PathPair {
   double reciprocal = 1.0;
 };
 
-/// A path that is followed from an end to a place: itself, or one out of a bundle.
-struct TakenPath {
+/// A group of paths that is followed from an end to a place: itself, or one out of a bundle.
+struct TakenGroup {
   static constexpr std::uint32_t no_bundle = 0xffffffff;
-  std::uint32_t path = 0;            ///< among the paths of the cell
+  std::uint32_t group = 0;           ///< among the groups of the cell
   std::uint32_t bundle = no_bundle;  ///< that it stands for
   double gain = 1.0;                 ///< of its amplitude, to stand for all
 
@@ -73,7 +76,9 @@ struct PathPairs {
   const ScatteringSheet* sheet_ = nullptr;
   std::size_t out_ = 0, back_ = 0;  // first paths of the cells whose cross-sections these are
   double turn_ = 0.0;
-  std::vector<TakenPath> out_taken_, back_taken_;
+  std::vector<TakenGroup> out_taken_, back_taken_;
+  // [taken × (centre, points of the band)], with their gains; then one more of the way back
+  std::vector<std::complex<double>> sent_, home_, other_home_;
   std::vector<double>
       sigma_;  // [out × back × (centre, points of the band)], below 0: not known yet
 };
@@ -116,8 +121,15 @@ class ScatteringSheet {
   using Law = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert,
                            EllisCrowe, VolumeSheet>;
 
+  /// Which paths are received as one, out and back.
+  struct Groups {
+    std::shared_ptr<const FanGroups> out, back;
+  };
+
+  /// \param groups  of those fans, the same for one fan; none: every path by itself
   ScatteringSheet(std::shared_ptr<const BoundaryFan> out, std::shared_ptr<const BoundaryFan> back,
-                  Law law, const SheetEnds& ends, const TransmitPattern& pattern);
+                  Law law, const SheetEnds& ends, const TransmitPattern& pattern,
+                  Groups groups = {});
 
   /// All pairs of paths through a place, in the order of the tables, received before the record
   /// ends. \param limits  pairs that are fainter are left out; null: none   \param ring  area of
@@ -155,8 +167,11 @@ class ScatteringSheet {
   /// One leg at one place.
   struct Leg {
     std::span<const BoundaryPath> paths;
+    const GroupedPaths* grouped = nullptr;
+    std::span<const PathGroup> groups;
     std::span<const PathBundle> bundles;
     const PathEnds* ends = nullptr;  // [paths]
+    const float* weights = nullptr;  // [paths], or none: all 1
     const CellTilt* tilt = nullptr;
     Vec2 direction = Vec2::Zero();  // unit vector from the end to the place
     double bearing = 0.0;           // of it, where a table has bearings
@@ -169,8 +184,18 @@ class ScatteringSheet {
   /// σ of the paths that out and back are at a place. \param sigma  [1 + points]: at the centre,
   /// then at those of the band [1/sr]
   void cross_sections(const ScatterSines& sines, double* sigma) const noexcept;
-  [[nodiscard]] Leg leg(const BoundaryFan& fan, const Vec2& end, const Vec2& place,
-                        bool bearing) const noexcept;
+  enum class Way { out, back };
+  [[nodiscard]] Leg leg(Way way, const Vec2& end, const Vec2& place, bool bearing) const noexcept;
+  /// The groups that are followed: all, or one of each bundle.
+  static void take(const Leg& leg, std::uint64_t chance, std::vector<TakenGroup>& taken);
+  [[nodiscard]] static TakenGroup drawn_of(const Leg& leg, std::uint32_t bundle,
+                                           std::uint64_t chance) noexcept;
+  /// The pressure of a group at a place for a source of 1, with the phase of its strongest path: at
+  /// the centre, then at the points of the band. \param below  as pairs_at() \param stretched  the
+  /// source's Doppler factor   \param sums  [1 + points]
+  void sum_up(Way way, const Leg& leg, const TakenGroup& taken, double below, double stretched,
+              std::complex<double>* sums) const noexcept;
+  void weigh(Way way);
   /// When a receiver that changes its velocity receives what comes along a path.
   struct Reception {
     double delay = 0.0;                    // of the leading edge [s]
@@ -180,6 +205,10 @@ class ScatteringSheet {
                                              double unmoved) const noexcept;
 
   std::shared_ptr<const BoundaryFan> out_, back_;
+  Groups groups_;
+  /// Of every path, [plane][path]: √√ of its backscatter over that of the strongest of its group,
+  /// which √σ of a pair of groups is told for. Empty where no paths are added.
+  std::vector<std::vector<float>> out_weights_, back_weights_;
   Law law_;
   SheetEnds ends_;
   AtFrequencies<Law> at_;  // the centre and each point of the band

@@ -16,6 +16,10 @@ bool ScatteringSheet::add_to(ExactKey& key) const {
   std::visit([&](const auto& law) { add_settings(key, law); }, law_);
   const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
       ends_;
+  for (const auto& groups : {groups_.out, groups_.back}) {
+    const auto& [delay, level, level_of_range, depth, thickness] = groups->resolution;
+    key.add_all(delay, level, level_of_range, depth, thickness);
+  }
   add(key, source);
   add(key, receiver);
   key.add_all(source_speed, receiver_speed, frequency, latest, band.size(), legs.size());

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -299,104 +297,7 @@ void check_finite(std::span<const CellPath> found, double source_depth) {
         "report it with the scenario");
 }
 
-/// Whether two paths come within a period of each other, the same way: their waves add up at once.
-bool come_together(const BoundaryPath& a, const BoundaryPath& b, double frequency) {
-  return a.downward == b.downward && std::abs(a.delay - b.delay) * frequency < 1.0;
-}
-
-/// Of paths that come together: one went up first and was reflected, as from a source close to the
-/// surface and its image. They interfere in the same way wherever a scatterer lies. The pair of a
-/// caustic, a quarter of a turn apart, does not: over its range it has the energy of both.
-bool are_images(const BoundaryPath& a, const BoundaryPath& b) {
-  const std::complex<double> against = a.amplitude * std::conj(b.amplitude);
-  return (a.launch_elevation > 0.0) != (b.launch_elevation > 0.0) &&
-         against.real() < -std::abs(against.imag());
-}
-
-/// The power of two paths together over the sum of their powers.
-double together(const BoundaryPath& a, const BoundaryPath& b, double frequency) {
-  const double apart = std::norm(a.amplitude) + std::norm(b.amplitude);
-  const std::complex<double> turned =
-      b.amplitude * std::polar(1.0, -2.0 * pi * frequency * (b.delay - a.delay));
-  return apart > 0.0 ? std::norm(a.amplitude + turned) / apart : 1.0;
-}
-
-/// Of paths in the order of their delays: whether each comes together with the one before it.
-std::vector<bool> second_of_two(std::span<const BoundaryPath> paths, double frequency) {
-  std::vector<bool> second(paths.size(), false);
-  for (std::size_t i = 1; i < paths.size(); ++i)
-    second[i] = !second[i - 1] && come_together(paths[i - 1], paths[i], frequency);
-  return second;
-}
-
-/// What bundling takes for a path's power: each of two images has its share of what both are
-/// together.
-std::vector<double> powers(std::span<const BoundaryPath> paths, const std::vector<bool>& second,
-                           double frequency) {
-  std::vector<double> power;
-  power.reserve(paths.size());
-  for (const BoundaryPath& p : paths) power.push_back(std::norm(p.amplitude));
-  for (std::size_t i = 1; i < paths.size(); ++i)
-    if (second[i] && are_images(paths[i - 1], paths[i])) {
-      const double share = together(paths[i - 1], paths[i], frequency);
-      power[i - 1] *= share;
-      power[i] *= share;
-    }
-  return power;
-}
-
-/// A bundle of some paths, which are told their shares.
-PathBundle bundle_of(std::span<BoundaryPath> paths, std::span<const double> power,
-                     std::uint32_t first) {
-  PathBundle bundle{.first = first, .count = static_cast<std::uint32_t>(paths.size())};
-  for (const double p : power) bundle.power += p;
-  if (bundle.power <= 0.0) return bundle;
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    paths[i].share = static_cast<float>(power[i] / bundle.power);
-  return bundle;
-}
-
-/// Puts those first that have a 16th of the power of all, eight at most, and with one the other of
-/// two that come together; none if they hold less than three quarters of it. \return  how many
-std::size_t strong_first(std::span<BoundaryPath> paths, const std::vector<bool>& second,
-                         double frequency) {
-  constexpr double strong = 1.0 / 16.0, enough = 0.75;
-  constexpr std::size_t most = 8;
-  const std::vector<double> power = powers(paths, second, frequency);
-  const double all = std::accumulate(power.begin(), power.end(), 0.0);
-  std::vector<double> largest = power;
-  std::nth_element(largest.begin(), largest.begin() + most, largest.end(), std::greater<>());
-  const double least = std::max(strong * all, largest[most]);
-  const auto is_strong = [&](std::size_t i) { return power[i] > least; };
-  std::vector<BoundaryPath> strong_ones, others;
-  double held = 0.0;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    const bool with_next = i + 1 < paths.size() && second[i + 1] && is_strong(i + 1);
-    const bool with_last = second[i] && is_strong(i - 1);
-    const bool first = is_strong(i) || with_next || with_last;
-    (first ? strong_ones : others).push_back(paths[i]);
-    held += first ? power[i] : 0.0;
-  }
-  if (held < enough * all) return 0;
-  std::copy(others.begin(), others.end(),
-            std::copy(strong_ones.begin(), strong_ones.end(), paths.begin()));
-  return strong_ones.size();
-}
-
 }  // namespace
-
-DrawnPath draw(const PathBundle& bundle, std::span<const BoundaryPath> paths,
-               double uniform) noexcept {
-  constexpr double evenly = 0.1;
-  const double even = evenly / bundle.count;
-  const auto chance = [&](std::uint32_t i) {
-    return (1.0 - evenly) * double(paths[i].share) + even;
-  };
-  std::uint32_t i = bundle.first;
-  for (double sum = chance(i); sum < uniform && i + 1 < bundle.first + bundle.count;)
-    sum += chance(++i);
-  return {.path = i, .power = bundle.power * double(paths[i].share) / chance(i)};
-}
 
 int cycles_told_by(int cycle) noexcept {
   int stride = 1;  // all_cycles is a multiple of 9: blocks begin where those before end
@@ -408,50 +309,6 @@ int followed_cycles(int most) noexcept {
   int followed = 0;
   for (int cycle = 0; cycle <= most; ++cycle) followed += cycles_told_by(cycle) > 0 ? 1 : 0;
   return followed;
-}
-
-/// Cells of very many paths get bundles: of one path those that are strong, whose sounds interfere
-/// as paths' do; behind them, of equal numbers that follow each other in delay, all others.
-void BoundaryPaths::bundle(double frequency, const StopPoint& stop) {
-  std::size_t fullest = 0;
-  for (std::size_t cell = 0; cell < cells(); ++cell)
-    fullest = std::max(fullest, paths(cell).size());
-  if (fullest <= bundled_above) return;
-  first_bundle_.assign(cells() + 1, 0);
-  for (std::size_t cell = 0; cell < cells(); ++cell) {
-    const std::span<BoundaryPath> here(paths_.data() + first_[cell],
-                                       first_[cell + 1] - first_[cell]);
-    if (here.size() > bundled_above) {
-      stop();
-      bundle_cell(here, frequency);
-    }
-    first_bundle_[cell + 1] = static_cast<std::uint32_t>(bundles_.size());
-  }
-}
-
-void BoundaryPaths::bundle_cell(std::span<BoundaryPath> here, double frequency) {
-  std::stable_sort(here.begin(), here.end(),
-                   [](const BoundaryPath& a, const BoundaryPath& b) { return a.delay < b.delay; });
-  const auto alone = strong_first(here, second_of_two(here, frequency), frequency);
-  for (std::uint32_t i = 0; i < alone; ++i) {
-    here[i].share = 1.0F;
-    bundles_.push_back({.first = i, .count = 1, .power = std::norm(here[i].amplitude)});
-  }
-  const std::span<BoundaryPath> others = here.subspan(alone);
-  const std::vector<bool> second = second_of_two(others, frequency);
-  const std::vector<double> power = powers(others, second, frequency);
-  const std::size_t most = most_bundles - std::min(most_bundles / 2, alone);
-  // One of two that come together stands for both: out of two bundles, both would be received.
-  const auto border = [&](std::size_t i) {
-    const std::size_t even = i * others.size() / most;
-    return even < others.size() && second[even] ? even + 1 : even;
-  };
-  for (std::size_t i = 0; i < most; ++i) {
-    const std::size_t begin = border(i), count = border(i + 1) - begin;
-    bundles_.push_back(bundle_of(others.subspan(begin, count),
-                                 std::span(power).subspan(begin, count),
-                                 static_cast<std::uint32_t>(alone + begin)));
-  }
 }
 
 BoundaryPaths boundary_paths(const EigenraySolver& solver, double source_depth,
@@ -472,7 +329,6 @@ BoundaryPaths boundary_paths(const EigenraySolver& solver, double source_depth,
   ground.paths_.resize(found.size());
   std::vector<std::uint32_t> next(ground.first_.begin(), ground.first_.end());
   for (const CellPath& p : found) ground.paths_[next[p.cell]++] = p.path;
-  ground.bundle(frequency, stop);
   return ground;
 }
 

@@ -27,26 +27,7 @@ struct BoundaryPath {
   double length = 0.0;          ///< of the path [m]
   /// Reflections before the end.
   std::uint16_t surface_bounces = 0, bottom_bounces = 0;
-  float share = 1.0F;  ///< of the power of its PathBundle
 };
-
-/// A path of a cell that is strong, or others that follow each other in delay, of which one stands
-/// for all: drawn with a known chance, and as much stronger as it is rarely drawn, it has the mean
-/// of whatever the paths do, by any law. docs/theory/reverberation.md, "Many paths"
-struct PathBundle {
-  std::uint32_t first = 0, count = 0;  ///< among the paths of the cell
-  double power = 0.0;                  ///< of all: Σ|A|², a path and its image coherent
-};
-
-/// One path of a bundle, drawn by its power, and one in ten times evenly: else the weak and late
-/// ones would be received from few places, and there too loud.
-struct DrawnPath {
-  std::uint32_t path = 0;  ///< among the paths of the cell
-  double power = 0.0;      ///< that it stands for: its own over its chance, Σ|A|²
-};
-/// \param uniform  in (0, 1)
-[[nodiscard]] DrawnPath draw(const PathBundle& bundle, std::span<const BoundaryPath> paths,
-                             double uniform) noexcept;
 
 /// The cells of a ground: rings around the source, `spacing` wide and, beyond the first of them,
 /// wider.
@@ -97,34 +78,19 @@ class BoundaryPaths {
     return {paths_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
   [[nodiscard]] std::span<const BoundaryPath> all() const noexcept { return paths_; }
-  /// Of a cell of very many paths; empty where each is followed by itself.
-  [[nodiscard]] std::span<const PathBundle> bundles(std::size_t cell) const noexcept {
-    if (first_bundle_.empty()) return {};
-    return {bundles_.data() + first_bundle_[cell], first_bundle_[cell + 1] - first_bundle_[cell]};
-  }
-  [[nodiscard]] bool bundled() const noexcept { return !bundles_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return paths_.size(); }
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return paths_.size() * sizeof(BoundaryPath) + bundles_.size() * sizeof(PathBundle) +
-           (first_.size() + first_bundle_.size()) * sizeof(std::uint32_t);
+    return paths_.size() * sizeof(BoundaryPath) + first_.size() * sizeof(std::uint32_t);
   }
-
-  static constexpr std::size_t bundled_above = 12;  ///< paths of a cell
-  static constexpr std::size_t most_bundles =
-      8;  ///< of a cell, but for strong paths: with 8 of those, 4
 
  private:
   friend BoundaryPaths boundary_paths(const EigenraySolver&, double, const GroundLevel&,
                                       const GroundGrid&, double, double, const PathLimits&,
                                       const StopPoint&);
-  void bundle(double frequency, const StopPoint& stop);
-  void bundle_cell(std::span<BoundaryPath> here, double frequency);
 
   GroundGrid grid_;
   std::vector<std::uint32_t> first_;  // [cells + 1]
   std::vector<BoundaryPath> paths_;
-  std::vector<std::uint32_t> first_bundle_;  // [cells + 1], or none
-  std::vector<PathBundle> bundles_;
 };
 
 /// Of paths that go up and down very often, in layered water, not every cycle is followed: from

@@ -81,6 +81,63 @@ int resolved_sectors(const Scenario& scenario, double sound_speed) {
   return static_cast<int>(std::ceil(std::min(most, sectors)));
 }
 
+/// How far scatterers go in a pulse [m]: a Bragg wave as fast as one of half the sound's length.
+double way_of_scatterers(const ScattererMotion& motion, double wavenumber, double duration) {
+  constexpr double gravity = 9.81;
+  double speed = motion.current.norm();
+  if (motion.kind == ScattererMotion::Kind::spread) speed += 2.0 * motion.speed_rms;
+  if (motion.kind == ScattererMotion::Kind::bragg)
+    speed += 0.5 * std::sqrt(gravity / (2.0 * wavenumber));
+  return speed * duration;
+}
+
+/// Which paths of a leg are received as one.
+struct Resolutions {
+  PathResolution out, back;
+};
+
+/// \param fan  which cells \param means  over a piece of ground or of a layer, of that thickness
+Resolutions resolutions(const ReverberationContext& context, const SheetEnds& ends,
+                        const ScattererMotion& motion, const BoundaryFans::Settings& fan,
+                        bool means, double thickness) {
+  // The band's edges turn by π/8 in an eighth of what it resolves.
+  constexpr double share = 1.0 / 8.0;
+  const double duration = context.pulse.duration();
+  const double own =
+      way_of_scatterers(motion, 2.0 * pi * ends.frequency / ends.source_speed, duration);
+  PathResolution both{.delay = share / context.pulse.bandwidth_99(),
+                      .level = own,
+                      .level_of_range = means ? 1.0 / 256.0 : 0.0,
+                      .depth = 0.0,
+                      .thickness = (means ? thickness : 0.0) + own};
+  if (means) both.level += std::max(fan.wide, fan.spacing);
+  Resolutions found{both, both};
+  const auto add_way = [&](PathResolution& leg, const Vec3& velocity) {
+    leg.level += velocity.head<2>().norm() * duration;
+    leg.depth += std::abs(velocity.z()) * duration;
+  };
+  add_way(found.out, ends.source.velocity);
+  Vec3 fastest = ends.receiver.velocity.cwiseAbs();
+  for (const ReceiverLeg& leg : ends.legs) fastest = fastest.cwiseMax(leg.line.velocity.cwiseAbs());
+  add_way(found.back, fastest);
+  // Of all shapes that an array takes, and in steps, so that one that bends finds what is kept.
+  const auto in_steps = [](double metres) {
+    return metres > 0.0 ? std::exp2(std::ceil(std::log2(metres))) : 0.0;
+  };
+  double level = 0.0, depth = 0.0;
+  const auto reach = [&](std::span<const Vec3> phones) {
+    for (const Vec3& phone : phones) {
+      level = std::max(level, phone.head<2>().norm());
+      depth = std::max(depth, std::abs(phone.z()));
+    }
+  };
+  reach(context.geometry.phones(context.array));
+  for (const auto& shape : context.geometry.array(context.array).shapes) reach(shape);
+  found.back.level += in_steps(level);
+  found.back.depth += in_steps(depth);
+  return found;
+}
+
 }  // namespace
 
 ReverberationModel::ReverberationModel(const Scenario& scenario, const PropagationPaths& paths,
@@ -240,6 +297,13 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context, Gr
     return paths_to_level;
   };
   const auto out = fan_around(ends.source.position), back = fan_around(ends.receiver.position);
+  Resolutions alike =
+      resolutions(context, ends, field.motion, fan, ground == Ground::means, part.thickness);
+  if (out == back) alike.out = alike.back = alike.out.finer(alike.back);
+  PropagationMemory& memory = paths_.memory();
+  const ScatteringSheet::Groups groups{
+      .out = FanGroups::of(*out, alike.out, ends.frequency, memory),
+      .back = FanGroups::of(*back, alike.back, ends.frequency, memory)};
   // For parts of an array that of all its phones: they are to receive the same scatterers.
   const auto farthest_phone = [&](const Vec2& place) {
     if (!context.point) return (receiver - place).norm();
@@ -252,7 +316,7 @@ void ReverberationModel::meet(Part part, const ReverberationContext& context, Gr
   for (const Anchor& anchor : anchors) {
     const double beside = (0.5 * (source + receiver) - anchor.place).norm() + 0.5 * moved;
     fields.push_back(
-        {.sheet = ScatteringSheet(out, back, part.law, ends, context.pattern),
+        {.sheet = ScatteringSheet(out, back, part.law, ends, context.pattern, groups),
          .grid = {.anchor = anchor.place,
                   .identity = anchor.identity,
                   .spacing = spacing_,

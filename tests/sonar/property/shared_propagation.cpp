@@ -314,6 +314,8 @@ std::vector<Change> changes_of_what_is_expected() {
        [](Scenario& s) {
          s.arrays[0].offset = {3.0, 0.0, 0.0};
        }},
+      // Which paths are received as one hangs on what the array resolves.
+      {"phones", [](Scenario& s) { s.arrays[0].phones = line_array(2, 0.1, 0.0, 0.0).phones; }},
       {"bounces", [](Scenario& s) { s.propagation.max_surface_bounces = 2; }},
       {"water", [](Scenario& s) { s.environment.water = SoundSpeedProfile::isovelocity(1490.0); }},
       {"bottom", [](Scenario& s) { s.environment.bottom.material = Rigid{}; }},
@@ -343,7 +345,6 @@ TEST(SharedReverberation, EverythingThatEntersTheExpectedLevelIsPartOfItsKey) {
       {"nothing", [](Scenario&) {}},
       {"seed", [](Scenario& s) { s.seed = 77; }},
       {"noise", [](Scenario& s) { s.noise.law = WhiteNoise{55.0}; }},
-      {"phones", [](Scenario& s) { s.arrays[0].phones = line_array(2, 0.1, 0.0, 0.0).phones; }},
       {"statistics", [](Scenario& s) { s.reverberation.surface_field.statistics.k_shape = 0.7; }},
       {"motion", [](Scenario& s) { s.reverberation.bottom_field.motion.speed_rms = 0.5; }}};
   for (const Change& change : others) {

@@ -63,73 +63,34 @@ double level_about(const PingReverberation& ping, double t) {
   return db_from_power(power);
 }
 
-/// Against a column of a table from 3 s on. 0.5 dB: the tables are good to 0.05 to 0.2 dB, places
-/// at the middles of cells and one choice of paths for each stand for the mean.
+/// Against a column of a table from 3 s on. The tables are sums of energies, good to 0.05 to 0.2
+/// dB. Of paths in phase a second of a tone is up to 0.65 dB beside that
+/// (tests/sonar/data/guide/pekeris_in_phase.csv), one way or the other.
 void expect_levels(const Scenario& s, const Csv& table, const std::string& column,
                    const std::string& of_guide = "") {
   const Sea sea(s);
   const PingReverberation ping = sea.ping(1);
   EXPECT_LE(ping.bounces().left_out_db, negligible_db);
   EXPECT_GT(ping.bounces().bottom, 10);
+  double mean = 0.0, rows = 0.0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double t = table["t_s"][row];
     if (t < 3.0 || (!of_guide.empty() && table.text("guide")[row] != of_guide)) continue;
-    EXPECT_NEAR(level_about(ping, t), table[column][row], 0.5) << of_guide << " at " << t << " s";
+    const double off = level_about(ping, t) - table[column][row];
+    EXPECT_NEAR(off, 0.0, 0.85) << of_guide << " at " << t << " s";
+    mean += off;
+    ++rows;
   }
-}
-
-// One path of each bundle stands for all: their powers and chances are those of the paths.
-TEST(EnoughBounces, BundlesHoldThePowerOfTheirPaths) {
-  const EigenraySolver solver(guide().environment);
-  const BoundaryPaths ground =
-      boundary_paths(solver, 30.0, BoundaryKind::bottom, 40.0, 10e3, 1000.0, limits_of({}, 40));
-  ASSERT_TRUE(ground.bundled());
-  int bundled = 0;
-  for (std::size_t cell = 0; cell < ground.cells(); ++cell) {
-    const std::span<const PathBundle> bundles = ground.bundles(cell);
-    EXPECT_EQ(bundles.empty(), ground.paths(cell).size() <= BoundaryPaths::bundled_above);
-    if (bundles.empty()) continue;
-    ++bundled;
-    double all = 0.0, held = 0.0;
-    for (const BoundaryPath& path : ground.paths(cell)) all += std::norm(path.amplitude);
-    std::size_t next = 0;
-    for (const PathBundle& bundle : bundles) {
-      EXPECT_EQ(bundle.first, next);
-      next += bundle.count;
-      held += bundle.power;
-      double shares = 0.0;
-      for (const BoundaryPath& path : ground.paths(cell).subspan(bundle.first, bundle.count))
-        shares += double(path.share);
-      EXPECT_NEAR(shares, 1.0, 1e-5);
-    }
-    EXPECT_EQ(next, ground.paths(cell).size());
-    // Images, whose power is that of their sum, are few here: 20 wavelengths of depth.
-    EXPECT_NEAR(held / all, 1.0, 0.5) << cell;
-  }
-  EXPECT_GT(bundled, 200);
-}
-
-// Every path is drawn, the weakest too, and has on average the power that it has.
-TEST(EnoughBounces, DrawsOfABundleHaveTheMeanOfEveryPath) {
-  constexpr double shares[] = {0.9, 1e-6, 0.0999, 9.9e-5};
-  constexpr int draws = 1'000'000;
-  std::vector<BoundaryPath> paths(1 + std::size(shares));  // the first belongs to another bundle
-  for (std::size_t i = 0; i < std::size(shares); ++i)
-    paths[i + 1].share = static_cast<float>(shares[i]);
-  const PathBundle bundle{.first = 1, .count = std::size(shares), .power = 3.0};
-  std::vector<double> sum(paths.size());
-  for (int n = 0; n < draws; ++n) {
-    const DrawnPath drawn = draw(bundle, paths, (n + 0.5) / draws);
-    EXPECT_LE(drawn.power, bundle.power / 0.9);
-    sum.at(drawn.path) += drawn.power / draws;
-  }
-  EXPECT_EQ(sum[0], 0.0);
-  for (std::size_t i = 0; i < std::size(shares); ++i)
-    EXPECT_NEAR(sum[i + 1] / (bundle.power * shares[i]), 1.0, 1e-4) << i;
+  EXPECT_NEAR(mean / rows, 0.0, 0.4) << of_guide;
 }
 
 TEST(EnoughBounces, PekerisReverberationIsTheSumOfImages) {
   expect_levels(guide(), Csv("physics-reference/reverb_guide_pekeris.csv"), "RL_truth_images_dB");
+}
+
+// Second by second, with all that interferes.
+TEST(EnoughBounces, PekerisReverberationIsThatOfImagesInPhase) {
+  expect_levels(guide(), Csv("guide/pekeris_in_phase.csv"), "in_phase_dB");
 }
 
 TEST(EnoughBounces, SummerReverberationIsTheFlux) {
