@@ -120,10 +120,17 @@ MemoryNeed BoundaryFans::need(const Settings& settings) const {
 
 BoundaryFan BoundaryFans::trace(const Vec3& place, const GroundLevel& level,
                                 const Settings& settings, const StopPoint& stop) const {
+  const auto height = [&](const Environment& ocean) {
+    const double depth = !level.boundary                            ? level.depth
+                         : *level.boundary == BoundaryKind::surface ? ocean.surface.depth
+                                                                    : ocean.bottom.depth;
+    return std::abs(depth - place.z());
+  };
   const auto ground = [&](const EigenraySolver& solver) {
+    const GroundGrid grid = grid_of(settings).fine_below(height(solver.environment()));
     return std::make_shared<const BoundaryPaths>(
-        boundary_paths(solver, place.z(), level, grid_of(settings), settings.max_range,
-                       settings.frequency, settings.limits, stop));
+        boundary_paths(solver, place.z(), level, grid, settings.max_range, settings.frequency,
+                       settings.limits, stop));
   };
   const double speed = paths_.speed_at(place);
   if (paths_.layered()) {

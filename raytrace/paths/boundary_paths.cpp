@@ -116,7 +116,8 @@ class BranchFollower {
     if (!(b.range.x > a.range.x)) return;  // one and the same ray, to rounding
     const double low = std::min(a.range.value, b.range.value),
                  high = std::max(a.range.value, b.range.value);
-    if (high < 0.5 * spacing_ || low > max_range_) return;
+    if (high < grid_.range(0) || low > max_range_) return;
+    const double spacing = grid_.spacing_at(low);
     const Hermite range(a.range, b.range), delay(a.delay, b.delay);
     // Where the next ray meets a knot or a boundary r goes like a square root: its slope at that
     // end tells nothing of a piece that is wider than the end's own surroundings.
@@ -124,11 +125,11 @@ class BranchFollower {
     if (tame && grid_.wide() > spacing_ && !holds_cell(low, high)) return;
     const double middle = 0.5 * (a.range.x + b.range.x);
     const bool apart = middle > a.range.x && middle < b.range.x;
-    if (depth < 12 && apart && (high - low > 0.5 * spacing_ || (!tame && holds_cell(low, high)))) {
+    if (depth < 12 && apart && (high - low > 0.5 * spacing || (!tame && holds_cell(low, high)))) {
       const BranchPoint m = point(middle);
       const double error = std::abs(range.value(middle) - m.range.value) +
                            std::abs(delay.value(middle) - m.delay.value) / ray(middle).slowness;
-      if (!tame || error > 0.01 * spacing_) {
+      if (!tame || error > 0.01 * spacing) {
         refine(a, m, depth + 1);
         refine(m, b, depth + 1);
         return;

@@ -29,8 +29,8 @@ struct BoundaryPath {
   std::uint16_t surface_bounces = 0, bottom_bounces = 0;
 };
 
-/// The cells of a ground: rings around the source, `spacing` wide and, beyond the first of them,
-/// wider.
+/// The cells of a ground: rings around the source, `spacing` wide; beyond the first of them wider,
+/// and right at a source that is near to the ground finer.
 class GroundGrid {
  public:
   GroundGrid() = default;
@@ -41,18 +41,38 @@ class GroundGrid {
         wide_(wide),
         near_cells_(wide > spacing ? std::ceil(near / spacing) : 0.0) {}
 
+  /// The first rings, up to four times a source's height over the ground, no wider than an eighth
+  /// of that. \param height  [m]
+  [[nodiscard]] GroundGrid fine_below(double height) const noexcept {
+    constexpr double per_height = 8.0, heights = 4.0, most = 64.0;
+    GroundGrid grid = *this;
+    const double parts = std::min(most, std::ceil(per_height * spacing_ / std::max(height, 1e-3)));
+    if (!(parts > 1.0)) return grid;
+    grid.divided_ = std::ceil(heights * height / spacing_);
+    grid.parts_ = parts;
+    return grid;
+  }
+
   [[nodiscard]] double spacing() const noexcept { return spacing_; }  ///< [m]
   [[nodiscard]] double wide() const noexcept { return wide_; }        ///< [m]
+  /// Of the cells about a range, but for wide ones [m].
+  [[nodiscard]] double spacing_at(double range) const noexcept {
+    return range < divided_ * spacing_ ? spacing_ / parts_ : spacing_;
+  }
   /// The centre of a cell [m].
   [[nodiscard]] double range(std::size_t cell) const noexcept {
-    const double i = double(cell);
+    const double fine = divided_ * parts_;
+    if (double(cell) < fine) return (double(cell) + 0.5) * (spacing_ / parts_);
+    const double i = double(cell) - fine + divided_;
     return i < near_cells_ ? (i + 0.5) * spacing_
                            : near_cells_ * spacing_ + (i - near_cells_ + 0.5) * wide_;
   }
   /// The cell that a range lies in, with what it lies beyond the cell's inner edge as a fraction.
   [[nodiscard]] double at(double range) const noexcept {
     const double cells = range / spacing_;
-    return cells < near_cells_ ? cells : near_cells_ + (range - near_cells_ * spacing_) / wide_;
+    if (cells < divided_) return cells * parts_;
+    return divided_ * (parts_ - 1.0) +
+           (cells < near_cells_ ? cells : near_cells_ + (range - near_cells_ * spacing_) / wide_);
   }
   /// How many cells have their centres before a range: the first of the others.
   [[nodiscard]] std::size_t count(double range) const noexcept {
@@ -61,6 +81,7 @@ class GroundGrid {
 
  private:
   double spacing_ = 1.0, wide_ = 1.0, near_cells_ = 0.0;
+  double divided_ = 0.0, parts_ = 1.0;  // the first cells of `spacing`, each into so many
 };
 
 /// Every path of a fan to every cell of one ground grid. Paths of one cell add coherently; the

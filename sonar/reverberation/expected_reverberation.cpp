@@ -48,17 +48,6 @@ struct Found {
   double scatterers;         // of that ring
 };
 
-/// The ground, or the layer, for which a place stands. \param rings, sectors  for which it does;
-/// how many sectors stand for all
-GroundPiece piece_about(const ScatteringField& field, std::uint32_t ring, int sector,
-                        std::uint32_t rings, std::uint32_t sectors) {
-  const double bearing = field.bearing(sector), range = (ring + 0.5) * field.grid.spacing;
-  return {.outward = {std::sin(bearing), std::cos(bearing)},
-          .length = rings * field.grid.spacing,
-          .width = 2.0 * pi * range / sectors,
-          .thickness = field.thickness};
-}
-
 /// How far a pair's phase turns over it.
 std::array<float, 3> phases_of(const PathPair& pair, const GroundPiece& piece,
                                const PiecePhases& phases) noexcept {
@@ -108,30 +97,86 @@ struct Middles {
   [[nodiscard]] std::uint32_t count() const noexcept {
     return static_cast<std::uint32_t>(sectors.size());
   }
-  /// Adds the pairs of a ring.
+  /// Adds the pairs of a ring. No piece is longer than a quarter of its distance from source and
+  /// receiver, nor wider than that distance.
   void find(std::uint32_t ring, PathPairs& pairs, std::vector<Found>& out) const {
-    constexpr double faintest = 1e-8;  // of the loudest pair of a place
+    const double spacing = field.grid.spacing;
     const std::uint32_t stands_for = std::min(step, field.grid.rings - ring);
+    const double inner = ring * spacing, length = stands_for * spacing;
     for (std::uint32_t i = 0; i < count(); ++i) {
-      field.sheet.pairs_at(field.centre(ring, sectors[i]), pairs, nullptr, 0.0, 0.0,
-                           mixed(ring, i));
-      const double share = double(stands_for) / count(), area = field.received_area(ring);
-      const GroundPiece piece = piece_about(field, ring, sectors[i], stands_for, count());
-      const PiecePhases phases(piece, field.sheet.ends().frequency);
-      double loudest = 0.0;
-      for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
-      for (const PathPair& pair : pairs.found) {
-        if (pair.power < faintest * loudest) continue;
-        out.push_back(
-            {{.place = first_place + ring * count() + i,
-              .by_itself = pair.of_many,
-              .delay = pair.delay,
-              .amplitude = pair.amplitude * std::sqrt(pair.area * area * share * pair.reciprocal),
-              .phases = phases_of(pair, piece, phases)},
-             pair.power * area,
-             share,
-             double(field.grid.azimuths) * field.copies_of(ring, sectors[i])});
+      const double bearing = field.bearing(sectors[i]), width = 2.0 * pi / count();
+      const double nearest = field.sheet.nearest_end(field.centre(ring, sectors[i]), field.depth);
+      const auto parts = [&](double size) {
+        constexpr double most = 32.0;
+        return static_cast<std::uint16_t>(std::clamp(std::ceil(size / nearest), 1.0, most));
+      };
+      const std::uint16_t along = parts(4.0 * spacing),
+                          around = field.azimuthally_symmetric()
+                                       ? std::uint16_t{1}
+                                       : parts((ring + 0.5) * spacing * width);
+      if (along == 1 && around == 1) {
+        at({.ring = ring,
+            .sector = i,
+            .range = (ring + 0.5) * spacing,
+            .bearing = bearing,
+            .length = length,
+            .width = 2.0 * pi * (ring + 0.5) * spacing / count(),
+            .share = double(stands_for) / count()},
+           pairs, out);
+        continue;
       }
+      for (std::uint16_t j = 0; j < along; ++j)
+        for (std::uint16_t k = 0; k < around; ++k) {
+          const double range = inner + (j + 0.5) * length / along;
+          at({.ring = ring,
+              .sector = i,
+              .part = static_cast<std::uint16_t>(j * around + k),
+              .range = range,
+              .bearing = bearing + ((k + 0.5) / around - 0.5) * width,
+              .length = length / along,
+              .width = range * width / around,
+              .share = range / ((ring + 0.5) * spacing) * stands_for / (count() * along * around)},
+             pairs, out);
+        }
+    }
+  }
+
+ private:
+  /// A piece of ground, or of a layer, with the pairs through its middle.
+  struct Piece {
+    std::uint32_t ring = 0, sector = 0;
+    std::uint16_t part = 0;
+    double range = 0.0, bearing = 0.0;
+    double length = 0.0, width = 0.0;  // outward and beside that [m]
+    double share = 0.0;                // of its ring's area
+  };
+  void at(const Piece& piece, PathPairs& pairs, std::vector<Found>& out) const {
+    constexpr double faintest = 1e-8;  // of the loudest pair of a place
+    const GroundPiece ground{.outward = {std::sin(piece.bearing), std::cos(piece.bearing)},
+                             .length = piece.length,
+                             .width = piece.width,
+                             .thickness = field.thickness};
+    const Vec2 place = field.grid.anchor + piece.range * ground.outward;
+    field.sheet.pairs_at(place, pairs, nullptr, 0.0, 0.0,
+                         piece.part == 0 ? mixed(piece.ring, piece.sector)
+                                         : mixed(mixed(piece.ring, piece.sector), piece.part));
+    const PiecePhases phases(ground, field.sheet.ends().frequency);
+    const double area = field.received_area(piece.ring);
+    double loudest = 0.0;
+    for (const PathPair& pair : pairs.found) loudest = std::max(loudest, pair.power);
+    for (const PathPair& pair : pairs.found) {
+      if (pair.power < faintest * loudest) continue;
+      out.push_back(
+          {{.place = first_place + piece.ring * count() + piece.sector,
+            .part = piece.part,
+            .by_itself = pair.of_many,
+            .delay = pair.delay,
+            .amplitude =
+                pair.amplitude * std::sqrt(pair.area * area * piece.share * pair.reciprocal),
+            .phases = phases_of(pair, ground, phases)},
+           pair.power * area,
+           piece.share,
+           double(field.grid.azimuths) * field.copies_of(piece.ring, sectors[piece.sector])});
     }
   }
 };
@@ -306,7 +351,8 @@ double ExpectedReverberation::power(const Pulse& pulse, double t) const {
       else
         here.push_back({received, samples[i].phases});
     }
-    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place) {
+    if (i + 1 == samples.size() || samples[i + 1].place != samples[i].place ||
+        samples[i + 1].part != samples[i].part) {
       power += power_of(here);
       here.clear();
     }

@@ -20,6 +20,7 @@ struct ExpectedReverberation {
   /// A pair through the middle of a cell of a few sectors, for the level.
   struct Sample {
     std::uint32_t place = 0;  // pairs of one place interfere
+    std::uint16_t part = 0;   // of the place, where it is divided
     bool by_itself = false;   // it adds by energy: one of so many that their phases say nothing
     double delay = 0.0;
     std::complex<double> amplitude = 0.0;  // of the area that the place stands for

@@ -24,7 +24,9 @@ struct Circles {
   std::size_t sectors;
 
   Circles(const ScatteringField& f, double bin, std::size_t bearings) : field(f), edges{0.0} {
-    const double reach = field.grid.rings * field.grid.spacing, least = 0.25 * slowest_sea * bin;
+    const double reach = field.grid.rings * field.grid.spacing;
+    const double height = std::abs(field.depth - field.sheet.ends().source.position.z());
+    const double least = std::clamp(0.25 * slowest_sea * bin, 1.0, std::max(1.0, 0.25 * height));
     while (edges.back() < reach)
       edges.push_back(std::min(reach, edges.back() + std::max(least, edges.back() / 256.0)));
     const auto n = static_cast<std::size_t>(field.bearings);

@@ -183,19 +183,30 @@ BoundaryFan ground_of(const Scenario& s, const PropagationPaths& paths) {
                                       .limits = limits_of(s.propagation)});
 }
 
+/// The cell of that centre; none where cells are finer, as right above a platform of a layered
+/// ocean.
+std::optional<std::size_t> cell_there(const BoundaryPaths& paths, double range) {
+  const auto cell = static_cast<std::size_t>(paths.grid().at(range));
+  if (cell >= paths.cells() || std::abs(paths.range(cell) - range) > 1e-6) return std::nullopt;
+  return cell;
+}
+
 /// Cell by cell, from straight above to the limiting ray: the same paths.
 /// \param delay, grazing, amplitude  allowed differences [s], [rad], relative
 void expect_same(const BoundaryPaths& a, const BoundaryPaths& b, double delay, double grazing,
                  double amplitude) {
-  ASSERT_EQ(a.cells(), b.cells());
+  std::size_t compared = 0;
   for (std::size_t cell = 0; cell < a.cells(); ++cell) {
-    ASSERT_EQ(a.paths(cell).size(), b.paths(cell).size()) << cell;
+    const std::optional<std::size_t> in_b = cell_there(b, a.range(cell));
+    if (!in_b) continue;
+    ++compared;
+    ASSERT_EQ(a.paths(cell).size(), b.paths(*in_b).size()) << cell;
     for (const BoundaryPath& p : a.paths(cell)) {
       const auto unlike = [&](const BoundaryPath& other) {
         return std::abs(other.launch_elevation - p.launch_elevation) +
                std::abs(other.delay - p.delay);
       };
-      const auto all = b.paths(cell);
+      const auto all = b.paths(*in_b);
       const auto nearest = std::min_element(
           all.begin(), all.end(),
           [&](const BoundaryPath& x, const BoundaryPath& y) { return unlike(x) < unlike(y); });
@@ -205,6 +216,7 @@ void expect_same(const BoundaryPaths& a, const BoundaryPaths& b, double delay, d
           << cell;
     }
   }
+  EXPECT_GT(compared, std::min(a.cells(), b.cells()) / 2);
 }
 
 // Across the slope nothing varies: that sector has the bits of a layered ocean of the platform's
@@ -278,10 +290,11 @@ TEST(Transect, LevelsOfTheWaterOverAFlatShapeAreThoseOfTheLayeredOcean) {
   const PropagationPaths a(flat.environment, flat.transect), b(shaped.environment, shaped.transect);
   for (const double depth : {40.0, 100.0, 400.0, 850.0}) {
     const BoundaryPaths layered = level_of(flat, a, depth), marched = level_of(shaped, b, depth);
-    ASSERT_EQ(layered.cells(), marched.cells());
     int unlike = 0, compared = 0;
     for (std::size_t cell = 0; cell < layered.cells(); ++cell) {
-      if (layered.paths(cell).size() != marched.paths(cell).size()) {
+      const std::optional<std::size_t> there = cell_there(marched, layered.range(cell));
+      if (!there) continue;
+      if (layered.paths(cell).size() != marched.paths(*there).size()) {
         ++unlike;
         continue;
       }
@@ -290,7 +303,7 @@ TEST(Transect, LevelsOfTheWaterOverAFlatShapeAreThoseOfTheLayeredOcean) {
           return std::abs(other.launch_elevation - p.launch_elevation) +
                  std::abs(other.delay - p.delay);
         };
-        const auto all = marched.paths(cell);
+        const auto all = marched.paths(*there);
         const auto same = std::min_element(
             all.begin(), all.end(),
             [&](const BoundaryPath& x, const BoundaryPath& y) { return off(x) < off(y); });
@@ -302,7 +315,7 @@ TEST(Transect, LevelsOfTheWaterOverAFlatShapeAreThoseOfTheLayeredOcean) {
         ++compared;
       }
     }
-    EXPECT_GE(compared, 950) << depth;
+    EXPECT_GE(compared, 850) << depth;
     EXPECT_LE(unlike, 2) << depth;
   }
 }
