@@ -1,10 +1,11 @@
 #include "app/settings_sections.h"
 
-#include <array>
-#include <limits>
+#include <algorithm>
+#include <vector>
 
-#include "io/scenario/propagation.h"
-#include "io/scenario/sections.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "io/scenario/catalogue.h"
 #include "processing/ping_processor.h"
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
@@ -12,75 +13,85 @@
 namespace asdic::detail::app {
 namespace {
 
-/// What others decide, where files do not say it.
-constexpr double no_default = std::numeric_limits<double>::quiet_NaN();
+SettingsList of_scenario(std::string_view path) { return below(scenario::catalogue(), path); }
 
-/// Of a whole scenario file, but for [environment], whose tables say one thing in several ways.
-std::vector<SettingRecord> scenario_records() {
-  Scenario scenario;
-  scenario.platforms.resize(1);  // where targets' ranges begin
-  PropagationCase run;  // as files without these keys have it: frequency and place are a sonar's
-  run.solver = FieldSolver::automatic;
-  run.source_depths.clear();
-  run.receivers.ranges = {1.0};  // then there is a box around them
-  run.frequency = run.box_range = run.box_depth = no_default;
-  scenario::RunTable run_table{run};
-  SettingsCatalogue walker;
-  scenario::describe_head(walker, scenario);
-  walker("pulse", scenario.pulse, "that transmitters send");
-  scenario::describe_bodies(walker, scenario);
-  scenario::describe_sound(walker, scenario);
-  walker("run", run_table, "of the propagation model alone");
-  return walker.records();
-}
-
-/// Those of one table of it, [path] or [[path]].
-std::vector<SettingRecord> table_of_scenario(std::string_view path) {
-  std::vector<SettingRecord> found;
-  for (SettingRecord& record : scenario_records()) {
-    std::string_view rest = record.path;
-    if (!rest.starts_with(path)) continue;
-    rest.remove_prefix(path.size());
-    if (rest.starts_with("[]")) rest.remove_prefix(2);
-    if (!rest.starts_with('.')) continue;
-    record.path = std::string(rest.substr(1));
-    found.push_back(std::move(record));
-  }
-  return found;
+/// The keys of a scenario that are in no table.
+SettingsList keys_of_scenario(std::string_view /*path*/) {
+  SettingsList list{.settings = scenario::catalogue().settings};
+  std::erase_if(list.settings,
+                [](const auto& one) { return one.path.find('.') != std::string::npos; });
+  return list;
 }
 
 template <Described T>
-std::vector<SettingRecord> records_of(std::string_view /*path*/) {
+SettingsList of_struct(std::string_view /*path*/) {
   return catalogue_of<T>();
+}
+
+SettingsSection in_scenario(std::string path, std::string title) {
+  return {"scenario", std::move(path), std::move(title), of_scenario};
 }
 
 }  // namespace
 
 std::span<const SettingsSection> settings_sections() {
-  static constexpr auto in_scenario = [](std::string_view path, std::string_view title,
-                                         bool several = false) {
-    return SettingsSection{"scenario", path, title, table_of_scenario, several};
-  };
-  static constexpr std::array all{
+  static const std::vector<SettingsSection> all{
+      {"scenario", std::string(top_level), "the keys before all tables", keys_of_scenario},
+      in_scenario("environment", "the water and its boundaries"),
+      in_scenario("environment.sound_speed", "of the water"),
+      in_scenario("environment.bottom", "below the water"),
+      in_scenario("environment.bottom.shape.material", "[[…]], behind the bottom from each node"),
+      in_scenario("environment.surface", "above the water"),
+      in_scenario("environment.surface.shape.material", "[[…]], behind the surface from each node"),
       in_scenario("pulse", "what is sent"),
-      in_scenario("platform", "what carries transmitters and arrays", true),
-      in_scenario("transmitter", "what sends the pulses", true),
-      in_scenario("array", "of hydrophones", true),
-      in_scenario("target", "what sends echoes", true),
-      in_scenario("interferer", "ships that make noise", true),
+      in_scenario("platform", "what carries transmitters and arrays"),
+      in_scenario("transmitter", "what sends the pulses"),
+      in_scenario("array", "of hydrophones"),
+      in_scenario("target", "what sends echoes"),
+      in_scenario("interferer", "ships that make noise"),
       in_scenario("noise", "of the sea at the phones"),
       in_scenario("reverberation", "of surface, bottom and water"),
       in_scenario("propagation", "the paths that are searched for"),
       in_scenario("pings", "when pings are sent and how they are recorded"),
       in_scenario("run", "of the propagation model alone"),
-      SettingsSection{"study", "measure.receiver", "the receiver, and the options of asdic process",
-                      records_of<ProcessingSettings>},
-      SettingsSection{"process", "tracks", "options of asdic process for tracks",
-                      records_of<TrackerSettings>},
-      SettingsSection{"serve", "ping", "keys of the command ping", records_of<serve::PingRequest>},
-      SettingsSection{"serve", "limits", "what a client may ask for: --limit",
-                      records_of<serve::SessionLimits>}};
+      {"study", "measure.receiver", "the receiver, and the options of asdic process",
+       of_struct<ProcessingSettings>},
+      {"process", "tracks", "options of asdic process for tracks", of_struct<TrackerSettings>},
+      {"serve", "ping", "keys of the command ping", of_struct<serve::PingRequest>},
+      {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};
   return all;
+}
+
+std::vector<SettingRecord> SettingsSection::shown() const {
+  SettingsList all = list();
+  for (const SettingsSection& other : settings_sections()) {
+    if (other.document != document || !other.path.starts_with(path + '.')) continue;
+    const std::string inner = other.path.substr(path.size() + 1);
+    std::erase_if(all.settings, [&](const SettingRecord& one) {
+      return one.path.starts_with(inner + '.') || one.path.starts_with(inner + "[].");
+    });
+  }
+  return std::move(all.settings);
+}
+
+SettingsSection settings_section(std::string_view path) {
+  std::string names;
+  for (const SettingsSection& one : settings_sections()) {
+    if (one.path == path) return one;
+    names += (names.empty() ? "" : ", ") + one.path;
+  }
+  for (const TableRecord& table : scenario::catalogue().tables) {
+    std::string name = table.path;  // "target[].highlight[]" is asked for as target.highlight
+    for (auto at = name.find("[]"); at != std::string::npos; at = name.find("[]"))
+      name.erase(at, 2);
+    if (name == path)
+      return {"scenario", table.path.substr(0, table.path.size() - (table.list ? 2 : 0)),
+              table.help, of_scenario};
+  }
+  throw InputError({.where = "SECTION",
+                    .got = in_quotes(path),
+                    .expected = "one that is described: " + names +
+                                "; or a table within one of a scenario, reverberation.surface"});
 }
 
 }  // namespace asdic::detail::app

@@ -66,8 +66,7 @@ void SettingsCheck::vectors(const Setting& s, const Quantity& q, std::vector<Vec
   for (const Vec3& value : values) hold_all(s.key.name, q, {value.data(), 3});
 }
 
-void SettingsCheck::columns(std::initializer_list<Column> all, const ColumnRules&,
-                            std::string_view) {
+void SettingsCheck::columns(std::initializer_list<Column> all, const ColumnRules&) {
   for (const Column& column : all) {
     if (column.values->size() != all.begin()->values->size())
       fault(column.key, "as many numbers as of " + std::string(all.begin()->key),

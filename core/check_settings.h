@@ -18,7 +18,7 @@ class SettingsCheck final : public FieldsViewer {
              std::optional<std::string> got) override;
   void know(std::string_view setting, double value) override;
   [[nodiscard]] double known(std::string_view setting) const override;
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override;
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override;
   void sound(SettingKey, const Sound& sound, std::string_view) override;
 
  private:

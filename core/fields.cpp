@@ -21,11 +21,16 @@ void Fields::operator()(SettingKey key, std::optional<double>& radians, const An
 }
 
 Only Fields::way(Ways& ways, std::initializer_list<std::string_view> keys, bool is) {
-  return Only(*this, takes(ways, {keys.begin(), keys.size()}, is, false), *keys.begin(), "");
+  return Only(*this, takes(ways, {keys.begin(), keys.size()}, is, false), {.key = *keys.begin()});
 }
 
 Only Fields::otherwise(Ways& ways, std::initializer_list<std::string_view> keys) {
-  return Only(*this, takes(ways, {keys.begin(), keys.size()}, true, true), *keys.begin(), "");
+  return Only(*this, takes(ways, {keys.begin(), keys.size()}, true, true), {.key = *keys.begin()});
+}
+
+Only Fields::unless(std::string_view key, std::string_view is, std::string_view unwanted) {
+  return Only(*this, is != unwanted || exhaustive(),
+              {.key = key, .words = {&unwanted, 1}, .other = true});
 }
 
 bool Fields::takes(Ways& ways, std::span<const std::string_view> keys, bool is, bool /*last*/) {

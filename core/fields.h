@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -29,6 +30,8 @@ struct SettingKey {
   std::string_view inherits =
       {};                      ///< a known setting that is its default: "environment.wind_speed"
   std::string_view word = {};  ///< stands for "none" of what may be absent: "auto"
+  std::string_view otherwise =
+      {};  ///< what holds without it, where other settings decide: "of the wind"
 
   constexpr SettingKey(const char* text) : name(text) {}       // NOLINT: a text is a key
   constexpr SettingKey(std::string_view text) : name(text) {}  // NOLINT
@@ -37,8 +40,8 @@ constexpr SettingKey required(SettingKey key) {
   key.required = true;
   return key;
 }
-constexpr SettingKey live(SettingKey key) {
-  key.live = true;
+constexpr SettingKey live(SettingKey key, bool is = true) {
+  key.live = is;
   return key;
 }
 constexpr SettingKey seldom(SettingKey key) {
@@ -51,6 +54,12 @@ constexpr SettingKey or_word(SettingKey key, std::string_view word) {
 }
 constexpr SettingKey inherited(SettingKey key, std::string_view from) {
   key.inherits = from;
+  return key;
+}
+
+/// \param otherwise  what holds without the key, in words of the manual's: no value is its default
+constexpr SettingKey by_default(SettingKey key, std::string_view otherwise) {
+  key.otherwise = otherwise;
   return key;
 }
 
@@ -146,10 +155,12 @@ class Fields {
     std::vector<double>* values;
     Quantity quantity;   ///< of what stands in files
     bool angle = false;  ///< the values are radians, the file's NAME_deg
-    Column(std::string_view k, std::vector<double>& v, const Quantity& q)
-        : key(k), values(&v), quantity(q) {}
-    Column(std::string_view k, std::vector<double>& radians, const AngleQuantity& q)
-        : key(k), values(&radians), quantity(q.in_degrees()), angle(true) {}
+    std::string_view help;
+    Column(std::string_view k, std::vector<double>& v, const Quantity& q, std::string_view h)
+        : key(k), values(&v), quantity(q), help(h) {}
+    Column(std::string_view k, std::vector<double>& radians, const AngleQuantity& q,
+           std::string_view h)
+        : key(k), values(&radians), quantity(q.in_degrees()), angle(true), help(h) {}
     [[nodiscard]] Quantity in_radians() const {
       return AngleQuantity{quantity.noun, quantity.low, quantity.high}.in_radians();
     }
@@ -290,8 +301,7 @@ class Fields {
   virtual void file(SettingKey key, std::string& path, std::string_view what,
                     std::string_view help) = 0;
   /// Lists of numbers that belong together, row by row.
-  virtual void columns(std::initializer_list<Column> all, const ColumnRules& rules,
-                       std::string_view help) = 0;
+  virtual void columns(std::initializer_list<Column> all, const ColumnRules& rules) = 0;
   /// A sound in a WAV or CSV file. \param what  "the pulse"
   virtual void sound(SettingKey key, const Sound& sound, std::string_view what) = 0;
   /// Keys that no file has beside what it has said. \param beside  "a vertical line"
@@ -305,9 +315,20 @@ class Fields {
   /// Of the struct and of its identity, and of no file: others have worked it out.
   virtual void derived(double& value) = 0;
 
-  /// Settings that there are with one word of another alone: if (const auto only = field.only(…)).
+  /// Under which there are settings: what another one is, or that it is there.
+  struct Condition {
+    std::string_view key;
+    std::span<const std::string_view> words = {};  ///< it is one of them; none: it is there
+    bool other = false;                            ///< it is none of them
+  };
+  /// Settings that there are with some words of another alone: if (const auto only =
+  /// field.only(…)).
   template <Worded E>
   [[nodiscard]] Only only(std::string_view key, E is, E wanted);
+  template <Worded E>
+  [[nodiscard]] Only only(std::string_view key, E is, std::initializer_list<E> wanted);
+  /// Settings that there are but with one word of another, of a choice by one_of(), say.
+  [[nodiscard]] Only unless(std::string_view key, std::string_view is, std::string_view unwanted);
   /// One of several ways to say something, of which a file has exactly one. The last of them is
   /// otherwise(). \param keys  the first of them tells it   \param is  how the struct has it now
   [[nodiscard]] Only way(Ways& ways, std::initializer_list<std::string_view> keys, bool is);
@@ -381,17 +402,17 @@ class Fields {
   virtual void alternatives(const Setting&, const OneOf&) = 0;
   /// Whether settings of one way come now. \param last  of the ways
   virtual bool takes(Ways& ways, std::span<const std::string_view> keys, bool is, bool last);
-  /// About settings that there are under a condition: a key's word, or a way's first key.
-  virtual void begin(std::string_view /*key*/, std::string_view /*word*/) {}
+  /// About settings that there are under a condition: of another key, or of a way's first key.
+  virtual void begin(const Condition& /*condition*/) {}
   virtual void end() {}
 };
 
 /// Whether settings of a condition come now, and the time in which they do.
 class [[nodiscard]] Only {
  public:
-  Only(Fields& field, bool holds, std::string_view key, std::string_view word)
+  Only(Fields& field, bool holds, const Fields::Condition& condition)
       : field_(field), holds_(holds) {
-    if (holds_) field_.begin(key, word);
+    if (holds_) field_.begin(condition);
   }
   ~Only() {
     if (holds_) field_.end();
@@ -407,7 +428,15 @@ class [[nodiscard]] Only {
 
 template <Worded E>
 Only Fields::only(std::string_view key, E is, E wanted) {
-  return Only(*this, is == wanted || exhaustive(), key, word_of(wanted));
+  return only(key, is, {wanted});
+}
+
+template <Worded E>
+Only Fields::only(std::string_view key, E is, std::initializer_list<E> wanted) {
+  std::vector<std::string_view> words;
+  for (const E one : wanted) words.push_back(word_of(one));
+  const bool holds = std::find(wanted.begin(), wanted.end(), is) != wanted.end();
+  return Only(*this, holds || exhaustive(), {.key = key, .words = words});
 }
 
 /// The name in files of the struct that there is, of a closed list.

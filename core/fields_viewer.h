@@ -10,7 +10,7 @@ class FieldsViewer : public Fields {
   ~FieldsViewer() override;
   void axis(SettingKey, std::vector<double>&, const Quantity&, std::string_view) override {}
   void file(SettingKey, std::string&, std::string_view, std::string_view) override {}
-  void columns(std::initializer_list<Column>, const ColumnRules&, std::string_view) override {}
+  void columns(std::initializer_list<Column>, const ColumnRules&) override {}
   void sound(SettingKey, const Sound&, std::string_view) override {}
   void name(std::string&, std::string_view) override {}
   void reference(SettingKey, int&, std::string_view, std::string_view) override {}

@@ -17,6 +17,11 @@ inline constexpr Quantity duration{
 inline constexpr Quantity frequency{
     .noun = "frequency", .unit = "Hz", .low = 0.0, .high = 1e6, .above = true};
 inline constexpr Quantity level{.noun = "level", .unit = "dB", .low = -300.0, .high = 400.0};
+constexpr Quantity level_re(std::string_view reference) {
+  Quantity quantity = level;
+  quantity.reference = reference;
+  return quantity;
+}
 /// 10·log₁₀ of a scattering cross-section per area or volume.
 inline constexpr Quantity scattering_strength{
     .noun = "strength", .unit = "dB", .low = -200.0, .high = 20.0};
@@ -30,6 +35,11 @@ inline constexpr Quantity temperature{
     .noun = "temperature", .unit = "degC", .low = -3.0, .high = 45.0};
 inline constexpr Quantity salinity{.noun = "salinity", .unit = "psu", .low = 0.0, .high = 50.0};
 inline constexpr Quantity wind_speed{.noun = "wind speed", .unit = "m/s", .low = 0.0, .high = 60.0};
+
+/// Of a process; files may write it with a unit, "4 GB".
+inline constexpr Quantity memory{.noun = "memory", .unit = "bytes", .low = 1e6, .high = 1e18};
+/// Since the start of a scenario.
+inline constexpr Quantity time{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
 
 inline constexpr AngleQuantity heading{.noun = "heading", .low_deg = -360.0, .high_deg = 360.0};
 inline constexpr AngleQuantity bearing{.noun = "bearing", .low_deg = -360.0, .high_deg = 360.0};

@@ -12,7 +12,8 @@ struct Quantity {
   std::string_view unit = "";
   double low = -infinity;
   double high = infinity;
-  bool above = false;  ///< `low` itself is not allowed
+  bool above = false;               ///< `low` itself is not allowed
+  std::string_view reference = "";  ///< of a level: "1 µPa at 1 m"
 
   [[nodiscard]] bool holds(double value) const;
   [[nodiscard]] std::string expected() const;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/text.h"
+#include "core/unit_text.h"
 
 namespace asdic::detail {
 namespace {
@@ -19,7 +20,10 @@ std::string rounded(double value) {
   return to_text(std::strtod(text, nullptr));
 }
 
+/// The same as a file would have it; "" where others decide.
 std::string list_of(std::span<const double> values) {
+  for (const double value : values)
+    if (!std::isfinite(value)) return "";
   std::string text = "[";
   for (const double value : values) text += (text.size() > 1 ? ", " : "") + to_text(value);
   return text + "]";
@@ -37,9 +41,13 @@ std::string range_of(const Quantity& q) {
     text = (q.above ? "above " : "at least ") + to_text(q.low);
   else if (high)
     text = "at most " + to_text(q.high);
-  if (!q.unit.empty()) text += (text.empty() ? "" : " ") + std::string(q.unit);
+  if (!q.unit.empty()) text += (text.empty() ? "" : " ") + unit_of(q);
   return text;
 }
+
+constexpr std::string_view file_key = "file";
+constexpr Quantity sample_rate{
+    .noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e9, .above = true};
 
 std::string with_range(const std::string& what, const Quantity& q) {
   const std::string range = range_of(q);
@@ -48,21 +56,34 @@ std::string with_range(const std::string& what, const Quantity& q) {
 
 }  // namespace
 
+std::vector<SettingCondition> SettingsCatalogue::conditions() const {
+  std::vector<SettingCondition> all;
+  for (const Told& one : conditions_) all.push_back(one.condition);
+  return all;
+}
+
 SettingRecord& SettingsCatalogue::add(const SettingKey& key, std::string_view help, Type type,
                                       std::string standard) {
-  std::string condition;
-  for (const std::string& one : conditions_) condition += (condition.empty() ? "" : ", ") + one;
-  records_.push_back({.path = place_ + std::string(key.name),
-                      .type = type,
-                      .standard = key.required || !key.inherits.empty() ? "" : std::move(standard),
-                      .inherits = std::string(key.inherits),
-                      .help = std::string(help),
-                      .condition = std::move(condition),
-                      .required = key.required,
-                      .live = key.live});
-  SettingRecord& made = records_.back();
+  const bool decided = !key.inherits.empty() || !key.otherwise.empty();
+  const bool required = key.required && !decided;
+  list_.settings.push_back({.path = place_ + std::string(key.name),
+                            .type = type,
+                            .standard = required || decided ? "" : std::move(standard),
+                            .inherits = std::string(key.inherits),
+                            .otherwise = std::string(key.otherwise),
+                            .help = std::string(help),
+                            .conditions = conditions(),
+                            .required = required,
+                            .live = key.live});
+  SettingRecord& made = list_.settings.back();
+  for (const Told& one : conditions_) {
+    const bool itself = one.condition.there && one.condition.place + one.condition.key == made.path;
+    if (itself) made.required = false;  // nothing else tells that it is there
+    if (!itself && !one.text.empty())
+      made.condition += (made.condition.empty() ? "" : ", ") + one.text;
+  }
   if (!key.word.empty()) made.words = {std::string(key.word)};
-  if (!key.word.empty() && made.standard.empty()) made.standard = in_quotes(key.word);
+  if (!key.word.empty() && made.standard.empty() && !decided) made.standard = in_quotes(key.word);
   return made;
 }
 
@@ -76,6 +97,7 @@ void SettingsCatalogue::angle(const Setting& s, const AngleQuantity& q, double& 
   const bool there = given == nullptr || *given;
   SettingRecord& made = add(s.key, s.help, Type::number, there ? rounded(degrees(radians)) : "");
   made.path += "_deg";
+  made.angle = true;
   made.quantity = q.in_degrees();
 }
 
@@ -83,7 +105,7 @@ void SettingsCatalogue::integer(const Setting& s, std::int64_t low, std::int64_t
                                 std::int64_t& value, bool* given) {
   const bool there = given == nullptr || *given;
   const double most =
-      high == std::numeric_limits<std::int64_t>::max() ? infinity : static_cast<double>(high);
+      high >= std::numeric_limits<std::int32_t>::max() ? infinity : static_cast<double>(high);
   add(s.key, s.help, Type::whole_number, there ? std::to_string(value) : "").quantity = {
       .noun = "number", .low = static_cast<double>(low), .high = most};
 }
@@ -117,6 +139,7 @@ void SettingsCatalogue::angles(const Setting& s, const AngleQuantity& q,
   SettingRecord& made =
       add(s.key, s.help, Type::numbers, standard.empty() ? standard : standard + "]");
   made.path += "_deg";
+  made.angle = true;
   made.quantity = q.in_degrees();
 }
 
@@ -149,7 +172,14 @@ void SettingsCatalogue::file(SettingKey key, std::string&, std::string_view what
 }
 
 void SettingsCatalogue::sound(SettingKey key, const Sound&, std::string_view what) {
-  add(key, "a WAV or CSV file of " + std::string(what), Type::text, "");
+  const std::string of = "of " + std::string(what);
+  Ways ways;
+  if (const auto way = this->way(ways, {"samples", "sample_rate"}, false)) {
+    add(required("samples"), of + " as a program made it, in place of a file", Type::numbers, "");
+    add(required("sample_rate"), of, Type::number, "").quantity = sample_rate;
+  }
+  if (const auto way = otherwise(ways, {key.name}))
+    add(key, "a WAV or CSV file " + of, Type::text, "");
 }
 
 void SettingsCatalogue::rows(const Setting& s, const Quantity& q,
@@ -157,43 +187,63 @@ void SettingsCatalogue::rows(const Setting& s, const Quantity& q,
   add(s.key, s.help, Type::rows, "").quantity = q;
 }
 
-void SettingsCatalogue::columns(std::initializer_list<Column> all, const ColumnRules& rules,
-                                std::string_view help) {
+void SettingsCatalogue::columns(std::initializer_list<Column> all, const ColumnRules& rules) {
+  const bool by_file = rules.file && !conditions_.empty() && conditions_.back().condition.there &&
+                       conditions_.back().condition.key == file_key;
+  if (by_file) {  // a way of its own
+    add(required(file_key), "a CSV of these columns", Type::text, "");
+    return;
+  }
+  if (rules.file)
+    conditions_.push_back({{.place = place_, .key = "", .absent = {std::string(file_key)}}, ""});
   for (const Column& column : all) {
-    SettingRecord& made = add(required(column.key), help, Type::numbers, "");
+    SettingRecord& made = add(required(column.key), column.help, Type::numbers, "");
     if (column.angle) made.path += "_deg";
+    made.angle = column.angle;
     made.quantity = column.quantity;
   }
-  if (rules.file) add("file", "instead: a CSV of these columns", Type::text, "");
+  if (!rules.file) return;
+  conditions_.pop_back();
+  add(file_key, "in place of these columns: a CSV that has them", Type::text, "");
 }
 
-void SettingsCatalogue::within(const std::string& place, const Structure& inner) {
+/// \param made  but for its path and what holds of every table
+void SettingsCatalogue::within(const Setting& s, TableRecord made, const Structure& inner) {
   const std::string outer = place_;
-  place_ += place + '.';
+  made.path = place_ + std::string(s.key.name) + (made.list ? "[]" : "");
+  made.help = s.help;
+  made.live = s.key.live;
+  made.conditions = conditions();
+  place_ = made.path + '.';
+  list_.tables.push_back(std::move(made));
   inner.describe(*this);
   place_ = outer;
 }
 
-void SettingsCatalogue::table(const Setting& s, const Structure& inner) {
-  within(std::string(s.key.name), inner);
-}
+void SettingsCatalogue::table(const Setting& s, const Structure& inner) { within(s, {}, inner); }
 
 void SettingsCatalogue::perhaps(const Setting& s, const Perhaps& inner) {
   if (!inner.present) inner.make();
-  within(std::string(s.key.name), inner.get());
+  within(s, {.may_be_absent = true}, inner.get());
   if (!inner.present) inner.clear();
 }
 
 void SettingsCatalogue::number_or_table(const Setting& s, const Quantity& q, double& value,
                                         const Perhaps& instead) {
   number(s, q, value, nullptr);
-  perhaps(s, instead);
+  if (!instead.present) instead.make();
+  within(s, {.may_be_absent = true, .in_place = true}, instead.get());
+  if (!instead.present) instead.clear();
 }
 
-void SettingsCatalogue::tables(const Setting& s, const List& list, const ListRules&) {
+void SettingsCatalogue::tables(const Setting& s, const List& list, const ListRules& rules) {
   const std::size_t size = list.size();
   if (size == 0) list.resize(1);
-  within(std::string(s.key.name) + "[]", list.at(0));
+  within(s,
+         {.may_be_absent = !rules.one_or_more && !s.key.required,
+          .list = true,
+          .one_or_more = rules.one_or_more},
+         list.at(0));
   list.resize(size);
 }
 
@@ -203,25 +253,87 @@ void SettingsCatalogue::alternatives(const Setting& s, const OneOf& one) {
   for (std::size_t i = 0; i < one.names.size(); ++i) {
     if (chosen != i) one.choose(i);
     chosen = i;
-    begin(s.key.name, one.names[i]);
+    begin({.key = s.key.name, .words = one.names.subspan(i, 1)});
     one.chosen().describe(*this);
     end();
   }
   if (chosen != one.index) one.choose(one.index);
 }
 
-void SettingsCatalogue::begin(std::string_view key, std::string_view word) {
-  conditions_.push_back(word.empty() ? "with " + std::string(key)
-                                     : std::string(key) + " = " + in_quotes(word));
+void SettingsCatalogue::excludes(std::string_view, std::initializer_list<std::string_view> keys) {
+  list_.excluded.push_back(
+      {.place = place_, .keys = {keys.begin(), keys.end()}, .conditions = conditions()});
+}
+
+bool SettingsCatalogue::takes(Ways& ways, std::span<const std::string_view> keys, bool, bool last) {
+  absent_.assign(ways.passed.begin(), ways.passed.end());
+  last_way_ = last;
+  ways.passed.push_back(keys.front());
+  return true;
+}
+
+void SettingsCatalogue::begin(const Condition& condition) {
+  Told told{{.place = place_,
+             .key = std::string(condition.key),
+             .words = {condition.words.begin(), condition.words.end()},
+             .other = condition.other},
+            ""};
+  if (condition.words.empty()) {
+    told.condition.there = !last_way_;
+    told.condition.absent = absent_;
+    std::string others;
+    for (const std::string& one : absent_) others += (others.empty() ? "" : " and ") + one;
+    told.text = last_way_ ? "without " + others : "with " + told.condition.key;
+  } else {
+    std::string words;
+    for (const std::string& one : told.condition.words)
+      words += (words.empty() ? "" : " or ") + in_quotes(one);
+    told.text = told.condition.key + (condition.other ? " other than " : " = ") + words;
+  }
+  conditions_.push_back(std::move(told));
 }
 
 void SettingsCatalogue::end() { conditions_.pop_back(); }
+
+SettingsList below(const SettingsList& list, std::string_view path) {
+  // "array.kind" and "array[].kind" are "kind" of "array".
+  const auto rest = [&](std::string_view whole) -> std::optional<std::string> {
+    if (!whole.starts_with(path)) return std::nullopt;
+    whole.remove_prefix(path.size());
+    if (whole.starts_with("[]")) whole.remove_prefix(2);
+    if (!whole.starts_with('.')) return std::nullopt;
+    return std::string(whole.substr(1));
+  };
+  const auto within = [&](const std::vector<SettingCondition>& all) {
+    std::vector<SettingCondition> kept;
+    for (const SettingCondition& one : all)
+      if (const auto place = rest(one.place)) {
+        kept.push_back(one);
+        kept.back().place = *place;
+      }
+    return kept;
+  };
+  SettingsList found;
+  const auto add = [&](const auto& from, auto& to, auto member) {
+    for (const auto& one : from)
+      if (const auto inner = rest(one.*member)) {
+        to.push_back(one);
+        to.back().*member = *inner;
+        to.back().conditions = within(one.conditions);
+      }
+  };
+  add(list.settings, found.settings, &SettingRecord::path);
+  add(list.tables, found.tables, &TableRecord::path);
+  add(list.excluded, found.excluded, &KeysExcluded::place);
+  return found;
+}
 
 std::string domain_of(const SettingRecord& record) {
   const std::string other = record.words.empty() ? "" : " or `" + record.words.front() + "`";
   switch (record.type) {
     case Type::number:
-      return range_of(record.quantity) + other;
+      return range_of(record.quantity) +
+             (record.quantity.unit == "bytes" ? R"(, or a text: "4 GB")" : "") + other;
     case Type::whole_number:
       return with_range("whole", record.quantity) + other;
     case Type::flag:

@@ -17,8 +17,7 @@ bool SettingsWords::adds(const bool* given) {
   return given == nullptr || *given;
 }
 
-void SettingsWords::columns(std::initializer_list<Column> all, const ColumnRules&,
-                            std::string_view) {
+void SettingsWords::columns(std::initializer_list<Column> all, const ColumnRules&) {
   for (const Column& column : all) add(*column.values);
 }
 void SettingsWords::sound(SettingKey, const Sound& sound, std::string_view) {

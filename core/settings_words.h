@@ -17,7 +17,7 @@ class SettingsWords final : public Fields {
     add(values);
   }
   void file(SettingKey, std::string&, std::string_view, std::string_view) override {}
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override;
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override;
   void sound(SettingKey, const Sound& sound, std::string_view) override;
   void name(std::string&, std::string_view) override {}
   void reference(SettingKey, int& index, std::string_view, std::string_view) override;

@@ -56,8 +56,10 @@ void ScattererField::describe(Fields& field) {
 
 void VolumeLayer::describe(Fields& setting) {
   describe_depths(setting, top, bottom);
-  setting(required("strength_db"), strength_db, quantity::scattering_strength, "re 1/m");
-  setting("sheets", sheets, 1, 1000, "that stand for it; without a number one for every 50 m");
+  Quantity strength = quantity::scattering_strength;
+  strength.reference = "1/m";
+  setting(required("strength_db"), strength_db, strength, "for backscattering of a unit volume");
+  setting(by_default("sheets", "one for every 50 m"), sheets, 1, 1000, "that stand for it");
   field.describe(setting);
 }
 
@@ -69,9 +71,8 @@ void ReverberationSettings::describe(Fields& field) {
   field("synthesis", synthesis, "how the sound of scatterers is made");
   field("most_returns", most_returns, 1000, 1'000'000'000,
         "of a ping at one array; beyond, sectors are synthesised");
-  field("ground_spacing", ground_spacing,
-        {.noun = "spacing", .unit = "m", .low = 0.01, .high = 1e5},
-        "of the rings; without it by the bandwidth of the pulse");
+  field(by_default("ground_spacing", "by the bandwidth of the pulse"), ground_spacing,
+        {.noun = "spacing", .unit = "m", .low = 0.01, .high = 1e5}, "of the rings");
   SurfaceScatterers sea{*this};
   field("surface", sea, "what the surface scatters");
   auto ground =

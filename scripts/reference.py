@@ -2,7 +2,7 @@
 """Tables of settings in docs/, made by `asdic settings --markdown SECTION` of the program that $ASDIC names.
 
 A page has them between <!-- settings: SECTION --> and <!-- end -->.
---check: exit 1 where a page is not what the program says, or scenarios/ have a key that its JSON Schema does not know;
+--check: exit 1 where a page is not what the program says, or scenarios/ are not what its JSON Schema says;
 --update: write what it says.
 """
 import json
@@ -12,6 +12,8 @@ import re
 import subprocess
 import sys
 import tomllib
+
+import json_schema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = re.compile(r"(<!-- settings: (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
@@ -25,27 +27,11 @@ def table(section):
     return settings("--markdown", section)
 
 
-def unknown_keys(value, schema, path):
-    """Keys of a TOML value that its schema does not name; a schema without properties names none to hold it against."""
-    if isinstance(value, list):
-        for item in value:
-            yield from unknown_keys(item, schema.get("items", schema), path)
-    elif isinstance(value, dict):
-        known = schema.get("properties") or schema.get("items", {}).get("properties")
-        for key, inner in value.items() if known else ():
-            if key in known:
-                yield from unknown_keys(inner, known[key], f"{path}.{key}")
-            else:
-                yield f"{path}.{key}"
-
-
-def keys_without_a_setting():
+def faults_of_scenarios():
     schema = json.loads(settings("--schema"))
     for scenario in sorted((ROOT / "scenarios").glob("*.toml")):
-        tables = tomllib.loads(scenario.read_text())
-        for name in tables.keys() & schema["properties"].keys():
-            for key in unknown_keys(tables[name], schema["properties"][name], name):
-                yield f"scenarios/{scenario.name}: {key} is no setting that `asdic settings --schema` knows"
+        for place, fault in json_schema.faults(tomllib.loads(scenario.read_text()), schema):
+            yield f"scenarios/{scenario.name}: {place} {fault}, says `asdic settings --schema`"
 
 
 def main():
@@ -66,9 +52,9 @@ def main():
         sys.exit("no page has a table of settings")
     for page in stale:
         print(page + (": written" if update else ": its tables of settings are not the program's; see scripts/reference.py --update"))
-    unknown = [] if update else list(keys_without_a_setting())
-    print(*unknown, sep="\n", end="\n" if unknown else "")
-    if (stale or unknown) and not update:
+    wrong = [] if update else list(faults_of_scenarios())
+    print(*wrong, sep="\n", end="\n" if wrong else "")
+    if (stale or wrong) and not update:
         sys.exit(1)
 
 

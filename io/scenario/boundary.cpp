@@ -27,8 +27,9 @@ struct ShapeTable {
 
   void describe(Fields& field) {
     field("interpolation", interpolation, "how the boundary runs between its nodes");
-    field.columns({{"range", range, quantity::range}, {"depth", depth, quantity::water_depth}},
-                  {.file = true}, "of the nodes, along the transect");
+    field.columns({{"range", range, quantity::range, "of the nodes along the transect, rising"},
+                   {"depth", depth, quantity::water_depth, "of each node"}},
+                  {.file = true});
   }
 };
 
@@ -167,7 +168,8 @@ struct RoughnessTable {
       rough.sea_wind = field.known("environment.wind_speed");
       rough.rms_height = pierson_moskowitz_height(rough.sea_wind);
     }
-    if (field.reads()) rough.floor_db = floor.low;  // what leaves the mean field is not lost
+    if (field.reads() || field.exhaustive())
+      rough.floor_db = floor.low;  // what leaves the mean field is not lost
     field("roughness_floor_db", rough.floor_db, floor,
           "the least that a bounce leaves of the mean");
   }
@@ -186,33 +188,39 @@ struct BoundaryTable {
   bool surface;
 
   void describe(Fields& field) const {
+    Fields::Ways ways;
+    static_cast<void>(field.way(ways, {"shape"}, boundary.shape.has_value()));  // it comes last
     double depth = boundary.depth;
-    if (!boundary.shape) describe_depth(field, surface, depth);
-    describe_material(field, boundary.material);
+    if (const auto way = field.otherwise(ways, {"depth"})) describe_depth(field, surface, depth);
+    const SettingKey kind = required(by_default("kind", "required but with a material each node"));
+    describe_material(field, boundary.material, surface ? "kind" : kind);
     RoughnessTable{boundary.roughness, surface}.describe(field);
-    if (!boundary.shape) return;
-    ShownShape shape{*boundary.shape};
+    std::optional<ShownShape> shape;
+    if (boundary.shape) shape = shown(*boundary.shape);
     field("shape", shape, "where it is not flat");
   }
 
  private:
   struct ShownMaterial {
-    const BoundaryMaterial* material = nullptr;
-    void describe(Fields& field) const { describe_material(field, *material); }
+    BoundaryMaterial material = FluidHalfSpace{};
+    void describe(Fields& field) const { describe_material(field, material, required("kind")); }
   };
   struct ShownShape {
-    const BoundaryShape& shape;
+    ShapeTable nodes = {};
+    std::vector<ShownMaterial> materials = {};
 
-    void describe(Fields& field) const {
-      ShapeTable nodes{shape.interpolation(),
-                       {shape.ranges().begin(), shape.ranges().end()},
-                       {shape.depths().begin(), shape.depths().end()}};
+    void describe(Fields& field) {
       nodes.describe(field);
-      std::vector<ShownMaterial> materials;
-      for (const BoundaryMaterial& one : shape.materials()) materials.push_back({&one});
       field("material", materials, "behind the boundary, from node to node");
     }
   };
+  static ShownShape shown(const BoundaryShape& shape) {
+    ShownShape made{.nodes = {shape.interpolation(),
+                              {shape.ranges().begin(), shape.ranges().end()},
+                              {shape.depths().begin(), shape.depths().end()}}};
+    for (const BoundaryMaterial& one : shape.materials()) made.materials.push_back({one});
+    return made;
+  }
 };
 
 }  // namespace

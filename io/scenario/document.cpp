@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/settings/reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 
@@ -26,11 +27,12 @@ void make_files_absolute(TomlValue& value, const std::filesystem::path& folder) 
 void merge_include(TomlValue& root, const std::filesystem::path& folder) {
   const TomlValue* include = root.find("include");
   if (include == nullptr) return;
-  TomlTable reader(root);
-  const std::filesystem::path path = folder / reader.text("include");
-  if (!std::filesystem::exists(path))
-    throw reader.fault("include", "a TOML file with an [environment]",
-                       "no such file " + in_quotes(path.string()));
+  TomlTable table(root);
+  KnownSettings known{.folder = folder};
+  TomlReader reader(table, known);
+  std::string file;
+  describe_include(reader, file);
+  const std::filesystem::path path = file;
   TomlValue fragment = parse_toml(read_text_file(path), path.string());
   for (const TomlEntry& entry : std::get<TomlValue::Table>(fragment.data))
     if (entry.key != "environment")
@@ -42,6 +44,11 @@ void merge_include(TomlValue& root, const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+void describe_include(Fields& field, std::string& file) {
+  field.file("include", file, "a TOML file with an [environment]",
+             "whose settings hold where this file has none");
+}
 
 TomlValue read_document(std::string_view text, const std::filesystem::path& path,
                         std::span<const std::string> overrides) {

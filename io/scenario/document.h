@@ -4,9 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "core/fields.h"
 #include "io/text/toml_value.h"
 
 namespace asdic::detail::scenario {
+
+/// `include`, which names a file with an [environment].
+void describe_include(Fields& field, std::string& file);
 
 /// The tree of a scenario file with its `include` merged in and `--set` overrides applied.
 /// \param path  named in messages; an included file is relative to its folder \throws InputError

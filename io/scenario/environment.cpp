@@ -64,7 +64,7 @@ struct TransectTable {
 };
 
 void describe_wind(Fields& field, double& wind_speed) {
-  field("wind_speed", wind_speed, quantity::wind_speed, "at 10 m height");
+  field(live("wind_speed"), wind_speed, quantity::wind_speed, "at 10 m height");
 }
 
 void describe_spreading(Fields& field, Spreading& spreading) {
@@ -98,7 +98,7 @@ Environment read_ocean(TomlTable& table, const OceanReading& reading) {
 
 void OceanTable::describe(Fields& field) const {
   Environment shown = ocean;
-  if (varies_with_range(ocean)) describe_spreading(field, shown.spreading);
+  if (varies_with_range(ocean) || field.exhaustive()) describe_spreading(field, shown.spreading);
   describe_density(field, shown);
   describe_sound_speed(field, ocean);
   describe_losses(field, shown);

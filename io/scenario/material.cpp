@@ -164,9 +164,10 @@ struct RowsTable {
     field(required("grazing"), rows.grazing, quantity::grazing, "angles of the curve");
     std::vector<double> loss;
     field("loss_db", loss, reflection_loss, "of a reflection, in place of magnitude");
-    field(loss.empty() ? required("magnitude") : "magnitude", rows.magnitude, reflection_magnitude,
+    const SettingKey magnitude = by_default("magnitude", "required without loss_db");
+    field(loss.empty() ? required(magnitude) : magnitude, rows.magnitude, reflection_magnitude,
           "of the reflection coefficient");
-    field("phase", rows.phase, reflection_phase, "of the reflection coefficient");
+    field(by_default("phase", "0"), rows.phase, reflection_phase, "of the reflection coefficient");
     if (!field.reads()) return;
     const bool by_loss = rows.magnitude.empty();
     for (const double db : loss)
@@ -388,9 +389,9 @@ BoundaryMaterial read_material(TomlTable& table, const OceanReading& reading,
   return std::visit([&](const auto& one) { return build(one, place); }, form);
 }
 
-void describe_material(Fields& field, const BoundaryMaterial& material) {
+void describe_material(Fields& field, const BoundaryMaterial& material, SettingKey kind) {
   MaterialForm form = std::visit([](const auto& one) { return form_of(one); }, material);
-  field.one_of(required("kind"), form, what_kind);
+  field.one_of(kind, form, what_kind);
 }
 
 }  // namespace asdic::detail::scenario

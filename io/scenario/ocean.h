@@ -36,7 +36,8 @@ struct OceanReading {
 [[nodiscard]] BoundaryMaterial read_material(TomlTable& table, const OceanReading& reading,
                                              const WaterAtBoundary& water,
                                              bool vacuum_unless_given);
-void describe_material(Fields& field, const BoundaryMaterial& material);
+/// \param kind  the key: it is not of all places that it is required
+void describe_material(Fields& field, const BoundaryMaterial& material, SettingKey kind);
 
 /// Where a boundary is, of [environment.surface] or [environment.bottom]: `depth`, or `shape`.
 [[nodiscard]] Boundary read_boundary_place(TomlTable& table, const OceanReading& reading,

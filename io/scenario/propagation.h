@@ -94,7 +94,9 @@ constexpr std::span<const std::string_view> words(CervenyBeams::Component) {
 
 namespace scenario {
 
-/// run.memory: bytes, or a text such as "4 GB" or "512 MiB"; 0 where it is not given.
+/// run.memory [bytes], which is of a process and of no case.
+void describe_memory(Fields& field, double& bytes);
+/// The same out of a file; 0 where it is not given.
 [[nodiscard]] double read_memory(TomlTable& table);
 
 /// [run] and its tables: all of a case but its title and its ocean. The case brings the ocean, and

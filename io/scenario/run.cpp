@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 
+#include "core/quantities.h"
 #include "core/text.h"
 #include "io/scenario/propagation.h"
 #include "io/settings/reader.h"
@@ -43,8 +43,9 @@ struct PatternTable {
     Fields::Ways ways;
     if (const auto way = field.way(ways, {"level_db"}, false)) {
       std::vector<double> level;
-      field(required("level_db"), level, {.noun = "level", .low = -1000.0, .high = 1000.0},
-            "re that of a source without a pattern, in dB");
+      field(required("level_db"), level,
+            {.noun = "level", .unit = "dB", .low = -1000.0, .high = 1000.0},
+            "re that of a source without a pattern");
       if (field.reads()) pattern.amplitude.assign(level.size(), 0.0);
       if (field.reads())
         std::transform(level.begin(), level.end(), pattern.amplitude.begin(), amplitude_from_db);
@@ -68,7 +69,8 @@ struct SourceTable {
   PropagationCase& run;
 
   void describe(Fields& field) {
-    field.axis(run.source_depths.empty() ? required("depth") : "depth", run.source_depths,
+    const SettingKey depth = by_default("depth", "the platform's; required without a sonar");
+    field.axis(run.source_depths.empty() ? required(depth) : depth, run.source_depths,
                receiver_depth, "of the sources");
     field("kind", run.beams.source, "a point's sound spreads across the plane, a line's does not");
     std::optional<PatternTable> pattern;
@@ -83,12 +85,15 @@ struct SourceTable {
 struct ReceiversTable {
   ReceiverGrid& grid;
   bool wanted;  ///< rays need none
+  static constexpr std::string_view unless_rays = "required but of task = \"rays\"";
 
   void describe(Fields& field) {
     field(seldom("irregular"), grid.irregular,
           "receiver i is at the i-th range and depth; else they are at all ranges and depths");
-    field.axis(wanted ? required("depth") : "depth", grid.depths, receiver_depth, "of receivers");
-    field.axis(wanted || !grid.depths.empty() ? required("range") : "range", grid.ranges,
+    const SettingKey depth = by_default("depth", unless_rays),
+                     range = by_default("range", unless_rays);
+    field.axis(wanted ? required(depth) : depth, grid.depths, receiver_depth, "of receivers");
+    field.axis(wanted || !grid.depths.empty() ? required(range) : range, grid.ranges,
                receiver_range, "of receivers from the source");
     if (field.checks()) check(field);
   }
@@ -112,15 +117,16 @@ struct FanTable {
   BeamSettings& beams;
 
   void describe(Fields& field) {
-    field("elevations", beams.elevations, launch_elevation, "exactly these rays, positive up");
+    field("elevations", beams.elevations, launch_elevation,
+          "of exactly these rays, positive up, in place of lowest and highest");
     if (field.reads() && !beams.elevations.empty()) {
       const std::string at = out_of_order("elevations_deg", beams.elevations, false);
       if (!at.empty()) field.fault(at, "an elevation not below the one before it");
       beams.lowest = beams.elevations.front();
       beams.highest = beams.elevations.back();
     }
-    field("lowest", beams.lowest, launch_elevation, "at which the source shines");
-    field("highest", beams.highest, launch_elevation, "at which the source shines");
+    field("lowest", beams.lowest, launch_elevation, "of the lowest ray that leaves the source");
+    field("highest", beams.highest, launch_elevation, "of the highest ray");
     if (field.checks() && beams.highest < beams.lowest)
       field.fault("highest_deg", "not below the lowest elevation");
     field("count", beams.count, 0, most_beams,
@@ -149,7 +155,7 @@ struct BeamsTable {
   BeamSettings& beams;
 
   void describe(Fields& field) {
-    field("kind", beams.kind, "shape of a beam across its ray");
+    field("kind", beams.kind, "shape of a beam across its ray, where a field is made of beams");
     field(seldom("displacement"), beams.displacement,
           "whether beams are displaced along the boundary at a reflection");
     std::optional<CervenyTable> cerveny;
@@ -201,18 +207,22 @@ void describe_box(Fields& field, PropagationCase& run) {
     run.box_range = usual_box_range(bottom, furthest);
     run.box_depth = 1.01 * std::abs(deepest) + 1.0;
   }
-  field(furthest > 0.0 ? "box_range" : required("box_range"), run.box_range, limit,
-        "rays end at this distance from the source");
-  field("box_depth", run.box_depth, limit, "rays end this far below and above depth 0");
+  const SettingKey range =
+      by_default("box_range", "just behind the last receiver; required without one");
+  field(furthest > 0.0 ? range : required(range), run.box_range, limit,
+        "from the source, at which rays end");
+  field(by_default("box_depth", "just under the deepest bottom"), run.box_depth, limit,
+        "below and above depth 0, at which rays end");
 }
 
 }  // namespace
 
 void RunTable::describe(Fields& field) {
   field("task", run.task, "what is computed");
-  field("field", run.field, "how a field adds its beams");
-  field("solver", run.solver, "what a coherent field is made of");
-  field("frequency", run.frequency, case_frequency, "of the sound");
+  field("field", run.field, "how a field adds its paths");
+  field("solver", run.solver, "what a coherent field is made of; other fields are made of beams");
+  field(by_default("frequency", "the middle of the pulse; required without a sonar"), run.frequency,
+        case_frequency, "of the sound");
   SourceTable source{run};
   ReceiversTable receivers{run.receivers, run.task != Task::rays};
   FanTable fan{run.beams};
@@ -226,20 +236,17 @@ void RunTable::describe(Fields& field) {
   describe_box(field, run);
 }
 
+void describe_memory(Fields& field, double& bytes) {
+  field(by_default("memory", "half of what the process may have"), bytes, quantity::memory,
+        "that any command takes at most");
+}
+
 double read_memory(TomlTable& table) {
-  constexpr Quantity memory{.noun = "memory", .unit = "bytes", .low = 1e6, .high = 1e18};
-  if (!table.is_text("memory")) return table.number("memory", memory, 0.0);
-  const std::string text = table.text("memory");
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  while (unit.starts_with(' ')) unit.remove_prefix(1);
-  constexpr std::pair<std::string_view, double> units[] = {
-      {"MB", 1e6},        {"GB", 1e9},           {"TB", 1e12},
-      {"MiB", 1048576.0}, {"GiB", 1073741824.0}, {"TiB", 1099511627776.0}};
-  for (const auto& [name, scale] : units)
-    if (error == std::errc{} && unit == name && memory.holds(value * scale)) return value * scale;
-  throw table.fault("memory", memory.expected() + ", or a text such as \"4 GB\" or \"512 MiB\"");
+  double bytes = 0.0;
+  KnownSettings known;
+  TomlReader reader(table, known);
+  describe_memory(reader, bytes);
+  return bytes;
 }
 
 void read_run(TomlTable table, PropagationCase& run) {

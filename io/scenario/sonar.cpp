@@ -52,7 +52,8 @@ void set_scattered_elsewhere(Scenario& scenario) {
 
 void describe_head(Fields& field, Scenario& scenario) {
   field(seldom("title"), scenario.title, "of the scenario");
-  field("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max(), "of all that is drawn");
+  field(live("seed"), scenario.seed, 0, std::numeric_limits<std::int64_t>::max(),
+        "of all that is drawn");
 }
 
 void describe_bodies(Fields& field, Scenario& scenario) {

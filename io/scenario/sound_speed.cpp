@@ -85,9 +85,9 @@ struct SpeedTable {
 
   void describe(Fields& field) {
     field("interpolation", interpolation, "how the speed runs between the samples");
-    field.columns(
-        {{"depth", depth, quantity::water_depth}, {"speed", speed, quantity::sound_speed}},
-        {.file = true}, "of the samples");
+    field.columns({{"depth", depth, quantity::water_depth, "of the samples, rising"},
+                   {"speed", speed, quantity::sound_speed, "at each depth"}},
+                  {.file = true});
   }
 };
 
@@ -124,10 +124,10 @@ struct ProbeTable {
     field("interpolation", interpolation, "how the speed runs between the levels");
     field("equation", equation, "of sea water");
     field("latitude_deg", latitude_deg, latitude_quantity, "for the pressure at a depth");
-    field.columns({{"depth", depth, quantity::depth},
-                   {"temperature", temperature, quantity::temperature},
-                   {"salinity", salinity, quantity::salinity}},
-                  {.file = true}, "of the levels");
+    field.columns({{"depth", depth, quantity::depth, "of the levels, rising"},
+                   {"temperature", temperature, quantity::temperature, "at each level, in situ"},
+                   {"salinity", salinity, quantity::salinity, "at each level"}},
+                  {.file = true});
   }
 };
 
@@ -144,9 +144,10 @@ struct SectionTable {
       field.file(required("file"), file, "a readable CSV file",
                  "columns range, depth, speed: a line for every point of the grid");
     if (const auto way = field.otherwise(ways, {"range"})) {
-      field(required("range"), range, quantity::range, "of the grid");
-      field(required("depth"), depth, quantity::water_depth, "of the grid");
-      field(required("speed"), speed, quantity::sound_speed, "a row for each range");
+      field(required("range"), range, quantity::range, "of the grid's rows, rising");
+      field(required("depth"), depth, quantity::water_depth, "within a row, rising");
+      field(required("speed"), speed, quantity::sound_speed,
+            "of each range a row, with a speed for each depth");
       if (field.checks()) check(field);
     }
   }
@@ -327,7 +328,7 @@ void read_sound_speed(TomlTable table, const OceanReading& reading, Environment&
 
 void describe_sound_speed(Fields& field, const Environment& ocean) {
   SoundSpeedTable settings = form_of_water(ocean);
-  field("sound_speed", settings, "of the water");
+  field(live("sound_speed"), settings, "of the water");
 }
 
 }  // namespace scenario

@@ -78,9 +78,9 @@ Samples samples_of(std::span<const double> values) { return {values.begin(), val
 struct DensityTable {
   Samples depth = {}, density = {};
   void describe(Fields& field) {
-    field.columns(
-        {{"depth", depth, quantity::water_depth}, {"density", density, quantity::density}},
-        {.file = true, .steps = true}, "of the water");
+    field.columns({{"depth", depth, quantity::water_depth, "not falling; two alike are a step"},
+                   {"density", density, quantity::density, "of the water at each depth"}},
+                  {.file = true, .steps = true});
   }
 };
 
@@ -91,15 +91,16 @@ struct AttenuationTable {
 
   void describe(Fields& field) {
     constexpr Quantity loss{.noun = "attenuation", .unit = "dB/km", .low = 0.0, .high = 1e6};
-    const auto table = [&] {
-      field.columns({{"depth", depth, quantity::water_depth}, {"db_per_km", value, loss}},
-                    {.file = true, .steps = true}, "of the water, beside its absorption");
+    const auto table = [&](bool file) {
+      field.columns({{"depth", depth, quantity::water_depth, "not falling; two alike are a step"},
+                     {"db_per_km", value, loss, "at each depth, beside the absorption"}},
+                    {.file = file, .steps = true});
     };
     Fields::Ways ways;
-    if (const auto way = field.way(ways, {"file", "depth", "db_per_km"}, false)) table();
-    if (const auto way = field.way(ways, {"depth", "db_per_km"}, !depth.empty())) table();
+    if (const auto way = field.way(ways, {"file", "depth", "db_per_km"}, false)) table(true);
+    if (const auto way = field.way(ways, {"depth", "db_per_km"}, !depth.empty())) table(false);
     if (const auto way = field.otherwise(ways, {"db_per_km"}))
-      field(seldom("db_per_km"), constant, loss, "of the water, beside its absorption");
+      field(seldom("db_per_km"), constant, loss, "everywhere, beside the absorption");
   }
 };
 
@@ -119,7 +120,7 @@ void describe_density(Fields& field, Environment& ocean) {
 
 void describe_losses(Fields& field, Environment& ocean) {
   AbsorptionTable absorption;
-  if (!field.reads())
+  if (!field.reads() && !field.exhaustive())
     absorption = std::visit([](const auto& law) { return form_of_law(law); }, ocean.absorption);
   field("absorption", absorption, "what sea water takes out of sound");
 

@@ -175,8 +175,7 @@ void TomlReader::reference(SettingKey key, int& index, std::string_view list, st
   index = static_cast<int>(std::find(names.begin(), names.end(), chosen) - names.begin());
 }
 
-void TomlReader::columns(std::initializer_list<Column> all, const ColumnRules& rules,
-                         std::string_view) {
+void TomlReader::columns(std::initializer_list<Column> all, const ColumnRules& rules) {
   const bool of_file = rules.file && table_->has("file");
   std::vector<std::pair<std::string, Quantity>> wanted;
   for (const Column& column : all) {

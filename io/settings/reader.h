@@ -31,8 +31,7 @@ class TomlReader final : public Fields {
             std::string_view help) override;
   void file(SettingKey key, std::string& path, std::string_view what,
             std::string_view help) override;
-  void columns(std::initializer_list<Column> all, const ColumnRules& rules,
-               std::string_view help) override;
+  void columns(std::initializer_list<Column> all, const ColumnRules& rules) override;
   void sound(SettingKey key, const Sound& sound, std::string_view what) override;
   void excludes(std::string_view beside, std::initializer_list<std::string_view> keys) override;
   void name(std::string& value, std::string_view help) override;

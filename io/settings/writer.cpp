@@ -147,7 +147,7 @@ void TreeWriter::choice(const Setting& s, std::span<const std::string_view> word
   if (index != 0 || !s.key.seldom) add(s.key.name, std::string(words[index]));
 }
 
-void TreeWriter::columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) {
+void TreeWriter::columns(std::initializer_list<Column> all, const ColumnRules&) {
   for (const Column& column : all)
     column.angle ? add_angles(column.key, *column.values) : add_list(column.key, *column.values);
 }

@@ -29,7 +29,7 @@ class TreeWriter final : public Fields {
             std::string_view) override;
   void file(SettingKey key, std::string& path, std::string_view, std::string_view) override;
   void sound(SettingKey key, const Sound& sound, std::string_view) override;
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override;
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override;
   void name(std::string& value, std::string_view) override;
   void reference(SettingKey key, int& index, std::string_view list, std::string_view) override;
   void derived(double&) override {}

@@ -14,7 +14,7 @@ struct UnitName {
   double factor;
 };
 
-constexpr std::array<UnitName, 24> units{{
+constexpr std::array<UnitName, 30> units{{
     {"m", "m", 1.0},
     {"km", "m", 1000.0},
     {"cm", "m", 0.01},
@@ -39,6 +39,12 @@ constexpr std::array<UnitName, 24> units{{
     {"psu", "psu", 1.0},
     {"kg/m3", "kg/m3", 1.0},
     {"g/cm3", "kg/m3", 1000.0},
+    {"MB", "bytes", 1e6},
+    {"GB", "bytes", 1e9},
+    {"TB", "bytes", 1e12},
+    {"MiB", "bytes", 1048576.0},
+    {"GiB", "bytes", 1073741824.0},
+    {"TiB", "bytes", 1099511627776.0},
 }};
 
 }  // namespace

@@ -37,13 +37,21 @@ std::string element(const std::string& key, std::size_t index) {
 
 bool is_override(const TomlValue& value) { return value.origin.starts_with("--set "); }
 
+/// Files write bytes with a unit as well: "4 GB".
+constexpr std::string_view bytes = "bytes";
+
 /// A number with its unit, which --set takes where that unit is meant; a file has bare numbers.
 std::optional<double> measured(const TomlValue& value, std::string_view unit) {
   const auto* text = std::get_if<std::string>(&value.data);
-  if (text == nullptr || !is_override(value)) return std::nullopt;
+  if (text == nullptr || !(is_override(value) || unit == bytes)) return std::nullopt;
   const std::optional<Measured> number = parse_measured(*text);
   if (!number || !unit_fits(number->unit, unit)) return std::nullopt;
   return number->value;
+}
+
+std::string expected_of(const Quantity& quantity) {
+  return quantity.expected() +
+         (quantity.unit == bytes ? R"(, or a text such as "4 GB" or "512 MiB")" : "");
 }
 
 /// A string such as "12 m/s" or "12".
@@ -151,11 +159,13 @@ double TomlTable::checked(const TomlValue& value, const std::string& key,
   else
     throw fault_at(
         value, key,
-        quantity.expected() + (holds_number(value) && !is_override(value) ? bare_number : ""));
+        expected_of(quantity) +
+            (holds_number(value) && !is_override(value) && quantity.unit != bytes ? bare_number
+                                                                                  : ""));
   if (quantity.holds(number)) return number;
   const bool bare = !std::holds_alternative<std::string>(value.data);
   const bool show_unit = bare && std::isfinite(number) && !quantity.unit.empty();
-  throw fault_at(value, key, quantity.expected(),
+  throw fault_at(value, key, expected_of(quantity),
                  value.describe() + (show_unit ? " " + std::string(quantity.unit) : ""));
 }
 

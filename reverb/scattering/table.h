@@ -23,9 +23,10 @@ struct ScatteringTable {
   std::vector<double> strength_db = {-30.0};  ///< [n] S [dB re 1 m² per m² and sr]
 
   void describe(Fields& field) {
-    field.columns({{"grazing", grazing, quantity::grazing},
-                   {"strength_db", strength_db, quantity::scattering_strength}},
-                  {}, "backscattering strength over grazing angle");
+    field.columns({{"grazing", grazing, quantity::grazing, "rising"},
+                   {"strength_db", strength_db, quantity::scattering_strength,
+                    "for backscattering at each grazing angle"}},
+                  {});
   }
 
   [[nodiscard]] double cross_section(const ScatterGeometry& g,

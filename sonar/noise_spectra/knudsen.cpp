@@ -36,12 +36,13 @@ void KnudsenNoise::describe(Fields& field) {
   if (field.reads() || field.exhaustive()) {  // files may give the wind in its place
     double wind_speed = 0.0;
     field(inherited("wind_speed", "environment.wind_speed"), wind_speed, quantity::wind_speed,
-          "of which the sea state is taken, where there is none");
+          "of which the sea state is taken");
     if (field.reads()) sea_state = sea_state_of_wind(wind_speed);
     if (field.reads() && !field.finds("sea_state"))
       if (const std::string note = note_of_wind(wind_speed); !note.empty()) field.note(note);
   }
-  field("sea_state", sea_state, {.noun = "sea state", .low = 0.0, .high = 6.0}, "by Beaufort");
+  field(by_default("sea_state", "of the wind"), sea_state,
+        {.noun = "sea state", .low = 0.0, .high = 6.0}, "in place of the wind's");
 }
 
 double KnudsenNoise::level_at(double frequency) const noexcept {

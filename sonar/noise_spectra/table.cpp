@@ -9,9 +9,9 @@
 namespace asdic::detail {
 
 void NoiseTable::describe(Fields& field) {
-  field.columns(
-      {{"frequency", frequency, quantity::frequency}, {"level_db", level_db, quantity::level}},
-      {.increasing = true, .file = true}, "spectral level over frequency");
+  field.columns({{"frequency", frequency, quantity::frequency, "rising"},
+                 {"level_db", level_db, quantity::level_re("1 µPa²/Hz"), "at each frequency"}},
+                {.increasing = true, .file = true});
 }
 
 double NoiseTable::level_at(double at) const noexcept {

@@ -8,8 +8,8 @@
 namespace asdic::detail {
 
 void WhiteNoise::describe(Fields& field) {
-  field(required("spectral_level_db"), spectral_level_db, quantity::level,
-        "re 1 µPa²/Hz, at all frequencies");
+  field(required("spectral_level_db"), spectral_level_db, quantity::level_re("1 µPa²/Hz"),
+        "at all frequencies");
 }
 
 const Validity& WhiteNoise::validity() noexcept {

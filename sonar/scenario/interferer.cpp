@@ -7,17 +7,17 @@ namespace asdic::detail {
 
 void Tonal::describe(Fields& field) {
   field(required("frequency"), frequency, quantity::frequency, "of the line");
-  field(required("level_db"), level_db, quantity::level, "re 1 µPa rms at 1 m");
+  field(required("level_db"), level_db, quantity::level_re("1 µPa at 1 m"), "of the line, rms");
 }
 
 void Interferer::describe(Fields& field) {
   field.name(name, "of the ship");
   track.describe(field);
   if (field.finds("spectrum")) field.excludes("spectrum", {"level_db", "slope_db_per_decade"});
-  field("spectrum", table, "of its broadband noise, re 1 µPa²/Hz at 1 m");
+  field("spectrum", table, "of its broadband noise at 1 m");
   if (!table || field.exhaustive()) {
-    field("level_db", level_db, quantity::level,
-          "of its broadband noise at 1 kHz, re 1 µPa²/Hz at 1 m");
+    field("level_db", level_db, quantity::level_re("1 µPa²/Hz at 1 m"),
+          "of its broadband noise at 1 kHz");
     if (level_db || field.exhaustive())
       field("slope_db_per_decade", slope_db_per_decade,
             {.noun = "slope", .unit = "dB", .low = -60.0, .high = 20.0},

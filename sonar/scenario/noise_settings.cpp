@@ -15,7 +15,8 @@ struct NoiseProfile {
     auto& [exponent, elevation, level_db] = directions;
     field(required("elevation"), elevation, quantity::elevation,
           "increasing, positive where noise comes from above");
-    field(required("level_db"), level_db, quantity::level, "per solid angle, up to a constant");
+    field(required("level_db"), level_db, quantity::level,
+          "at each elevation, of power per solid angle, up to a constant");
     if (!field.checks()) return;
     if (elevation.size() < 2) field.fault("elevation", "at least two elevations", "one");
     if (level_db.size() != elevation.size())
@@ -56,7 +57,8 @@ void NoiseSettings::describe(Fields& field) {
     law = spectrum;
     thermal = std::holds_alternative<WenzNoise>(spectrum);  // whose curves leave it out
   }
-  field("thermal", thermal, "whether the water's thermal noise is added");
+  field(by_default("thermal", "true of wenz, else false"), thermal,
+        "whether the water's thermal noise is added");
   NoiseField between{coherence, directions};
   between.describe(field);
   if (field.reads()) coherence = between.coherence, directions = between.directions;

@@ -12,7 +12,7 @@ void PingSchedule::describe(Fields& field) {
   field("interval", interval,
         {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true},
         "from ping to ping of one transmitter");
-  field("elevations", elevations, quantity::elevation,
+  field(by_default("elevations", "those of the transmitters"), elevations, quantity::elevation,
         "of the transmitter in each ping, repeated as needed");
   if (field.checks() && !elevations.empty() && field.known("transmitter.has_elevation") > 0.0)
     field.fault("elevations", "no elevations_deg beside transmitter.elevation_deg");
@@ -27,9 +27,10 @@ void PingSchedule::describe(Fields& field) {
   }
   if (const auto only = field.only("samples", samples, Samples::baseband)) {
     field.excludes("samples = \"baseband\"", {"sample_rate"});
-    field("carrier", carrier, quantity::frequency, "without it the middle of the pulses");
-    field("baseband_rate", baseband_rate, rate,
-          "without it the pulses' band with its Doppler shifts");
+    field(by_default("carrier", "the middle of the pulses"), carrier, quantity::frequency,
+          "about which the baseband is");
+    field(by_default("baseband_rate", "by the pulses' band with its Doppler shifts"), baseband_rate,
+          rate, "of complex samples");
   }
   field("continuous", continuous, "one stream for each phone, without gaps between pings");
   field("blanking", blanking,

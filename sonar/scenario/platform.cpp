@@ -6,7 +6,7 @@ namespace asdic::detail {
 
 void Platform::describe(Fields& field) {
   field.name(name, "by which transmitters and arrays name it");
-  track.describe(field);
+  track.describe(field, true);
 }
 
 }  // namespace asdic::detail

@@ -15,9 +15,9 @@ constexpr std::span<const std::string_view> words(BandOfLosses /*any*/) {
 
 void PropagationSettings::describe(Fields& field) {
   field(or_word("max_surface_bounces", "auto"), max_surface_bounces, 0, 1000,
-        "of a path; without a number as many as there is sound in");
+        "of a path; auto: as many as there is sound in");
   field(or_word("max_bottom_bounces", "auto"), max_bottom_bounces, 0, 1000,
-        "of a path; without a number as many as there is sound in");
+        "of a path; auto: as many as there is sound in");
   field("max_launch_angle", max_launch_angle,
         AngleQuantity{.noun = "angle", .low_deg = 0.0, .high_deg = 90.0, .above = true},
         "of a path, from the horizontal");

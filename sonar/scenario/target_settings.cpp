@@ -19,14 +19,14 @@ void describe_place(Fields& field, Track& track) {
   Fields::Ways ways;
   if (const auto way = field.way(ways, {"waypoints"}, !track.waypoints.empty())) {
     field.excludes("waypoints", {"position", "velocity", "range", "bearing_deg", "depth"});
-    track.describe_waypoints(field);
+    track.describe_waypoints(field, true);
   }
   if (const auto way = field.way(ways, {"range", "bearing_deg", "depth"}, false)) {
     double range = 0.0, bearing = 0.0, depth = 0.0;
-    field(live(required("range")), range, {.noun = "range", .unit = "m", .low = 0.0, .high = 1e7},
+    field(required("range"), range, {.noun = "range", .unit = "m", .low = 0.0, .high = 1e7},
           "from the first platform");
-    field(live("bearing"), bearing, quantity::bearing, "from there");
-    field(live(required("depth")), depth, quantity::depth, "of it");
+    field("bearing", bearing, quantity::bearing, "from there");
+    field(required("depth"), depth, quantity::depth, "below the mean surface");
     if (field.reads())
       track.start.position = {field.known("platform[0].east") + range * std::sin(bearing),
                               field.known("platform[0].north") + range * std::cos(bearing), depth};
@@ -62,7 +62,8 @@ void describe_body(Fields& field, Target& target) {
 
 /// Required of a body with sides that never moves.
 void describe_heading(Fields& field, Target& target) {
-  field(live("heading"), target.heading, quantity::heading, "of the bow; without it, its course");
+  field(live(by_default("heading", "its course")), target.heading, quantity::heading,
+        "of the bow; required of a body with aspects or highlights that never moves");
   const bool has_sides = !target.highlights.empty() || target.aspect;
   if (!field.reads() || target.heading || !has_sides || target.track.course_at(0.0)) return;
   double heading = 0.0;
@@ -74,9 +75,10 @@ void describe_heading(Fields& field, Target& target) {
 void AspectTable::describe(Fields& field) {
   Fields::Ways ways;
   if (const auto way = field.way(ways, {"angle_deg"}, true))
-    field.columns({{"angle", aspect, AngleQuantity{"aspect", 0.0, 360.0}},
-                   {"level_db", strength_db, target_strength}},
-                  {}, "strength over aspect, 0 the bow, 90 degrees the starboard beam");
+    field.columns({{"angle", aspect, AngleQuantity{"aspect", 0.0, 360.0},
+                    "rising, from 0 at the bow to starboard"},
+                   {"level_db", strength_db, target_strength, "at each angle"}},
+                  {});
   if (const auto way = field.otherwise(ways, {"bow_db", "beam_db", "stern_db"}))
     describe_three_aspects(field, *this);
 }
@@ -102,15 +104,14 @@ void Target::describe(Fields& field) {
   describe_place(field, track);
   describe_body(field, *this);
   describe_heading(field, *this);
-  field("fluctuation", fluctuation, "how the strength changes from ping to ping");
-  const bool by_scan =
-      fluctuation == Fluctuation::swerling_1 || fluctuation == Fluctuation::swerling_3;
-  if (by_scan || field.exhaustive())
-    field(required("scan_pings"), scan_pings, 1, 1'000'000,
+  field(live("fluctuation"), fluctuation, "how the strength changes from ping to ping");
+  if (const auto only = field.only("fluctuation", fluctuation,
+                                   {Fluctuation::swerling_1, Fluctuation::swerling_3}))
+    field(live(required("scan_pings")), scan_pings, 1, 1'000'000,
           "pings of one transmitter that make a scan, which one draw lasts");
   constexpr int most = std::numeric_limits<int>::max();
   field("first_ping", first_ping, 1, most, "from which it is there");
-  field("last_ping", last_ping, 1, most, "to which it is there");
+  field(by_default("last_ping", "no end"), last_ping, 1, most, "to which it is there");
   if (field.checks() && last_ping < first_ping)
     field.fault("last_ping", "at least first_ping, " + std::to_string(first_ping));
 }

@@ -23,22 +23,24 @@ void Waypoint::describe(Fields& field, const Waypoint* before) {
                 to_text(speed) + " m/s");
 }
 
-void Track::describe_waypoints(Fields& field) {
-  field("waypoints", waypoints, "places at times, the way between two of them straight");
+void Track::describe_waypoints(Fields& field, bool is_live) {
+  field(live("waypoints", is_live), waypoints,
+        "places at times, the way between two of them straight");
   if (field.checks() && waypoints.empty())
     field.fault("waypoints", "at least one { time, position }");
   if (field.reads()) start.position = waypoints.front().position;
 }
 
-void Track::describe(Fields& field) {
+void Track::describe(Fields& field, bool is_live) {
   Fields::Ways ways;
   if (const auto way = field.way(ways, {"waypoints"}, !waypoints.empty())) {
     field.excludes("waypoints", {"position", "velocity"});
-    describe_waypoints(field);
+    describe_waypoints(field, is_live);
   }
   if (const auto way = field.otherwise(ways, {"position", "velocity"})) {
-    field(required("position"), start.position, quantity::coordinate, "at the start");
-    field("velocity", start.velocity, quantity::velocity, "from then on");
+    field(live(required("position"), is_live), start.position, quantity::coordinate,
+          "at the start");
+    field(live("velocity", is_live), start.velocity, quantity::velocity, "from then on");
   }
 }
 

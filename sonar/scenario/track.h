@@ -24,8 +24,9 @@ struct Track {
   std::vector<Waypoint> waypoints;  ///< strictly increasing in time
 
   /// Of the table that holds the thing: `waypoints`, or `position` and `velocity`.
-  void describe(Fields& field);
-  void describe_waypoints(Fields& field);  ///< the first alone
+  /// \param is_live  a running server takes changes of them
+  void describe(Fields& field, bool is_live = false);
+  void describe_waypoints(Fields& field, bool is_live);  ///< the first alone
 
   [[nodiscard]] Kinematics at(double time) const;
 

@@ -31,18 +31,19 @@ void Transmitter::describe(Fields& field) {
   field("offset", offset, quantity::coordinate, "from the platform");
   field("first_ping_time", first_ping_time, {.noun = "time", .unit = "s", .low = 0.0, .high = 1e9},
         "of its first ping");
-  field("interval", interval,
+  field(by_default("interval", "that of [pings]"), interval,
         {.noun = "interval", .unit = "s", .low = 0.0, .high = 1e7, .above = true},
-        "from ping to ping, where it is not that of all");
-  field("elevations", elevations, quantity::elevation, "of each ping in turn, repeated as needed");
+        "from ping to ping");
+  field(by_default("elevations", "those of [pings]"), elevations, quantity::elevation,
+        "of each ping in turn, repeated as needed");
   if (!elevations.empty()) field.excludes("elevations_deg", {"elevation_deg"});
-  field(live(required("source_level_db")), source_level_db, quantity::level,
-        "re 1 uPa rms at 1 m: of the pulse's peak, before its window");
+  field(live(required("source_level_db")), source_level_db, quantity::level_re("1 µPa at 1 m"),
+        "rms, of the pulse's peak before its window");
   const bool of_pings = !field.reads() && field.known("pings.elevations") > 0.0;
   if (field.reads() || (steers(beam) && elevations.empty() && !of_pings))
-    field("elevation", elevation, quantity::elevation, "of the beam's axis, positive up");
+    field(live("elevation"), elevation, quantity::elevation, "of the beam's axis, positive up");
   field.one_of("kind", beam, "what it sends where");
-  field("pulse", pulse, "that it sends in place of the scenario's");
+  field(live("pulse"), pulse, "that it sends in place of the scenario's");
 }
 
 BeamPattern::BeamPattern(const Transmitter& transmitter, double wavelength, double sound_speed,

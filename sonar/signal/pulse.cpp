@@ -112,8 +112,9 @@ double energy_of(const Pulse& pulse) {
 
 void PulseSettings::describe(Fields& field) {
   field.one_of(required("kind"), waveform, "what it is made of");
-  if (const auto own = samples_of(waveform)) {
-    if (field.reads()) take_own_length(*this, *own);
+  const auto only_if_made = field.unless("kind", name_of(waveform), SampledPulse::name);
+  if (!only_if_made) {
+    if (field.reads()) take_own_length(*this, *samples_of(waveform));
     field.derived(duration);
     return;
   }

@@ -35,8 +35,9 @@ struct Engine {
   static constexpr std::string_view name = "engine";
   std::vector<double> speed = {1.0, 2.0}, angle = {0.0, 0.1};
   void describe(Fields& field) {
-    field.columns({{"depth", speed, quantity::depth}, {"pitch", angle, quantity::elevation}},
-                  {.increasing = true, .file = true}, "of the screw");
+    field.columns({{"depth", speed, quantity::depth, "of the screw"},
+                   {"pitch", angle, quantity::elevation, "of its blades"}},
+                  {.increasing = true, .file = true});
   }
 };
 struct Anchor {
@@ -46,8 +47,9 @@ struct Anchor {
 struct Tanks {
   std::vector<double> depth, mass;
   void describe(Fields& field) {
-    field.columns({{"depth", depth, quantity::depth}, {"mass", mass, Quantity{}}}, {.steps = true},
-                  "from the deck down");
+    field.columns({{"depth", depth, quantity::depth, "from the deck down"},
+                   {"mass", mass, Quantity{}, "of each tank"}},
+                  {.steps = true});
   }
 };
 struct Ship {

@@ -28,10 +28,11 @@ double hann_pattern(double u) noexcept {
 void LineBeam::describe(Fields& field) {
   field.excludes("a vertical line", {"bearing_deg", "bearing_from", "projector", "table"});
   field("taper", taper, "of the line; omnidirectional is no line");
-  if (taper == Taper::omnidirectional)
-    return field.excludes("omnidirectional taper", {"beamwidth_deg"});
-  field(live(required("beamwidth")), beamwidth, AngleQuantity{"beamwidth", 0.01, 179.0},
-        "full width at -3 dB of the line when it is not steered");
+  if (const auto only = field.only("taper", taper, {Taper::hann, Taper::rectangular}))
+    field(live(required("beamwidth")), beamwidth, AngleQuantity{"beamwidth", 0.01, 179.0},
+          "full width at -3 dB of the line when it is not steered");
+  else
+    field.excludes("omnidirectional taper", {"beamwidth_deg"});
 }
 
 std::string LineBeam::text(double elevation) const {

@@ -36,8 +36,8 @@ Between between_on_circle(const std::vector<double>& axis, double angle) noexcep
 
 /// Angles that rise.
 void describe_axis(Fields& field, std::string_view name, std::vector<double>& angles,
-                   const AngleQuantity& quantity) {
-  field(required(name), angles, quantity, "of the table, rising");
+                   const AngleQuantity& quantity, std::string_view help) {
+  field(required(name), angles, quantity, help);
   if (!field.checks()) return;
   const std::string key = std::string(name) + "_deg";
   if (angles.empty()) field.fault(key, "an angle at least", "none");
@@ -59,10 +59,10 @@ std::vector<std::vector<double>> rows_of(const std::vector<double>& values, std:
 }  // namespace
 
 void BeamTable::describe(Fields& field) {
-  describe_axis(field, "bearing", bearings, quantity::bearing);
+  describe_axis(field, "bearing", bearings, quantity::bearing, "of the rows, rising");
   if (field.checks() && bearings.back() - bearings.front() > 2.0 * pi)
     field.fault("bearing_deg", "bearings within one turn");
-  describe_axis(field, "elevation", elevations, quantity::elevation);
+  describe_axis(field, "elevation", elevations, quantity::elevation, "within a row, rising");
   auto rows = rows_of(level_db, elevations.size());
   field(required("level_db"), rows, quantity::level,
         "of each bearing a row, with a level for each elevation, re the source level");

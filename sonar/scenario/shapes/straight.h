@@ -12,7 +12,7 @@ struct StraightLine {
 
   void describe(Fields& field) {
     field(required("phones"), phones, 1, 4096, "how many");
-    const SettingKey key = live("spacing");
+    const SettingKey key = live(by_default("spacing", "required of more than one phone"));
     field(phones == 1 ? key : required(key), spacing,
           {.noun = "spacing", .unit = "m", .low = 0.0, .high = 1e4, .above = true},
           "from phone to phone");

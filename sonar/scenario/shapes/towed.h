@@ -11,7 +11,7 @@ struct TowedShape {
   TowedLine line = {};
 
   void describe(Fields& field) {
-    field(required("behind"), line.behind,
+    field(live(required("behind")), line.behind,
           {.noun = "distance", .unit = "m", .low = 0.0, .high = 1e5},
           "of each phone behind the tow point, along its path");
     field(live("heading"), line.heading, quantity::heading, "of a tow point that never moves");

@@ -236,6 +236,50 @@ TEST_F(Commands, SettingsTellsTypeRangeAndDefault) {
       << wrong.err;
 }
 
+TEST_F(Commands, SettingsTellsATableWithinASection) {
+  const auto surface = asdic(folder, "settings reverberation.surface");
+  EXPECT_EQ(surface.status, 0) << surface.err;
+  EXPECT_NE(surface.out.find("[reverberation.surface] of scenario: what the surface scatters\n"),
+            std::string::npos)
+      << surface.out;
+  EXPECT_NE(surface.out.find("  gamma2: 2 to 6 [3.9]\n"), std::string::npos) << surface.out;
+  EXPECT_EQ(surface.out.find("mu_db"), std::string::npos) << "that is of the bottom";
+  const auto highlight = asdic(folder, "settings --markdown target.highlight");
+  EXPECT_NE(highlight.out.find("| `offset` | 3 numbers, -1000 to 1000 m | required |"),
+            std::string::npos)
+      << highlight.out;
+}
+
+// A default that a file need not know is told in words: it is none of its values.
+TEST_F(Commands, SettingsTellWhatHoldsWithoutAKey) {
+  const auto row = [&](const std::string& section, const std::string& key) {
+    const std::string all = asdic(folder, "settings --markdown " + section).out;
+    const auto begin = all.find("| `" + key + "` |");
+    return begin == std::string::npos ? all : all.substr(begin, all.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(
+      row("noise", "sea_state"),
+      "| `sea_state` | 0 to 6 | of the wind | in place of the wind's (`kind = \"knudsen\"`) |");
+  EXPECT_EQ(row("target", "last_ping"),
+            "| `last_ping` | whole, at least 1 | no end | to which it is there |");
+  EXPECT_EQ(row("transmitter", "beamwidth_deg"),
+            "| `beamwidth_deg` | 0.01 to 179 degrees | required | full width at -3 dB of the line "
+            "when it is not steered (`kind = \"line\", taper = \"hann\" or \"rectangular\"`); a "
+            "running server takes changes |");
+  EXPECT_EQ(row("target", "scan_pings").find("| `scan_pings` | whole, 1 to 1000000 | required |"),
+            0U);
+  EXPECT_NE(row("target", "scan_pings").find("`fluctuation = \"swerling-1\" or \"swerling-3\"`"),
+            std::string::npos);
+  EXPECT_EQ(row("run", "memory")
+                .find("| `memory` | 1000000 to 1e+18 bytes, or a text: \"4 GB\" | "
+                      "half of what the process may have |"),
+            0U)
+      << row("run", "memory");
+  EXPECT_NE(row("pulse", "sample_rate").find("`kind = \"file\", with samples`"), std::string::npos);
+  EXPECT_NE(row("pulse", "duration").find("`kind other than \"file\"`"), std::string::npos);
+  EXPECT_NE(row("environment.bottom", "shear_speed").find("| `1000` |"), std::string::npos);
+}
+
 TEST_F(Commands, SettingsAreASchemaForEditors) {
   const json scenario = json::parse(asdic(folder, "settings --schema").out);
   const json& surface = scenario["properties"]["reverberation"]["properties"]["surface"];

@@ -65,8 +65,9 @@ class Seen final : public FieldsViewer {
     seen.push_back(std::string(s.key.name) + "=" + std::to_string(static_cast<int>(value)));
   }
   void flag(const Setting& s, bool&) override { seen.emplace_back(s.key.name); }
-  void begin(std::string_view key, std::string_view word) override {
-    seen.push_back("if " + std::string(key) + (word.empty() ? "" : " " + std::string(word)));
+  void begin(const Condition& condition) override {
+    seen.push_back("if " + std::string(condition.key) + (condition.other ? " not" : ""));
+    for (const std::string_view word : condition.words) seen.back() += " " + std::string(word);
   }
   void end() override { seen.emplace_back("end"); }
   bool all_;

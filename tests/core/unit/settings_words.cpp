@@ -51,7 +51,8 @@ struct All {
     field("place", place, Quantity{}, "place");
     field("numbers", numbers, Quantity{}, "numbers");
     field("angles", angles, any_angle, "angles");
-    field.columns({{"column", column, Quantity{}}, {"other", other_column, any_angle}}, {}, "rows");
+    field.columns(
+        {{"column", column, Quantity{}, "one"}, {"other", other_column, any_angle, "other"}}, {});
     field("places", places, Quantity{}, "places");
     field("inner", inner, "inner");
     field("perhaps", perhaps, "perhaps");

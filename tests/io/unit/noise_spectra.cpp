@@ -39,7 +39,7 @@ TYPED_TEST(EveryNoiseSpectrum, IsFiniteAtAnyFrequency) {
 class MembersSeen final : public FieldsViewer {
  public:
   int seen = 0;
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override {
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override {
     seen += static_cast<int>(all.size());
   }
 

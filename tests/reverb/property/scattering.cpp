@@ -30,7 +30,7 @@ struct AlternativesOf<std::variant<Model...>> {
 class Drawn final : public FieldsViewer {
  public:
   [[nodiscard]] bool reads() const override { return true; }
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override {
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override {
     constexpr int rows = 4;
     for (const Column& column : all) {
       const double low = std::max(column.quantity.low, -60.0);
@@ -66,12 +66,12 @@ Model any() {
 /// Expects of every setting a value within its range, and a word of help.
 class Within final : public FieldsViewer {
  public:
-  void columns(std::initializer_list<Column> all, const ColumnRules&,
-               std::string_view help) override {
-    EXPECT_FALSE(help.empty());
-    for (const Column& column : all)
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override {
+    for (const Column& column : all) {
+      EXPECT_FALSE(column.help.empty()) << column.key;
       for (const double value : *column.values)
         EXPECT_TRUE(column.quantity.holds(column.angle ? degrees(value) : value)) << column.key;
+    }
   }
 
  private:
@@ -87,7 +87,7 @@ class Changed final : public FieldsViewer {
   explicit Changed(int which) : which_(which) {}
   [[nodiscard]] bool reads() const override { return true; }
   [[nodiscard]] int members() const { return members_; }
-  void columns(std::initializer_list<Column> all, const ColumnRules&, std::string_view) override {
+  void columns(std::initializer_list<Column> all, const ColumnRules&) override {
     for (const Column& column : all) change(column.values->back());
   }
   void derived(double& value) override { change(value); }
