@@ -9,8 +9,10 @@
 #include "app/console.h"
 #include "app/sonar_text.h"
 #include "core/units.h"
+#include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
+#include "io/text/csv_table.h"
 #include "io/text/material_text.h"
 #include "raytrace/cases/memory.h"
 #include "sonar/ping/ping.h"
@@ -140,10 +142,28 @@ std::string run_text(const PropagationCase& run) {
   return text + "\n";
 }
 
+/// Every setting that was read: key, value, unit, and whether the file leaves it to the default.
+std::string all_text(const NotedSettings& noted) {
+  std::string text;
+  for (const NotedSetting& one : noted)
+    text += fmt::format("{} = {}{}{}{}\n", one.key, one.value, one.unit.empty() ? "" : " ",
+                        one.unit, one.given ? "" : " (default)");
+  return text;
+}
+
+struct ValidateOptions : ScenarioChoice {
+  bool all = false;
+};
+
 /// An ocean and a run of the propagation model, without a sonar.
-int validate_run(const ScenarioChoice& choice) {
+int validate_run(const ValidateOptions& choice, const TomlValue& document) {
   std::vector<std::string> notes;
-  const PropagationCase run = read_propagation_case(choice.path, choice.overrides, notes);
+  NotedSettings noted;
+  const PropagationCase run = propagation_case_of(document, choice.path, notes, &noted);
+  if (choice.all) {
+    print(all_text(noted));
+    return 0;
+  }
   print(emphasised(run.title.empty() ? choice.path : run.title) + '\n');
   print(environment_text(run.environment, run.frequency, std::nullopt) + run_text(run) +
         memory_text(run_memory(run, read_budget(choice.path, choice.overrides)), "the run"));
@@ -152,7 +172,13 @@ int validate_run(const ScenarioChoice& choice) {
   return 0;
 }
 
-int validate_sonar(const ScenarioChoice& choice) {
+int validate_sonar(const ValidateOptions& choice, const TomlValue& document) {
+  if (choice.all) {
+    NotedSettings noted;
+    static_cast<void>(scenario_of(document, choice.path, &noted));
+    print(all_text(noted));
+    return 0;
+  }
   PingSimulator simulator(read_scenario(choice.path, choice.overrides), nullptr,
                           read_budget(choice.path, choice.overrides));
   const MemoryBudget memory = simulator.memory();  // before anything takes it
@@ -168,9 +194,11 @@ int validate_sonar(const ScenarioChoice& choice) {
   return 0;
 }
 
-int validate(const ScenarioChoice& choice) {
+int validate(const ValidateOptions& choice) {
+  const TomlValue document = scenario::read_document(read_text_file(choice.path, "a scenario file"),
+                                                     choice.path, choice.overrides);
   try {
-    return has_sonar(choice.path, choice.overrides) ? validate_sonar(choice) : validate_run(choice);
+    return has_sonar(document) ? validate_sonar(choice, document) : validate_run(choice, document);
   } catch (const MemoryError& error) {
     throw told_of_scenario(error, choice.path, choice.overrides);
   }
@@ -182,8 +210,10 @@ void add_validate_command(Program& program) {
   program.add_command(
       "validate", "Read and check a scenario or a run, and say what it means.",
       [](const Command& command) {
-        auto choice = std::make_shared<ScenarioChoice>();
+        auto choice = std::make_shared<ValidateOptions>();
         add_scenario_options(command, *choice);
+        command.add_flag("--all", choice->all,
+                         "instead: every setting as it was understood, given or default");
         command.footer(
             "Exit status: 0 good, 2 not.\n"
             "Example:  asdic validate scenarios/deep_ocean.toml --set pings.count=100");

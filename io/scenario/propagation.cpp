@@ -21,8 +21,9 @@ TomlTable run_of(TomlTable& root) {
 
 /// A file with an ocean and a run, and no sonar.
 PropagationCase of_ocean_and_run(const TomlValue& document, const std::filesystem::path& folder,
-                                 std::vector<std::string>& notes) {
+                                 std::vector<std::string>& notes, NotedSettings* noted) {
   TomlTable root(document);
+  root.note_in(noted);
   static_cast<void>(root.has("include"));
   PropagationCase run;
   run.title = root.text("title", "");
@@ -153,10 +154,10 @@ PropagationCase parse_propagation_case(std::string_view text, const std::filesys
 }
 
 PropagationCase propagation_case_of(const TomlValue& document, const std::filesystem::path& path,
-                                    std::vector<std::string>& notes) {
+                                    std::vector<std::string>& notes, NotedSettings* noted) {
   if (document.find("platform") != nullptr)
-    return of_sonar(document, scenario_of(document, path), notes);
-  return of_ocean_and_run(document, path.parent_path(), notes);
+    return of_sonar(document, scenario_of(document, path, noted), notes);
+  return of_ocean_and_run(document, path.parent_path(), notes, noted);
 }
 
 }  // namespace asdic::detail

@@ -31,9 +31,11 @@ namespace asdic::detail {
                                                      std::vector<std::string>& notes);
 
 /// The same of a tree that was read before, with its includes and overrides in it.
+/// \param noted  if not null, grows by every setting that was read
 [[nodiscard]] PropagationCase propagation_case_of(const TomlValue& document,
                                                   const std::filesystem::path& path,
-                                                  std::vector<std::string>& notes);
+                                                  std::vector<std::string>& notes,
+                                                  NotedSettings* noted = nullptr);
 
 /// The budget that run.memory of a file, sonar's or not, sets; the default where it says nothing.
 [[nodiscard]] MemoryBudget read_budget(const std::filesystem::path& path,

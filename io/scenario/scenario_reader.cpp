@@ -62,12 +62,14 @@ Scenario parse_embedded_scenario(std::string_view text, const std::filesystem::p
   return scenario_of(document, text, path, overrides);
 }
 
-Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path) {
+Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path,
+                     NotedSettings* noted) {
   const std::filesystem::path folder = path.parent_path();
   Scenario scenario;
   scenario.path = path.string();
 
   TomlTable root(document);
+  root.note_in(noted);
   static_cast<void>(root.has("include"));
   if (document.find("study") != nullptr)
     throw root.fault("study", "a scenario; asdic study makes the realisations of a study",

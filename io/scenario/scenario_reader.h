@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/text/noted_settings.h"
 #include "io/text/toml_value.h"
 #include "sonar/scenario/scenario.h"
 
@@ -22,6 +23,8 @@ namespace asdic::detail {
 
 /// The same of a tree that was read before, with its includes and overrides in it
 /// (scenario::read_document): what a study does for every realisation.
-[[nodiscard]] Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path);
+/// \param noted  if not null, grows by every setting that was read
+[[nodiscard]] Scenario scenario_of(const TomlValue& document, const std::filesystem::path& path,
+                                   NotedSettings* noted = nullptr);
 
 }  // namespace asdic::detail

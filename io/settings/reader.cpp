@@ -2,14 +2,26 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdio>
 #include <utility>
 
 #include "core/text.h"
+#include "core/unit_text.h"
 #include "io/settings/axis.h"
 #include "io/settings/columns.h"
 #include "io/wav/wav.h"
 
 namespace asdic::detail {
+namespace {
+
+/// Of 12 digits, so that degrees look as they were written.
+std::string shown_number(double value) {
+  char text[32] = {};
+  std::snprintf(text, sizeof text, "%.12g", value);
+  return text;
+}
+
+}  // namespace
 
 /// The key of a setting as the file has it: an angle's in degrees or radians. \param key  "a[3]",
 /// "heading" or "heading_deg"
@@ -72,44 +84,92 @@ std::string TomlReader::angle_key(std::string_view name) {
   return radians;
 }
 
+void TomlReader::note_value(const SettingKey& key, const std::string& name,
+                            const std::string& value, const Quantity& q) const {
+  NotedSetting setting{
+      .key = name, .value = value, .unit = unit_of(q), .given = table_->has_quietly(name)};
+  if (value.empty()) {
+    setting.value = !key.word.empty()        ? in_quotes(key.word)
+                    : !key.otherwise.empty() ? std::string(key.otherwise)
+                                             : "none";
+    setting.unit.clear();
+  }
+  table_->note(std::move(setting));
+}
+
+void TomlReader::note_values(const SettingKey& key, const std::string& name,
+                             std::span<const double> values, const Quantity& q) const {
+  if (!table_->is_noted()) return;
+  constexpr std::size_t most = 8;  // of a longer list the first ones and the last
+  const std::size_t shown = values.size() > most ? 3 : values.size();
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "[" : ", ") + shown_number(values[i]);
+  if (shown < values.size())
+    text =
+        std::to_string(values.size()) + " values, " + text + ", … " + shown_number(values.back());
+  note_value(key, name, text.empty() ? text : text + "]", q);
+}
+
 void TomlReader::number(const Setting& s, const Quantity& q, double& value, bool* given) {
   const std::string key(s.key.name);
   if (!s.key.inherits.empty()) value = known(s.key.inherits);
   if (!absent(s.key, key, given)) value = table_->number(key, q);
+  if (!table_->is_noted()) return;
+  // A value that no file could say stands for what others decide.
+  const bool there = (given == nullptr || *given) && (s.key.otherwise.empty() || q.holds(value));
+  note_value(s.key, key, there ? shown_number(value) : "", q);
 }
 
 void TomlReader::angle(const Setting& s, const AngleQuantity& q, double& value, bool* given) {
   const std::string key = angle_key(s.key.name);
-  if (absent(s.key, key, given)) return;
-  value = key.ends_with("_rad") ? table_->number(key, q.in_radians())
-                                : radians(table_->number(key, q.in_degrees()));
+  const bool ready = key.ends_with("_rad");
+  if (!absent(s.key, key, given))
+    value =
+        ready ? table_->number(key, q.in_radians()) : radians(table_->number(key, q.in_degrees()));
+  if (table_->is_noted())
+    note_value(s.key, key,
+               given == nullptr || *given ? shown_number(ready ? value : degrees(value)) : "",
+               ready ? q.in_radians() : q.in_degrees());
 }
 
 void TomlReader::integer(const Setting& s, std::int64_t low, std::int64_t high, std::int64_t& value,
                          bool* given) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, given)) value = table_->integer(key, low, high);
+  if (!table_->is_noted()) return;
+  const bool there = (given == nullptr || *given) && (s.key.otherwise.empty() || value != high);
+  note_value(s.key, key, there ? std::to_string(value) : "");
 }
 
 void TomlReader::flag(const Setting& s, bool& value) {
-  value = table_->flag(std::string(s.key.name), value);
+  const std::string key(s.key.name);
+  value = table_->flag(key, value);
+  if (table_->is_noted()) note_value(s.key, key, value ? "true" : "false");
 }
 
 void TomlReader::text(const Setting& s, std::string& value) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, nullptr)) value = table_->text(key);
+  if (table_->is_noted()) note_value(s.key, key, in_quotes(value));
 }
 
 void TomlReader::numbers(const Setting& s, const Quantity& q, std::vector<double>& values) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, nullptr)) values = table_->numbers(key, q);
+  note_values(s.key, key, values, q);
 }
 
 void TomlReader::angles(const Setting& s, const AngleQuantity& q, std::vector<double>& values) {
   const std::string key = angle_key(s.key.name);
-  if (absent(s.key, key, nullptr)) return;
   const bool ready = key.ends_with("_rad");
-  values = table_->numbers(key, ready ? q.in_radians() : q.in_degrees());
+  const Quantity as_written = ready ? q.in_radians() : q.in_degrees();
+  if (absent(s.key, key, nullptr)) {
+    std::vector<double> shown = values;
+    std::transform(shown.begin(), shown.end(), shown.begin(), degrees);
+    return note_values(s.key, key, shown, as_written);
+  }
+  values = table_->numbers(key, as_written);
+  note_values(s.key, key, values, as_written);
   if (!ready) std::transform(values.begin(), values.end(), values.begin(), radians);
 }
 
@@ -117,12 +177,18 @@ void TomlReader::rows(const Setting& s, const Quantity& q,
                       std::vector<std::vector<double>>& values) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, nullptr)) values = table_->rows(key, q);
+  if (table_->is_noted())
+    note_value(s.key, key,
+               values.empty() ? ""
+                              : std::to_string(values.size()) + " rows of " +
+                                    std::to_string(values.front().size()),
+               q);
 }
 
 void TomlReader::axis(SettingKey key, std::vector<double>& values, const Quantity& q,
                       std::string_view) {
   const std::string name(key.name);
-  if (absent(key, name, nullptr)) return;
+  if (absent(key, name, nullptr)) return note_values(key, name, values, q);
   if (table_->is_array(name)) {
     values = table_->numbers(name, q);
   } else if (!table_->is_table(name)) {
@@ -134,6 +200,7 @@ void TomlReader::axis(SettingKey key, std::vector<double>& values, const Quantit
     even.finish();
     values = evenly_spaced(first, last, static_cast<std::size_t>(count));
   }
+  note_values(key, name, values, q);
 }
 
 void TomlReader::file(SettingKey key, std::string& path, std::string_view what, std::string_view) {
@@ -143,17 +210,21 @@ void TomlReader::file(SettingKey key, std::string& path, std::string_view what, 
   if (!std::filesystem::exists(found))
     throw table_->fault(name, std::string(what), "no such file " + in_quotes(found.string()));
   path = found.string();
+  if (table_->is_noted()) note_value(key, name, in_quotes(path));
 }
 
 void TomlReader::vector(const Setting& s, const Quantity& q, std::span<double> value,
                         std::string_view axes) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, nullptr)) table_->components(key, q, axes, value);
+  note_values(s.key, key, value, q);
 }
 
 void TomlReader::vectors(const Setting& s, const Quantity& q, std::vector<Vec3>& values) {
   const std::string key(s.key.name);
   if (!absent(s.key, key, nullptr)) values = table_->vectors(key, q);
+  if (table_->is_noted())
+    note_value(s.key, key, values.empty() ? "" : std::to_string(values.size()) + " rows of 3", q);
 }
 
 void TomlReader::choice(const Setting& s, std::span<const std::string_view> words,
@@ -161,17 +232,21 @@ void TomlReader::choice(const Setting& s, std::span<const std::string_view> word
   const std::vector<std::string> names(words.begin(), words.end());
   std::optional<std::string> fallback;
   if (!s.key.required) fallback = names[index];
-  const std::string chosen = table_->choice(std::string(s.key.name), names, fallback);
+  const std::string key(s.key.name), chosen = table_->choice(key, names, fallback);
+  if (table_->is_noted()) note_value(s.key, key, in_quotes(chosen));
   index = static_cast<std::size_t>(std::find(names.begin(), names.end(), chosen) - names.begin());
 }
 
 void TomlReader::reference(SettingKey key, int& index, std::string_view list, std::string_view) {
   const std::string name(key.name);
-  if (absent(key, name, nullptr)) return;
   const auto found = known_.names.find(list);
   assert(found != known_.names.end());  // a struct refers to what is read before it
   const std::vector<std::string>& names = found->second;
-  const std::string chosen = table_->choice(name, names);
+  const bool default_one = absent(key, name, nullptr);
+  const std::string chosen =
+      default_one ? names.at(static_cast<std::size_t>(index)) : table_->choice(name, names);
+  if (table_->is_noted()) note_value(key, name, in_quotes(chosen));
+  if (default_one) return;
   index = static_cast<int>(std::find(names.begin(), names.end(), chosen) - names.begin());
 }
 
@@ -190,6 +265,10 @@ void TomlReader::columns(std::initializer_list<Column> all, const ColumnRules& r
     scenario::require_not_falling(found);
   else if (rules.increasing)
     scenario::require_increasing(found);
+  if (of_file && table_->is_noted()) note_value("file", "file", in_quotes(found.csv_file));
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (!of_file)
+      note_values(wanted[i].first.c_str(), wanted[i].first, found.values[i], wanted[i].second);
   auto values = found.values.begin();
   auto name = found.names.begin();
   for (const Column& column : all) {
@@ -207,6 +286,8 @@ void TomlReader::sound(SettingKey key, const Sound& sound, std::string_view what
     *sound.sample_rate = table_->number(
         "sample_rate",
         {.noun = "sample rate", .unit = "Hz", .low = 0.0, .high = 1e9, .above = true});
+    note_values("samples", "samples", *sound.samples, {});
+    note_values("sample_rate", "sample_rate", {sound.sample_rate, 1}, {.unit = "Hz"});
     sound.file->clear();
     return;
   }
@@ -219,6 +300,7 @@ void TomlReader::sound(SettingKey key, const Sound& sound, std::string_view what
   *sound.file = path.string();
   *sound.samples = std::move(read.samples);
   *sound.sample_rate = read.sample_rate;
+  if (table_->is_noted()) note_value(key, name, in_quotes(*sound.file));
 }
 
 void TomlReader::excludes(std::string_view beside, std::initializer_list<std::string_view> keys) {
@@ -275,6 +357,7 @@ void TomlReader::tables(const Setting& s, const List& list, const ListRules& rul
 void TomlReader::name(std::string& value, std::string_view) {
   assert(naming_.taken != nullptr);  // an element of a list that is ListRules::named
   value = table_->text("name", naming_.usual);
+  if (table_->is_noted()) note_value("name", "name", in_quotes(value));
   std::vector<std::string>& taken = *naming_.taken;
   if (std::find(taken.begin(), taken.end(), value) != taken.end())
     throw table_->fault("name", "a name that no other " + std::string(naming_.noun) + " has");

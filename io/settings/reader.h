@@ -67,6 +67,12 @@ class TomlReader final : public Fields {
   void alternatives(const Setting&, const OneOf& one) override;
   bool takes(Ways& ways, std::span<const std::string_view> keys, bool is, bool last) override;
 
+  /// Tells the table's notes of a setting that was read. \param value  as a file would have it; "":
+  /// nothing holds, or what the key's words say
+  void note_value(const SettingKey& key, const std::string& name, const std::string& value,
+                  const Quantity& q = {}) const;
+  void note_values(const SettingKey& key, const std::string& name, std::span<const double> values,
+                   const Quantity& q) const;
   [[nodiscard]] bool is_word(const SettingKey& key);
   [[nodiscard]] bool absent(const SettingKey& key, const std::string& name, bool* given);
   [[nodiscard]] std::string angle_key(std::string_view name);

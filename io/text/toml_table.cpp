@@ -113,6 +113,13 @@ const TomlValue* TomlTable::find(const std::string& key) {
   return table_->find(key);
 }
 
+void TomlTable::note(NotedSetting setting) const {
+  setting.key = path_of(setting.key);
+  const bool again = std::any_of(noted_->begin(), noted_->end(),
+                                 [&](const auto& one) { return one.key == setting.key; });
+  if (!again) noted_->push_back(std::move(setting));
+}
+
 bool TomlTable::has(const std::string& key) { return find(key) != nullptr; }
 
 bool TomlTable::has_quietly(const std::string& key) const { return table_->find(key) != nullptr; }
@@ -291,11 +298,13 @@ std::vector<Vec3> TomlTable::vectors(const std::string& key, const Quantity& qua
 }
 
 TomlTable TomlTable::table(const std::string& key) {
-  if (const TomlValue* value = find(key)) return TomlTable(*value, path_of(key));
+  const TomlValue* value = find(key);
+  TomlTable inner(value == nullptr ? empty_table() : *value, path_of(key));
+  inner.noted_ = noted_;
   // Missing keys of an absent table are reported at the line of the table around it.
-  TomlTable absent(empty_table(), path_of(key));
-  absent.fallback_origin_ = table_->origin.empty() ? fallback_origin_ : table_->origin;
-  return absent;
+  if (value == nullptr)
+    inner.fallback_origin_ = table_->origin.empty() ? fallback_origin_ : table_->origin;
+  return inner;
 }
 
 std::vector<TomlTable> TomlTable::tables(const std::string& key) {
@@ -305,7 +314,7 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
   if (array == nullptr) throw fault_at(*value, key, "an array of tables, [[" + path_of(key) + "]]");
   std::vector<TomlTable> result;
   for (std::size_t i = 0; i < array->size(); ++i)
-    result.emplace_back((*array)[i], path_of(element(key, i)));
+    result.emplace_back((*array)[i], path_of(element(key, i))).noted_ = noted_;
   return result;
 }
 

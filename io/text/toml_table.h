@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/quantity.h"
 #include "core/units.h"
+#include "io/text/noted_settings.h"
 #include "io/text/toml_value.h"
 
 namespace asdic::detail {
@@ -19,6 +20,12 @@ class TomlTable {
  public:
   /// \param table  must outlive this reader   \param path  of the table, "" for the document
   explicit TomlTable(const TomlValue& table, std::string path = "");
+
+  /// What is read of this table and of those within it is noted there. \param noted  outlives them
+  void note_in(NotedSettings* noted) { noted_ = noted; }
+  [[nodiscard]] bool is_noted() const { return noted_ != nullptr; }
+  /// Where it is_noted(): a setting that has been read. \param setting  its key in this table
+  void note(NotedSetting setting) const;
 
   [[nodiscard]] bool has(const std::string& key);
   /// The same of a key that is not among those which messages name, unless it is read.
@@ -84,6 +91,7 @@ class TomlTable {
   std::string path_;
   std::string fallback_origin_;  // of an absent table: where it could have stood
   std::vector<std::string> known_;
+  NotedSettings* noted_ = nullptr;
 };
 
 }  // namespace asdic::detail

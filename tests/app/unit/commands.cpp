@@ -280,6 +280,21 @@ TEST_F(Commands, SettingsTellWhatHoldsWithoutAKey) {
   EXPECT_NE(row("environment.bottom", "shear_speed").find("| `1000` |"), std::string::npos);
 }
 
+TEST_F(Commands, ValidateTellsEverySettingAsItWasUnderstood) {
+  const auto all = asdic(folder, "validate small.toml --all --set pulse.window=hann");
+  EXPECT_EQ(all.status, 0) << all.err;
+  const auto has = [&](const std::string& line) {
+    return ("\n" + all.out).find("\n" + line + "\n") != std::string::npos;
+  };
+  EXPECT_TRUE(has("pulse.window = \"hann\"")) << all.out;
+  EXPECT_TRUE(has("propagation.max_surface_bounces = 1")) << all.out;
+  EXPECT_TRUE(has("propagation.max_launch_angle_deg = 90 degrees (default)")) << all.out;
+  EXPECT_TRUE(has("pings.interval = 10 s")) << all.out;
+  EXPECT_TRUE(has("pings.elevations_deg = those of the transmitters (default)")) << all.out;
+  const auto wrong = asdic(folder, "validate small.toml --all --set pulse.windw=hann");
+  EXPECT_EQ(wrong.status, 2);
+}
+
 TEST_F(Commands, SettingsAreASchemaForEditors) {
   const json scenario = json::parse(asdic(folder, "settings --schema").out);
   const json& surface = scenario["properties"]["reverberation"]["properties"]["surface"];
