@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "io/scenario/catalogue.h"
 #include "processing/ping_processor.h"
+#include "serve/client_names.h"
 #include "serve/ping_request.h"
 #include "serve/session_limits.h"
 
@@ -58,6 +59,8 @@ std::span<const SettingsSection> settings_sections() {
        of_struct<ProcessingSettings>},
       {"process", "tracks", "options of asdic process for tracks", of_struct<TrackerSettings>},
       {"serve", "ping", "keys of the command ping", of_struct<serve::PingRequest>},
+      {"serve", "update", "keys of the command update",
+       [](std::string_view) { return serve::update_settings(); }},
       {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};
   return all;
 }

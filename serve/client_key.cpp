@@ -4,27 +4,11 @@
 #include <array>
 #include <charconv>
 #include <optional>
-#include <utility>
+
+#include "serve/client_names.h"
 
 namespace asdic::detail::serve {
 namespace {
-
-/// Sections of a scenario, and what commands call them (docs/formats/serve.md).
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> names{
-    {{"environment.sound_speed", "sound_speed"},
-     {"environment.wind_speed", "wind_speed"},
-     {"pings.recording_duration", "recording.duration"},
-     {"pings.recording_start", "recording.start"},
-     {"transmitter.pulse", "waveform"},
-     {"transmitter.source_level_db", "source_level_db"},
-     {"transmitter.beamwidth_deg", "beamwidth_deg"},
-     {"transmitter.elevation_deg", "elevation_deg"},
-     {"pulse", "waveform"},
-     {"target", "targets"},
-     {"platform", "platform"},
-     {"array", "array"},
-     {"noise", "noise"},
-     {"seed", "seed"}}};
 
 /// "target[1].strength_db" without its index: "target.strength_db", and 1.
 struct Indexed {
@@ -88,7 +72,7 @@ std::string same_motion(const TomlValue* table, std::string_view rest) {
 
 ClientKey client_key(const std::string& key, const TomlValue& fields, const TomlValue& document) {
   const Indexed scenario = without_index(key);
-  for (const auto& [section, name] : names) {
+  for (const auto& [section, name, of_a_ping] : client_names()) {
     const std::string_view rest =
         std::string_view(scenario.key).substr(std::min(section.size(), scenario.key.size()));
     if (!scenario.key.starts_with(section) ||

@@ -11,12 +11,10 @@
 namespace asdic::detail::serve {
 namespace {
 
-constexpr Quantity moment{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
-
 /// How long a straight line goes on: until no ping can be any more, or to where the scenario's
 /// coordinates end (there check_places() refuses).
 double horizon(const Kinematics& state, double time) {
-  double seconds = moment.high - time;
+  double seconds = quantity::time.high - time;
   for (int i = 0; i < 3; ++i)
     if (const double v = state.velocity[i]; v != 0.0)
       seconds = std::min(seconds, (std::copysign(farthest, v) - state.position[i]) / v);
@@ -56,8 +54,8 @@ TomlValue toml_vector(const Vec3& v) {
 
 bool has_motion(TomlTable& wanted) {
   bool any = false;
-  for (const char* key : {"position", "velocity", "heading_deg", "speed", "waypoints"})
-    any = wanted.has(key) || any;  // each is asked for: then it is a known key
+  for (const std::string_view key : motion_keys)
+    any = wanted.has(std::string(key)) || any;  // each is asked for: then it is a known key
   return any;
 }
 
@@ -80,8 +78,8 @@ void set_motion(TomlTable& wanted, const Track& now, double time, TomlValue& tab
       if (wanted.has(key)) throw wanted.fault(key, "none of it beside waypoints");
     TomlValue::Array points;
     for (TomlTable& point : wanted.tables("waypoints")) {
-      points.push_back(
-          waypoint(point.number("time", moment), point.vector("position", quantity::coordinate)));
+      points.push_back(waypoint(point.number("time", quantity::time),
+                                point.vector("position", quantity::coordinate)));
       point.finish();
     }
     forget_motion(table);

@@ -1,10 +1,17 @@
 #pragma once
+#include <array>
+#include <string_view>
+
 #include "io/text/toml_table.h"
 #include "sonar/scenario/track.h"
 
 namespace asdic::detail::serve {
 
-/// Whether a command says how something moves: position, velocity, heading_deg, speed, waypoints.
+/// How a command says that something moves. `speed`, with `heading_deg`, is of commands alone.
+inline constexpr std::array<std::string_view, 5> motion_keys{"position", "velocity", "heading_deg",
+                                                             "speed", "waypoints"};
+
+/// Whether a command says how something moves, by any of these.
 [[nodiscard]] bool has_motion(TomlTable& wanted);
 
 /// Writes it into the scenario's table of that thing, in place of what stands there. What is not

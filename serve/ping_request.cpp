@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/quantities.h"
-#include "io/scenario/sections.h"
+#include "io/scenario/catalogue.h"
 #include "io/settings/reader.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
@@ -49,12 +49,16 @@ PingRequest read(const TomlValue& fields, const LiveScenario& live, const Sessio
 }  // namespace
 
 void PingRequest::describe(Fields& field) {
-  field("time", time, time_of_command, "of the scenario; default: the schedule's, or the clock's");
+  field("time", time, quantity::time, "of the scenario; default: the schedule's, or the clock's");
   field("elevation", elevation, quantity::elevation,
         "of the beam, positive up; default: the scenario's");
-  field("source_level_db", changes.source_level_db, quantity::level, "of this ping alone");
-  field("beamwidth_deg", changes.beamwidth_deg,
-        {.noun = "beamwidth", .unit = "degrees", .low = 0.01, .high = 179.0}, "of this ping alone");
+  const auto of_transmitter = [](const std::string& key) {
+    return scenario::setting_at("transmitter." + key).quantity;
+  };
+  field("source_level_db", changes.source_level_db, of_transmitter("source_level_db"),
+        "of this ping alone");
+  field("beamwidth_deg", changes.beamwidth_deg, of_transmitter("beamwidth_deg"),
+        "of this ping alone");
   field("deliver", deliver, "where the samples go; default: a file, if the server writes any");
 }
 

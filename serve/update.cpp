@@ -1,14 +1,14 @@
 #include "serve/update.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "core/quantities.h"
 #include "core/text.h"
-#include "io/scenario/sections.h"
+#include "io/scenario/catalogue.h"
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
+#include "serve/client_names.h"
 #include "serve/motion.h"
 
 namespace asdic::detail::serve {
@@ -81,6 +81,21 @@ void update_platforms(TomlTable& reader, const UpdateContext& context, double ti
   }
 }
 
+/// Keys of a table, and tables within it, that there are with some kinds of it alone.
+std::vector<std::string> keys_of_choices(std::string_view section) {
+  std::vector<std::string> keys;
+  const SettingsList list = below(scenario::catalogue(), section);
+  const auto add = [&](const std::string& path, const auto& conditions) {
+    if (!conditions.empty() && conditions.front().place.empty())
+      keys.push_back(path.substr(0, path.find_first_of(".[")));
+  };
+  for (const SettingRecord& one : list.settings) {
+    add(one.path, one.conditions);
+    if (one.angle) add(one.path.substr(0, one.path.size() - 4) + "_rad", one.conditions);
+  }
+  return keys;
+}
+
 void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlValue& fields,
                    TomlValue& document) {
   const std::vector<TomlValue*> tables = tables_of(document, "array");
@@ -90,12 +105,12 @@ void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlVa
     const TomlValue& values = *given[place++];
     TomlValue& table = *tables[index_of(wanted, context.scenario.arrays, "arrays")];
     if (wanted.has("positions")) {
-      static_cast<void>(wanted.vectors("positions", quantity::coordinate));
-      for (const char* key : {"phones", "spacing", "heading_deg", "pitch_deg", "shapes", "behind"})
-        erase_key(table, key);
+      static_cast<void>(
+          wanted.vectors("positions", scenario::setting_at("array.positions").quantity));
+      for (const std::string& key : keys_of_choices("array")) erase_key(table, key);
       set_key(table, "kind", {.data = std::string("positions"), .origin = ""});
     }
-    for (const char* key : {"positions", "heading_deg", "pitch_deg", "spacing", "behind", "offset"})
+    for (const std::string& key : live_keys("array"))
       if (wanted.has(key)) set_key(table, key, *values.find(key));
     wanted.finish();
   }
@@ -117,12 +132,15 @@ void update_target(TomlTable& wanted, const TomlValue& values, const UpdateConte
     wanted.finish();
     return;
   }
-  constexpr std::array settings{"strength_db", "fluctuation", "scan_pings"};
+  std::vector<std::string> settings = live_keys("target");
+  std::erase_if(settings, [](const std::string& key) {
+    return std::find(motion_keys.begin(), motion_keys.end(), key) != motion_keys.end();
+  });
   Track track;
   if (found == targets.end()) {
     if (!wanted.has("position") && !wanted.has("waypoints")) {
       static_cast<void>(has_motion(wanted));
-      for (const char* key : settings) static_cast<void>(wanted.has(key));
+      for (const std::string& key : settings) static_cast<void>(wanted.has(key));
       wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "the position of a new target");
     }
@@ -134,7 +152,7 @@ void update_target(TomlTable& wanted, const TomlValue& values, const UpdateConte
   for (const Target& target : context.scenario.targets)
     if (target.name == name) track = target.track;
   const bool moves = has_motion(wanted);
-  for (const char* key : settings)
+  for (const std::string& key : settings)
     if (wanted.has(key)) set_key(*found, key, *values.find(key));
   if (moves) set_motion(wanted, track, time, *found);
   if (moves && wanted.has("heading_deg") && found->find("position") != nullptr)
@@ -168,9 +186,9 @@ TomlValue& table_in(TomlValue& document, const std::string& section) {
 void update_recording(TomlTable& reader, const TomlValue& fields, TomlValue& document,
                       std::vector<std::string>& changed) {
   TomlTable wanted = reader.table("recording");
-  for (const char* key : {"duration", "start"}) {
+  for (const std::string& name : live_keys("pings")) {  // recording_duration is recording.duration
+    const std::string key = name.substr(name.find('_') + 1);
     if (!wanted.has(key)) continue;
-    const std::string name = std::string("recording_") + key;
     set_key(table_in(document, "pings"), name, *fields.find("recording")->find(key));
     changed.push_back("pings." + name);
   }
@@ -181,7 +199,7 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
                                     TomlValue& document) {
   TomlTable reader(fields);
   std::vector<std::string> changed;
-  const double time = reader.number("time", time_of_command, context.now);
+  const double time = reader.number("time", quantity::time, context.now);
   if (reader.has("platform")) {
     fix_targets(context.scenario, document, changed);
     update_platforms(reader, context, time, document);
@@ -196,7 +214,8 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
     changed.emplace_back("target");
   }
   if (reader.has("wind_speed")) {
-    static_cast<void>(reader.number("wind_speed", quantity::wind_speed));
+    static_cast<void>(
+        reader.number("wind_speed", scenario::setting_at("environment.wind_speed").quantity));
     set_key(table_in(document, "environment"), "wind_speed", *fields.find("wind_speed"));
     changed.emplace_back("environment.wind_speed");
   }
@@ -219,10 +238,7 @@ std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext
   }
   if (reader.has("recording")) update_recording(reader, fields, document, changed);
   reader.finish();
-  if (changed.empty())
-    throw Refusal("value", refusal_text("update", "nothing",
-                                        "platform, array, targets, wind_speed, sound_speed, "
-                                        "noise, seed or recording"));
+  if (changed.empty()) throw Refusal("value", refusal_text("update", "nothing", update_keys()));
   return changed;
 }
 

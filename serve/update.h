@@ -33,9 +33,6 @@ std::vector<std::string> apply_ping_changes(const PingChanges& wanted, const Sce
 /// A value of the tree by its path of names; it is there.
 [[nodiscard]] const TomlValue* find_section(const TomlValue& document, const std::string& path);
 
-/// When a command is meant, on the scenario's clock.
-inline constexpr Quantity time_of_command{.noun = "time", .unit = "s", .low = 0.0, .high = 1e9};
-
 /// A fault of a command's own value: key, found, expected.
 [[nodiscard]] Refusal refusal_of_value(const InputError& error);
 

@@ -1,14 +1,18 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/error.h"
+#include "io/scenario/catalogue.h"
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
 #include "serve/client_key.h"
+#include "serve/client_names.h"
 #include "serve/command_queue.h"
 #include "serve/data_folder.h"
 #include "serve/latency.h"
@@ -298,6 +302,45 @@ TEST(RefusalOf, NamesThePlatformThatWasMoved) {
   EXPECT_STREQ(refusal_of(fault, "secret/deep.toml", other, {}).what(),
                "transmitter.offset: found what the scenario has, expected a depth between the "
                "surface (0 m) and the bottom (3200 m)");
+}
+
+// What may change is what is described so, and all of that has a name in commands.
+TEST(ClientNames, AreOfWhatIsLive) {
+  const auto dotted = [](std::string path) {
+    for (auto at = path.find("[]"); at != std::string::npos; at = path.find("[]"))
+      path.erase(at, 2);
+    return path;
+  };
+  std::vector<std::string> live;
+  for (const SettingRecord& one : scenario::catalogue().settings)
+    if (one.live) live.push_back(dotted(one.path));
+  for (const TableRecord& one : scenario::catalogue().tables)
+    if (one.live) live.push_back(dotted(one.path));
+  const auto is_within = [](const std::string& path, std::string_view section) {
+    return path == section || path.starts_with(std::string(section) + ".");
+  };
+  for (const std::string& path : live)
+    EXPECT_TRUE(std::any_of(client_names().begin(), client_names().end(),
+                            [&](const auto& one) { return is_within(path, one.section); }))
+        << path << " has no name in commands";
+  for (const ClientName& one : client_names())
+    EXPECT_TRUE(std::any_of(live.begin(), live.end(),
+                            [&](const auto& path) { return is_within(path, one.section); }))
+        << one.section << " is not live";
+}
+
+TEST(ClientNames, HaveTheKeysAndBoundsOfTheScenario) {
+  EXPECT_THAT(live_keys("array"),
+              testing::UnorderedElementsAre("spacing", "heading_deg", "pitch_deg", "positions",
+                                            "behind", "offset"));
+  EXPECT_THAT(live_keys("pings"), testing::ElementsAre("recording_duration", "recording_start"));
+  EXPECT_EQ(update_keys(),
+            "platform, array, targets, wind_speed, sound_speed, noise, seed or recording");
+  const SettingsList update = update_settings();
+  const auto wind = std::find_if(update.settings.begin(), update.settings.end(),
+                                 [](const auto& one) { return one.path == "wind_speed"; });
+  ASSERT_NE(wind, update.settings.end());
+  EXPECT_EQ(domain_of(*wind), "0 to 60 m/s");
 }
 
 // Keys of a scenario as commands have them.
