@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/unit_text.h"
+#include "io/scenario/catalogue.h"
 #include "study/reader/vary_laws.h"
 #include "study/reader/vary_profiles.h"
 
@@ -42,28 +44,20 @@ std::string short_name(std::string_view key) {
   return column_name(key.substr(key.rfind('.', dot - 1) + 1));
 }
 
-/// What the number at a key of a scenario is counted in.
-std::string unit_of(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> units{
-      {{"spectral_level_db", "dB re 1 µPa²/Hz"},
-       {"source_level_db", "dB re 1 µPa at 1 m"},
-       {"_db", "dB"},
-       {"_deg", "degrees"},
-       {"speed", "m/s"},
-       {"frequency", "Hz"},
-       {"duration", "s"},
-       {"interval", "s"},
-       {"time", "s"},
-       {"range", "m"},
-       {"depth", "m"},
-       {"spacing", "m"},
-       {"roughness", "m"},
-       {"density", "kg/m3"},
-       {"temperature", "degC"},
-       {"low", "Hz"}}};
-  for (const auto& [tail, unit] : units)
-    if (key.ends_with(tail)) return std::string(unit);
-  return "1";
+/// As the description of the setting has it: "target.0.depth: depth below the mean surface" [m]. Of
+/// choices with a key of their own each the first, where they differ.
+NumberAtKey number_at(const std::string& key) {
+  const bool radians = key.ends_with("_rad");
+  const auto found = scenario::settings_at(radians ? key.substr(0, key.size() - 4) + "_deg" : key);
+  if (found.empty()) return {"1", key};
+  const SettingRecord& setting = *found.front();
+  const std::string unit = radians ? "radians" : unit_of(setting.quantity);
+  const std::string noun =
+      setting.type == SettingRecord::Type::number || setting.type == SettingRecord::Type::numbers
+          ? std::string(setting.quantity.noun) + " "
+          : "";
+  return {unit.empty() ? "1" : unit,
+          key + ": " + noun + setting.help.substr(0, setting.help.find(';'))};
 }
 
 /// These laws know the key that they write: profile = { law = "profile_eof", … }
@@ -97,7 +91,10 @@ Variable read_variable(const TomlEntry& entry, const Study& study) {
   const bool group = variable.keys.front() != entry.key;
   variable.name = column_name(table.text("name", group ? entry.key : short_name(entry.key)));
   if (variable.name.empty()) throw table.fault("name", "a name with letters or digits");
-  variable.unit = table.text("unit", unit_of(variable.keys.front()));
+  for (const std::string& key : variable.keys) {
+    variable.numbers.push_back(number_at(key));
+    variable.numbers.back().unit = table.text("unit", variable.numbers.back().unit);
+  }
   variable.law = read_law(table, entry.value, variable, study);
   table.finish();
   return variable;

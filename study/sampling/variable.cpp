@@ -13,6 +13,10 @@ TomlValue array_of(std::span<const double> numbers, const std::string& origin) {
   return {.data = std::move(items), .origin = origin};
 }
 
+NumberAtKey number_at(const Variable& v, std::size_t key) {
+  return key < v.numbers.size() ? v.numbers[key] : NumberAtKey{.meaning = v.keys.at(key)};
+}
+
 // What each law takes and makes.
 
 std::size_t dimensions(const NumberLaw&) { return 1; }
@@ -21,21 +25,18 @@ std::size_t dimensions(const TrackLaw& law) { return law.speed ? 5 : 3; }
 std::size_t dimensions(const ModesLaw& law) { return law.modes.size(); }
 
 std::vector<InputColumn> columns(const NumberLaw& law, const Variable& v) {
-  return {{.name = v.name, .unit = v.unit, .meaning = v.keys.front(), .ends = law.law.ends()}};
+  return {{.name = v.name,
+           .unit = number_at(v, 0).unit,
+           .meaning = number_at(v, 0).meaning,
+           .ends = law.law.ends()}};
 }
 
 std::vector<InputColumn> columns(const ChoiceLaw& law, const Variable& v) {
-  if (!law.by_row)
-    return {{.name = v.name,
-             .unit = law.labels.front().empty() ? v.unit
-                                                : "1",  // a choice among names is a number of it
-             .meaning = v.keys.front(),
-             .labels = law.labels.front()}};
   std::vector<InputColumn> made;
-  for (std::size_t k = 0; k < v.keys.size(); ++k)
-    made.push_back({.name = v.name + '_' + last_name(v.keys[k]),
-                    .unit = "1",
-                    .meaning = v.keys[k],
+  for (std::size_t k = 0; k < law.labels.size(); ++k)  // a choice among names is a number of it
+    made.push_back({.name = law.by_row ? v.name + '_' + last_name(v.keys[k]) : v.name,
+                    .unit = law.labels[k].empty() ? number_at(v, k).unit : "1",
+                    .meaning = number_at(v, k).meaning,
                     .labels = law.labels[k]});
   return made;
 }

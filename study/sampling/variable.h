@@ -53,13 +53,18 @@ struct ModesLaw {
 
 using AnyLaw = std::variant<NumberLaw, ChoiceLaw, TrackLaw, ModesLaw>;
 
+/// What the number at a key is: "depth of the sources" [m].
+struct NumberAtKey {
+  std::string unit = "1", meaning;
+};
+
 /// One input that varies from realisation to realisation: a key of the scenario (or several that
 /// move together) and the law that its values follow.
 struct Variable {
-  std::string name;               ///< of its column, or what its columns' names begin with
-  std::vector<std::string> keys;  ///< "target.0.strength_db"; paths as in --set
-  std::string unit;               ///< of its column
-  std::string origin;             ///< where it was written, "study.toml:12"
+  std::string name;                       ///< of its column, or what its columns' names begin with
+  std::vector<std::string> keys;          ///< "target.0.strength_db"; paths as in --set
+  std::vector<NumberAtKey> numbers = {};  ///< [keys]; none: nothing is known of them
+  std::string origin;                     ///< where it was written, "study.toml:12"
   AnyLaw law;
 };
 

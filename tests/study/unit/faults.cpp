@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "core/error.h"
 #include "study/measures/realisation.h"
@@ -355,6 +356,36 @@ TEST_F(Drawn, ColumnsHaveTheUnitsOfTheirKeys) {
   for (const Column& column : columns(study)) units.push_back(column.unit);
   EXPECT_EQ(units, (std::vector<std::string>{"dB re 1 µPa²/Hz", "dB re 1 µPa at 1 m", "dB",
                                              "dB re 1 µPa"}));
+}
+
+// Of every kind of key: what the setting's description has, also of choices among numbers.
+TEST_F(Drawn, ColumnsHaveTheUnitsAndNamesOfTheDescriptions) {
+  const std::string law = " = { law = \"uniform\", low = 1, high = 2 }\n";
+  const Study study =
+      read("[study]\nrealisations = 4\n[vary]\n\"pings.recording_start\"" + law +
+           "\"environment.wind_speed\"" + law + "\"transmitter.first_ping_time\"" + law +
+           "\"propagation.max_launch_angle_deg\" = { law = \"uniform\", low = 80, high = 90 }\n"
+           "\"target.0.position.2\" = { law = \"uniform\", low = 90, high = 110 }\n"
+           "\"seed\" = { law = \"list\", values = [1, 2] }\n"
+           "sea = { law = \"list\", keys = [\"pulse.duration\", \"pings.interval\"], rows = [[0.1, "
+           "60], [0.2, 90]] }\n[measure]\necho_level = true\n");
+  std::map<std::string, Column> found;
+  for (const Column& column : columns(study)) found[column.name] = column;
+  const auto is = [&](const std::string& name, const std::string& unit,
+                      const std::string& meaning) {
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_EQ(found[name].unit, unit) << name;
+    EXPECT_EQ(found[name].meaning, meaning);
+  };
+  is("recording_start", "s", "pings.recording_start: time of a record, after the ping");
+  is("wind_speed", "m/s", "environment.wind_speed: wind speed at 10 m height");
+  is("first_ping_time", "s", "transmitter.first_ping_time: time of its first ping");
+  is("max_launch_angle_deg", "degrees",
+     "propagation.max_launch_angle_deg: angle of a path, from the horizontal");
+  is("position_2", "m", "target.0.position.2: at the start");
+  is("seed", "1", "seed: of all that is drawn");
+  is("sea_duration", "s", "pulse.duration: duration from the leading to the trailing edge");
+  is("sea_interval", "s", "pings.interval: interval from ping to ping of one transmitter");
 }
 
 TEST_F(Drawn, CastsAndWaypointsAreDrawnWhole) {

@@ -183,6 +183,8 @@ def time_series():
             check(p[(into > 0.01) & (into < 0.09)].min() > 5 * quiet, f"time series {index}: no echo")
             check(series["carrier"][k] > 0, "time series: no carrier")
         check(len(set(series["sample_rate"][:])) == 2, "time series: one rate")
+        rate = [f["table/baseband_rate"].attrs[key].decode() for key in ("units", "long_name")]  # of the description
+        check(rate == ["Hz", "pings.baseband_rate: sample rate of complex samples"], f"a drawn column: {rate}")
         check(f["run/reuse/legs_searched"].shape == (4,), "run/reuse: not a value a row")
     print("time series: found in the file")
 
