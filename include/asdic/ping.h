@@ -11,7 +11,7 @@
 /// std::cout << ping.channels() << " phones, " << phone.size() << " samples, the first at "
 ///           << ping.start() << " s\n";
 /// for (const asdic::Echo& echo : ping.echoes())
-///   std::cout << echo.delay << " s: " << echo.level_db << " dB re 1 uPa\n";
+///   std::cout << echo.delay << " s: " << echo.level_db << " dB re 1 µPa\n";
 /// ```
 
 #include <complex>
