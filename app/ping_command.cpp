@@ -144,7 +144,7 @@ int ping(const PingOptions& options) {
 
 void add_ping_command(Program& program) {
   program.add_command(
-      "ping", "Simulate the pings of a scenario: what every phone hears, into an HDF5 file.",
+      "ping", "Simulate the pings of a scenario: what every phone receives, into an HDF5 file.",
       [](const Command& command) {
         auto options = std::make_shared<PingOptions>();
         add_scenario_options(command, options->scenario);

@@ -74,8 +74,9 @@ std::string PingReport::text(double wall) const {
   if (plane_wave_error_ > reverberation_periods)
     result += fmt::format(
         "note: plane waves of reverberation are up to {:.2g} periods off at the worst phone, where "
-        "the nearest scatterers or a turn of the line are heard: sectors or a covariance stand for "
-        "too many returns; propagation.exact_per_phone = true hears every phone by itself\n",
+        "the nearest scatterers or a turn of the line are received: sectors or a covariance stand "
+        "for too many returns; propagation.exact_per_phone = true gives every phone its own "
+        "paths\n",
         plane_wave_error_);
   if (bounces_.left_out_db > tolerable_db)
     result += fmt::format(
@@ -100,7 +101,7 @@ std::string PingReport::text(double wall) const {
     if (pulse.duration() * pulse.bandwidth_40db() > 10.0)
       result +=
           "of a sweep the paths that add up here come apart in a matched filter, each by itself "
-          "weaker: what is heard of them asdic process says\n";
+          "weaker: asdic process says which of them it detects\n";
   }
   result += fmt::format(
       "time: {} in all; over the pings: surface paths {}, eigenrays {}, patches {}, synthesis {}, "

@@ -138,11 +138,11 @@ std::string process_report(const ProcessedRun& run, const Scenario& scenario, do
   std::string whose = fmt::format("{} of targets", sum.of_targets);
   if (sum.direct > 0) whose += fmt::format(", {} of the direct sound", sum.direct);
   if (sum.of_other_pings > 0) whose += fmt::format(", {} of other pings", sum.of_other_pings);
-  text += fmt::format("{}: {} ({}, {}); targets that could be heard: {} found, {} missed; {}; {}\n",
-                      count_of(pings, "ping"),
-                      count_of(static_cast<std::size_t>(sum.detections), "detection"), whose,
-                      count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
-                      sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
+  text += fmt::format(
+      "{}: {} ({}, {}); targets with an echo in the time searched: {} found, {} missed; {}; {}\n",
+      count_of(pings, "ping"), count_of(static_cast<std::size_t>(sum.detections), "detection"),
+      whose, count_of(static_cast<std::size_t>(sum.false_alarms), "false alarm"), sum.hits,
+      sum.misses, count_of(run.tracks.size(), "track"), duration(seconds));
   return text + limit_text(run, scenario);
 }
 

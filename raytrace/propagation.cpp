@@ -33,7 +33,7 @@ std::string beyond_box_text(const PropagationCase& run_case) {
       std::minmax_element(run_case.receivers.depths.begin(), run_case.receivers.depths.end());
   char text[256];
   std::snprintf(text, sizeof text,
-                "no receiver hears anything: all lie outside the box in which rays are traced "
+                "nothing reaches a receiver: all lie outside the box in which rays are traced "
                 "(receivers %g to %g km away, %g to %g m deep; box %g km, %g m)",
                 *least / 1000.0, *most / 1000.0, *shallowest, *deepest, run_case.box_range / 1000.0,
                 run_case.box_depth);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What listens. Channels are the phones of all arrays, one array after the other.
+/// What receives. Channels are the phones of all arrays, one array after the other.
 ///
 /// ```cpp
 /// asdic::Scenario scenario;
@@ -29,7 +29,7 @@ struct ASDIC_API LineArray {
   Vector offset{};            ///< of the middle from the platform [m]
   int phones = 1;
   double spacing = 1.0;      ///< from phone to phone [m]
-  double heading_deg = 0.0;  ///< of the line; broadside is 90 degrees on
+  double heading_deg = 0.0;  ///< true, of the line; broadside is 90 degrees clockwise of it
   double pitch_deg = 0.0;    ///< of the line, positive up; 90: a vertical line
   operator Value() const;
 };
@@ -49,7 +49,7 @@ struct ASDIC_API TowedArray {
   std::string platform = {};
   Vector offset{};               ///< of the tow point from the platform [m]
   std::vector<double> behind{};  ///< [phones] along the way, from the tow point [m]
-  double heading_deg = 0.0;      ///< of a platform that never moves
+  double heading_deg = 0.0;      ///< true, of a platform that never moves
   operator Value() const;
 };
 

@@ -48,7 +48,7 @@ ASDIC_API void write_ping(const std::filesystem::path& path, const Scenario& sce
 /// A file of all pings of a scenario: what `asdic ping` does.
 ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario);
 
-/// A ping of a file. Of a continuous record: all that is listened to of it, over the pings that
+/// A ping of a file. Of a continuous record: all that is received of it, over the pings that
 /// follow. \param number  as the file counts, from 1   \throws InputError, RunError
 [[nodiscard]] ASDIC_API Ping read_ping(const std::filesystem::path& path, int number = 1);
 /// How many pings it holds.

@@ -28,7 +28,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int32_t>("run/band_points", "frequencies at which reverberation is known", "");
   growing<double>("run/band_error", "largest error of its amplitudes between them", "");
   if (long_arrays) {
-    growing<std::int32_t>("run/phone_groups", "groups of phones that hear reverberation", "");
+    growing<std::int32_t>("run/phone_groups", "groups of phones that receive reverberation", "");
     growing<double>("run/plane_wave_error",
                     "periods by which its nearest fronts are off at the worst phone", "");
   }
@@ -47,7 +47,7 @@ void PingFileWriter::Impl::create_ping_datasets() {
   growing<std::int8_t>("target_present", "1 if the target is there", "", scale, {targets});
   growing<std::int8_t>("summary/present", "1 if the target is there", "", scale, {targets});
   growing<std::int32_t>("summary/array",
-                        "number of the array that hears the strongest pair, -1: none", "", scale,
+                        "number of the array that receives the strongest pair, -1: none", "", scale,
                         {targets});
   growing<std::int32_t>("summary/paths", "pairs of paths there and back", "", scale, {targets});
   growing<double>("summary/echo_time", "delay of the strongest pair", "s", scale, {targets});

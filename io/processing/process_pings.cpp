@@ -67,7 +67,7 @@ std::string bending(const PingProcessor& processor, const ProcessedArray& made,
   if (moved < 0.125 * wavelength) return "";
   return "array " + std::to_string(received.array) + ", ping " + std::to_string(received.ping) +
          ": the line turns and bends by up to " + tenths(moved) +
-         " m while it listens; beams are those of its shape in the middle of the record, and "
+         " m while it receives; beams are those of its shape in the middle of the record, and "
          "bearings may be up to " +
          tenths(degrees(std::min(turned, pi))) + " degrees off";
 }

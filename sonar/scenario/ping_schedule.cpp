@@ -17,7 +17,7 @@ void PingSchedule::describe(Fields& field) {
   if (field.checks() && !elevations.empty() && field.known("transmitter.has_elevation") > 0.0)
     field.fault("elevations", "no elevations_deg beside transmitter.elevation_deg");
   field(live("recording_duration"), recording_duration, quantity::duration,
-        "a ping is heard that long after its start");
+        "how long each ping is received, from its start");
   field(live("recording_start"), recording_start,
         {.noun = "time", .unit = "s", .low = 0.0, .high = 1e5}, "of a record, after the ping");
   field("samples", samples, "what the samples of the phones are");
@@ -34,7 +34,7 @@ void PingSchedule::describe(Fields& field) {
   }
   field("continuous", continuous, "one stream for each phone, without gaps between pings");
   field("blanking", blanking,
-        "whether arrays on the transmitter's platform hear nothing while it transmits");
+        "whether arrays on the transmitter's platform receive nothing while it transmits");
   if (field.checks() && continuous && recording_start > 0.0)
     field.fault("recording_start", "0 in a continuous stream, which has no gaps");
 }

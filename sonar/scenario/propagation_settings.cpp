@@ -21,9 +21,11 @@ void PropagationSettings::describe(Fields& field) {
   field("max_launch_angle", max_launch_angle,
         AngleQuantity{.noun = "angle", .low_deg = 0.0, .high_deg = 90.0, .above = true},
         "of a path, from the horizontal");
-  field("direct_blast", direct_blast, "whether arrays on other platforms hear the ping on its way");
+  field("direct_blast", direct_blast,
+        "whether arrays on other platforms receive the ping itself, without a target");
   field("fathometer", fathometer,
-        "whether those on the transmitter's own hear it mirrored by the boundaries");
+        "whether arrays on the transmitter's platform receive the ping mirrored by surface and "
+        "bottom");
   BandOfLosses band = wide_band ? BandOfLosses::wide : BandOfLosses::narrow;
   field("band", band,
         "losses and patterns of echoes at the centre, or at every frequency of the pulse");

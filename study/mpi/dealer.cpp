@@ -76,7 +76,7 @@ void Dealer::check_silence() const {
     if (gone_.contains(rank)) continue;
     const auto silent = Clock::now() - received_[static_cast<std::size_t>(rank)];
     if (silent > run_.silence)
-      throw RunError("rank " + std::to_string(rank) + " has not been heard of for " +
+      throw RunError("rank " + std::to_string(rank) + " has not reported for " +
                      asdic::detail::to_text(run_.silence.count()) +
                      " s: it is taken for dead; the journals hold what was made, and the same "
                      "command goes on");

@@ -78,8 +78,8 @@ void StudyFileWriter::write_series(const SeriesSource& series) {
     file_.attach_scales(path, {"time_series/index"});
   }
   write_pressure(series, row);
-  describe(file_, "time_series/pressure", "what the phones hear; complex where the last axis is 2",
-           "Pa");
+  describe(file_, "time_series/pressure",
+           "what the phones receive; complex where the last axis is 2", "Pa");
   const std::vector<std::pair<const char*, const char*>> all{
       {"channel", "no values: number of the phone, from 0"},
       {"sample", "no values: number k is at start + k / sample_rate"},

@@ -183,7 +183,7 @@ def write_levels_and_rays(f, s, result):
                                     ("echo_level_db", float)]):
             put(summary, name, rows[:, :, k], name.replace("_", " "), unit_of(name),
                 (f["ping"], f["target_index"]), kind)
-        put(summary, "array", np.zeros(rows.shape[:2]), "array that hears it best", None,
+        put(summary, "array", np.zeros(rows.shape[:2]), "array that receives it best", None,
             (f["ping"], f["target_index"]), np.int32)
         for name, value in (("reverberation_db", 60.0), ("noise_db", 50.0),
                             ("echo_peak_db", 91.0), ("echo_to_background_db", 10.0), ("signal_excess_db", 10.0)):

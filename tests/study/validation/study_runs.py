@@ -299,7 +299,7 @@ def silent_rank(mpirun):
     os.kill(ranks_of(job)[-1], signal.SIGSTOP)
     said = job.communicate(timeout=120)[1]
     check(job.returncode != 0, "a silent rank: status 0")
-    check(re.search(r"rank \d has not been heard of for 2 s: it is taken for dead", said),
+    check(re.search(r"rank \d has not reported for 2 s: it is taken for dead", said),
           f"a silent rank: said {said}")
     check(rows_in("m.h5.rank*.journal") > 0, "a silent rank: nothing was kept")
     job = mpirun(2)
