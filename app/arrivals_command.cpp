@@ -176,8 +176,8 @@ void add_arrivals_command(Program& program) {
         command
             .add_option(
                 "--bearing", options->bearing,
-                "of that receiver, where the ocean varies along a transect; default: along it "
-                "[deg]")
+                "true bearing of that receiver, where the ocean varies along a transect; default: "
+                "along it [deg]")
             .type_name("DEG")
             .check(between(-360.0, 360.0));
         command

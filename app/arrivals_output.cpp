@@ -25,7 +25,7 @@ std::string title_of(const ArrivalsResult& result, const Leg& leg) {
   const std::string found = count_of(leg.arrivals.size(), "path");
   if (result.to_receiver) return fmt::format("to a receiver at {}: {}", distance, found);
   const std::string& target = result.targets[static_cast<std::size_t>(leg.target)];
-  return fmt::format("{}, {}, bearing {} deg: {}",
+  return fmt::format("{}, {}, bearing {} deg true: {}",
                      leg.kind == Leg::Kind::source_to_target ? fmt::format("platform to {}", target)
                                                              : fmt::format("{} to array", target),
                      distance, number(compass_degrees(leg.bearing), 1), found);

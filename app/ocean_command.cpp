@@ -73,7 +73,8 @@ void add_ocean_command(Program& program) {
             .check(between(1, 12));
         command
             .add_option("--bearing", options->bearing,
-                        "of a track: sea floor and water along it instead of one place's [deg]")
+                        "true bearing of a track: sea floor and water along it instead of one "
+                        "place's [deg]")
             .type_name("DEG")
             .check(between(-360.0, 360.0));
         command.add_length("--range", options->range, "length of that track, e.g. 60km");

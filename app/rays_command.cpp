@@ -218,7 +218,8 @@ void add_rays_command(Program& program) {
         command
             .add_option(
                 "--bearing", options->bearing,
-                "of the rays, where the ocean varies along a transect; default: along it [deg]")
+                "true bearing of the rays, where the ocean varies along a transect; default: "
+                "along it [deg]")
             .type_name("DEG")
             .check(between(-360.0, 360.0));
         command

@@ -202,8 +202,8 @@ std::string sonar_text(const PingSimulator& simulator) {
     const Kinematics k = target.track.at(0.0);
     const Separation way = separation(platform.position, k.position);
     text +=
-        fmt::format("target     {}: {}, {}, range {:.3f} km, bearing {:.1f} deg, {}\n", target.name,
-                    strength_text(target), position(k.position), way.range / 1000.0,
+        fmt::format("target     {}: {}, {}, range {:.3f} km, bearing {:.1f} deg true, {}\n",
+                    target.name, strength_text(target), position(k.position), way.range / 1000.0,
                     compass_degrees(way.bearing), motion(k.velocity) + closing_text(platform, k));
   }
   for (const Interferer& ship : s.interferers) {

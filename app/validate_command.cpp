@@ -45,8 +45,8 @@ std::string transect_text(const PingSimulator& simulator) {
   const Scenario& s = simulator.scenario();
   if (!varies_with_range(s.environment)) return "";
   return fmt::format(
-      "transect   from {:g} m east, {:g} m north along {:g} deg; the platform is at {:.3f} km of "
-      "it, over {:.0f} m\n",
+      "transect   from {:g} m east, {:g} m north along {:g} deg true; the platform is at {:.3f} km "
+      "of it, over {:.0f} m\n",
       s.transect.x, s.transect.y, compass_degrees(s.transect.bearing),
       simulator.paths().along(s.platforms[0].track.at(0.0).position) / 1000.0,
       simulator.paths().bottom_depth(s.platforms[0].track.at(0.0).position));

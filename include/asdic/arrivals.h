@@ -56,7 +56,7 @@ struct Receiver {
   double range = 0.0;                       ///< horizontal, from the source [m]
   double depth = 0.0;                       ///< [m]
   std::optional<double> source_depth = {};  ///< [m]; the transmitter's
-  std::optional<double> bearing = {};       ///< [rad]; along the transect, or north
+  std::optional<double> bearing = {};       ///< true [rad]; along the transect, or north
   std::optional<double> frequency = {};     ///< at which losses are told [Hz]; the pulse's centre
   int ping = 1;                             ///< when: from where it is sent, counted from 1
 };
@@ -73,7 +73,7 @@ struct Leg {
   Kind kind = Kind::source_to_target;
   int target = 0;        ///< in the scenario, from 0
   int array = -1;        ///< in the scenario, from 0; −1 on the way out
-  double bearing = 0.0;  ///< of travel, clockwise from north [rad]
+  double bearing = 0.0;  ///< of travel, true [rad]
   double range = 0.0;    ///< horizontal [m]
   std::vector<Arrival> arrivals = {};
 };

@@ -37,7 +37,7 @@ struct Echo {
   double doppler = 1.0;            ///< received over transmitted frequency
   double level_db = 0.0;           ///< peak envelope/√2, pulse not windowed [dB re 1 µPa]
   double arrival_elevation = 0.0;  ///< of travel at the array, positive up [rad]
-  double arrival_bearing = 0.0;    ///< of travel at the array [rad]
+  double arrival_bearing = 0.0;    ///< of travel at the array, true [rad]
 };
 
 /// A ping's record. A handle: copies share the samples, which never change.

@@ -26,7 +26,7 @@
 
 namespace asdic {
 
-/// How to listen: the options of `asdic process`, with its defaults.
+/// How to process what was received: the options of `asdic process`, with its defaults.
 struct Receiving {
   bool mvdr = false;              ///< adaptive beams, else conventional ones
   bool hann_shading = false;      ///< of the phones, in conventional beams
@@ -46,7 +46,7 @@ struct Receiving {
 struct Place {
   Vector position{};        ///< when the sound struck it [m]
   double range = 0.0;       ///< horizontal, from the array when it received it [m]
-  double bearing = 0.0;     ///< clockwise from north; NaN if the array tells none [rad]
+  double bearing = 0.0;     ///< true; NaN if the array tells none [rad]
   double range_rate = 0.0;  ///< [m/s]
 };
 
@@ -56,7 +56,7 @@ struct Detection {
   int array = 0;                ///< in the scenario, from 0
   double time = 0.0;            ///< of its leading edge, after the ping's start [s]
   double doppler = 1.0;         ///< received over transmitted frequency
-  double bearing = 0.0;         ///< looked at; NaN if the array tells none [rad]
+  double bearing = 0.0;         ///< looked at, true; NaN if the array tells none [rad]
   double elevation = 0.0;       ///< looked at, positive up; NaN if the array tells none [rad]
   double snr_db = 0.0;          ///< peak over the background around it [dB]
   double excess_db = 0.0;       ///< peak over the threshold [dB]

@@ -43,14 +43,14 @@ struct ASDIC_API Target {
   std::string name = {};
   std::optional<Vector> position = {};  ///< at the start [m]; or
   std::optional<double> range = {};     ///< seen from the platform's start [m], with
-  double bearing_deg = 0.0;             ///< clockwise from north, and
+  double bearing_deg = 0.0;             ///< true, and
   std::optional<double> depth = {};     ///< [m]; or
   std::vector<Waypoint> waypoints = {};
   Vector velocity{};                       ///< [m/s]; not with waypoints
   std::optional<double> strength_db = {};  ///< the same from all sides; or
   std::optional<Aspect> aspect = {};       ///< or
   std::vector<Highlight> highlights = {};
-  std::optional<double> heading_deg = {};  ///< of one that never moves
+  std::optional<double> heading_deg = {};  ///< true, of one that never moves
   std::string fluctuation = {};            ///< swerling-1 … swerling-4
   std::optional<int> scan_pings = {};      ///< that share a draw of swerling-1 and 3
   operator Value() const;

@@ -3,7 +3,7 @@
 /// \file
 /// Units and the version. All numbers of the library are SI: m, s, Hz, Pa, kg/m³. Names that end
 /// in _deg are in degrees, in _db in decibels. Positions are {east, north, depth}, depth positive
-/// down; elevations are positive up; bearings go clockwise from north.
+/// down; elevations are positive up; bearings and headings are true, clockwise from north.
 ///
 /// ```cpp
 /// const double pressure = 1e-6 * asdic::amplitude_from_db(120.0);  // 120 dB re 1 µPa is 1 Pa

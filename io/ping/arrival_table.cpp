@@ -17,7 +17,7 @@ std::vector<GrowingTable::Column> arrival_columns() {
           {"array", "number of the array, -1: none", "", Type::int32},
           {"channel", "number of the array's phone, -1: the reference point", "", Type::int32},
           {"path", "number within its leg", "", Type::int32},
-          {"bearing_deg", "direction of travel, clockwise from north", "degree"},
+          {"bearing_deg", "of travel, true (clockwise from north)", "degree"},
           {"range", "horizontal distance of the leg", "m"},
           {"launch_elevation_deg", "elevation of travel at the start, positive up", "degree"},
           {"arrival_elevation_deg", "elevation of travel at the end, positive up", "degree"},

@@ -59,7 +59,7 @@ void write_maps(Hdf5File& file, const ProcessedRun& run, int array) {
     describe(file, group + "/" + name, what, units);
     file.attach_scales(group + "/" + name, {group + "/beam"});
   };
-  column("beam_bearing_deg", bearing, "look bearing, clockwise from north", "degree");
+  column("beam_bearing_deg", bearing, "look bearing, true (clockwise from north)", "degree");
   column("beam_elevation_deg", elevation, "look elevation, positive up", "degree");
   if (!like.grid.cosine.empty())
     column("beam_cosine", like.grid.cosine, "of the angle between look and axis", "");

@@ -21,8 +21,8 @@ std::vector<GrowingTable::Column> place_columns(const std::string& prefix,
   return {{prefix + "x", "east, where it was struck" + side, "m"},
           {prefix + "y", "north" + side, "m"},
           {prefix + "depth", "assumed or traced" + side, "m"},
-          {prefix + "range", "horizontal, from the array when it heard it" + side, "m"},
-          {prefix + "bearing_deg", "from there, clockwise from north" + side, "degree"},
+          {prefix + "range", "horizontal, from the array when it received it" + side, "m"},
+          {prefix + "bearing_deg", "from there, true (clockwise from north)" + side, "degree"},
           {prefix + "path_elevation_deg", "look elevation of the returning path" + side, "degree"},
           {prefix + "range_rate", "of half the horizontal way there and back" + side, "m/s"},
           {prefix + "surface_bounces", "there and back" + side, "", Type::int32},
@@ -56,7 +56,8 @@ Table detections_table(const ProcessedRun& run) {
       {"level_db", "of an echo from there, peak envelope over sqrt 2", "dB", Type::float64,
        cf::level},
       {"axis_cosine", "of the angle between look direction and a line's axis", ""},
-      {"look_bearing_deg", "as if it came horizontally, right of a line", "degree"},
+      {"look_bearing_deg",
+       "true (clockwise from north), as if it came horizontally, right of a line", "degree"},
       {"look_elevation_deg", "positive up; NaN where the array tells none", "degree"},
       {"target", "whose echo it is, -1: a false alarm, -2: the transmitter's own sound", "",
        Type::int32},
@@ -132,8 +133,8 @@ Table targets_table(const ProcessedRun& run) {
       {"hit", "1 if it was detected", "", Type::int32},
       {"detection", "row of detections, the loudest; -1: none", "", Type::int32},
       {"position_error", "horizontal, of the better of two places", "m"},
-      {"range_error", "found minus true, from the array", "m"},
-      {"bearing_error_deg", "found minus true", "degree"}};
+      {"range_error", "found minus actual, from the array", "m"},
+      {"bearing_error_deg", "found minus actual", "degree"}};
   for (std::size_t k = 0; k < run.pings.size(); ++k) {
     const ProcessedPing& ping = run.pings[k];
     const int first = first_row(run, k);

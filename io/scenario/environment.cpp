@@ -59,7 +59,7 @@ struct TransectTable {
     if (field.checks() && origin.size() != 2) field.fault("origin", "[east, north] in m");
     transect.x = origin[0];
     transect.y = origin[1];
-    field("bearing", transect.bearing, quantity::bearing, "of growing range");
+    field("bearing", transect.bearing, quantity::bearing, "true, of growing range");
   }
 };
 

@@ -10,15 +10,15 @@ TITLE = "Bearing–time record, conventional beams"
 TITLES = {"horizontal": "Bearing–time record of the horizontal array",
           "vertical": "Elevation–time record of the vertical array",
           "azimuth": "Bearing–time record of the array"}
-LABELS = {"horizontal": "apparent bearing\nclockwise from broadside",
+LABELS = {"horizontal": "apparent bearing relative to\nbroadside ({}° true)",
           "vertical": "look elevation, up positive",
-          "azimuth": "look bearing, horizontal"}
+          "azimuth": "look bearing, true, horizontal"}
 COLUMNS = 900
 
 
 def nothing_to_show(data, ping):
     if data.channels < 2:
-        return "one phone hears no direction"
+        return "one phone tells no direction"
     phones = data.phones(ping)
     if not np.all(np.isfinite(phones)) or np.ptp(phones, axis=0).max() == 0:
         return "the phones are all in one place"
@@ -46,7 +46,7 @@ def angle_axis(axes, where):
         axes.set_yticks(np.sin(np.radians(ticks)))
     signed = where.kind != "azimuth"
     axes.set_yticklabels([f"{t:+d}°".replace("-", "−") if signed and t else f"{t}°" for t in ticks])
-    axes.set_ylabel(LABELS[where.kind])
+    axes.set_ylabel(LABELS[where.kind].format(signal.broadside(where)))
 
 
 def draw(data, ping):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import style
+from . import signal, style
 
 DETECTIONS = ["ping", "array", "time", "doppler_factor", "snr_db", "axis_cosine",
               "look_bearing_deg", "look_elevation_deg", "target", "x", "y", "range", "bearing_deg",
@@ -122,10 +122,10 @@ def angle_axis(axes, m: Maps, vertical=True) -> None:
             place = up * np.sin(np.radians(values))
         labels = [style.degrees(float(v)) if m.upright else f"{v}°" for v in values]
         name = ("look elevation, up positive" if m.upright
-                else "angle with the array's axis")
+                else f"angle relative to the array's axis ({signal.true_bearing(m.axis)}° true)")
     else:
         place = np.arange(0, 361, 45)
-        labels, name = [f"{v}°" for v in place], "look bearing, clockwise from north"
+        labels, name = [f"{v}°" for v in place], "look bearing, true (clockwise from north)"
     if vertical:
         axes.set_yticks(place, labels)
         axes.set_ylabel(name)

@@ -190,6 +190,16 @@ def scan(phones, beams: int = 181) -> Scan:
     return Scan("vertical" if vertical else "horizontal", looks, sine, axis)
 
 
+def true_bearing(direction) -> float:
+    """Of a direction (east, north, depth), clockwise from north, in whole degrees."""
+    return round(float(np.degrees(np.arctan2(direction[0], direction[1])))) % 360
+
+
+def broadside(where: Scan) -> float:
+    """True bearing of 0° of a horizontal line's scan [deg]; 0 of the others."""
+    return (true_bearing(where.axis) - 90) % 360 if where.kind == "horizontal" else 0
+
+
 def apparent(where: Scan, travel):
     """Coordinate of the scan at which plane waves travelling along `travel` [n, 3] appear. → [n]"""
     look = -np.atleast_2d(travel)

@@ -49,7 +49,7 @@ std::vector<InputColumn> columns(const TrackLaw& law, const Variable& v) {
                                  .ends = law.range},
                                 {.name = v.name + "_bearing_deg",
                                  .unit = "degrees",
-                                 .meaning = key + ": from the centre",
+                                 .meaning = key + ": true bearing from the centre",
                                  .ends = {degrees(law.bearing.low), degrees(law.bearing.high)}},
                                 {.name = v.name + "_depth",
                                  .unit = "m",
@@ -60,7 +60,7 @@ std::vector<InputColumn> columns(const TrackLaw& law, const Variable& v) {
         {.name = v.name + "_speed", .unit = "m/s", .meaning = key + ": speed", .ends = *law.speed});
     made.push_back({.name = v.name + "_course_deg",
                     .unit = "degrees",
-                    .meaning = key + ": course",
+                    .meaning = key + ": course, true",
                     .ends = {degrees(law.course.low), degrees(law.course.high)}});
   }
   return made;

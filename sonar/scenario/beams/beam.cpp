@@ -7,14 +7,16 @@
 namespace asdic::detail {
 
 void BeamBearing::describe(Fields& field) {
-  field("bearing", bearing, quantity::bearing, "that the beam is turned to");
-  field("bearing_from", frame, "what bearings and offsets count from");
+  field("bearing", bearing, quantity::bearing,
+        "that the beam is turned to, relative to bearing_from");
+  field("bearing_from", frame,
+        "what bearings and offsets count from: true north, or the platform's heading");
 }
 
 std::string BeamBearing::text() const {
   std::ostringstream text;
-  text << compass_degrees(bearing) << " deg from "
-       << (frame == BearingFrame::heading ? "the heading" : "north");
+  text << compass_degrees(bearing)
+       << (frame == BearingFrame::heading ? " deg relative to the heading" : " deg true");
   return text.str();
 }
 

@@ -36,7 +36,7 @@ concept TransmitBeam = Described<B> && requires(const B& beam, const BeamMount& 
   { B::name } -> std::convertible_to<std::string_view>;
   { B::steers } -> std::convertible_to<bool>;  // in elevation
   { beam.pattern(mount) } -> FarField;
-  /// "8 projectors, steered to 30 deg from north" \param elevation  of its axis [rad]
+  /// "8 projectors, steered to 30 deg true" \param elevation  of its axis [rad]
   { beam.text(mount.elevation) } -> std::same_as<std::string>;
 };
 
@@ -57,7 +57,7 @@ struct BeamBearing {
   [[nodiscard]] double north_of_frame(double heading) const noexcept {
     return frame == BearingFrame::heading ? heading : 0.0;
   }
-  [[nodiscard]] std::string text() const;  ///< "30 deg from north"
+  [[nodiscard]] std::string text() const;  ///< "30 deg true"
 };
 
 }  // namespace asdic::detail

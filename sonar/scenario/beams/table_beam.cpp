@@ -59,10 +59,11 @@ std::vector<std::vector<double>> rows_of(const std::vector<double>& values, std:
 }  // namespace
 
 void BeamTable::describe(Fields& field) {
-  describe_axis(field, "bearing", bearings, quantity::bearing, "of the rows, rising");
+  describe_axis(field, "bearing", bearings, quantity::bearing,
+                "of the table's rows, relative to the beam's own, rising");
   if (field.checks() && bearings.back() - bearings.front() > 2.0 * pi)
     field.fault("bearing_deg", "bearings within one turn");
-  describe_axis(field, "elevation", elevations, quantity::elevation, "within a row, rising");
+  describe_axis(field, "elevation", elevations, quantity::elevation, "of the table, rising");
   auto rows = rows_of(level_db, elevations.size());
   field(required("level_db"), rows, quantity::level,
         "of each bearing a row, with a level for each elevation, re the source level");

@@ -31,7 +31,8 @@ struct HorizontalShape {
 
   void describe(Fields& field) {
     line.describe(field);
-    field(live("heading"), heading, quantity::heading, "of the line; broadside is 90 degrees on");
+    field(live("heading"), heading, quantity::heading,
+          "true, of the line; broadside is 90 degrees clockwise of it");
   }
   void build(ReceiverArray& array) const { line.build(array, heading, 0.0); }
 };
@@ -54,7 +55,8 @@ struct LineShape {
 
   void describe(Fields& field) {
     line.describe(field);
-    field(live("heading"), heading, quantity::heading, "of the line; broadside is 90 degrees on");
+    field(live("heading"), heading, quantity::heading,
+          "true, of the line; broadside is 90 degrees clockwise of it");
     field(live("pitch"), pitch, AngleQuantity{"pitch", -90.0, 90.0}, "of the line, positive up");
   }
   void build(ReceiverArray& array) const { line.build(array, heading, pitch); }

@@ -14,7 +14,8 @@ struct TowedShape {
     field(live(required("behind")), line.behind,
           {.noun = "distance", .unit = "m", .low = 0.0, .high = 1e5},
           "of each phone behind the tow point, along its path");
-    field(live("heading"), line.heading, quantity::heading, "of a tow point that never moves");
+    field(live("heading"), line.heading, quantity::heading,
+          "true, of a tow point that never moves");
   }
   void build(ReceiverArray& array) const {
     array.towed = line;

@@ -11,8 +11,8 @@ void DetectionByReceiver::of_target(const MeasuredPing& ping, std::size_t target
 void LocalisationError::of_target(const MeasuredPing& ping, std::size_t target, Collector& to) {
   const ReceiverAnswer& answer = ping.receiver.targets[target];
   to.add("position_error", "m", "horizontal, of the better of two sides", answer.position_error);
-  to.add("range_error", "m", "found less true, from the array", answer.range_error);
-  to.add("bearing_error_deg", "degrees", "found less true", degrees(answer.bearing_error));
+  to.add("range_error", "m", "found less actual, from the array", answer.range_error);
+  to.add("bearing_error_deg", "degrees", "found less actual", degrees(answer.bearing_error));
 }
 
 void FalseAlarms::of_ping(const MeasuredPing& ping, Collector& to) {

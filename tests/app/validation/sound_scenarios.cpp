@@ -107,11 +107,11 @@ TEST(SoundScenarioCommands, ValidateSaysWhatIsThere) {
     return asdic(folder, "validate '" ASDIC_SCENARIOS "/" + name + ".toml'").out;
   };
   const std::string turn = said("towed_array_turn");
-  for (const char* line : {"206 dB, 4 projectors, steered to 0 deg from north",
-                           "64 phones, towed, 100 to 194.5 m behind",
-                           "gain or phase errors (drawn: 0.5 dB, 4 deg), 1 dead, band-pass 400 to "
-                           "600 Hz, 16 bits to 20 Pa",
-                           "submarine: 6 to 20 dB by aspect"})
+  for (const char* line :
+       {"206 dB, 4 projectors, steered to 0 deg true", "64 phones, towed, 100 to 194.5 m behind",
+        "gain or phase errors (drawn: 0.5 dB, 4 deg), 1 dead, band-pass 400 to "
+        "600 Hz, 16 bits to 20 Pa",
+        "submarine: 6 to 20 dB by aspect"})
     EXPECT_NE(turn.find(line), std::string::npos) << line << " in\n" << turn;
   // where things hang, and how they near one another: (5500·3 + 2500·4)/6054.7 m/s
   const std::string bistatic = said("bistatic");

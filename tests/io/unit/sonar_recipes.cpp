@@ -85,7 +85,7 @@ TEST(BeamRecipe, IsReadAndSendsWhatItSays) {
         3e-5)
         << bearing;
   EXPECT_EQ(std::visit([](const auto& one) { return one.text(0.0); }, read_beam.beam),
-            "dipole to 30 deg from the heading");
+            "dipole to 30 deg relative to the heading");
   ExactKey key(Kept::legs, 0), other(Kept::legs, 0);
   std::visit([&](const auto& one) { one.add_to(key); }, pattern);
   DipolePattern{1.0}.add_to(other);
