@@ -1,5 +1,5 @@
 #pragma once
-// The example of docs/develop/settings.md, "A noise spectrum": the page has this struct word by
+// The example of docs/develop/recipes.md, "A noise spectrum": the page has this struct word by
 // word.
 #include <algorithm>
 #include <cmath>

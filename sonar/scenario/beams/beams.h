@@ -11,7 +11,7 @@ namespace asdic::detail {
 template <TransmitBeam... B>
 using OneOfBeams = std::variant<B...>;
 /// Every beam of a transmitter. A new one is its files and one name here
-/// (docs/develop/settings.md).
+/// (docs/develop/recipes.md).
 using AnyBeam = OneOfBeams<LineBeam, ProjectorBeam, TableBeam>;
 
 /// Whether it can be steered in elevation.

@@ -15,7 +15,7 @@ concept PhoneShape = Described<S> && requires(const S& shape, ReceiverArray& arr
 };
 template <PhoneShape... S>
 using OneOfShapes = std::variant<S...>;
-/// Every array shape. A new one is its file and one name here (docs/develop/settings.md).
+/// Every array shape. A new one is its file and one name here (docs/develop/recipes.md).
 using AnyArrayShape =
     OneOfShapes<HorizontalShape, VerticalShape, LineShape, PositionsShape, TowedShape>;
 

@@ -9,7 +9,7 @@
 
 namespace asdic::detail {
 
-/// Every waveform. A new one is its files and one name here (docs/develop/settings.md).
+/// Every waveform. A new one is its files and one name here (docs/develop/recipes.md).
 using AnyWaveform = std::variant<Cw, Lfm, Hfm, SampledPulse>;
 
 }  // namespace asdic::detail

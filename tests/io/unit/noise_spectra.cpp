@@ -55,7 +55,7 @@ TYPED_TEST(EveryNoiseSpectrum, EveryMemberIsDescribedAndItsDefaultAllowed) {
   EXPECT_EQ(members.seen, support::member_count<TypeParam>());
 }
 
-// What docs/develop/settings.md promises of a law: its file and its name in a list are all.
+// What docs/develop/recipes.md promises of a law: its file and its name in a list are all.
 TEST(NoiseSpectrumRecipe, AFileAndAWordAreALawThatFilesMayName) {
   std::variant<WhiteNoise, PinkNoise> law;
   const TomlValue file = parse_toml("kind = \"pink\"\nlevel_db = 50\n", "s.toml");
@@ -81,7 +81,7 @@ TEST(NoiseSpectrumRecipe, ThePageHasTheExampleThatIsCompiledHere) {
                     end = example.find("\n}  // namespace asdic::detail");
   ASSERT_NE(begin, std::string::npos);
   ASSERT_NE(end, std::string::npos);
-  EXPECT_NE(text_of("docs/develop/settings.md").find(example.substr(begin, end - begin)),
+  EXPECT_NE(text_of("docs/develop/recipes.md").find(example.substr(begin, end - begin)),
             std::string::npos);
 }
 

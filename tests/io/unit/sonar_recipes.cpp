@@ -1,5 +1,5 @@
-// The recipes "A beam of a transmitter" and "An array shape" of docs/develop/settings.md, and
-// transmitters, arrays and targets written and read back.
+// The recipes "A beam of a transmitter", "An array shape" and "A scattering law" of
+// docs/develop/recipes.md, and transmitters, arrays and targets written and read back.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,10 +11,12 @@
 #include "core/settings_words.h"
 #include "io/settings/reader.h"
 #include "io/settings/writer.h"
+#include "reverb/scattering/lambert.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/shapes/shapes.h"
 #include "sonar/scenario/target.h"
 #include "sonar/scenario/transmitter.h"
+#include "support/lommel_seeliger.h"
 
 namespace asdic::detail {
 namespace {
@@ -211,6 +213,21 @@ TEST(SonarSettings, AreWrittenAndReadBackBitForBit) {
   EXPECT_EQ(again.transmitters[3].name, "d");
   EXPECT_EQ(again.targets[2].track.waypoints[1].position, Vec3(10, 6, 7));
   EXPECT_EQ(again.targets[2].highlights[1].aspect->strength_db, sides.strength_db);
+}
+
+struct FloorOfOneMore {
+  std::variant<Lambert, LommelSeeliger> law;
+  void describe(Fields& field) { field.one_of("kind", law, "what it scatters"); }
+};
+
+// The recipe "A scattering law": its file and its name in a list are a law that files may name.
+// At 30° in and out σ = μ·(1/2)²/(1/2 + 1/2) = μ/4.
+TEST(ScatteringRecipe, ALawIsAFileAndAWord) {
+  const auto floor = read<FloorOfOneMore>("kind = \"lommel-seeliger\"\nmu_db = -20\n");
+  const auto& law = std::get<LommelSeeliger>(floor.law);
+  const ScatterGeometry steep{.grazing_in = pi / 6, .grazing_out = pi / 6};
+  EXPECT_NEAR(law.cross_section(steep, 1000.0), 0.01 / 4.0, 1e-15);
+  EXPECT_NE(settings_words(floor), settings_words(FloorOfOneMore{.law = LommelSeeliger{}}));
 }
 
 // What a struct holds that no file could say is told where it is.

@@ -1,4 +1,4 @@
-// The recipe "A waveform" of docs/develop/settings.md: what a new waveform needs, and what follows.
+// The recipe "A waveform" of docs/develop/recipes.md: what a new waveform needs, and what follows.
 #include <gtest/gtest.h>
 
 #include <cmath>

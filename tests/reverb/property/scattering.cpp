@@ -8,6 +8,7 @@
 #include "core/settings_words.h"
 #include "core/units.h"
 #include "reverb/scattering/models.h"
+#include "support/lommel_seeliger.h"
 #include "support/member_count.h"
 
 namespace asdic::detail {
@@ -23,6 +24,7 @@ struct AlternativesOf;
 template <class... Model>
 struct AlternativesOf<std::variant<Model...>> {
   using Types = testing::Types<Model...>;
+  using AndTheRecipe = testing::Types<Model..., LommelSeeliger>;  // docs/develop/recipes.md
 };
 
 /// Draws every parameter from its range, of a table four rows; strengths that send back more than
@@ -128,7 +130,7 @@ class EverySurfaceScattering : public testing::Test {};
 TYPED_TEST_SUITE(EverySurfaceScattering, AlternativesOf<AnySurfaceScattering>::Types);
 template <class Model>
 class EveryBottomScattering : public testing::Test {};
-TYPED_TEST_SUITE(EveryBottomScattering, AlternativesOf<AnyBottomScattering>::Types);
+TYPED_TEST_SUITE(EveryBottomScattering, AlternativesOf<AnyBottomScattering>::AndTheRecipe);
 
 // Source and receiver may change places; only the order of additions differs.
 template <class Model>
