@@ -13,7 +13,7 @@ namespace asdic::detail {
 ///   w_i = x^i e^{−x}/i!,  x = −ln P_fa               (known: P_d is Marcum's Q₁(√2S, √2x))
 ///   w_i = (m)_i/i! · q^i (1 − q)^m,  1 − q = P_fa^{1/m}  (averaged: cell averaging, CA-CFAR)
 ///
-/// docs/theory/studies.md, eq. (8). \param snr  S, a ratio   \param cells  m; ∞: known
+/// docs/theory/studies.md, eq. (10). \param snr  S, a ratio   \param cells  m; ∞: known
 [[nodiscard]] double detection_probability(double snr, double false_alarm_probability,
                                            double cells);
 

@@ -8,6 +8,7 @@
   scenarios or the tests, or a file's name without its ending.
 - A link to a file, and to a heading of a page.
 - Lines of prose of at most 120 columns.
+- The parts of a page of docs/theory, in their order (CONTRIBUTING.md): it ends in code and evidence.
 
 Placeholders are in capitals (`PROBLEM/truth.py`). Blocks of code are not looked at.
 
@@ -31,6 +32,8 @@ ELSEWHERE = {"--workflow", "--sshlogin", "--allow-run-as-root", "alphaP", "alpha
 # sides of a section, programs of the tests.
 PUT_TOGETHER = re.compile(r"_(deg|rad|\d+)$|^(scattering|surface|bottom|unit|property)_")
 COLUMNS = 120
+PARTS = ["Assumptions and validity", "Parameters", "In the code", "Evidence"]
+RESULTS = {"validation.md"}  # a page of results, not of a method
 
 
 class Tree:
@@ -135,6 +138,14 @@ def faults_of_link(page, target):
     return []
 
 
+def faults_of_parts(headings):
+    """Of a page of theory: code and evidence are its last parts, none comes before its turn."""
+    order = [PARTS.index(h) for h in headings if h in PARTS]
+    missing = [f"no part \"{part}\"" for part in PARTS[2:] if part not in headings]
+    turned = ["parts out of order"] if order != sorted(order) or headings[-1:] != PARTS[-1:] else []
+    return missing or turned
+
+
 def faults(page, tree):
     found = []
     text = page.read_text()
@@ -150,6 +161,9 @@ def faults(page, tree):
     whole = "\n".join(line if line else "" for _, line in prose(text))
     for target in re.findall(r"\]\(([^)\s]+)\)", whole):
         found += [f"{shown}: {fault}" for fault in faults_of_link(page, target)]
+    if page.parent.name == "theory" and page.name not in RESULTS:
+        headings = [line[3:].strip() for _, line in prose(text) if line.startswith("## ")]
+        found += [f"{shown}: {fault}" for fault in faults_of_parts(headings)]
     return found
 
 
@@ -178,6 +192,15 @@ def proves_itself():
             if len(got) != count:
                 print(f"this test is wrong about {text}: {got}")
                 return False
+    for headings, count in [
+        (["Model", "Parameters", "In the code", "Evidence"], 0), (["In the code", "Evidence"], 0),
+        (["Evidence", "In the code"], 1), (["Model", "Evidence"], 1),
+        (["In the code", "Evidence", "Cost"], 1), (["Parameters", "Assumptions and validity",
+                                                    "In the code", "Evidence"], 1),
+    ]:
+        if len(faults_of_parts(headings)) != count:
+            print(f"this test is wrong about the parts {headings}")
+            return False
     return True
 
 
