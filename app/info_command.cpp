@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -25,6 +26,15 @@ struct InfoOptions {
 /// An attribute as text, "unknown" if it is not there.
 std::string attribute(const PingFile& file, const std::string& object, const std::string& key) {
   return file.file().attribute_or(object, key, "unknown");
+}
+
+/// A number of the pulse to six digits: 184.44 and not 184.43999999999997.
+std::string number_of_pulse(const PingFile& file, const std::string& key) {
+  const std::string text = attribute(file, "replica", key);
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return fault == std::errc() && end == text.data() + text.size() ? fmt::format("{:.6g}", value)
+                                                                  : text;
 }
 
 /// What `asdic process` added.
@@ -100,10 +110,11 @@ int info(const std::string& path) {
                     count_of(file.pings(), "ping"), count_of(file.channels(), "phone"),
                     file.samples(), file.is_complex() ? "complex " : "", rate,
                     rate > 0.0 ? static_cast<double>(file.samples()) / rate : 0.0));
-  const auto pulse = [&](const std::string& key) { return attribute(file, "replica", key); };
+  const auto number = [&](const std::string& key) { return number_of_pulse(file, key); };
   print(fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",
-                    pulse("kind"), pulse("centre_frequency_hz"), pulse("duration_s"),
-                    pulse("window"), pulse("bandwidth_hz"), pulse("source_level_db")));
+                    attribute(file, "replica", "kind"), number("centre_frequency_hz"),
+                    number("duration_s"), attribute(file, "replica", "window"),
+                    number("bandwidth_hz"), number("source_level_db")));
   print(makers(file));
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
   if (file.file().has_attribute("", "overrides"))
