@@ -115,6 +115,8 @@ def angle_axis(axes, m: Maps, vertical=True) -> None:
     low, high = (-1.0, 1.0) if m.kind == "line" else (0.0, 360.0)
     if m.kind == "line":
         values = np.array([0, 30, 45, 60, 75, 90, 105, 120, 135, 150, 180])
+        if not vertical:  # labels side by side: those next to the ends would touch
+            values = np.setdiff1d(values, [30, 150])
         place = np.cos(np.radians(values))
         if m.upright:  # the cosine is the elevation's sine, seen along the axis
             up = 1.0 if m.axis[2] < 0 else -1.0
