@@ -25,8 +25,8 @@ void describe_place(Fields& field, Track& track) {
     double range = 0.0, bearing = 0.0, depth = 0.0;
     field(required("range"), range, {.noun = "range", .unit = "m", .low = 0.0, .high = 1e7},
           "from the first platform");
-    field(live("bearing"), bearing, quantity::bearing, "true, from there");
-    field(live(required("depth")), depth, quantity::depth, "of it");
+    field("bearing", bearing, quantity::bearing, "true, from there");
+    field(required("depth"), depth, quantity::depth, "below the mean surface");
     if (field.reads())
       track.start.position = {field.known("platform[0].east") + range * std::sin(bearing),
                               field.known("platform[0].north") + range * std::cos(bearing), depth};
@@ -62,8 +62,8 @@ void describe_body(Fields& field, Target& target) {
 
 /// Required of a body with sides that never moves.
 void describe_heading(Fields& field, Target& target) {
-  field(live("heading"), target.heading, quantity::heading,
-        "true, of the bow; without it, its course");
+  field(live(by_default("heading", "its course")), target.heading, quantity::heading,
+        "true, of the bow; required of a body with aspects or highlights that never moves");
   const bool has_sides = !target.highlights.empty() || target.aspect;
   if (!field.reads() || target.heading || !has_sides || target.track.course_at(0.0)) return;
   double heading = 0.0;

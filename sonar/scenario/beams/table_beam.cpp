@@ -63,7 +63,7 @@ void BeamTable::describe(Fields& field) {
                 "of the table's rows, relative to the beam's own, rising");
   if (field.checks() && bearings.back() - bearings.front() > 2.0 * pi)
     field.fault("bearing_deg", "bearings within one turn");
-  describe_axis(field, "elevation", elevations, quantity::elevation, "of the table, rising");
+  describe_axis(field, "elevation", elevations, quantity::elevation, "within a row, rising");
   auto rows = rows_of(level_db, elevations.size());
   field(required("level_db"), rows, quantity::level,
         "of each bearing a row, with a level for each elevation, re the source level");
