@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
-#include <experimental/simd>
 
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
+#include "core/simd.h"
 
 namespace asdic::detail {
 namespace {
@@ -18,8 +14,8 @@ constexpr std::size_t batch = 4 * lanes;  // normals they give
 using Words = std::array<std::uint32_t, lanes>;
 
 namespace stdx = std::experimental;
-using Floats = stdx::native_simd<float>;
-using Ints = stdx::rebind_simd_t<std::int32_t, Floats>;
+using Floats = WideFloats;
+using Ints = WideInts;
 
 constexpr std::uint32_t multiplier_0 = 0xD2511F53U, multiplier_1 = 0xCD9E8D57U;
 constexpr std::uint32_t key_step_0 = 0x9E3779B9U, key_step_1 = 0xBB67AE85U;  // golden ratio, √3 − 1
@@ -96,24 +92,6 @@ inline void philox(std::uint32_t first, std::array<std::uint32_t, 3> rest,
 
 #endif
 
-/// √(−2 ln u), u in [2⁻³³, 1].
-inline Floats rayleigh_radius(Floats u) noexcept {
-  // u = (1 + t)·2^e, 1 + t in [√½, √2); ln(1 + t) = t + t²·P(t), to 2e-8.
-  const Ints root_half = 0x3F3504F3;
-  const Ints bits = std::bit_cast<Ints>(u) - root_half;
-  const Floats e = stdx::static_simd_cast<Floats>(bits >> 23);
-  const Floats t = std::bit_cast<Floats>((bits & 0x007FFFFF) + root_half) - 1.0F;
-  const Floats p =
-      -0.499999971F +
-      t * (0.333336706F +
-           t * (-0.250011477F +
-                t * (0.199720497F +
-                     t * (-0.165884885F +
-                          t * (0.148347868F + t * (-0.141596470F + t * 0.0878726549F))))));
-  const Floats minus_log = -(t + t * t * p + 0.69314718F * e);
-  return stdx::sqrt(stdx::max(2.0F * minus_log, Floats(0.0F)));
-}
-
 /// 64 normals out of the 16 blocks from `first`: words 0 and 2 give radii, 1 and 3 angles.
 inline void normals(std::uint32_t first, std::array<std::uint32_t, 3> rest,
                     std::array<std::uint32_t, 2> key, float* __restrict out) noexcept {
@@ -131,16 +109,10 @@ inline void normals(std::uint32_t first, std::array<std::uint32_t, 3> rest,
       // … and an angle of −½ … ½ turns; h is half of it in radians.
       const Floats h =
           stdx::static_simd_cast<Floats>(load(&x[2 * half + 1][i])) * (0x1p-32F * 3.14159265F);
-      const Floats y = h * h;
-      // sin h and cos h for |h| ≤ π/2 by polynomials through Chebyshev nodes, to 7e-9 and 5e-8.
-      const Floats s =
-          h *
-          (0.999999996F +
-           y * (-0.166666579F + y * (0.00833305017F + y * (-1.98090174e-4F + y * 2.60510764e-6F))));
-      const Floats c =
-          0.999999953F +
-          y * (-0.499999048F + y * (0.0416635732F + y * (-0.00138536295F + y * 2.31524167e-5F)));
-      const Floats radius = rayleigh_radius(uniform), twice = s + s;
+      Floats c, s;
+      cos_sin_of_half(h, c, s);
+      const Floats twice = s + s;
+      const Floats radius = sqrt(max(-2.0F * logarithm(uniform), Floats(0.0F)));
       // cos of the angle, 1 − 2 sin²h, and sin of it
       (radius - radius * (twice * s)).copy_to(out + 2 * half * lanes + i, stdx::element_aligned);
       (radius * (twice * c)).copy_to(out + (2 * half + 1) * lanes + i, stdx::element_aligned);

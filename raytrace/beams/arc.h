@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "raytrace/math/arc_series.h"
+#include "core/arc_series.h"
 
 // Of a ray within a layer whose sound speed is linear in depth: an arc of a circle.
 namespace asdic::detail {

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <algorithm>
+#include "core/simd.h"
 #include "raytrace/beams/crossing.h"
 #include "raytrace/beams/geometric.h"
-#include "raytrace/math/simd.h"
-
-#include "raytrace/beams/column_sum.h"
 
 namespace asdic::detail {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/level_namespace.h"
+#include "core/simd.h"
 #include "raytrace/beams/beam.h"
 #include "raytrace/beams/boundary_rows.h"
 #include "raytrace/beams/crossings.h"
-#include "raytrace/math/simd.h"
 
 namespace asdic::detail {
 

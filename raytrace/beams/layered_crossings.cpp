@@ -4,16 +4,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/simd.h"
 #include "raytrace/beams/arc.h"
-#include "raytrace/math/simd.h"
-#include "raytrace/math/simd_math.h"
 
 namespace asdic::detail {
 
 namespace {
 
-using Doubles = std::experimental::native_simd<double>;
-constexpr std::size_t doubles = Doubles::size();
+using Doubles = SimdDoubles;
+constexpr std::size_t doubles = doubles_at_once;
 
 }  // namespace
 
@@ -114,8 +113,7 @@ std::size_t LayeredCrossings::find_layers(Workspace& work) const {
     column = column_at(work.pass[k + 1].r, column);
     // as many at a time as most layers have; those too many are overwritten by the next
     for (std::size_t j = first; j < column; j += simd_width)
-      SimdInts(static_cast<std::int32_t>(k))
-          .copy_to(pass_of + j, std::experimental::element_aligned);
+      store(SimdInts(static_cast<std::int32_t>(k)), pass_of + j);
   }
   for (std::size_t j = column; j < column + doubles; ++j) pass_of[j] = 0;  // read and not used
   return column;
@@ -125,9 +123,6 @@ std::size_t LayeredCrossings::find_layers(Workspace& work) const {
 template <bool absorbing>
 void LayeredCrossings::cross(double xi, std::size_t n, Workspace& work, Crossings& out) const {
   const Doubles slow = 1.0 / xi;
-  const auto put = [](const Doubles& value, double* to) {
-    value.copy_to(to, std::experimental::element_aligned);
-  };
   double *depth = out.depth.data(), *cosine = out.cosine.data(), *sine = out.sine.data(),
          *speed = out.speed.data(), *time = out.time.data(), *q = out.q.data(),
          *dq_ds = out.dq_ds.data(), *length = work.length.data();
@@ -139,21 +134,21 @@ void LayeredCrossings::cross(double xi, std::size_t n, Workspace& work, Crossing
       return Doubles([&](auto l) { return passes[pass_of[j + l]].*what; });
     };
     const Doubles s_a = of(&Pass::s), bend = of(&Pass::bend), rate = of(&Pass::rate);
-    const Doubles d = Doubles(ranges + j, std::experimental::element_aligned) - of(&Pass::r);
+    const Doubles d = load(ranges + j) - of(&Pass::r);
     const Doubles s = s_a - bend * d, c = sqrt(1.0 - s * s);
     const Doubles chord = of(&Pass::cosine) + c, arc = 1.0 - s_a * s, both = d / (chord * arc);
     const Doubles dz = (s_a + s) * arc * both;  // Δ(sin θ_a + sin θ)/(cos θ_a + cos θ)
     const Doubles w_per_bend = chord * both, w = w_per_bend * bend;
-    put(of(&Pass::z) + dz, depth + j);
-    put(of(&Pass::tau) + xi * w_per_bend * atanh_over_w(Doubles(w * w)), time + j);
-    put(of(&Pass::q) + rate * d, q + j);
-    put(c, cosine + j);
-    put(s, sine + j);
-    put(c * slow, speed + j);
-    put(c * rate, dq_ds + j);
+    store(of(&Pass::z) + dz, depth + j);
+    store(of(&Pass::tau) + xi * w_per_bend * atanh_over_w(Doubles(w * w)), time + j);
+    store(of(&Pass::q) + rate * d, q + j);
+    store(c, cosine + j);
+    store(s, sine + j);
+    store(c * slow, speed + j);
+    store(c * rate, dq_ds + j);
     if constexpr (absorbing) {
       const Doubles straight = sqrt(d * d + dz * dz), y = 0.5 * straight * bend;
-      put(of(&Pass::length) + straight * asin_series(y), length + j);
+      store(of(&Pass::length) + straight * asin_series(y), length + j);
     }
   }
   if (work.flat) return;
@@ -181,7 +176,7 @@ void LayeredCrossings::fill_pieces(std::size_t n, Workspace& work, Crossings& ou
   }
   if (alpha_ == 0.0) return;
   for (std::size_t j = 0; j < n; j += doubles) {  // beyond n there is room
-    const Rays nepers = min(alpha_ * load(&work.length[j]), Rays(700.0));
+    const Doubles nepers = min(alpha_ * load(&work.length[j]), Doubles(700.0));
     store(load(&out.level[j]) * exponential(-nepers), &out.level[j]);
   }
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "raytrace/beams/arc.h"
 #include "raytrace/beams/layered_crossings.h"
-#include "raytrace/math/simd.h"
 
 // A ray from layer to layer: what LayeredCrossings knows of it before it looks at columns.
 namespace asdic::detail {

@@ -1,9 +1,9 @@
 #include <cmath>
 
+#include "core/simd.h"
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/larger.h"
 #include "raytrace/beams/tube_error.h"
-#include "raytrace/math/simd.h"
 
 // What a ray foretells of its neighbours where it crosses the columns.
 namespace asdic::detail {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "raytrace/beams/larger.h"
-#include "raytrace/math/simd.h"
 
 namespace asdic::detail {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <algorithm>
+#include "core/simd.h"
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/larger.h"
-#include "raytrace/math/simd.h"
 
 #include "raytrace/beams/tube_error.h"
 

@@ -69,16 +69,15 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
   if (branch.vertices == 0 && branch.starts_up == column.source_is_upper()) return std::nullopt;
   const RootPiece piece(branch, column.source_is_upper());
   const RootTask task{.piece = &piece, .range = range}, *const one = &task;
-  const SimdTasks simd_width(&one, 1);
+  const SimdTasks tasks(&one, 1);
 
   const double k0 = known.horizontal_slowness * c_ref;
   const double first = std::sqrt(std::max(0.0, (1.0 - k0) * (1.0 + k0)));
   const bool steep = first > steep_sigma;
   const auto shoot = [&](const SimdRays& rays, const SimdColumn& legs) {
-    const Rays reached =
-        rays.slowness *
-        simd_width.of(legs.up.per_slowness, legs.middle.per_slowness, legs.down.per_slowness);
-    const Rays d_range = simd_width.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
+    const Rays reached = rays.slowness * tasks.of(legs.up.per_slowness, legs.middle.per_slowness,
+                                                  legs.down.per_slowness);
+    const Rays d_range = tasks.of(legs.up.d_range, legs.middle.d_range, legs.down.d_range);
     const Rays slope =
         steep ? Rays(-d_range / c_ref) : Rays(-rays.sigma * d_range * rays.per_c2 / rays.slowness);
     return Shot{.miss = static_cast<double>(reached[0]) - range,
@@ -110,7 +109,7 @@ std::optional<Arrival> followed_branch(const Environment& ocean, const WaterBetw
                                  .turns_below = legs.turns_below};
       std::vector<Arrivals> found(1);
       PathBuilder(ocean, column, frequency)
-          .build(interval, simd_width, {rays, legs}, limits.faintest, found);
+          .build(interval, tasks, {rays, legs}, limits.faintest, found);
       if (found.front().empty()) return std::nullopt;
       Arrival path = std::move(found.front().front());
       if (path.caustics != known.caustics ||

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/arc_series.h"
 #include "raytrace/layered/smooth_quadrature.h"
 #include "raytrace/layered/turned_arc.h"
-#include "raytrace/math/arc_series.h"
 
 namespace asdic::detail {
 namespace {

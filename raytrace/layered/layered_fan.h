@@ -6,7 +6,7 @@
 #include "raytrace/layered/column.h"
 #include "raytrace/layered/path_builder.h"
 #include "raytrace/layered/ray_at_range.h"
-#include "raytrace/math/simd_math.h"
+#include "raytrace/layered/simd_rays.h"
 
 namespace asdic::detail {
 

@@ -163,46 +163,43 @@ void PathBuilder::build(const FanInterval& interval, const SimdTasks& tasks, con
     const auto* const line = reinterpret_cast<const std::byte*>(here.data() + here.size());
     for (std::size_t k = 0; k < sizeof(Arrival); k += 64) __builtin_prefetch(line + k, 1);
   }
-  const SimdPaths simd_width = simd_paths(interval, tasks, roots);
-  const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * simd_width.length;
+  const SimdPaths traced = simd_paths(interval, tasks, roots);
+  const Rays nepers = (std::log(10.0) / 20.0 * absorption_db_per_metre_) * traced.length;
   const Rays absorbed = exponential(max(-nepers, Rays(-700.0)));
   for (std::size_t i = 0; i < tasks.count; ++i) {
     const Branch& branch = tasks.task[i]->piece->branch;
-    if (!std::isfinite(simd_width.delay[i]) || !std::isfinite(simd_width.spreading[i])) continue;
-    if (!(std::abs(simd_width.miss[i]) < furthest_miss)) continue;
-    const std::complex<double> reflection(simd_width.reflection.real[i],
-                                          simd_width.reflection.imag[i]);
-    if (std::norm(reflection) + simd_width.scattered[i] < faintest * faintest) continue;
+    if (!std::isfinite(traced.delay[i]) || !std::isfinite(traced.spreading[i])) continue;
+    if (!(std::abs(traced.miss[i]) < furthest_miss)) continue;
+    const std::complex<double> reflection(traced.reflection.real[i], traced.reflection.imag[i]);
+    if (std::norm(reflection) + traced.scattered[i] < faintest * faintest) continue;
 
     Arrival& path = found[tasks.task[i]->receiver].emplace_back();
     const int tops = branch.top_vertices(), bottoms = branch.bottom_vertices();
     (interval.turns_above ? path.upper_turns : path.surface_bounces) = tops;
     (interval.turns_below ? path.lower_turns : path.bottom_bounces) = bottoms;
-    path.launch_elevation = branch.starts_up ? simd_width.launch[i] : -simd_width.launch[i];
-    path.arrival_elevation =
-        branch.arrives_upward() ? simd_width.arrival[i] : -simd_width.arrival[i];
-    path.horizontal_slowness = simd_width.slowness[i];
-    path.delay = simd_width.delay[i];
-    path.spreading = simd_width.spreading[i];
+    path.launch_elevation = branch.starts_up ? traced.launch[i] : -traced.launch[i];
+    path.arrival_elevation = branch.arrives_upward() ? traced.arrival[i] : -traced.arrival[i];
+    path.horizontal_slowness = traced.slowness[i];
+    path.delay = traced.delay[i];
+    path.spreading = traced.spreading[i];
     path.reflection = reflection;
     path.caustics =
-        caustics_passed(path.upper_turns + path.lower_turns, simd_width.range_per_slowness[i]);
-    path.q = path.caustics % 2 == 0 ? simd_width.q[i] : -simd_width.q[i];
-    path.path_length = simd_width.length[i];
+        caustics_passed(path.upper_turns + path.lower_turns, traced.range_per_slowness[i]);
+    path.q = path.caustics % 2 == 0 ? traced.q[i] : -traced.q[i];
+    path.path_length = traced.length[i];
     path.absorption_db = absorption_db_per_metre_ * path.path_length;
     path.amplitude = path_amplitude(path.spreading, absorbed[i], reflection, path.caustics);
-    path.scattered = scattered_power(path.spreading, absorbed[i], simd_width.scattered[i]);
+    path.scattered = scattered_power(path.spreading, absorbed[i], traced.scattered[i]);
 
     // Vertices that are bounces are recorded.
-    const double first = branch.starts_up ? simd_width.first_up[i] : simd_width.first_down[i];
+    const double first = branch.starts_up ? traced.first_up[i] : traced.first_down[i];
     path.bounces.reserve(static_cast<std::size_t>(path.surface_bounces + path.bottom_bounces));
     for (int k = 0; k < branch.vertices; ++k) {
       const bool top = branch.starts_up == (k % 2 == 0);
       if (top ? interval.turns_above : interval.turns_below) continue;
-      path.bounces.push_back(
-          {.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
-           .grazing = top ? simd_width.surface_grazing[i] : simd_width.bottom_grazing[i],
-           .range = first + k * simd_width.half_cycle[i]});
+      path.bounces.push_back({.boundary = top ? BoundaryKind::surface : BoundaryKind::bottom,
+                              .grazing = top ? traced.surface_grazing[i] : traced.bottom_grazing[i],
+                              .range = first + k * traced.half_cycle[i]});
     }
   }
 }

@@ -97,8 +97,8 @@ class RootGroups {
     while (begin < order_.size()) {
       const Group group = next(begin);
       for (std::size_t i = begin; i < group.end; i += rays_at_once) {
-        const SimdTasks simd_width(&order_[i], std::min(rays_at_once, group.end - i));
-        found(simd_width, find_roots(group.source, interval_.reference_speed, simd_width));
+        const SimdTasks batch(&order_[i], std::min(rays_at_once, group.end - i));
+        found(batch, find_roots(group.source, interval_.reference_speed, batch));
       }
       begin = group.end;
     }

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/level_namespace.h"
 #include "raytrace/layered/layer.h"
-#include "raytrace/math/simd_math.h"
+#include "raytrace/layered/simd_rays.h"
 
 namespace asdic::detail {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "raytrace/math/arc_series.h"
+#include "core/arc_series.h"
 
 namespace asdic::detail {
 

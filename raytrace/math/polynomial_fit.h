@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "core/level_namespace.h"
+#include "core/simd.h"
 #include "core/units.h"
-#include "raytrace/math/simd_math.h"
 
 namespace asdic::detail {
 
@@ -18,7 +18,9 @@ struct SigmaExtent {
   SigmaExtent(double low, double high) noexcept
       : middle(0.5 * (low + high)), per_half(2.0 / (high - low)) {}
   [[nodiscard]] double high() const noexcept { return middle + 1.0 / per_half; }
-  [[nodiscard]] Rays x(const Rays& sigma) const noexcept { return (sigma - middle) * per_half; }
+  [[nodiscard]] SimdDoubles x(const SimdDoubles& sigma) const noexcept {
+    return (sigma - middle) * per_half;
+  }
 };
 
 /// Functions side by side as polynomials in x, −1 ≤ x ≤ 1, from their values at Chebyshev's points.

@@ -1,23 +1,19 @@
 #include "raytrace/tracing/power_series.h"
 
 #include <cmath>
-#include <experimental/simd>
 #include <utility>
 
+#include "core/simd.h"
 #include "raytrace/math/gauss_legendre.h"
 #include "raytrace/tracing/power_series_terms.h"
 
 namespace asdic::detail::tracing {
 namespace {
 
-using Four = std::experimental::fixed_size_simd<double, 4>;
+using Four = Lanes<double, 4>;
 
-Four load(const std::array<double, 4>& from) noexcept {
-  return Four(from.data(), std::experimental::element_aligned);
-}
-void store(const Four& value, std::array<double, 4>& to) noexcept {
-  value.copy_to(to.data(), std::experimental::element_aligned);
-}
+Four load(const std::array<double, 4>& from) noexcept { return load_lanes<Four>(from.data()); }
+void store(const Four& value, std::array<double, 4>& to) noexcept { store_lanes(value, to.data()); }
 
 /// Coefficient k of a product. The terms with the latest coefficients come last: all others wait
 /// for nothing.
@@ -36,7 +32,7 @@ template <std::size_t k>
 /// The same of four products with one factor, and added to others.
 template <std::size_t k>
 [[gnu::always_inline]] inline Four product(const Series& x, const FourSeries& y) noexcept {
-  Four even = 0.0, odd = 0.0;
+  Four even{}, odd{};
   for (std::size_t i = 1; i + 1 < k; i += 2) {
     even += x[i] * load(y[k - i]);
     odd += x[i + 1] * load(y[k - i - 1]);
@@ -48,7 +44,7 @@ template <std::size_t k>
 
 template <std::size_t k>
 [[gnu::always_inline]] inline Four product(const FourSeries& x, const FourSeries& y) noexcept {
-  Four even = 0.0, odd = 0.0;
+  Four even{}, odd{};
   for (std::size_t i = 1; i + 1 < k; i += 2) {
     even += load(x[i]) * load(y[k - i]);
     odd += load(x[i + 1]) * load(y[k - i - 1]);
@@ -205,22 +201,21 @@ std::array<double, 4> PowerSeries::values(const FourSeries& a, double h) const n
 double PowerSeries::speed_integral(double h) const noexcept {
   using Rule =
       GaussLegendre<4>;  // c is ṡ, and the terms of c² from the eighth on are next to nothing
-  Four at, weight;
+  Four at{}, weight{};
   for (std::size_t i = 0; i < 4; ++i) {
     at[i] = 0.5 * h * (1.0 + Rule::node[i]);
     weight[i] = 0.5 * h * Rule::weight[i];
   }
-  Four c = double(order) * length[order];
+  Four c = double(order) * length[order] + Four{};
   for (std::size_t i = order - 1; i > 0; --i) c = double(i) * length[i] + at * c;
-  return reduce(weight * c * c);
+  const Four terms = weight * c * c;
+  return (terms[0] + terms[2]) + (terms[1] + terms[3]);
 }
 
 std::array<ValueSlope, 2> PowerSeries::where(double h) const noexcept {
-  using Two = std::experimental::fixed_size_simd<double, 2>;
-  const auto two = [&](std::size_t i) {
-    return Two(place[i].data(), std::experimental::element_aligned);
-  };
-  Two v = two(order), d = 0.0;
+  using Two = Lanes<double, 2>;
+  const auto two = [&](std::size_t i) { return load_lanes<Two>(place[i].data()); };
+  Two v = two(order), d{};
   for (std::size_t i = order; i-- > 0;) {
     d = v + h * d;
     v = two(i) + h * v;

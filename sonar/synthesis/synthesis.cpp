@@ -3,17 +3,16 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <utility>
-
-#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <array>
 #include <bit>
+#include <cassert>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
+
+#include "core/simd.h"
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/synthesis/place_weights.h"
@@ -141,33 +140,18 @@ struct Places {
 };
 
 /// Complex samples of four phones, and the same moved about whole.
-using Four [[gnu::vector_size(32)]] = float;
-using Whole [[gnu::vector_size(32)]] = double;
-
-template <class SimdFloats>
-void load(const float* from, SimdFloats& lanes) noexcept {
-  std::memcpy(&lanes, from, sizeof lanes);
-}
+using Four = Lanes<float, 8>;
+using Whole = Lanes<double, 4>;
 
 /// Adds four samples of four phones to their rows. \param sums  [samples × stride]
 void add_transposed(const float* sums, std::size_t stride, std::size_t phones, float* out,
                     std::size_t row) noexcept {
   std::array<Whole, 4> x;
-  for (std::size_t i = 0; i < 4; ++i) load(sums + i * stride, x[i]);
-  const Whole even = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
-  const Whole odd = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
-  const Whole later_even = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
-  const Whole later_odd = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
-  x = {__builtin_shufflevector(even, later_even, 0, 1, 4, 5),
-       __builtin_shufflevector(odd, later_odd, 0, 1, 4, 5),
-       __builtin_shufflevector(even, later_even, 2, 3, 6, 7),
-       __builtin_shufflevector(odd, later_odd, 2, 3, 6, 7)};
+  for (std::size_t i = 0; i < 4; ++i) x[i] = load_lanes<Whole>(sums + i * stride);
+  transpose(x);
   for (std::size_t n = 0; n < phones; ++n) {
-    Four sum, more;
-    load(out + n * row, sum);
-    std::memcpy(&more, &x[n], sizeof more);
-    sum += more;
-    std::memcpy(out + n * row, &sum, sizeof sum);
+    float* to = out + n * row;
+    store_lanes(load_lanes<Four>(to) + load_lanes<Four>(&x[n]), to);
   }
 }
 
@@ -199,17 +183,13 @@ void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phon
     const float* from = under.get() + at.first[i] * stride;
 #pragma GCC unroll 24
     for (std::size_t k = 0; k < taps; ++k)
-      for (std::size_t q = 0; q < fours; ++q) {
-        Four x;
-        load(from + k * stride + 8 * q, x);
-        sum[q] += at.weights[i][k] * x;
-      }
+      for (std::size_t q = 0; q < fours; ++q)
+        sum[q] += at.weights[i][k] * load_lanes<Four>(from + k * stride + 8 * q);
     const float c = at.rotation[i].real(), s = at.rotation[i].imag();
     const Four across = {-s, s, -s, s, -s, s, -s, s};
     for (std::size_t q = 0; q < fours; ++q) {
       const Four swapped = __builtin_shufflevector(sum[q], sum[q], 1, 0, 3, 2, 5, 4, 7, 6);
-      const Four rotated = sum[q] * c + swapped * across;
-      std::memcpy(&sums[i * stride + 8 * q], &rotated, sizeof rotated);
+      store_lanes(sum[q] * c + swapped * across, &sums[i * stride + 8 * q]);
     }
   }
   for (std::size_t n = 0; n < phones; n += 4) {

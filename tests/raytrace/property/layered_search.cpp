@@ -334,13 +334,13 @@ TEST(SimdReflections, AreTheReflectionCoefficient) {
       for (const int bounces : {0, 1, 2, 7, 20}) {
         std::array<int, rays_at_once> n{};
         n.fill(bounces);
-        const SimdComplex simd_width =
+        const SimdComplex several =
             reflections_of(material, water, std::sin(grazing), std::cos(grazing), grazing, n);
         const std::complex<double> one = reflection_coefficient(material, grazing, water);
         std::complex<double> expected = 1.0;
         for (int i = 0; i < bounces; ++i) expected *= one;
-        EXPECT_NEAR(simd_width.real[0], expected.real(), 1e-13);
-        EXPECT_NEAR(simd_width.imag[0], expected.imag(), 1e-13);
+        EXPECT_NEAR(several.real[0], expected.real(), 1e-13);
+        EXPECT_NEAR(several.imag[0], expected.imag(), 1e-13);
       }
     }
 }
