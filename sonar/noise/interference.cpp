@@ -29,7 +29,7 @@ std::complex<double> phasor(double cycles) {
 void Interference::add_band(const Segment& path, std::span<const float> source, std::size_t length,
                             std::array<double, 2> u, double at, double step, std::complex<double> z,
                             std::complex<double> rotation, std::span<std::complex<double>> sum) {
-  static const FractionalDelay interpolate;
+  const FractionalDelay& between_samples = FractionalDelay::shared();
   constexpr std::int64_t reach = FractionalDelay::taps;
   const auto last = static_cast<double>(sum.size() - 1);
   const auto first = static_cast<std::int64_t>(std::floor(std::min(at, at + last * step))) - reach;
@@ -49,16 +49,15 @@ void Interference::add_band(const Segment& path, std::span<const float> source, 
     }
   }
   for (std::size_t i = 0; i < sum.size(); ++i, z *= rotation) {
-    const double place = at + static_cast<double>(i) * step, whole = std::floor(place);
-    sum[i] += z * std::complex<double>(
-                      interpolate(filtered.data() + 2 * (static_cast<std::int64_t>(whole) - first),
-                                  static_cast<float>(place - whole)));
+    const double place = at + static_cast<double>(i) * step;
+    sum[i] += z * std::complex<double>(between_samples.at(filtered.data(), first, place));
   }
 }
 
 std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::int64_t later) const {
   const Recording& recording = record.recording;
   if (scenario_.interferers.empty() || recording.samples == 0) return {};
+  const FractionalDelay& between_samples = FractionalDelay::shared();
   std::vector<ReceivedPath> paths;
   const bool complex = recording.is_complex();
   const std::size_t width = recording.components();
@@ -74,7 +73,6 @@ std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::in
     clock.carrier_zero = recording.start + recording.epoch;
   }
   clock.first += later;
-  static const FractionalDelay interpolate;
   for (std::size_t ship_index = 0; ship_index < scenario_.interferers.size(); ++ship_index) {
     const Interferer& ship = scenario_.interferers[ship_index];
     const bool broadband = ship.level_db || ship.table;
@@ -178,10 +176,7 @@ std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::in
                 moves * phasor(source_carrier_ * step - carrier_ / clock.rate);
             for (std::int64_t i = 0; i < chunk; ++i, z *= rotation) {
               const double at = (left + static_cast<double>(i) * step) * source_rate_;
-              const double whole = std::floor(at);
-              const std::complex<float> q =
-                  interpolate(source.data() + 2 * (static_cast<std::int64_t>(whole) - begin),
-                              static_cast<float>(at - whole));
+              const std::complex<float> q = between_samples.at(source.data(), begin, at);
               sum[static_cast<std::size_t>(i)] +=
                   (level + static_cast<double>(i) * slope) * z * std::complex<double>(q);
             }

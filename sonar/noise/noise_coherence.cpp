@@ -9,6 +9,7 @@
 
 #include "core/settings_key.h"
 #include "raytrace/parallel/parallel.h"
+#include "sonar/signal/windowed_sinc.h"
 
 namespace asdic::detail {
 namespace {
@@ -134,8 +135,6 @@ class SideBySide {
   std::vector<double> value_;  // at x = (i − 1)/per_radian
 };
 
-double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
-
 /// Separations of an array's pairs, each of those that are alike once.
 class Separations {
  public:
@@ -175,7 +174,7 @@ class Separations {
     for (std::size_t s = 0; s < value.size(); ++s)
       value[s] = summed             ? sum_of(cones, k * across_[s], k * down_[s])
                  : table != nullptr ? table->at(k * across_[s])
-                                    : sinc(k * std::hypot(across_[s], down_[s]));
+                                    : sine_over(k * std::hypot(across_[s], down_[s]));
     const auto n = static_cast<Eigen::Index>(phones_);
     Matrix gamma(n, n);
     std::size_t pair = 0;
@@ -236,7 +235,7 @@ std::complex<double> noise_coherence(NoiseCoherence kind, const NoiseDirections&
                                      const Vec3& apart, double wavenumber) {
   const double d = apart.norm();
   if (kind == NoiseCoherence::independent) return d == 0.0 ? 1.0 : 0.0;
-  if (kind == NoiseCoherence::isotropic) return sinc(wavenumber * d);
+  if (kind == NoiseCoherence::isotropic) return sine_over(wavenumber * d);
   return sum_of(cones_of(kind, directions, wavenumber * d), wavenumber * apart.head<2>().norm(),
                 wavenumber * apart.z());
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 namespace asdic::detail {
@@ -14,10 +15,13 @@ class FractionalDelay {
   static constexpr int taps = 16;
 
   FractionalDelay();
+  /// One is as good as another.
+  [[nodiscard]] static const FractionalDelay& shared();
 
-  /// \param at  the sample at or before the place, real and imaginary part in turn; seven samples
-  /// before and eight after it are read   \param fraction  0 ≤ · < 1 of the way to the next
-  [[nodiscard]] std::complex<float> operator()(const float* at, float fraction) const noexcept;
+  /// \param samples  from sample `first` on, real and imaginary part in turn; seven before the one
+  /// at or before the place and eight after it are read   \param place  in samples
+  [[nodiscard]] std::complex<float> at(const float* samples, std::int64_t first,
+                                       double place) const noexcept;
 
  private:
   static constexpr int places = 1024;

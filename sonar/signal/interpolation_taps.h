@@ -6,7 +6,7 @@
 
 #include "core/level_namespace.h"
 #include "core/units.h"
-#include "sonar/signal/kaiser_window.h"
+#include "sonar/signal/windowed_sinc.h"
 
 namespace asdic::detail {
 
@@ -29,8 +29,7 @@ class InterpolationTaps {
       node[k] = std::cos(pi * (static_cast<double>(k) + 0.5) / (degree + 1.0));
       for (int tap = 0; tap < taps; ++tap) {
         const double x = 0.5 * (node[k] + 1.0) - (tap - before);
-        const double sinc = x == 0.0 ? 1.0 : std::sin(pi * x) / (pi * x);
-        difference[k][tap] = sinc * kaiser_window(2.0 * x / taps, beta);
+        difference[k][tap] = windowed_sinc(x, taps, beta);
       }
     }
     for (std::size_t order = 1; order <= degree; ++order)  // Newton's divided differences …

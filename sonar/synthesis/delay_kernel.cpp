@@ -1,10 +1,10 @@
 #include "sonar/synthesis/delay_kernel.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/units.h"
+#include "sonar/signal/windowed_sinc.h"
 
 namespace asdic::detail {
 namespace {
@@ -12,12 +12,6 @@ namespace {
 // The bump is I₀(β√(1 − (2x/w)²)); its spectrum turns from growth to ripple at β = πwξ. That is put
 // just below the first image of the band's edge, ξ = 1 − ½/oversampling.
 constexpr double beta = 0.98 * pi * DelayKernel::taps * (1.0 - 0.5 / DelayKernel::oversampling);
-
-double bump(double x) {
-  const double u = 2.0 * x / DelayKernel::taps;
-  return std::cyl_bessel_i(0.0, beta * std::sqrt(std::max(0.0, 1.0 - u * u))) /
-         std::cyl_bessel_i(0.0, beta);
-}
 
 }  // namespace
 
@@ -33,8 +27,9 @@ DelayKernel::DelayKernel() {
       double coefficient = 0.0;  // c_k = (2 − δ_k0)/N Σ f(y_i) cos(k θ_i), y_i = cos θ_i
       for (std::size_t i = 0; i < points; ++i) {
         const double theta = pi * (static_cast<double>(i) + 0.5) / points;
-        coefficient += bump(tap - before - 0.5 * (std::cos(theta) + 1.0)) *
-                       std::cos(static_cast<double>(k) * theta) * (k == 0 ? 1.0 : 2.0) / points;
+        coefficient +=
+            kaiser_window(2.0 * (tap - before - 0.5 * (std::cos(theta) + 1.0)) / taps, beta) *
+            std::cos(static_cast<double>(k) * theta) * (k == 0 ? 1.0 : 2.0) / points;
       }
       for (std::size_t j = 0; j < points; ++j) monomial[j] += coefficient * current[j];
       std::array<double, points> next{};  // T_{k+1} = 2y T_k − T_{k−1}, T₁ = y

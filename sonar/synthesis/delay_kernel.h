@@ -21,16 +21,16 @@ class DelayKernel {
   static constexpr double oversampling = 1.35;  ///< least sample rate over width of the band
 
   /// Real taps, each twice: as they multiply interleaved complex samples.
-  using SimdFloats = Eigen::Array<float, 2 * taps, 1, Eigen::DontAlign>;
+  using Weights = Eigen::Array<float, 2 * taps, 1, Eigen::DontAlign>;
 
   DelayKernel();
   /// One is as good as another.
   [[nodiscard]] static const DelayKernel& shared();
 
   /// \param fraction  of the impulse's place after the sample below it, in [0, 1)
-  [[nodiscard]] SimdFloats weights(float fraction) const noexcept {
+  [[nodiscard]] Weights weights(float fraction) const noexcept {
     const float y = 2.0F * fraction - 1.0F;
-    SimdFloats sum = polynomial_[degree];
+    Weights sum = polynomial_[degree];
     for (std::size_t i = degree; i-- > 0;) sum = sum * y + polynomial_[i];
     return sum;
   }
@@ -40,7 +40,7 @@ class DelayKernel {
 
  private:
   static constexpr std::size_t degree = 9;
-  std::array<SimdFloats, degree + 1> polynomial_;  // in y = 2·fraction − 1, one polynomial per tap
+  std::array<Weights, degree + 1> polynomial_;  // in y = 2·fraction − 1, one polynomial per tap
 };
 
 }  // namespace asdic::detail

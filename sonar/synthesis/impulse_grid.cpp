@@ -7,12 +7,12 @@
 namespace asdic::detail {
 namespace {
 
-using SimdFloats = DelayKernel::SimdFloats;
+using Weights = DelayKernel::Weights;
 constexpr auto not_received = static_cast<std::size_t>(-1);
 
 /// Returns that fall between the same two samples.
 struct Run {
-  const SimdFloats* taps;
+  const Weights* taps;
   std::size_t count;
   const float* weights;  // ℓ_m(η) of the first
   std::size_t row;       // from the weights of one return to the next's
@@ -20,12 +20,11 @@ struct Run {
   /// grid m + j += Σ_r weights[r][m + j]·taps[r], j < nodes. \param stride of the grids [floats]
   template <std::size_t nodes>
   void add(std::size_t m, float* grid, std::size_t stride) const noexcept {
-    std::array<SimdFloats, nodes> sum;
+    std::array<Weights, nodes> sum;
     for (std::size_t j = 0; j < nodes; ++j) sum[j].setZero();
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t j = 0; j < nodes; ++j) sum[j] += weights[r * row + m + j] * taps[r];
-    for (std::size_t j = 0; j < nodes; ++j)
-      Eigen::Map<SimdFloats>(grid + (m + j) * stride) += sum[j];
+    for (std::size_t j = 0; j < nodes; ++j) Eigen::Map<Weights>(grid + (m + j) * stride) += sum[j];
   }
 };
 
@@ -34,13 +33,13 @@ struct Run {
 void ImpulseGrid::add(const OrderedReturns& returns, const OrderedReturns::Band& band,
                       const Part& part, const Vec3& phone,
                       std::complex<float>* grids) const noexcept {
-  const SimdFloats even =
-      SimdFloats::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
-  const SimdFloats odd = 1.0F - even;
+  const Weights even =
+      Weights::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
+  const Weights odd = 1.0F - even;
   const float unit_weight = 1.0F;
   const std::size_t row = band.nodes == 1 ? 0 : band.nodes;
   Block at;
-  std::array<SimdFloats, block> taps;
+  std::array<Weights, block> taps;
   std::array<std::size_t, block> below;  // the sample at or below the impulse
   constexpr double first_on_grid = DelayKernel::taps;
   const auto last_on_grid = static_cast<double>(length - DelayKernel::taps);

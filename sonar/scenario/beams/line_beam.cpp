@@ -7,14 +7,12 @@
 #include "core/propagation_memory.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "sonar/signal/windowed_sinc.h"
 
 namespace asdic::detail {
 namespace {
 
-double sinc(double u) noexcept {  // sin(πu)/(πu)
-  const double x = pi * u;
-  return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
-}
+double sinc(double u) noexcept { return sine_over(pi * u); }
 
 /// sinc(u)/(1 − u²). At u = ±1 the zero of the sine cancels that of 1 − u²:
 /// sin(πu) = sin(π(1 − u)), so the pattern is sinc(1 − |u|)/(|u|(1 + |u|)), stable at |u| = 1.
