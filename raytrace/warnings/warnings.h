@@ -5,9 +5,9 @@
 #include "raytrace/cases/propagation_case.h"
 
 /// What a user should know of an ocean or a run before he trusts a number, in one line each: "KEY:
-/// what is the matter". Every check is a file of this folder (and of sonar/warnings, for what only
-/// a sonar has); readers of files ask all of them, and commands print them and write them beside
-/// the numbers (docs/guide/scenarios.md).
+/// what is the matter". Every check is a function of this file (and of sonar/warnings, for what
+/// only a sonar has); readers of files ask all of them, and commands print them and write them
+/// beside the numbers (docs/guide/scenarios.md).
 namespace asdic::detail {
 
 /// Of the ocean at frequencies from `lowest` to `highest` [Hz].

@@ -1,5 +1,353 @@
 #include "sonar/warnings/warnings.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry.h"
+#include "raytrace/paths/eigenrays.h"
+#include "raytrace/places/propagation_paths.h"
+#include "raytrace/waves/diffraction.h"
+#include "reverb/scattering/energy.h"
+#include "reverb/scattering/validity.h"
+#include "sonar/noise/ambient_noise.h"
+#include "sonar/noise/noise_coherence.h"
+#include "sonar/noise/noise_in_guide.h"
+#include "sonar/paths/enough_bounces.h"
+#include "sonar/reverberation/phone_groups.h"
+#include "sonar/scenario/sampling.h"
+#include "sonar/scenario/transmission.h"
+
+namespace asdic::detail::checks {
+
+std::string pulse_band(const Scenario& scenario) {
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const PulseSettings& settings = pulse_of(scenario, static_cast<int>(t));
+    if (samples_of(settings.waveform)) continue;
+    const Pulse pulse(settings);
+    if (0.5 * pulse.bandwidth_40db() < pulse.centre_frequency()) continue;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "pulse: its band, %g Hz wide about %g Hz, reaches down to 0 Hz: frequencies are "
+                  "in Hz, not kHz",
+                  pulse.bandwidth_40db(), pulse.centre_frequency());
+    return text;
+  }
+  return "";
+}
+
+std::string noise_law_range(const Scenario& scenario) {
+  if (!scenario.noise.law) return "";
+  const PulseFrequencies pulse = pulse_frequencies(scenario);
+  const std::array<Asked, 1> asked{{{"frequency", pulse.lowest, pulse.highest}}};
+  const std::string text = std::visit(
+      [&](const auto& law) { return outside(law.validity(), asked); }, *scenario.noise.law);
+  return text.empty() ? "" : "noise.kind: " + text;
+}
+
+namespace {
+
+/// What is recorded [Hz].
+Band recorded_band(const Scenario& scenario) {
+  const double rate = recorded_rate(scenario);
+  if (scenario.pings.samples != Samples::baseband) return {0.0, 0.5 * rate};
+  const double carrier = recorded_carrier(scenario);
+  return {std::max(0.0, carrier - 0.5 * rate), carrier + 0.5 * rate};
+}
+
+}  // namespace
+
+std::string noise_table_band(const Scenario& scenario) {
+  if (!scenario.noise.law) return "";
+  const auto* table = std::get_if<NoiseTable>(&*scenario.noise.law);
+  if (table == nullptr) return "";
+  const double first = table->frequency.front(), last = table->frequency.back();
+  const PulseFrequencies pulse = pulse_frequencies(scenario);
+  const Band recorded = recorded_band(scenario);
+  const double inside = std::min(last, recorded.highest) - std::max(first, recorded.lowest);
+  constexpr double most_outside = 0.05;  // of the recorded band: its first Hz are in no table
+  const bool received = pulse.lowest >= first && pulse.highest <= last;
+  if (received && inside >= (1.0 - most_outside) * (recorded.highest - recorded.lowest)) return "";
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "noise: levels from %g to %g Hz stand for %s from %g to %g Hz; beyond their ends "
+                "the first and last level are held",
+                first, last, received ? "a recorded band" : "a pulse",
+                received ? recorded.lowest : pulse.lowest,
+                received ? recorded.highest : pulse.highest);
+  return text;
+}
+
+std::string surface_scattering_range(const Scenario& scenario) {
+  const ReverberationSettings& sea = scenario.reverberation;
+  if (!sea.enabled || !sea.surface_scatters) return "";
+  const PulseFrequencies pulse = pulse_frequencies(scenario);
+  const std::array<Asked, 2> asked{{{"frequency", pulse.lowest, pulse.highest},
+                                    {"wind speed", scenario.wind_speed, scenario.wind_speed}}};
+  const std::string text = std::visit(
+      [&]<class Law>(const Law& /*law*/) { return outside(scattering_validity<Law>, asked); },
+      sea.surface);
+  return text.empty() ? "" : "reverberation.surface.kind: " + text;
+}
+
+// Sound that is received as plane waves by an array that is too long or too bent for them.
+
+namespace {
+
+const ReceiverArray& array_of(const Scenario& scenario, int array) {
+  return scenario.arrays[static_cast<std::size_t>(array)];
+}
+
+/// How far phones get from where they are at a time, seen from their middle [m].
+double bent_by(const Scenario& scenario, int array, double time, double later) {
+  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
+                          after = phones_at(scenario, array, 1, time + later);
+  double most = 0.0;
+  for (std::size_t n = 0; n < before.size(); ++n)
+    most = std::max(most, (after[n] - before[n]).norm());
+  return most;
+}
+
+/// By how much the coherence of any two phones changes meanwhile: of neighbours, and of some
+/// others.
+double coherence_change(const Scenario& scenario, int array, double time, double later,
+                        double wavenumber, const NoiseField& noise) {
+  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
+                          after = phones_at(scenario, array, 1, time + later);
+  constexpr std::size_t looked_at = 16;  // each with as many
+  const std::size_t step = (before.size() + looked_at - 1) / looked_at;
+  double most = 0.0;
+  const auto look = [&](std::size_t a, std::size_t b) {
+    const auto of = [&](const std::vector<Vec3>& shape) {
+      return noise_coherence(noise.coherence, noise.directions, shape[a] - shape[b], wavenumber);
+    };
+    most = std::max(most, std::abs(of(after) - of(before)));
+  };
+  for (std::size_t a = 1; a < before.size(); ++a) look(a, a - 1);
+  for (std::size_t a = 0; a < before.size(); a += step)
+    for (std::size_t b = 0; b < a; b += step) look(a, b);
+  return most;
+}
+
+/// Whether a sea that stays and forgets from ping to ping scatters: one that a covariance serves.
+bool has_still_sea(const ReverberationSettings& sea) {
+  const auto still = [](const ScattererField& field) {
+    return field.motion.kind == ScattererMotion::Kind::still && field.motion.current.isZero() &&
+           field.statistics.coherence_time == 0.0 && !field.statistics.k_shape;
+  };
+  return (sea.surface_scatters && still(sea.surface_field)) ||
+         (sea.bottom && still(sea.bottom_field)) ||
+         std::any_of(sea.volume.begin(), sea.volume.end(),
+                     [&](const VolumeLayer& layer) { return still(layer.field); });
+}
+
+}  // namespace
+
+std::string reverberation_plane_waves(const Scenario& scenario) {
+  const ReverberationSettings& sea = scenario.reverberation;
+  // Elsewhere streams have round fronts, and groups of phones receive scatterers by themselves.
+  if (!sea.enabled || sea.synthesis != ScattererSynthesis::covariance ||
+      scenario.arrays.size() != 1 || scenario.propagation.exact_per_phone || !has_still_sea(sea))
+    return "";
+  const Kinematics receives = array_at(scenario, 0, 0.0);
+  if (array_of(scenario, 0).phones.size() < 2 || !receives.velocity.isZero()) return "";
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const PingGeometry geometry(scenario, {.transmitter = static_cast<int>(t)}, 1);
+    const PulseFrequencies band = pulse_frequencies(scenario);
+    const Carried point = geometry.reverberation_point(0, 0.5 * (band.lowest + band.highest));
+    if (point.at(0.0).position != geometry.source().position) continue;
+    const double duration = pulse_of(scenario, static_cast<int>(t)).duration;
+    const Front front = nearest_reverberation(geometry, 0, duration, band.highest);
+    const double error = one_group(listening(geometry, 0), front, point).error;
+    if (error <= reverberation_periods) continue;
+    const double far = front.length * error / reverberation_periods;
+    char text[320];
+    std::snprintf(text, sizeof text,
+                  "reverberation.synthesis: drawn from its covariance, it is plane waves for array "
+                  "%s: the first are up to %.2g periods off at its ends, 1/16 after %.2g s; with "
+                  "\"automatic\" they are not",
+                  array_of(scenario, 0).name.c_str(), error,
+                  2.0 * far / speed_at(scenario, receives.position));
+    return text;
+  }
+  return "";
+}
+
+std::string noise_of_a_bent_line(const Scenario& scenario) {
+  if (!scenario.noise.any() || scenario.noise.coherence == NoiseCoherence::independent) return "";
+  const double highest = pulse_frequencies(scenario).highest;
+  for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
+    const int array = static_cast<int>(a);
+    if (!deforms(scenario, array)) continue;
+    // Half of a block's power lies within a quarter of it from its middle.
+    const double block = noise_block(scenario, array), quarter = 0.25 * block;
+    const PingSchedule& pings = scenario.pings;
+    const std::vector<Transmission> sent = transmissions(scenario);
+    constexpr std::size_t looked_at = 100, times = 1000, closely = 4;
+    const std::size_t step = (sent.size() + looked_at - 1) / looked_at;
+    const std::size_t each =
+        std::clamp<std::size_t>(static_cast<std::size_t>(pings.recording_duration / quarter), 1,
+                                std::max<std::size_t>(times * step / sent.size(), 8));
+    std::vector<std::pair<double, double>> bent;  // by how much, when
+    for (std::size_t i = 0; i < sent.size(); i += step)
+      for (std::size_t k = 0; k < each; ++k) {
+        const double time = sent[i].time + pings.recording_start +
+                            pings.recording_duration * double(k) / double(each);
+        bent.emplace_back(bent_by(scenario, array, time, quarter), time);
+      }
+    std::sort(bent.rbegin(), bent.rend());
+    const double c = speed_at(scenario, array_at(scenario, array, 0.0).position);
+    const NoiseField field = noise_field(scenario, array);
+    double change = 0.0;
+    for (std::size_t i = 0; i < std::min(closely, bent.size()) && bent[i].first > 0.0; ++i)
+      change = std::max(change, coherence_change(scenario, array, bent[i].second, quarter,
+                                                 2.0 * pi * highest / c, field));
+    constexpr double received = 0.1;
+    if (change <= received) continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "noise.coherence: array %s turns, and in each block of %.2g s its noise has the "
+                  "shape of the block's middle: the coherence of two phones changes by up to %.2g "
+                  "at %g Hz meanwhile",
+                  array_of(scenario, array).name.c_str(), block, change, highest);
+    return text;
+  }
+  return "";
+}
+
+std::string noise_from_below(const Scenario& scenario) {
+  constexpr double received = 0.1;  // of what comes down
+  if (!scenario.noise.any() || scenario.noise.coherence != NoiseCoherence::surface ||
+      !varies_with_range(scenario.environment))
+    return "";
+  const SentUp most = sent_up(scenario.environment, pulse_frequencies(scenario).lowest);
+  if (most.share < received) return "";
+  char text[280];
+  std::snprintf(
+      text, sizeof text,
+      "noise.coherence: in an ocean that varies with range \"surface\" is the sheet of sources "
+      "above alone; what the bottom sends up again, %.2g dB of it at %.0f degrees, is left out; a "
+      "level over elevation (\"profile\") can hold it",
+      db_from_power(most.share), degrees(most.angle));
+  return text;
+}
+
+namespace {
+
+/// Where a surface duct ends, and from which frequency on rays in it are right.
+struct SurfaceDuct {
+  double depth = 0.0;      ///< of the first maximum of the speed [m]; 0: there is none
+  double frequency = 0.0;  ///< ten times that of its first mode, c/(2H·√(2Δc/c)) [Hz]
+};
+
+SurfaceDuct surface_duct(const Environment& ocean) {
+  constexpr int steps = 500;
+  const double top = ocean.surface.depth_at(0.0), bottom = ocean.bottom.depth_at(0.0);
+  const double at_surface = sound_speed(ocean, 0.0, top).c;
+  double fastest = at_surface;
+  for (int i = 1; i <= steps; ++i) {
+    const double height = (bottom - top) * std::pow(double(i) / steps, 2);
+    const double c = sound_speed(ocean, 0.0, top + height).c;
+    if (c < fastest && fastest > at_surface) {
+      const double duct = (bottom - top) * std::pow((i - 1.0) / steps, 2);
+      const double slope = std::sqrt(2.0 * (fastest - at_surface) / fastest);
+      return {duct, 10.0 * fastest / (2.0 * duct * slope)};
+    }
+    if (c < fastest) break;
+    fastest = c;
+  }
+  return {};
+}
+
+std::string over_a_transect(const Environment& ocean) {
+  std::string text =
+      "propagation: where the ocean varies with range rays are all there is: sound in shadows, "
+      "beyond caustics and out of ducts is left out";
+  const SurfaceDuct duct = surface_duct(ocean);
+  if (duct.depth > 0.0) {
+    char more[120];
+    std::snprintf(more, sizeof more,
+                  "; inside the surface duct of about %.2g m they are right from about %.2g Hz on",
+                  duct.depth, duct.frequency);
+    text += more;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string left_out_diffraction(const Scenario& scenario) {
+  if (!scenario.propagation.diffraction || scenario.targets.empty()) return "";
+  const Environment& ocean = scenario.environment;
+  if (varies_with_range(ocean)) return over_a_transect(ocean);
+  if (!is_layered(ocean))
+    return "propagation: where losses vary with depth sound in shadows, beyond caustics and out of "
+           "ducts is left out";
+  const PulseFrequencies pulse = pulse_frequencies(scenario);
+  const double frequency = 0.5 * (pulse.lowest + pulse.highest);
+  const Vec3 source = transmitter_at(scenario, 0, 0.0).position;
+  for (const Target& target : scenario.targets) {
+    const Vec3 place = target.track.at(0.0).position;
+    const double range = separation(source, place).range;
+    if (diffraction_is_affordable(ocean, source.z(), place.z(), range, frequency)) continue;
+    for (const Arrival& ray : EigenraySolver(ocean).find(source.z(), place.z(), range, frequency,
+                                                         limits_of(scenario.propagation)))
+      if (ray.bottom_bounces == 0) return "";
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "propagation: no ray reaches target \"%.60s\" without the bottom, and %.3g Hz "
+                  "over %.3g km are too dear for the wave equation: sound out of ducts and into "
+                  "shadows is left out",
+                  target.name.c_str(), frequency, range / 1000.0);
+    return text;
+  }
+  return "";
+}
+
+namespace {
+
+/// The greatest share of a law, in all directions, at some grazing angles and where.
+template <class... Law>
+std::string of_law(const char* where, const std::variant<Law...>& law, double lowest,
+                   double highest) {
+  double most = 1.0, at = 0.0;
+  for (const double angle : {2.0, 5.0, 10.0, 20.0, 40.0, 60.0})
+    for (const double frequency : {lowest, highest}) {
+      const double share = std::visit(
+          [&](const auto& model) { return scattered_share(model, radians(angle), frequency); },
+          law);
+      if (share > most) most = share, at = angle;
+    }
+  if (most <= 1.0) return "";
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%s: at %.0f degrees the law scatters %.2f times the energy that comes in; what is "
+                "reflected there gives way, the rest is too much",
+                where, at, most);
+  return text;
+}
+
+}  // namespace
+
+std::string scattering_energy(const Scenario& scenario) {
+  const ReverberationSettings& reverberation = scenario.reverberation;
+  const Environment& ocean = scenario.environment;
+  if (!reverberation.enabled) return "";
+  const auto [lowest, highest] = pulse_frequencies(scenario);
+  std::string text;
+  if (reverberation.surface_scatters && ocean.surface.roughness.rms_height > 0.0)
+    text = of_law("reverberation.surface", reverberation.surface, lowest, highest);
+  if (text.empty() && reverberation.bottom && ocean.bottom.roughness.rms_height > 0.0)
+    text = of_law("reverberation.bottom", *reverberation.bottom, lowest, highest);
+  return text;
+}
+
+}  // namespace asdic::detail::checks
+
 namespace asdic::detail {
 
 std::vector<std::string> warnings(const Scenario& scenario) {

@@ -9,7 +9,7 @@
 namespace asdic::detail {
 
 /// Of a sonar's scenario, its ocean included: what a user should know before he trusts a number, in
-/// one line each, "KEY: what is the matter". Every check is a file of this folder.
+/// one line each, "KEY: what is the matter". Every check is a function of this file.
 [[nodiscard]] std::vector<std::string> warnings(const Scenario& scenario);
 
 namespace checks {
