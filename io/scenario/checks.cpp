@@ -1,3 +1,5 @@
+#include "io/scenario/checks.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,6 +13,7 @@
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
+#include "sonar/signal/pulse.h"
 
 namespace asdic::detail::scenario {
 namespace {
@@ -282,6 +285,23 @@ void check_fathometer(TomlTable& root, const Scenario& scenario) {
                "false where the ocean varies along a transect: a mirror that slopes is not in the "
                "plane of transmitter and array",
                "true");
+}
+
+/// A projector sends one pulse at a time.
+void check_intervals(TomlTable& root, const Scenario& scenario) {
+  if (scenario.pings.count < 2) return;
+  std::vector<TomlTable> transmitters = root.one_or_more("transmitter");
+  for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
+    const double interval = scenario.transmitters[t].interval.value_or(scenario.pings.interval),
+                 duration = Pulse(pulse_of(scenario, static_cast<int>(t))).duration();
+    if (interval >= duration) continue;
+    const TomlTable pings = root.table("pings");
+    const TomlTable& table = scenario.transmitters[t].interval ? transmitters[t] : pings;
+    throw table.fault("interval",
+                      "an interval of at least the pulse's duration, " + to_text(duration) +
+                          " s: a projector sends one pulse at a time",
+                      to_text(interval) + " s");
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/scenario/checks.h"
 #include "io/scenario/document.h"
 #include "io/scenario/embedded.h"
 #include "io/scenario/propagation.h"

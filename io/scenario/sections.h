@@ -5,8 +5,8 @@
 #include "sonar/scenario/scenario.h"
 
 /// The parts of a scenario file that do not describe themselves (docs/develop/settings.md), one
-/// function per table. Each checks types and ranges of its own keys; check_scenario() holds the
-/// parts against one another. All throw InputError.
+/// function per table. Each checks types and ranges of its own keys; check_scenario() (checks.h)
+/// holds the parts against one another. All throw InputError.
 namespace asdic::detail::scenario {
 
 // The tables of a sonar, in the order in which they are read. Between them: [pulse] and
@@ -20,14 +20,5 @@ void describe_environment(Fields& field, const Scenario& scenario);
 /// \param frequency  at which attenuations per metre are meant [Hz]
 void read_environment(TomlTable table, const std::filesystem::path& folder, double frequency,
                       Scenario& scenario);
-
-/// \throws InputError where noise is coherent between more phones than there is memory for
-void check_coherence(const TomlTable& noise, const Scenario& scenario);
-/// \throws InputError where a transmitter would send a pulse before its last one has ended
-void check_intervals(TomlTable& root, const Scenario& scenario);
-
-/// Platform, phones and targets are in the water throughout, sampling is fast enough for the band,
-/// a ping fits in memory. \param root  the document, for the places of faults
-void check_scenario(TomlTable& root, const Scenario& scenario);
 
 }  // namespace asdic::detail::scenario

@@ -4,12 +4,297 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 
+#include "core/doppler.h"
+#include "core/geometry.h"
 #include "raytrace/parallel/parallel.h"
+#include "reverb/scatterer_field.h"
 #include "sonar/noise/interference_segment.h"
+#include "sonar/noise/noise_spectrum.h"
+#include "sonar/paths/enough_bounces.h"
+#include "sonar/paths/moving_paths.h"
+#include "sonar/paths/plane_wave.h"
+#include "sonar/scenario/ping_bounds.h"
+#include "sonar/scenario/sampling.h"
 #include "sonar/signal/fractional_delay.h"
 
 namespace asdic::detail {
+
+// What a scenario's ships send, and the paths along which arrays receive it.
+
+double source_density(const Interferer& ship, double frequency) noexcept {
+  double level = -infinity;
+  if (ship.table)
+    level = ship.table->level_at(frequency);
+  else if (ship.level_db)
+    level =
+        *ship.level_db + ship.slope_db_per_decade * std::log10(std::max(frequency, 100.0) / 1000.0);
+  return power_from_db(level) * micropascal * micropascal;
+}
+
+namespace {
+
+/// Frequencies between which amplitudes are straight: no path of 50 km changes by more than 0.3
+/// neper from one to the next, so that in the middle it is right to 0.3²/8 = 0.1 dB.
+std::vector<double> frequencies_of_losses(const Environment& ocean, double low, double high) {
+  constexpr double longest = 50e3, straight = 0.3;
+  constexpr int fewest = 3, most = 17;
+  const double depth = 0.0;
+  const double change = longest * (attenuation_np_per_m(ocean, high).at(depth) -
+                                   attenuation_np_per_m(ocean, low).at(depth));
+  const int segments = static_cast<int>(
+      std::clamp(std::ceil(std::abs(change) / straight), double(fewest - 1), double(most - 1)));
+  std::vector<double> all;
+  for (int i = 0; i <= segments; ++i) all.push_back(low + (high - low) * i / segments);
+  return all;
+}
+
+/// The share of a frequency that belongs to node k: 1 there, straight to 0 at its neighbours.
+double hat(const std::vector<double>& nodes, std::size_t k, double f) {
+  if (k > 0 && f < nodes[k]) return std::max(0.0, (f - nodes[k - 1]) / (nodes[k] - nodes[k - 1]));
+  if (k + 1 < nodes.size() && f > nodes[k])
+    return std::max(0.0, (nodes[k + 1] - f) / (nodes[k + 1] - nodes[k]));
+  return 1.0;
+}
+
+}  // namespace
+
+Interference::Interference(const Scenario& scenario, const PropagationPaths& paths)
+    : scenario_(scenario),
+      paths_(paths),
+      frequency_(scenario.interferers.empty() ? 0.0
+                                              : Pulse(pulse_of(scenario, 0)).centre_frequency()),
+      rate_(recorded_rate(scenario)),
+      carrier_(recorded_carrier(scenario)),
+      // Twice oversampled, for the interpolation: the band is half of the rate.
+      source_rate_(carrier_ > 0.0 ? 2.0 * rate_ : rate_),
+      source_carrier_(carrier_ > 0.0 ? carrier_ : 0.25 * rate_) {
+  double fastest_platform = 0.0;
+  for (const Platform& p : scenario.platforms)
+    fastest_platform = std::max(fastest_platform, fastest(p.track));
+  if (scenario.propagation.wide_band && !scenario.interferers.empty()) {
+    const double high = source_carrier_ + 0.25 * source_rate_;
+    band_ = frequencies_of_losses(
+        scenario.environment, std::max(source_carrier_ - 0.25 * source_rate_, 0.01 * high), high);
+  }
+  for (std::size_t i = 0; i < scenario.interferers.size(); ++i) {
+    const Interferer& ship = scenario.interferers[i];
+    // What Doppler would shift out of the band is left out.
+    const double doppler = (fastest(ship.track) + fastest_platform) / 1300.0;
+    const double low = std::max(0.0, source_carrier_ - 0.25 * source_rate_) * (1.0 + doppler),
+                 high = (source_carrier_ + 0.25 * source_rate_) * (1.0 - doppler);
+    const std::array<Vec3, 1> point = {Vec3::Zero()};
+    for (std::size_t k = 0; k < std::max<std::size_t>(1, band_.size()); ++k)
+      sources_.emplace_back(
+          [&](double f) {
+            const double share = band_.empty() ? 1.0 : hat(band_, k, f);
+            return f >= low && f <= high ? share * share * source_density(ship, f) : 0.0;
+          },
+          source_rate_, source_carrier_, point, NoiseCoherence::independent, NoiseDirections{},
+          1500.0, NoiseKey{.seed = scenario.seed, .purpose = Draw::ship_noise, .first_channel = i});
+  }
+}
+
+/// Paths that arrive at a time, delays those from where the ship was when each left it.
+std::vector<Interference::Received> Interference::received_at(const Interferer& ship, int array,
+                                                              const Carried& receiver_point,
+                                                              double time,
+                                                              bool across_the_band) const {
+  const Kinematics receiver = receiver_point.at(time);
+  const Bounces followed =
+      enough_bounces(paths_, scenario_.propagation, ship.track.at(time).position, receiver.position,
+                     frequency_, infinity);
+  PathLimits limits = limits_of(scenario_.propagation, followed);
+  limits.diffraction = false;  // at every frequency of a ship's band: too dear
+  double left = time;
+  Arrivals found;
+  Kinematics source;
+  for (int i = 0; i < 4; ++i) {  // each round gains a factor v/c
+    source = ship.track.at(left);
+    found = paths_.find(source.position, receiver.position, frequency_, limits);
+    if (found.empty() || source.velocity.isZero()) break;
+    const double before = std::exchange(left, time - found.front().delay);
+    if (std::abs(left - before) < 1e-7) break;
+  }
+  const Separation way = separation(source.position, receiver.position);
+  const double c_source = paths_.speed_at(source.position),
+               c_array = paths_.speed_at(receiver.position);
+  std::vector<Arrivals> at_frequencies;
+  if (across_the_band)
+    for (const double f : band_)
+      at_frequencies.push_back(paths_.find(source.position, receiver.position, f, limits));
+  std::vector<Received> received;
+  for (const Arrival& path : found) {
+    const Vec3 leaving = slowness_vector(way.bearing, path.launch_elevation, c_source);
+    const Vec3 arriving = slowness_vector(way.bearing, path.arrival_elevation, c_array);
+    // Left when the ship was v·(t_e − left) further on: τ = τ₀ − s·v(t_e − left), t_e = t − τ.
+    const double along = leaving.dot(source.velocity);
+    const double delay = (path.delay - along * (time - left)) / (1.0 - along);
+    Received one{
+        .path = {.array = array,
+                 .delay = delay,
+                 .doppler = leg_doppler({source.velocity, leaving}, {receiver.velocity, arriving}),
+                 .range = way.range,
+                 .bearing = way.bearing,
+                 .slowness = arriving,
+                 .moveout = arriving / (1.0 - along),
+                 .path = path},
+        .band = {},
+        .scattered_band = {},
+        .parts = {}};
+    for (const Arrivals& arrivals : at_frequencies) {
+      const Arrival* same = same_path(arrivals, path, paths_.layered());
+      one.band.push_back(same == nullptr ? 0.0 : same->amplitude);
+      one.scattered_band.push_back(same == nullptr ? 0.0 : std::sqrt(same->scattered));
+    }
+    received.push_back(std::move(one));
+  }
+  return received;
+}
+
+bool Interference::plane_waves(const Interferer& ship, int array, const RecordSamples& record,
+                               const Clock& clock) const {
+  const Listening here{
+      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = record.start_time};
+  const double begin = clock.time(clock.first), end = clock.time(clock.first + clock.samples);
+  const Carried reference = reference_of(scenario_, array);
+  for (const double time : {begin, end})
+    for (const Received& one : received_at(ship, array, reference, time, false))
+      if (!is_plane_wave(here, {.slowness = one.path.slowness,
+                                .length = one.path.path.path_length,
+                                .delay = begin - record.start_time,
+                                .duration = end - begin,
+                                .highest_frequency = source_carrier_ + 0.25 * source_rate_}))
+        return false;
+  return true;
+}
+
+void Interference::scatter(const Interferer& ship, double time,
+                           std::vector<Received>& received) const {
+  constexpr int most_parts = 8;
+  double loudest = 0.0;
+  for (const Received& one : received)
+    loudest = std::max(loudest, std::norm(one.path.path.amplitude) + one.path.path.scattered);
+  const auto number = static_cast<std::uint64_t>(&ship - scenario_.interferers.data());
+  for (Received& one : received) {
+    const Arrival& path = one.path.path;
+    if (!(path.scattered > 1e-9 * std::norm(path.amplitude))) continue;
+    const double left = time - one.path.delay;
+    const ScatteredLeg leg{&path, ship.track.at(left).position.head<2>(), one.path.bearing, left};
+    const std::uint64_t entity = mixed(mixed(number, ~1ULL), scatter_history(path));
+    one.parts =
+        forward_scatter(scenario_.environment, std::span(&leg, 1), frequency_,
+                        path.scattered > 0.01 * loudest ? most_parts : 1, scenario_.seed, entity);
+  }
+}
+
+/// Between nodes a part's frequency is shifted by the mean of its ends', and by what more turns the
+/// phase of the one into the other's. Where a part is another draw at the other end, one fades out
+/// and the other in.
+void Interference::add_parts(const Received* one, const Received* other, std::int64_t begin,
+                             double seconds, std::vector<Segment>& all) {
+  const auto end = [](const Received& received, std::size_t i, double phase, std::size_t side,
+                      Segment& into) {
+    const ScatteredPart& part = received.parts[i];
+    const std::complex<double> weight =
+        std::polar(1.0 / std::sqrt(double(received.parts.size())), phase);
+    into.delay[side] = received.path.delay + part.delay;
+    into.length[side] = received.path.path.path_length;
+    into.moveout[side] = slowness_vector(received.path.bearing + part.bearing,
+                                         received.path.path.arrival_elevation + part.elevation,
+                                         1.0 / received.path.moveout.norm());
+    into.amplitude[side] = std::sqrt(received.path.path.scattered) * weight;
+    for (const double root : received.scattered_band) into.band[side].push_back(root * weight);
+  };
+  const auto same_draw = [&](const ScatteredPart& a, const ScatteredPart& b) {
+    return std::abs(a.shift - b.shift) * seconds < 0.5 &&
+           std::abs(a.delay - b.delay) < 1e-5 + 0.2 * std::max(a.delay, b.delay);
+  };
+  const auto fades = [&](const Received& received, std::size_t i, std::size_t side) {
+    const ScatteredPart& part = received.parts[i];
+    const double rotated = side == 0 ? 0.0 : 2.0 * pi * part.shift * seconds;
+    Segment s{.begin = begin, .shift = part.shift};
+    end(received, i, std::arg(part.amplitude) - rotated, 0, s);
+    end(received, i, std::arg(part.amplitude) - rotated, 1, s);
+    s.amplitude[1 - side] = 0.0;
+    for (std::complex<double>& amplitude : s.band[1 - side]) amplitude = 0.0;
+    all.push_back(std::move(s));
+  };
+  const std::size_t first = one == nullptr ? 0 : one->parts.size(),
+                    second = other == nullptr ? 0 : other->parts.size();
+  for (std::size_t i = 0; i < std::max(first, second); ++i) {
+    if (i >= first || i >= second || !same_draw(one->parts[i], other->parts[i])) {
+      if (i < first) fades(*one, i, 0);
+      if (i < second) fades(*other, i, 1);
+      continue;
+    }
+    const ScatteredPart &a = one->parts[i], &b = other->parts[i];
+    const double mean = 0.5 * (a.shift + b.shift), phase = std::arg(a.amplitude);
+    const double more = std::arg(b.amplitude * std::conj(a.amplitude) *
+                                 std::polar(1.0, -2.0 * pi * mean * seconds));
+    Segment s{.begin = begin, .shift = mean + more / (2.0 * pi * seconds)};
+    end(*one, i, phase, 0, s);
+    end(*other, i, phase, 1, s);
+    all.push_back(std::move(s));
+  }
+}
+
+std::vector<Interference::Segment> Interference::segments(const Interferer& ship, int array,
+                                                          const Carried& receiver_point,
+                                                          const Clock& clock) const {
+  const std::int64_t from = floor_div(clock.first, clock.node),
+                     to = floor_div(clock.first + clock.samples - 1, clock.node);
+  const auto count = static_cast<std::size_t>(to - from + 2);
+  const bool across_the_band = !band_.empty() && (ship.level_db || ship.table);
+  std::vector<std::vector<Received>> nodes(count);
+  in_parallel(count, [&](std::size_t i) {
+    const double time = clock.time((from + static_cast<std::int64_t>(i)) * clock.node);
+    nodes[i] = received_at(ship, array, receiver_point, time, across_the_band);
+    scatter(ship, time, nodes[i]);
+  });
+  const double seconds = static_cast<double>(clock.node) / clock.rate;
+  std::vector<Segment> all;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const std::int64_t begin = (from + static_cast<std::int64_t>(i)) * clock.node;
+    std::vector<bool> taken(nodes[i + 1].size(), false);
+    const auto times = [](double there, std::vector<std::complex<double>> amplitudes) {
+      for (std::complex<double>& amplitude : amplitudes) amplitude *= there;
+      return amplitudes;
+    };
+    const auto add = [&](const Received& one, const Received& other, double a_there,
+                         double b_there) {
+      const ReceivedPath &a = one.path, &b = other.path;
+      all.push_back({.begin = begin,
+                     .delay = {a.delay, b.delay},
+                     .length = {a.path.path_length, b.path.path_length},
+                     .amplitude = {a_there * a.path.amplitude, b_there * b.path.amplitude},
+                     .band = {times(a_there, one.band), times(b_there, other.band)},
+                     .moveout = {a.moveout, b.moveout}});
+    };
+    Arrivals next;
+    for (const Received& one : nodes[i + 1]) next.push_back(one.path.path);
+    for (const Received& one : nodes[i]) {
+      const Arrival* same = same_path(next, one.path.path, paths_.layered());
+      const auto at = same == nullptr ? next.size() : static_cast<std::size_t>(same - next.data());
+      if (at < next.size() && !taken[at]) {
+        taken[at] = true;
+        add(one, nodes[i + 1][at], 1.0, 1.0);
+        add_parts(&one, &nodes[i + 1][at], begin, seconds, all);
+      } else {
+        add(one, one, 1.0, 0.0);
+        add_parts(&one, nullptr, begin, seconds, all);
+      }
+    }
+    for (std::size_t j = 0; j < next.size(); ++j) {
+      if (taken[j]) continue;
+      add(nodes[i + 1][j], nodes[i + 1][j], 0.0, 1.0);
+      add_parts(nullptr, &nodes[i + 1][j], begin, seconds, all);
+    }
+  }
+  return all;
+}
+
 namespace {
 
 constexpr std::int64_t chunk = interference_chunk;
