@@ -5,6 +5,24 @@
 namespace asdic::detail::bellhop {
 namespace {
 
+std::string letter(std::size_t at) { return "letter " + std::to_string(at + 1); }
+
+/// What is behind a boundary. \param at  of its letter, from 0
+char boundary_letter(ListReader& env, const std::string& letters, std::size_t at) {
+  if (std::string_view("VRAFG").find(letters[at]) > 4)
+    env.fail(letter(at), shown(letters.substr(at, 1)),
+             "V (vacuum), R (rigid), A (half space), F (table) or G (grain size)");
+  return letters[at];
+}
+
+/// Whether a boundary has a file of its shape. \param what  that is called
+bool has_shape(ListReader& env, const std::string& letters, std::size_t at,
+               const std::string& what) {
+  if (std::string_view("~*-_ ").find(letters[at]) > 4)
+    env.fail(letter(at), shown(letters.substr(at, 1)), "~ or * (" + what + "), or -, _ or a blank");
+  return letters[at] == '~' || letters[at] == '*';
+}
+
 void read_letters(CaseReading& reading, std::string letters) {
   ListReader& env = reading.env;
   CaseOptions& options = reading.options;
@@ -15,10 +33,7 @@ void read_letters(CaseReading& reading, std::string letters) {
     env.fail(
         "letter 1", shown(letters.substr(0, 1)),
         "N (1/c^2 linear), C (c linear), P (PCHIP), S (spline), Q (range-dependent) or A (Munk)");
-  options.surface = letters[1];
-  if (std::string_view("VRAFG").find(options.surface) > 4)
-    env.fail("letter 2", shown(letters.substr(1, 1)),
-             "V (vacuum), R (rigid), A (half space), F (table) or G (grain size)");
+  options.surface = boundary_letter(env, letters, 1);
   const auto unit = attenuation_unit(letters[2]);
   if (!unit)
     env.fail("letter 3", shown(letters.substr(2, 1)), "an attenuation unit: N, F, M, W, Q or L");
@@ -27,9 +42,7 @@ void read_letters(CaseReading& reading, std::string letters) {
   if (std::string_view(" TFB").find(options.volume) > 3)
     env.fail("letter 4", shown(letters.substr(3, 1)),
              "a blank, T (Thorp), F (Francois-Garrison) or B (biology)");
-  if (std::string_view("~*-_ ").find(letters[4]) > 4)
-    env.fail("letter 5", shown(letters.substr(4, 1)), "~ or * (altimetry), or -, _ or a blank");
-  options.altimetry = letters[4] == '~' || letters[4] == '*';
+  options.altimetry = has_shape(env, letters, 4, "altimetry");
   if (letters[5] == 'B')
     env.fail("letter 6", "\"B\" (several frequencies)", "a blank or I (a single beam)");
   options.single_beam = letters[5] == 'I';
@@ -125,13 +138,8 @@ void read_bottom_options(CaseReading& reading) {
   std::string letters;
   if (!env.text(letters, "")) env.fail("", "no value", "up to two letters in quotes");
   letters.resize(std::max<std::size_t>(letters.size(), 2), ' ');
-  options.bottom = letters[0];
-  if (std::string_view("VRAFG").find(options.bottom) > 4)
-    env.fail("letter 1", shown(letters.substr(0, 1)),
-             "V (vacuum), R (rigid), A (half space), F (table) or G (grain size)");
-  if (std::string_view("~*-_ ").find(letters[1]) > 4)
-    env.fail("letter 2", shown(letters.substr(1, 1)), "~ or * (bathymetry), or -, _ or a blank");
-  options.bathymetry = letters[1] == '~' || letters[1] == '*';
+  options.bottom = boundary_letter(env, letters, 0);
+  options.bathymetry = has_shape(env, letters, 1, "bathymetry");
   double roughness = 0.0;
   env.real(roughness, "roughness");
   if (roughness != 0.0)

@@ -71,6 +71,12 @@ struct SegmentEnd {
     q_plane = {y.q_plane, c * y.p_plane, c_s * y.p_plane - c_nn / c * y.q_plane};
     speed_integral = {y.speed_integral, c, c_s};
   }
+  static SegmentEnd first_of(const RaySegment& s) noexcept {
+    return {s.begin, s.c_begin, s.c_r_begin, s.c_z_begin, s.c_nn_begin};
+  }
+  static SegmentEnd last_of(const RaySegment& s) noexcept {
+    return {s.end, s.c_end, s.c_r_end, s.c_z_end, s.c_nn_end};
+  }
   double tr, tz, c_s;
   Jet range{}, depth{}, time{}, q{}, q_plane{}, speed_integral{};
 };
@@ -81,10 +87,7 @@ SegmentStates::SegmentStates(const RaySegment& segment) noexcept : begin_(segmen
   const double h = segment.end.length - segment.begin.length;
   if (h <= 0.0) return;
   per_h_ = 1.0 / h;
-  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
-                     segment.c_nn_begin);
-  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
-                     segment.c_nn_end);
+  const SegmentEnd a = SegmentEnd::first_of(segment), b = SegmentEnd::last_of(segment);
   range_ = quintic_terms(a.range, b.range, h);
   depth_ = quintic_terms(a.depth, b.depth, h);
   time_ = quintic_terms(a.time, b.time, h);
@@ -103,10 +106,7 @@ RayState state_at(const RaySegment& segment, double s) noexcept {
 SegmentCurve::SegmentCurve(const RaySegment& segment) noexcept
     : segment_(segment), h_(segment.end.length - segment.begin.length) {
   if (h_ <= 0.0) return;
-  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
-                     segment.c_nn_begin);
-  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
-                     segment.c_nn_end);
+  const SegmentEnd a = SegmentEnd::first_of(segment), b = SegmentEnd::last_of(segment);
   range_ = quintic_terms(a.range, b.range, h_);
   depth_ = quintic_terms(a.depth, b.depth, h_);
   q_ = quintic_terms(a.q, b.q, h_);
@@ -141,10 +141,7 @@ double arc_at_range(const RaySegment& segment, double range) noexcept {
   const double begin = segment.begin.range, end = segment.end.range;
   if (h <= 0.0 || begin == end || range == begin) return 0.0;
   if (range == end) return h;
-  const SegmentEnd a(segment.begin, segment.c_begin, segment.c_r_begin, segment.c_z_begin,
-                     segment.c_nn_begin);
-  const SegmentEnd b(segment.end, segment.c_end, segment.c_r_end, segment.c_z_end,
-                     segment.c_nn_end);
+  const SegmentEnd a = SegmentEnd::first_of(segment), b = SegmentEnd::last_of(segment);
   const double sense = end > begin ? 1.0 : -1.0;
   double low = 0.0, high = 1.0, u = (range - begin) / (end - begin);
   for (int i = 0; i < 60; ++i) {  // Newton's method, bracketed
