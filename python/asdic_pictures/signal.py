@@ -20,6 +20,9 @@ class Baseband:
     """Complex envelope of every phone; |values| is the peak envelope, |values|²/2 mean square."""
 
     values: np.ndarray   # [channel, sample] [Pa]
+    # [channel, more] the same before it was cut at the record's end: a circle in time, with nothing
+    # at the ends of its spectrum
+    circle: np.ndarray
     rate: float          # [Hz]
     carrier: float       # [Hz]
     start: float         # time of the first sample [s]
@@ -103,12 +106,13 @@ def baseband(channels, sample_rate: float, carrier: float, width: float,
                                     * spectrum[kept_bins] * 2.0 / padded * m)
         rate = m * sample_rate / padded
         samples = max(int(np.ceil(n / sample_rate * rate)), 4)   # windows need a few
-        rows.append(np.fft.ifft(kept)[: min(samples, m)])
+        rows.append(np.fft.ifft(kept))
     carrier_bin = centre * spacing
-    envelope = np.array(rows) if rows else np.zeros((0, 0), complex)
+    circle = np.array(rows) if rows else np.zeros((0, 0), complex)
     # rfft's phase counts from the first sample; the carrier's, from t = 0
-    return Baseband(envelope * np.exp(-2j * np.pi * carrier_bin * start), rate, carrier_bin, start,
-                    width, n / sample_rate, least)
+    circle = circle * np.exp(-2j * np.pi * carrier_bin * start)
+    return Baseband(circle[:, : min(samples, m)], circle, rate, carrier_bin, start, width,
+                    n / sample_rate, least)
 
 
 def band_width(bandwidth: float, carrier: float, doppler_span: float, duration: float) -> float:
@@ -213,37 +217,27 @@ def beam_power(b: Baseband, phones, looks, speed: float, times):
 
     Conventional, equal weights. A plane wave along u reaches the phone at x with the delay u·x/c (x
     from the array's centre), so the beam is y(f) = 1/N Σ p(f)·exp(+i2πf u·x/c), u = −look. The
-    factor is taken at a few frequencies, and linearly between them (at 1/16 of a turn, 2 % off at
-    most): sharp steps would smear a loud start over the whole record.
+    factor is exact at every frequency, and the spectrum that of the record before it was cut: a
+    kink, or a step at the ends of the band, would smear a loud sound over the whole record.
     """
     x = phones - phones.mean(axis=0)
     delay = -(looks @ x.T) / speed                                           # [beam, phone] [s]
-    # zeros behind, so that a loud start does not wrap round into the end
-    m = fast_length(b.values.shape[1] + int(np.ceil(FILTER_LENGTH / b.width * b.rate)))
-    spectrum = np.fft.fft(b.values, m, axis=1)
-    f = np.fft.fftfreq(m, 1.0 / b.rate)
-    nodes = phase_nodes(b, np.ptp(delay))
-    place = np.clip(np.interp(f, nodes, np.arange(len(nodes))), 0, len(nodes) - 1)
+    m = b.circle.shape[1]
+    spectrum = np.fft.fftshift(np.fft.fft(b.circle, axis=1), axes=1)
+    f = b.carrier + np.fft.fftshift(np.fft.fftfreq(m, 1.0 / b.rate))
     out = np.empty((len(looks), len(times) - 1))
-    # 32 beams at a time keep memory small
+    # 32 beams and 64 frequencies at a time keep memory small
     for first in range(0, len(looks), 32):
         mine = slice(first, first + 32)
-        beam = np.zeros((len(delay[mine]), m), complex)
-        for k, node in enumerate(nodes):
-            # 1 at the node, 0 at its neighbours
-            share = np.maximum(1.0 - np.abs(place - k), 0.0)
-            bins = np.flatnonzero(share)
-            weights = np.exp(2j * np.pi * (b.carrier + node) * delay[mine]) / len(phones)
-            beam[:, bins] += weights @ (share[bins] * spectrum[:, bins])
-        heard = np.fft.ifft(beam, axis=1)[:, : b.values.shape[1]]
+        further = np.exp(2j * np.pi * (f[:64] - f[0])[:, None, None] * delay[mine])
+        beam = np.empty((len(delay[mine]), m), complex)
+        for low in range(0, m, 64):
+            bins = slice(low, min(low + 64, m))
+            weights = further[: bins.stop - low] * np.exp(2j * np.pi * f[low] * delay[mine])
+            beam[:, bins] = (weights @ spectrum[:, bins].T[:, :, None])[:, :, 0].T / len(phones)
+        heard = np.fft.ifft(np.fft.ifftshift(beam, axes=1), axis=1)[:, : b.values.shape[1]]
         out[mine] = b.average(0.5 * np.abs(heard) ** 2, times)
     return out
-
-
-def phase_nodes(b: Baseband, longest: float):
-    """Frequencies at most 1/16 of a turn apart over the delay `longest`, across the band. → [Hz]"""
-    pieces = int(np.clip(np.ceil(1.25 * b.width * longest * 16.0), 1, 400))
-    return np.linspace(-0.625, 0.625, pieces + 1) * b.width
 
 
 # ---------------------------------------------------------------- spectra
