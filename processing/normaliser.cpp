@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "core/error.h"
+#include "core/check_settings.h"
 
 namespace asdic::detail {
 namespace {
@@ -25,15 +24,7 @@ double cfar_multiplier(double false_alarm_probability, double cells) {
 
 BackgroundEstimator::BackgroundEstimator(const NormaliserSettings& settings, double cell)
     : settings_(settings) {
-  const auto require = [](bool good, const char* where, double got, const char* expected) {
-    if (!good) throw InputError({.where = where, .got = std::to_string(got), .expected = expected});
-  };
-  require(settings.guard_cells >= 0.0 && settings.guard_cells < 1e6, "guard_cells",
-          settings.guard_cells, "a number from 0");
-  require(settings.reference_cells >= 1.0 && settings.reference_cells < 1e6, "reference_cells",
-          settings.reference_cells, "a number from 1");
-  require(settings.false_alarm_probability > 0.0 && settings.false_alarm_probability < 1.0,
-          "false_alarm_probability", settings.false_alarm_probability, "between 0 and 1");
+  check_settings(settings);
   guard_ = static_cast<std::size_t>(std::ceil(settings.guard_cells * cell));
   reference_ = static_cast<std::size_t>(std::max(1.0, std::round(settings.reference_cells * cell)));
   multiplier_.push_back(std::numeric_limits<float>::infinity());

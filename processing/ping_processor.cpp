@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/check_settings.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "processing/listening_band.h"
@@ -73,8 +74,8 @@ PingProcessor::PingProcessor(Scenario scenario, std::vector<Replica> replicas,
   const auto require = [](bool good, const char* where, double got, const char* expected) {
     if (!good) throw InputError({.where = where, .got = std::to_string(got), .expected = expected});
   };
-  require(settings_.max_speed >= 0.0 && settings_.max_speed < 700.0, "max_speed",
-          settings_.max_speed, "a speed from 0 to 700 m/s");
+  check_settings(settings_);
+  check_settings(settings_.tracker);
   require(settings_.detector.lowest_elevation <= settings_.detector.highest_elevation, "elevations",
           degrees(settings_.detector.lowest_elevation), "no more than the highest");
   require(settings_.tracker.start_hits >= 1 &&
