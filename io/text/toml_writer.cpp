@@ -6,27 +6,11 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "core/utf8.h"
 #include "io/text/toml_value.h"
 
 namespace asdic::detail {
 namespace {
-
-/// Bytes of the UTF-8 character that begins a text; 0 if none does.
-std::size_t utf8_length(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text[0]);
-  const std::size_t length = first < 0xc2   ? 0
-                             : first < 0xe0 ? 2
-                             : first < 0xf0 ? 3
-                             : first < 0xf5 ? 4
-                                            : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
-  const auto second = static_cast<unsigned char>(text[1]);
-  const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
-  const bool surrogate = first == 0xed && second >= 0xa0, beyond = first == 0xf4 && second >= 0x90;
-  return overlong || surrogate || beyond ? 0 : length;
-}
 
 /// A basic string of TOML. Bytes that are not UTF-8 are taken as Latin-1, as old files have them.
 std::string toml_quoted(std::string_view text) {
@@ -41,7 +25,7 @@ std::string toml_quoted(std::string_view text) {
     } else if (c < 0x80) {
       result += static_cast<char>(c);
     } else {
-      const std::size_t length = utf8_length(text.substr(i));
+      const std::size_t length = first_character(text.substr(i)).bytes;
       if (length == 0) {
         result += {static_cast<char>(0xc0 | (c >> 6)), static_cast<char>(0x80 | (c & 63))};
       } else {
