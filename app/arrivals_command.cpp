@@ -29,13 +29,11 @@ struct ArrivalsOptions {
   std::string output;
 };
 
-/// A fault of what was asked for, told of the option that says it: "receiver_depth" is
-/// --receiver-depth.
-InputError told_of_option(const InputError& error) {
+/// The same of a receiver, whose depth is --receiver-depth.
+InputError told_of_receiver(const InputError& error) {
   InputFault fault = error.fault();
-  std::replace(fault.where.begin(), fault.where.end(), '_', '-');
-  fault.where = "--" + fault.where;
-  return InputError(std::move(fault));
+  if (fault.where == "depth") fault.where = "receiver_depth";
+  return told_of_option(InputError(std::move(fault)));
 }
 
 /// From the platform's depth (or another) to any depth and range.
@@ -52,7 +50,7 @@ Leg to_receiver(const PingSimulator& simulator, const ArrivalsOptions& options) 
   try {
     return leg_to(simulator, options.ping, asked);
   } catch (const InputError& error) {
-    throw told_of_option(error);
+    throw told_of_receiver(error);
   }
 }
 

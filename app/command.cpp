@@ -41,6 +41,16 @@ std::string limits_of(const Quantity& q) {
 
 }  // namespace
 
+InputError told_of_option(const InputError& error) {
+  InputFault fault = error.fault();
+  const bool is_argument = std::all_of(fault.where.begin(), fault.where.end(),
+                                       [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+  if (!is_argument) return error;
+  std::replace(fault.where.begin(), fault.where.end(), '_', '-');
+  fault.where = "--" + fault.where;
+  return InputError(std::move(fault));
+}
+
 Check above_zero() {
   return check_of({[](const std::string& text) {
                      const double value = std::strtod(text.c_str(), nullptr);

@@ -17,6 +17,10 @@ class Option;
 class Validator;
 }  // namespace CLI
 
+namespace asdic::detail {
+class InputError;
+}
+
 namespace asdic::detail::app {
 
 /// What the command line asked for. \return the exit status
@@ -39,6 +43,10 @@ using Check = std::shared_ptr<const CLI::Validator>;
 
 /// A number of this kind: "found 0, expected a probability above 0 up to 0.5".
 [[nodiscard]] Check number_of(const Quantity& quantity);
+
+/// A fault of an argument, told of the option that says it: "source_depth" is --source-depth. What
+/// is a fault of a file or of a setting stays as it is.
+[[nodiscard]] InputError told_of_option(const InputError& error);
 
 /// A handle of one option. Its methods say more about it, and return it.
 class Option {

@@ -15,6 +15,7 @@
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
+#include "raytrace/ocean/depth_in_water.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/propagation.h"
 
@@ -49,11 +50,10 @@ void check(const RaysOptions& options) {
       throw InputError({.where = "--elevations, --from, --to",
                         .got = fmt::format("{} degrees", elevation),
                         .expected = "an angle between -90 and 90 degrees, both excluded"});
-  constexpr double longest = 2e7;  // half way round the Earth [m]
-  if (options.range && !(*options.range > 0.0 && *options.range <= longest))
+  if (options.range && !traced_range.holds(*options.range))
     throw InputError({.where = "--range",
                       .got = fmt::format("{} m", *options.range),
-                      .expected = "a range above 0 m and at most 20000 km"});
+                      .expected = traced_range.expected()});
 }
 
 /// Launch elevations [rad]: the command line's, and what it leaves open as [run.fan] has it in a
@@ -110,13 +110,10 @@ RaysResult read(const RaysOptions& options, bool as_run) {
                       .got = fmt::format("{} depths", sources.size()),
                       .expected = "one, or --source-depth, or -o NAME.ray, which takes all"});
   const Environment& ocean = result.run_case.environment;
-  const double top = ocean.surface.depth_at(0.0), bottom = ocean.bottom.depth_at(0.0);
   for (const double depth : sources)
-    if (!(depth >= top && depth <= bottom))
-      throw InputError(
-          {.where = options.depth ? "--source-depth" : options.scenario.path + ": run.source.depth",
-           .got = fmt::format("{} m", depth),
-           .expected = fmt::format("a depth between {} and {} m", top, bottom)});
+    depth_in_water(ocean,
+                   options.depth ? "--source-depth" : options.scenario.path + ": run.source.depth",
+                   depth);
   return result;
 }
 
@@ -202,7 +199,7 @@ void add_rays_command(Program& program) {
             .type_name("DEG");
         command.add_option("--count", options->count, "number of rays; default: 41, or the run's")
             .type_name("N")
-            .check(between(1, 100000));
+            .check(between(1, most_traced_rays));
         command
             .add_option("--elevations", options->elevations,
                         "these elevations instead, e.g. --elevations -5,0,5 [deg]")
@@ -226,7 +223,7 @@ void add_rays_command(Program& program) {
             .add_option("--bounces", options->bounces,
                         "end a ray after so many bounces; default: 100, or as a run of rays does")
             .type_name("N")
-            .check(between(0, 100000));
+            .check(between(0, most_traced_bounces));
         command.add_flag("--json", options->json, "print JSON (docs/formats/rays.md)");
         command
             .add_option(

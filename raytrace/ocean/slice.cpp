@@ -6,7 +6,7 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double across = 1e-9;  // |cos β| below which a line does not get along the transect
+constexpr double almost_across = 1e-9;  // |cos β| below which a line does not get along the transect
 
 /// What a section says of one place: straight lines between the depths of its grid.
 SoundSpeedProfile profile_at(const SoundSpeedSection& section, double x) {
@@ -30,7 +30,7 @@ SoundSpeedSection section_along(const SoundSpeedSection& section, double x0, dou
 
 Boundary boundary_along(const Boundary& boundary, double x0, double cos_beta) {
   if (!boundary.shape) return boundary;
-  if (std::abs(cos_beta) < across)
+  if (std::abs(cos_beta) < almost_across)
     return {.depth = boundary.depth_at(x0),
             .material = boundary.material_at(x0),
             .shape = {},
@@ -51,7 +51,7 @@ Environment slice(const Environment& environment, double x0, double cos_beta) {
   if (environment.section) {
     plane.water = profile_at(*environment.section, x0);
     plane.section.reset();
-    if (std::abs(cos_beta) >= across)
+    if (std::abs(cos_beta) >= almost_across)
       plane.section = section_along(*environment.section, x0, cos_beta);
   }
   return plane;

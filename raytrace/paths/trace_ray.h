@@ -1,8 +1,14 @@
 #pragma once
+#include "core/quantity.h"
 #include "raytrace/cases/ray_path.h"
 #include "raytrace/ocean/environment.h"
 
 namespace asdic::detail {
+
+/// What a fan of rays may be asked for: half way round the Earth, and no more than can be read.
+inline constexpr Quantity traced_range{
+    .noun = "range", .unit = "m", .low = 0.0, .high = 2e7, .above = true};
+inline constexpr int most_traced_rays = 100'000, most_traced_bounces = 100'000;
 
 /// Traces one ray out to a range, with points at most `depth_step` apart in depth. It ends early
 /// after `max_bounces`, or 20 000 turning points (almost along a kink). In an ocean that is not

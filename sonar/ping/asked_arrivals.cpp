@@ -3,24 +3,26 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/quantities.h"
 #include "core/text.h"
+#include "raytrace/ocean/depth_in_water.h"
+#include "raytrace/paths/trace_ray.h"
 #include "sonar/echoes/echo.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {
-namespace {
 
-/// A depth that was asked for. \throws InputError unless it lies in the water at that range
-double depth_in_water(const Environment& plane, const char* what, double depth, double range) {
-  const double top = plane.surface.depth_at(range), bottom = plane.bottom.depth_at(range);
-  if (depth >= top && depth <= bottom) return depth;
-  throw InputError(
-      {.where = what,
-       .got = to_text(depth) + " m",
-       .expected = "a depth between " + to_text(top) + " and " + to_text(bottom) + " m"});
+void AskedReceiver::check() const {
+  const auto hold = [](const char* what, const std::optional<double>& value, const Quantity& must) {
+    if (value && !must.holds(*value))
+      throw InputError({.where = what,
+                        .got = to_text(*value) + " " + std::string(must.unit),
+                        .expected = must.expected()});
+  };
+  hold("range", range, {.noun = "range", .unit = "m", .low = 0.0, .high = traced_range.high});
+  hold("bearing", bearing, {.noun = "bearing", .unit = "rad"});
+  hold("frequency", frequency, quantity::frequency);
 }
-
-}  // namespace
 
 Vec3 source_of(const PingSimulator& simulator, int ping) {
   if (ping < 1 || ping > simulator.pings())
@@ -32,6 +34,7 @@ Vec3 source_of(const PingSimulator& simulator, int ping) {
 }
 
 Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver) {
+  receiver.check();
   const Scenario& scenario = simulator.scenario();
   const Vec3 platform = source_of(simulator, ping);
   const PropagationPaths& paths = simulator.paths();
@@ -41,9 +44,8 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
   const auto plane = paths.solver(paths.plane(platform, bearing));
   Leg leg{.kind = Leg::Kind::source_to_receiver, .bearing = bearing, .range = receiver.range};
   const double from = depth_in_water(plane->environment(), "source_depth",
-                                     receiver.source_depth.value_or(platform.z()), 0.0);
-  const double to =
-      depth_in_water(plane->environment(), "receiver_depth", receiver.depth, receiver.range);
+                                     receiver.source_depth.value_or(platform.z()));
+  const double to = depth_in_water(plane->environment(), "depth", receiver.depth, receiver.range);
   const double frequency = receiver.frequency.value_or(simulator.pulse().centre_frequency());
   const Vec3 source(platform.x(), platform.y(), from),
       end(platform.x() + receiver.range * std::sin(bearing),

@@ -14,6 +14,9 @@ struct AskedReceiver {
   std::optional<double> source_depth{};  ///< [m]; none: the transmitter's
   std::optional<double> bearing{};       ///< [rad]; none: along the transect, or north
   std::optional<double> frequency{};     ///< of the losses [Hz]; none: the pulse's centre
+
+  /// What needs no ocean. \throws InputError ("range", "bearing", "frequency")
+  void check() const;
 };
 
 /// Where the transmitter of a ping is when it sends. \param ping  from 1
@@ -21,7 +24,7 @@ struct AskedReceiver {
 [[nodiscard]] Vec3 source_of(const PingSimulator& simulator, int ping);
 
 /// Eigenrays from where a ping is sent to any depth and range.
-/// \throws InputError ("ping", "source_depth", "receiver_depth") for a place out of the water
+/// \throws InputError ("ping", "range", "depth", "source_depth", "bearing", "frequency")
 [[nodiscard]] Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver);
 
 /// Eigenrays of a ping to the targets and from them to the arrays.
