@@ -96,9 +96,9 @@ int process(const ProcessOptions& options) {
     std::vector<Replica> replicas = recordings.replicas();
     const ProcessingSettings settings = settings_of(options, replicas);
     first = replicas.front();
-    const PingProcessor processor(recordings.scenario(), std::move(replicas), settings);
     const int count = options.ping ? 1 : static_cast<int>(recordings.pings());
     try {
+      const PingProcessor processor(recordings.scenario(), std::move(replicas), settings);
       ProgressBar bar("ping", count, !options.quiet);
       until_interrupted([&] {
         run = process_pings(
@@ -108,6 +108,8 @@ int process(const ProcessOptions& options) {
     } catch (const Interrupted&) {
       throw RunError("interrupted; " + output +
                      (output == options.file ? " is as it was" : " was not written"));
+    } catch (const InputError& error) {
+      throw told_of_option(error);
     }
     if (!options.quiet) warn(run.warnings);
     run.options = told(settings);

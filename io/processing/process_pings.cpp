@@ -138,7 +138,7 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
     last_end = std::max(last_end, recordings.end(row));
   if (const double from = processor.settings().detector.first_time.value_or(0.0); from >= last_end)
     throw InputError(
-        {.where = "--from",
+        {.where = "from",
          .got = six_digits(from) + " s",
          .expected = "a time before the record's end, " + six_digits(last_end) + " s"});
   for (std::size_t row = first; row < end; ++row) {

@@ -154,10 +154,12 @@ void PingRecordings::read_direct_sound() {
 std::size_t PingRecordings::row_of(int number) const {
   const auto at = std::find(numbers_.begin(), numbers_.end(), number);
   if (at == numbers_.end())
-    throw InputError({.where = "--ping",
+    throw InputError({.where = "ping",
                       .got = std::to_string(number),
-                      .expected = "a ping from " + std::to_string(numbers_.front()) + " to " +
-                                  std::to_string(numbers_.back())});
+                      .expected = numbers_.size() == 1
+                                      ? std::to_string(numbers_[0]) + ", the file's only ping"
+                                      : "a ping from " + std::to_string(numbers_.front()) + " to " +
+                                            std::to_string(numbers_.back())});
   return static_cast<std::size_t>(at - numbers_.begin());
 }
 

@@ -28,7 +28,7 @@ class PingRecordings final : public ReceivedPings {
   [[nodiscard]] std::size_t pings() const noexcept override { return numbers_.size(); }
   /// Number of the ping in a row, from 1. \param row  from 0
   [[nodiscard]] int number(std::size_t row) const noexcept { return numbers_[row]; }
-  /// The row of a ping. \throws InputError ("--ping") if there is none
+  /// The row of a ping. \throws InputError ("ping") if there is none
   [[nodiscard]] std::size_t row_of(int number) const override;
   [[nodiscard]] double ping_time(std::size_t row) const noexcept override { return times_[row]; }
   [[nodiscard]] int transmitter(std::size_t row) const noexcept override {
