@@ -32,6 +32,26 @@ std::string six_digits(double value) {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
+/// What a user should know of a record with next to no noise: the threshold is relative to a
+/// background of rounding and of the filters' own tails, and these are no Rayleigh background.
+/// Empty where all that was found is within what a recorder of 20 bits takes.
+std::string rounding(const ProcessedArray& made, const ArrayRecording& received) {
+  constexpr double span_db = 120.0;
+  float loudest = 0.0F;
+  for (const float sample : received.pressure) loudest = std::max(loudest, std::abs(sample));
+  for (const std::complex<float> sample : received.envelope)
+    loudest = std::max(loudest, std::abs(sample));
+  const double faintest = db_from_amplitude(static_cast<double>(loudest) / micropascal) - span_db;
+  const std::vector<Detection>& all = made.result.detections;
+  const auto faint = std::count_if(all.begin(), all.end(),
+                                   [&](const Detection& d) { return d.level_db < faintest; });
+  if (faint == 0) return "";
+  return "ping " + std::to_string(received.ping) + ", array " + std::to_string(received.array) +
+         ": " + std::to_string(faint) + " of " + std::to_string(all.size()) +
+         " detections are more than 120 dB below the loudest sample: with so little noise in the "
+         "record, rounding and the filters' own tails stand out of the background";
+}
+
 /// The target that most of a track's detections are of.
 int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>& pings) {
   std::map<int, int> votes;
@@ -157,6 +177,8 @@ ProcessedRun process_pings(const ReceivedPings& recordings, const PingProcessor&
       if (const std::string bends = bending(processor, made.array, received, recordings.end(row));
           !bends.empty())
         run.warnings.push_back(bends);
+      if (const std::string faint = rounding(made.array, received); !faint.empty())
+        run.warnings.push_back(faint);
       for (std::size_t i = 0; i < echoes.size(); ++i)
         echoes[i].threshold_db = made.array.result.thresholds_db[i];
       made.truth = recordings.targets(row, echoes);
