@@ -31,11 +31,19 @@ void require_one(const ExportOptions& options) {
 int export_file(const ExportOptions& options) {
   require_one(options);
   const PingFile file(options.file);
-  if (options.ping && static_cast<std::size_t>(*options.ping) > file.pings())
-    throw InputError({.where = "--ping",
-                      .got = std::to_string(*options.ping),
-                      .expected = fmt::format("a ping from 1 to {}", file.pings())});
-  const std::size_t first = options.ping ? static_cast<std::size_t>(*options.ping) - 1 : 0;
+  if (file.pings() == 0)
+    throw InputError({.where = options.file, .got = "no ping", .expected = "at least one"});
+  std::size_t first = 0;
+  if (options.ping) {
+    const std::vector<int> numbers = file.numbers();
+    const auto at = std::find(numbers.begin(), numbers.end(), *options.ping);
+    if (at == numbers.end())
+      throw InputError(
+          {.where = "--ping",
+           .got = std::to_string(*options.ping),
+           .expected = fmt::format("a ping from {} to {}", numbers.front(), numbers.back())});
+    first = static_cast<std::size_t>(at - numbers.begin());
+  }
   const ExportChoice choice{.file = options.file,
                             .folder = options.folder,
                             .first = first,
@@ -43,8 +51,6 @@ int export_file(const ExportOptions& options) {
                             .force = options.force};
   for (std::size_t i = 0; i < file_exports.size(); ++i)
     if (options.wanted[i]) file_exports[i].check(file, choice);
-  if (file.pings() == 0)
-    throw InputError({.where = options.file, .got = "no ping", .expected = "at least one"});
   std::error_code error;
   std::filesystem::create_directories(choice.folder, error);
   if (error) throw RunError(options.folder + ": " + error.message());

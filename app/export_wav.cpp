@@ -19,13 +19,15 @@ void WavExport::check(const PingFile& file, const ExportChoice& choice) {
 
 void WavExport::write(const PingFile& file, const ExportChoice& choice) {
   const std::string stem = choice.file.stem().string();
+  const std::vector<int> numbers = file.numbers();
   for (std::size_t i = choice.first; i < choice.end; ++i) {
     std::vector<float> pressure;
     for (std::size_t channel = 0; channel < file.channels(); ++channel) {
       const std::vector<float> phone = file.pressure(i, channel);
       pressure.insert(pressure.end(), phone.begin(), phone.end());
     }
-    const std::filesystem::path path = choice.folder / fmt::format("{}_ping{:03}.wav", stem, i + 1);
+    const std::filesystem::path path =
+        choice.folder / fmt::format("{}_ping{:03}.wav", stem, numbers[i]);
     const WavScale scale =
         write_wav(path, pressure, file.channels(), file.sample_rate(), {.force = choice.force});
     print(fmt::format("{}: {}, {} Hz, full scale {:.6g} Pa\n", path.string(),

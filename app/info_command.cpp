@@ -3,6 +3,7 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -28,9 +29,8 @@ std::string attribute(const PingFile& file, const std::string& object, const std
   return file.file().attribute_or(object, key, "unknown");
 }
 
-/// A number of the pulse to six digits: 184.44 and not 184.43999999999997.
-std::string number_of_pulse(const PingFile& file, const std::string& key) {
-  const std::string text = attribute(file, "replica", key);
+/// A number to six digits: 184.44 and not 184.43999999999997; other words as they are.
+std::string to_six_digits(const std::string& text) {
   double value = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   return fault == std::errc() && end == text.data() + text.size() ? fmt::format("{:.6g}", value)
@@ -73,6 +73,36 @@ std::string makers(const PingFile& file) {
          fmt::format("with         {}\n", run("library_versions"));
 }
 
+/// What was sent, by each transmitter that has a ping in the file.
+std::string pulses(const PingFile& file) {
+  std::set<int> senders;
+  if (file.pings() > 0 && file.file().has("transmitter"))
+    for (const std::int32_t sender :
+         file.file().read<std::int32_t>("transmitter", {0}, {file.pings()}))
+      senders.insert(sender);
+  if (senders.empty()) senders = {0};
+  std::string text;
+  for (const int sender : senders) {
+    const std::string replica = sender == 0 ? "replica" : "replica_" + std::to_string(sender);
+    if (!file.file().has(replica)) continue;
+    const auto pulse = [&](const std::string& key) {
+      return to_six_digits(attribute(file, replica, key));
+    };
+    text +=
+        fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",
+                    pulse("kind"), pulse("centre_frequency_hz"), pulse("duration_s"),
+                    pulse("window"), pulse("bandwidth_hz"), pulse("source_level_db"));
+  }
+  return text;
+}
+
+/// Which pings of the schedule the file has, where it does not begin with the first.
+std::string which(const std::vector<int>& numbers) {
+  if (numbers.empty() || numbers.front() == 1) return "";
+  return numbers.size() == 1 ? fmt::format(" (number {})", numbers[0])
+                             : fmt::format(" (numbers {} to {})", numbers.front(), numbers.back());
+}
+
 std::string completeness(const PingFile& file) {
   const std::string requested = attribute(file, "", "pings_requested");
   return file.complete() ? "complete"
@@ -84,10 +114,11 @@ std::string summary(const PingFile& file) {
   constexpr std::size_t most = 40;  // pings: one screen
   if (!file.file().has("summary/present")) return "targets      none\n";
   const auto elevations = file.file().read<double>("elevation_deg");
+  const std::vector<int> numbers = file.numbers();
   Table table(summary_columns());
   for (std::size_t i = 0; i < std::min(most, file.pings()); ++i)
     for (const TargetSummary& target : file.summary(i))
-      table.row(summary_row(static_cast<int>(i) + 1, elevations[i], target));
+      table.row(summary_row(numbers[i], elevations[i], target));
   std::string text = table.text();
   if (file.pings() > most) text += fmt::format("... and {} more pings\n", file.pings() - most);
   return text;
@@ -106,16 +137,12 @@ int info(const std::string& path) {
                     byte_count(static_cast<double>(std::filesystem::file_size(path))),
                     completeness(file)));
   const double rate = file.channels() > 0 && file.file().has("pressure") ? file.sample_rate() : 0.0;
-  print(fmt::format("holds        {}, {}, {} {}samples at {:g} Hz: {:g} s\n",
-                    count_of(file.pings(), "ping"), count_of(file.channels(), "phone"),
-                    file.samples(), file.is_complex() ? "complex " : "", rate,
+  print(fmt::format("holds        {}{}, {}, {} {}samples at {:g} Hz: {:g} s\n",
+                    count_of(file.pings(), "ping"), which(file.numbers()),
+                    count_of(file.channels(), "phone"), file.samples(),
+                    file.is_complex() ? "complex " : "", rate,
                     rate > 0.0 ? static_cast<double>(file.samples()) / rate : 0.0));
-  const auto number = [&](const std::string& key) { return number_of_pulse(file, key); };
-  print(fmt::format("pulse        {}, {} Hz, {} s, window {}, band {} Hz, {} dB re 1 µPa at 1 m\n",
-                    attribute(file, "replica", "kind"), number("centre_frequency_hz"),
-                    number("duration_s"), attribute(file, "replica", "window"),
-                    number("bandwidth_hz"), number("source_level_db")));
-  print(makers(file));
+  print(pulses(file) + makers(file));
   print(fmt::format("scenario     sha256 {}, seed {}\n", root("scenario_sha256"), root("seed")));
   if (file.file().has_attribute("", "overrides"))
     print(fmt::format("changed by   {}\n", root("overrides")));

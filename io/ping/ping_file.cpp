@@ -91,6 +91,11 @@ void PingFileWriter::append(const PingRecord& record) {
   to.output.keep();  // hours of work are not thrown away by an exception
 }
 
+void PingFileWriter::finish_these() {
+  impl_->file.set_attribute("", "pings_requested", static_cast<std::int64_t>(impl_->pings));
+  finish(true);
+}
+
 void PingFileWriter::finish(bool complete) {
   Impl& to = *impl_;
   if (to.finished) throw std::logic_error("a ping file is finished once");
@@ -137,6 +142,10 @@ double PingFile::carrier() const {
 }
 
 bool PingFile::complete() const { return file_.attribute_number("", "complete") == 1.0; }
+
+std::vector<int> PingFile::numbers() const {
+  return pings() == 0 ? std::vector<int>{} : file_.read<std::int32_t>("ping", {0}, {pings()});
+}
 
 std::string PingFile::scenario_text() const { return file_.read_text("scenario"); }
 

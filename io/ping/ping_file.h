@@ -63,6 +63,9 @@ class PingFileWriter {
   void append(const PingRecord& record);
   /// Closes the file and gives it its name. Not complete and without a ping: removes it.
   void finish(bool complete);
+  /// The same of a run that asked for these pings alone: the file tells of no others, and is
+  /// complete.
+  void finish_these();
 
  private:
   struct Impl;
@@ -85,6 +88,8 @@ class PingFile {
   [[nodiscard]] bool is_complex() const noexcept { return components_ == 2; }
   [[nodiscard]] double carrier() const;  ///< [Hz]; 0 for pressure
   [[nodiscard]] bool complete() const;
+  /// [pings] their numbers in the scenario's schedule, from 1
+  [[nodiscard]] std::vector<int> numbers() const;
   [[nodiscard]] std::string scenario_text() const;
 
   /// \param ping, channel  counted from 0   \return [valid samples of the ping] [Pa],

@@ -315,8 +315,11 @@ class PingFile:
         if "pings_requested" in self.file.attrs:
             requested = int(self.attribute("/", "pings_requested"))
         text = self.title or os.path.basename(self.path)
-        if max(requested, self.pings) > 1:
-            text += f" · ping {self.numbers[row]} of {self.simulated.size}"
+        several = max(requested, self.pings) > 1
+        if several or self.numbers[row] > 1:
+            text += f" · ping {self.numbers[row]}"
+        if several and self.numbers[self.simulated].max() == self.simulated.size:
+            text += f" of {self.simulated.size}"
         if self.stopped:
             text += f" (stopped; {requested} were asked for)"
         return text + self.of_array

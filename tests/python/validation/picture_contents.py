@@ -70,6 +70,19 @@ class History(Case):
             self.assertEqual(len(fig.axes), panels)
 
 
+class Titles(Case):
+    def test_a_ping_is_called_by_its_number(self):
+        def later(first):
+            def change(f):
+                f["ping"][:] += first - 1
+            return change
+        for pings, first, told in ((1, 1, ""), (1, 2, " · ping 2"), (2, 1, " · ping 1 of 2"),
+                                   (2, 3, " · ping 3")):
+            with self.subTest(pings=pings, first=first):
+                data = self.look(later(first), pings=pings, elevations=[8.0])
+                self.assertEqual(data.heading(data.choose_ping(None)), data.title + told)
+
+
 class Colours(Case):
     def test_a_loud_start_leaves_the_rest_readable(self):
         """1 % of the cells at 175 dB over noise at 40 ± 3 dB and an echo at 70 dB: the floor is a
