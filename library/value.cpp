@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/utf8.h"
 #include "io/text/toml_writer.h"
 #include "library/access.h"
 
@@ -15,6 +16,12 @@ TomlValue list_of(const Items& items) {
   TomlValue::Array array;
   for (const auto& item : items) array.push_back({.data = item, .origin = set_in_cpp});
   return {.data = std::move(array), .origin = set_in_cpp};
+}
+
+/// A text, or a key. \throws InputError for what no file can hold
+std::string utf8(std::string_view text) {
+  if (detail::is_utf8(text)) return std::string(text);
+  throw InputError("value", '"' + std::string(text) + '"', "a text in UTF-8");
 }
 
 template <class T>
@@ -51,14 +58,20 @@ const TomlValue& Access::given(const Value& value) {
 Value::Value() = default;
 Value::Value(bool flag) : Value(Access::made({.data = flag, .origin = set_in_cpp})) {}
 Value::Value(double number) : Value(Access::made({.data = number, .origin = set_in_cpp})) {}
-Value::Value(std::int64_t whole, Whole)
-    : Value(Access::made({.data = whole, .origin = set_in_cpp})) {}
-Value::Value(const char* text) : Value(std::string(text)) {}
-Value::Value(std::string text)
-    : Value(Access::made({.data = std::move(text), .origin = set_in_cpp})) {}
+Value::Value(Whole whole) : Value(Access::made({.data = whole.number, .origin = set_in_cpp})) {
+  if (whole.above_zero && whole.number < 0)  // it was unsigned, and wrapped
+    throw InputError("value", std::to_string(static_cast<std::uint64_t>(whole.number)),
+                     "a whole number of at most 9223372036854775807");
+}
+Value::Value(const char* text) {
+  if (text == nullptr) throw InputError("value", "a null pointer", "a text");
+  *this = std::string(text);
+}
+Value::Value(std::string text) : Value(Access::made({.data = utf8(text), .origin = set_in_cpp})) {}
 Value::Value(const std::vector<double>& numbers) : Value(Access::made(list_of(numbers))) {}
 Value::Value(const std::array<double, 3>& vector) : Value(Access::made(list_of(vector))) {}
-Value::Value(const std::vector<std::string>& texts) : Value(Access::made(list_of(texts))) {}
+Value::Value(const std::vector<std::string>& texts)
+    : Value(std::vector<Value>(texts.begin(), texts.end())) {}
 Value::Value(const std::vector<Value>& items) {
   TomlValue::Array array;
   for (const Value& item : items) array.push_back(Access::given(item));
@@ -123,7 +136,7 @@ std::vector<std::string> Value::keys() const {
 Value& Value::set(std::string_view key, const Value& value) {
   TomlValue table = Access::tree(*this);
   static_cast<void>(held<TomlValue::Table>(table, "a table"));
-  detail::set_key(table, std::string(key), Access::given(value));
+  detail::set_key(table, utf8(key), Access::given(value));
   return *this = Access::made(std::move(table));
 }
 

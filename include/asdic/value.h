@@ -25,7 +25,8 @@
 
 namespace asdic {
 
-/// Cheap to copy: copies share what they hold until one is changed.
+/// Cheap to copy: copies share what they hold until one is changed. One that was moved from is
+/// nothing. Texts and keys are UTF-8.
 class ASDIC_API Value {
  public:
   enum class Kind { nothing, flag, whole, number, text, list, table };
@@ -33,9 +34,11 @@ class ASDIC_API Value {
   Value();  ///< nothing
   Value(bool flag);
   Value(double number);
+  /// \throws InputError for one of 2⁶³ or more, which no file can hold
   template <std::integral T>
-  Value(T whole) : Value(static_cast<std::int64_t>(whole), Whole{}) {}
-  Value(const char* text);
+  requires(sizeof(T) <= sizeof(std::int64_t)) Value(T whole)
+      : Value(Whole{static_cast<std::int64_t>(whole), whole > T{}}) {}
+  Value(const char* text);  ///< \throws InputError for what is no UTF-8
   Value(std::string text);
   Value(const std::vector<double>& numbers);
   Value(const std::array<double, 3>& vector);
@@ -68,8 +71,11 @@ class ASDIC_API Value {
 
  private:
   friend struct Access;
-  struct Whole {};
-  Value(std::int64_t whole, Whole);
+  struct Whole {
+    std::int64_t number;
+    bool above_zero;
+  };
+  Value(Whole whole);
   std::shared_ptr<const Data> data_;
 };
 
