@@ -1,8 +1,10 @@
 #include "asdic/arrivals.h"
 
 #include "core/units.h"
+#include "library/arguments.h"
 #include "library/physics.h"
 #include "library/propagation.h"
+#include "raytrace/ocean/depth_in_water.h"
 #include "sonar/ping/asked_arrivals.h"
 
 namespace asdic {
@@ -37,15 +39,29 @@ std::vector<Arrival> shown(const detail::Arrivals& arrivals) {
   return result;
 }
 
-/// Of a scenario that is an ocean and a run.
+/// Of a scenario that is an ocean and a run: from its source along its transect.
 std::vector<Arrival> arrivals_of_run(const Scenario& scenario, const Receiver& receiver) {
+  if (receiver.bearing)
+    throw InputError("receiver.bearing", "one, and a scenario without a platform",
+                     "a sonar, which is somewhere on the map");
+  require("receiver.ping", receiver.ping, 1, 1);
   std::vector<std::string> notes;
   detail::PropagationCase run = run_case_of(scenario, notes);
   run.task = detail::Task::arrivals;
-  run.receivers = {.depths = {receiver.depth}, .ranges = {receiver.range}};
-  run.source_depths = {receiver.source_depth.value_or(run.source_depths.front())};
+  run.source_depths = {detail::depth_in_water(
+      run.environment, "source_depth", receiver.source_depth.value_or(run.source_depths.front()))};
+  run.receivers = {
+      .depths = {detail::depth_in_water(run.environment, "depth", receiver.depth, receiver.range)},
+      .ranges = {receiver.range}};
   run.frequency = receiver.frequency.value_or(run.frequency);
   return shown(run_of(scenario, run).arrivals.front());
+}
+
+/// A fault of what was asked for, told of the argument that has it: "depth" is "receiver.depth".
+detail::InputError told_of_receiver(const detail::InputError& error) {
+  for (const char* field : {"range", "depth", "source_depth", "bearing", "frequency", "ping"})
+    if (error.fault().where == field) return error.inside("receiver");
+  return error;
 }
 
 }  // namespace
@@ -54,15 +70,20 @@ double Arrival::level_db() const noexcept { return detail::db_from_amplitude(std
 
 std::vector<Arrival> arrivals(const Scenario& scenario, const Receiver& receiver) {
   return translated([&] {
-    if (!detail::has_sonar(Access::data(scenario).document))
-      return arrivals_of_run(scenario, receiver);
-    return shown(detail::leg_to(Access::physics(scenario).simulator(), receiver.ping,
-                                {.range = receiver.range,
-                                 .depth = receiver.depth,
-                                 .source_depth = receiver.source_depth,
-                                 .bearing = receiver.bearing,
-                                 .frequency = receiver.frequency})
-                     .arrivals);
+    const detail::AskedReceiver asked{.range = receiver.range,
+                                      .depth = receiver.depth,
+                                      .source_depth = receiver.source_depth,
+                                      .bearing = receiver.bearing,
+                                      .frequency = receiver.frequency};
+    try {
+      asked.check();
+      if (!detail::has_sonar(Access::data(scenario).document))
+        return arrivals_of_run(scenario, receiver);
+      return shown(
+          detail::leg_to(Access::physics(scenario).simulator(), receiver.ping, asked).arrivals);
+    } catch (const detail::InputError& error) {
+      throw told_of_receiver(error);
+    }
   });
 }
 

@@ -7,24 +7,32 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "io/scenario/scenario_reader.h"
+#include "library/arguments.h"
+#include "raytrace/ocean/depth_in_water.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/paths/trace_ray.h"
 
 namespace asdic {
 namespace {
 
+/// An elevation in which rays get anywhere. \throws InputError
+double launchable(const std::string& argument, double elevation) {
+  if (std::abs(elevation) < 0.5 * detail::pi) return elevation;
+  throw InputError(argument, detail::to_text(elevation) + " rad",
+                   "an angle between -pi/2 and pi/2, both excluded");
+}
+
 /// Launch elevations of a fan [rad].
 std::vector<double> elevations_of(const Fan& fan) {
-  std::vector<double> result = fan.elevations;
-  if (result.empty())
-    for (int i = 0; i < fan.count; ++i)
-      result.push_back(fan.count == 1
-                           ? fan.lowest
-                           : std::lerp(fan.lowest, fan.highest, double(i) / (fan.count - 1)));
-  for (const double elevation : result)
-    if (!(std::abs(elevation) < 0.5 * detail::pi))
-      throw InputError("elevation", detail::to_text(elevation) + " rad",
-                       "an angle between -pi/2 and pi/2, both excluded");
+  for (std::size_t i = 0; i < fan.elevations.size(); ++i)
+    launchable("fan.elevations[" + std::to_string(i) + "]", fan.elevations[i]);
+  if (!fan.elevations.empty()) return fan.elevations;
+  const double low = launchable("fan.lowest", fan.lowest),
+               high = launchable("fan.highest", fan.highest);
+  require("fan.count", fan.count, 1, detail::most_traced_rays);
+  std::vector<double> result;
+  for (int i = 0; i < fan.count; ++i)
+    result.push_back(fan.count == 1 ? low : std::lerp(low, high, double(i) / (fan.count - 1)));
   return result;
 }
 
@@ -81,15 +89,14 @@ detail::PropagationResult run_of(const Scenario& scenario,
 
 std::vector<Ray> rays(const Scenario& scenario, const Fan& fan) {
   return translated([&] {
+    const std::vector<double> elevations = elevations_of(fan);
+    require("fan.range", fan.range, detail::traced_range);
+    require("fan.bounces", fan.bounces, 0, detail::most_traced_bounces);
     const Plane plane = plane_of(scenario);
-    const double depth = fan.source_depth.value_or(plane.source_depth),
-                 top = plane.ocean.surface.depth_at(0.0), bottom = plane.ocean.bottom.depth_at(0.0);
-    if (!(depth >= top && depth <= bottom))
-      throw InputError(
-          "source_depth", detail::to_text(depth) + " m",
-          "a depth between " + detail::to_text(top) + " and " + detail::to_text(bottom) + " m");
+    const double depth = detail::depth_in_water(plane.ocean, "fan.source_depth",
+                                                fan.source_depth.value_or(plane.source_depth));
     std::vector<Ray> result;
-    for (const double elevation : elevations_of(fan))
+    for (const double elevation : elevations)
       result.push_back(
           shown(detail::trace_ray(plane.ocean, depth, elevation, fan.range, 50.0, fan.bounces)));
     return result;
@@ -108,7 +115,11 @@ double Field::loss_db(std::size_t row, std::size_t column, std::size_t source) c
                          ", source " + std::to_string(source),
                      "below " + std::to_string(rows) + ", " + std::to_string(ranges.size()) + ", " +
                          std::to_string(source_depths.size()));
-  const std::complex<double> p = pressure[(source * rows + row) * ranges.size() + column];
+  const std::size_t at = (source * rows + row) * ranges.size() + column;
+  if (at >= pressure.size())
+    throw InputError("pressure", detail::count_of(pressure.size(), "number"),
+                     "one for each receiver of each source");
+  const std::complex<double> p = pressure[at];
   return -detail::db_from_amplitude(std::abs(p));
 }
 

@@ -53,7 +53,7 @@ struct ASDIC_API Arrival {
 
 /// A receiver to ask about.
 struct Receiver {
-  double range = 0.0;                       ///< horizontal, from the source [m]
+  double range = 0.0;                       ///< horizontal, from the source, from 0 [m]
   double depth = 0.0;                       ///< [m]
   std::optional<double> source_depth = {};  ///< [m]; the transmitter's
   std::optional<double> bearing = {};       ///< true [rad]; along the transect, or north
@@ -62,8 +62,17 @@ struct Receiver {
 };
 
 /// Eigenrays to a receiver, sorted by delay; none where no sound comes.
-/// \param scenario  with a sonar. Of one with a [run] alone: source and frequency are the run's
-/// \throws InputError for a place out of the water
+///
+/// Nearer to the vertical than 0.1 m, paths are found at a range of 0.1 m and put upright: angles
+/// and places are those of the range asked for, length, delay and amplitude those of 0.1 m. A path
+/// of length h is then told (0.1 m)²/(2h) too long, 0.05 mm of 100 m. A receiver at the source has
+/// a direct path of 0.1 m.
+///
+/// \param scenario  with a sonar. Of one with a [run] alone: source and frequency are the run's,
+/// there is no bearing, and ping is 1
+///
+/// \throws InputError naming the argument, "receiver.range", for what is no number or lies out of
+/// the water
 [[nodiscard]] ASDIC_API std::vector<Arrival> arrivals(const Scenario& scenario,
                                                       const Receiver& receiver);
 
