@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -47,14 +48,17 @@ struct Access {
 /// A scenario as a file.
 [[nodiscard]] std::string document_text(const Scenario::Data& data);
 
+/// An error of the project's as one of asdic/error.h. \param files  that it may be about
+[[nodiscard]] InputError shown(const detail::InputError& error,
+                               std::initializer_list<std::filesystem::path> files);
+
 /// Does work of the project's, whose errors leave as those of asdic/error.h.
 template <class Work>
-auto translated(const Work& work) {
+auto translated(const Work& work, std::initializer_list<std::filesystem::path> files = {}) {
   try {
     return work();
   } catch (const detail::InputError& error) {
-    const detail::InputFault& fault = error.fault();
-    throw InputError(fault.where, fault.got, fault.expected);
+    throw shown(error, files);
   } catch (const detail::RunError& error) {
     throw RunError(error.what());
   }

@@ -185,10 +185,12 @@ Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Repl
 }  // namespace
 
 Processed process(const std::filesystem::path& file, const Receiving& receiving) {
-  return translated([&] {
-    const detail::PingRecordings recordings(file);
-    return processed(recordings, recordings.replicas(), receiving);
-  });
+  return translated(
+      [&] {
+        const detail::PingRecordings recordings(file);
+        return processed(recordings, recordings.replicas(), receiving);
+      },
+      {file});
 }
 
 Processed process(const std::vector<Ping>& pings, const Receiving& receiving) {

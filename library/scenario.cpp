@@ -1,5 +1,6 @@
 #include "asdic/scenario.h"
 
+#include "core/utf8.h"
 #include "io/scenario/document.h"
 #include "io/scenario/propagation.h"
 #include "io/text/csv_table.h"
@@ -27,10 +28,15 @@ std::shared_ptr<Scenario::Data> changed(const Scenario::Data& data) {
   return copy;
 }
 
+/// The place of a setting. \throws InputError naming its path
 TomlValue& place_at(Scenario::Data& data, std::string_view path) {
-  TomlValue* place = nullptr;
-  translated([&] { place = &detail::value_at(data.document, path, set_in_cpp); });
-  return *place;
+  if (!detail::is_utf8(path)) throw InputError("path", std::string(path), "a text in UTF-8");
+  try {
+    return detail::value_at(data.document, path, set_in_cpp);
+  } catch (const detail::InputError& error) {
+    throw InputError(path.empty() ? "path" : std::string(path), error.fault().got,
+                     error.fault().expected);
+  }
 }
 
 }  // namespace
@@ -61,7 +67,7 @@ Scenario::~Scenario() = default;
 
 Scenario Scenario::read(const std::filesystem::path& file, std::span<const std::string> changes) {
   const std::string text =
-      translated([&] { return detail::read_text_file(file, "a scenario file"); });
+      translated([&] { return detail::read_text_file(file, "a scenario file"); }, {file});
   return Access::parsed(text, file, changes);
 }
 

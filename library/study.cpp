@@ -54,28 +54,32 @@ const std::vector<double>& StudyResult::column(const std::string& name) const {
 
 StudyResult study(const std::filesystem::path& file, const std::filesystem::path& output,
                   const StudyOptions& options) {
-  return translated([&] {
-    const detail::study::Study plan = detail::study::read_study(file, options.changes);
-    const detail::study::Realiser realiser(plan);
-    const detail::study::Work work = detail::study::work_of(plan, realiser);
-    detail::study::StudyRun run{.output = output, .range = {0, plan.realisations}};
-    run.fresh = options.fresh;
-    run.session.made =
-        detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
-    run.session.study_path = std::filesystem::absolute(file).string();
-    if (options.progress)
-      run.progress = [&](const detail::study::Progress& p) { options.progress(p.done, p.total); };
-    const detail::study::StudyOutcome outcome = detail::study::run_study(work, run);
-    if (options.progress) options.progress(outcome.before + outcome.made, outcome.total);
-    const detail::study::StudyFile written(output);
-    StudyResult result = shown(written);
-    answer(plan, written.table(), result);
-    return result;
-  });
+  return translated(
+      [&] {
+        const detail::study::Study plan = detail::study::read_study(file, options.changes);
+        const detail::study::Realiser realiser(plan);
+        const detail::study::Work work = detail::study::work_of(plan, realiser);
+        detail::study::StudyRun run{.output = output, .range = {0, plan.realisations}};
+        run.fresh = options.fresh;
+        run.session.made =
+            detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+        run.session.study_path = std::filesystem::absolute(file).string();
+        if (options.progress)
+          run.progress = [&](const detail::study::Progress& p) {
+            options.progress(p.done, p.total);
+          };
+        const detail::study::StudyOutcome outcome = detail::study::run_study(work, run);
+        if (options.progress) options.progress(outcome.before + outcome.made, outcome.total);
+        const detail::study::StudyFile written(output);
+        StudyResult result = shown(written);
+        answer(plan, written.table(), result);
+        return result;
+      },
+      {file, output});
 }
 
 StudyResult read_study(const std::filesystem::path& output) {
-  return translated([&] { return shown(detail::study::StudyFile(output)); });
+  return translated([&] { return shown(detail::study::StudyFile(output)); }, {output});
 }
 
 }  // namespace asdic

@@ -24,20 +24,22 @@ namespace asdic {
 class ASDIC_API InputError : public std::runtime_error {
  public:
   /// \param where  "deep_ocean.toml:12: environment.bottom.depth", or an argument's name
-  InputError(std::string where, std::string found, std::string expected);
+  /// \param file   with which `where` begins, if it names no line of it
+  InputError(std::string where, std::string found, std::string expected, std::string file = {});
   InputError(const InputError&) = default;
   ~InputError() override;
 
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
   /// The file that is at fault; "" where it is none: the scenario was built in C++.
   [[nodiscard]] std::string file() const;
-  [[nodiscard]] int line() const;         ///< in that file, from 1; 0: not known
-  [[nodiscard]] std::string key() const;  ///< "pulse.duration", or the argument
+  [[nodiscard]] int line() const;  ///< in that file, from 1; 0: not known
+  /// "pulse.duration", or the argument; "" where all of the file is at fault.
+  [[nodiscard]] std::string key() const;
   [[nodiscard]] const std::string& found() const noexcept { return found_; }
   [[nodiscard]] const std::string& expected() const noexcept { return expected_; }
 
  private:
-  std::string where_, found_, expected_;
+  std::string where_, found_, expected_, file_;
 };
 
 /// The world says no: the disk is full, a file is locked.
