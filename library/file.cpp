@@ -50,7 +50,7 @@ detail::Provenance here() {
 struct PingWriter::Data {
   Scenario scenario;
   detail::PingFileWriter writer;
-  int pings = 0, written = 0;
+  int last = 0;  ///< number of the ping written last
 };
 
 PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenario)
@@ -59,24 +59,35 @@ PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenar
         const detail::PingSimulator& simulator = Access::physics(scenario).ready_to_ping();
         detail::PingFileWriter writer(std::move(output), simulator.scenario(), here());
         writer.write_rays(detail::drawn_rays(simulator));
-        return std::unique_ptr<Data>(new Data{scenario, std::move(writer), simulator.pings(), 0});
+        return std::unique_ptr<Data>(new Data{scenario, std::move(writer)});
       })) {}
 PingWriter::PingWriter(PingWriter&&) noexcept = default;
 PingWriter& PingWriter::operator=(PingWriter&&) noexcept = default;
 PingWriter::~PingWriter() = default;
 
+PingWriter::Data& PingWriter::open() {
+  if (!data_)
+    throw InputError("writer", "one that is finished or was moved from", "one that is open");
+  return *data_;
+}
+
 void PingWriter::append(const Ping& ping) {
+  Data& to = open();
   const Ping::Data& made = PingAccess::data(ping);
   if (made.from_file)
     throw InputError("ping", "a ping that was read from a file", "one that was made here");
-  if (made.scenario.to_toml() != data_->scenario.to_toml())
+  if (made.scenario.to_toml() != to.scenario.to_toml())
     throw InputError("ping", "a ping of another scenario", "one of the file's scenario");
-  translated([&] { data_->writer.append(made.record); });
-  ++data_->written;
+  if (ping.number() <= to.last)
+    throw InputError("ping", std::to_string(ping.number()),
+                     "one after ping " + std::to_string(to.last) + ", which is in the file");
+  translated([&] { to.writer.append(made.record); });
+  to.last = ping.number();
 }
 
 void PingWriter::finish() {
-  translated([&] { data_->writer.finish(data_->written == data_->pings); });
+  translated([&] { open().writer.finish_these(); });
+  data_.reset();
 }
 
 void write_ping(const std::filesystem::path& path, const Scenario& scenario, const Ping& ping) {
@@ -91,19 +102,21 @@ void write_pings(const std::filesystem::path& path, const Scenario& scenario) {
   writer.finish();
 }
 
-Ping read_ping(const std::filesystem::path& path, int number) {
-  return translated([&] {
-    const detail::PingRecordings file(path);
-    const std::size_t row = file.row_of(number);
-    std::vector<std::vector<detail::TrueEcho>> truth;
-    for (std::size_t array = 0; array < file.scenario().arrays.size(); ++array)
-      truth.push_back(file.echoes(row, static_cast<int>(array)));
-    return PingAccess::made(scenario_in(file), record_of(file, row), std::move(truth), true);
-  });
+Ping read_ping(const std::filesystem::path& path, std::optional<int> number) {
+  return translated(
+      [&] {
+        const detail::PingRecordings file(path);
+        const std::size_t row = number ? file.row_of(*number) : 0;
+        std::vector<std::vector<detail::TrueEcho>> truth;
+        for (std::size_t array = 0; array < file.scenario().arrays.size(); ++array)
+          truth.push_back(file.echoes(row, static_cast<int>(array)));
+        return PingAccess::made(scenario_in(file), record_of(file, row), std::move(truth), true);
+      },
+      {path});
 }
 
 int pings_in(const std::filesystem::path& path) {
-  return translated([&] { return static_cast<int>(detail::PingFile(path).pings()); });
+  return translated([&] { return static_cast<int>(detail::PingFile(path).pings()); }, {path});
 }
 
 }  // namespace asdic

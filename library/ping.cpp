@@ -63,10 +63,8 @@ Ping PingAccess::made(const Scenario& scenario, detail::PingRecord record,
 }
 
 Ping::Ping(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
-Ping::Ping(const Ping&) = default;
-Ping::Ping(Ping&&) noexcept = default;
-Ping& Ping::operator=(const Ping&) = default;
-Ping& Ping::operator=(Ping&&) noexcept = default;
+Ping::Ping(const Ping&) noexcept = default;
+Ping& Ping::operator=(const Ping&) noexcept = default;
 Ping::~Ping() = default;
 
 int Ping::number() const noexcept { return data_->record.ping; }
@@ -97,8 +95,9 @@ Ping ping(const Scenario& scenario, int number) { return Pinger(scenario).ping(n
 Pinger::Pinger(const Scenario& scenario) : scenario_(scenario) {
   translated([&] { static_cast<void>(Access::physics(scenario_).ready_to_ping()); });
 }
-Pinger::Pinger(Pinger&&) noexcept = default;
-Pinger& Pinger::operator=(Pinger&&) noexcept = default;
+
+Pinger::Pinger(const Pinger&) noexcept = default;
+Pinger& Pinger::operator=(const Pinger&) noexcept = default;
 Pinger::~Pinger() = default;
 
 int Pinger::pings() const noexcept { return Access::physics(scenario_).simulator().pings(); }
@@ -117,6 +116,7 @@ Ping Pinger::ping(int number) const {
 }
 
 void Pinger::run(const std::function<void(const Ping&)>& take) const {
+  if (!take) throw InputError("take", "nothing", "a function that takes the pings");
   translated([&] {
     detail::run_pings(Access::physics(scenario_).simulator(), [&](detail::PingRecord&& record) {
       take(handle_of(scenario_, std::move(record)));

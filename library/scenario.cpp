@@ -59,10 +59,8 @@ Scenario Access::parsed(std::string_view text, const std::filesystem::path& name
 }
 
 Scenario::Scenario() : data_(empty_document()) {}
-Scenario::Scenario(const Scenario&) = default;
-Scenario::Scenario(Scenario&& other) noexcept = default;
-Scenario& Scenario::operator=(const Scenario&) = default;
-Scenario& Scenario::operator=(Scenario&&) noexcept = default;
+Scenario::Scenario(const Scenario&) noexcept = default;
+Scenario& Scenario::operator=(const Scenario&) noexcept = default;
 Scenario::~Scenario() = default;
 
 Scenario Scenario::read(const std::filesystem::path& file, std::span<const std::string> changes) {

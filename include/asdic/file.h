@@ -15,6 +15,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "asdic/export.h"
 #include "asdic/ping.h"
@@ -23,7 +24,8 @@
 namespace asdic {
 
 /// Writes pings as they are made: beside the file under a name of its own, which takes the file's
-/// name by finish(). A file that asdic did not write is not written over.
+/// name by finish(). A file that asdic did not write is not written over. A writer that is finished
+/// or was moved from throws InputError when it is used.
 class ASDIC_API PingWriter {
  public:
   /// \throws InputError if there must be no such file, RunError if there cannot be
@@ -33,12 +35,15 @@ class ASDIC_API PingWriter {
   /// Without finish(): there is no file, and what was written stays beside it for `asdic recover`.
   ~PingWriter();
 
-  /// \param ping  of the writer's scenario, made here   \throws InputError, RunError
+  /// \param ping  of the writer's scenario, made here, after those that were written
+  /// \throws InputError, RunError
   void append(const Ping& ping);
+  /// The pings that are in it are those that were asked for: the file is complete.
   void finish();
 
  private:
   struct Data;
+  Data& open();
   std::unique_ptr<Data> data_;
 };
 
@@ -49,8 +54,11 @@ ASDIC_API void write_ping(const std::filesystem::path& path, const Scenario& sce
 ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario);
 
 /// A ping of a file. Of a continuous record: all that is received of it, over the pings that
-/// follow. \param number  as the file counts, from 1   \throws InputError, RunError
-[[nodiscard]] ASDIC_API Ping read_ping(const std::filesystem::path& path, int number = 1);
+/// follow. \throws InputError, RunError
+///
+/// \param number  as Ping::number() tells it; the file's first ping
+[[nodiscard]] ASDIC_API Ping read_ping(const std::filesystem::path& path,
+                                       std::optional<int> number = {});
 /// How many pings it holds.
 [[nodiscard]] ASDIC_API int pings_in(const std::filesystem::path& path);
 

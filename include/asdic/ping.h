@@ -40,13 +40,12 @@ struct Echo {
   double arrival_bearing = 0.0;    ///< of travel at the array, true [rad]
 };
 
-/// A ping's record. A handle: copies share the samples, which never change.
+/// A ping's record. A handle: copies share the samples, which never change. To move is to copy:
+/// what was moved from stays as it was.
 class ASDIC_API Ping {
  public:
-  Ping(const Ping&);
-  Ping(Ping&&) noexcept;
-  Ping& operator=(const Ping&);
-  Ping& operator=(Ping&&) noexcept;
+  Ping(const Ping&) noexcept;
+  Ping& operator=(const Ping&) noexcept;
   ~Ping();
 
   [[nodiscard]] int number() const noexcept;       ///< of all transmitters' pings, from 1
@@ -97,8 +96,8 @@ class ASDIC_API Pinger {
  public:
   /// Checks the scenario and its memory. \throws InputError
   explicit Pinger(const Scenario& scenario);
-  Pinger(Pinger&&) noexcept;
-  Pinger& operator=(Pinger&&) noexcept;
+  Pinger(const Pinger&) noexcept;
+  Pinger& operator=(const Pinger&) noexcept;
   ~Pinger();
 
   [[nodiscard]] int pings() const noexcept;  ///< of all transmitters

@@ -40,10 +40,9 @@ namespace asdic {
 class ASDIC_API Scenario {
  public:
   Scenario();  ///< no setting at all
-  Scenario(const Scenario&);
-  Scenario(Scenario&&) noexcept;
-  Scenario& operator=(const Scenario&);
-  Scenario& operator=(Scenario&&) noexcept;
+  // To move is to copy: what was moved from stays as it was.
+  Scenario(const Scenario&) noexcept;
+  Scenario& operator=(const Scenario&) noexcept;
   ~Scenario();
 
   /// \param changes  "key.path=value" each, as of --set   \throws InputError, RunError

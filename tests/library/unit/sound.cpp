@@ -80,6 +80,25 @@ TEST(PublicLegs, GoOutAndHome) {
 }
 
 // Where the speed is one, rays are straight: 8 degrees down from 200 m.
+// What the header says of a receiver below the source: the path that it would have at 0.1 m,
+// upright.
+TEST(PublicArrivals, StraightBelowAreThoseOfATenthOfAMetre) {
+  const auto found = asdic::arrivals(small_sea(), {.range = 0.0, .depth = 500.0});
+  const std::vector<double> there = image_delays(200.0, 500.0, 0.1, 1000.0),
+                            upright = image_delays(200.0, 500.0, 0.0, 1000.0);
+  ASSERT_EQ(found.size(), there.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR(found[i].delay, there[i], 1e-12);
+    EXPECT_NEAR(found[i].delay - upright[i], 0.01 / (2.0 * upright[i] * 1500.0 * 1500.0), 1e-12);
+    EXPECT_DOUBLE_EQ(std::abs(found[i].launch_elevation), asdic::radians(90.0));
+    for (const asdic::Bounce& bounce : found[i].bounces) EXPECT_EQ(bounce.range, 0.0);
+  }
+  const auto itself =
+      asdic::arrivals(small_sea(), {.range = 0.0, .depth = 200.0, .source_depth = 200.0});
+  ASSERT_FALSE(itself.empty());
+  EXPECT_NEAR(itself.front().path_length, 0.1, 1e-6);
+}
+
 TEST(PublicRays, AreStraightInStillWater) {
   const double down = asdic::radians(-8.0);
   const std::vector<asdic::Ray> rays =
@@ -188,6 +207,61 @@ TEST(PublicFile, IsWhatTheProgramWrites) {
   }
 }
 
+// What is written is what was simulated, also of a scenario that was read, used and then changed.
+TEST(PublicFile, HoldsTheScenarioThatWasSimulated) {
+  const support::TemporaryDirectory folder;
+  asdic::Scenario sea = small_sea();
+  sea.set("reverberation.enabled", false).erase("noise").set("target.0.strength_db", 10.0);
+  const asdic::Ping before = asdic::ping(sea);
+  asdic::Scenario louder = sea;
+  louder.set("target.0.strength_db", 16.0);
+  asdic::write_ping(folder / "ping.h5", louder, asdic::ping(louder));
+  const asdic::Ping read = asdic::read_ping(folder / "ping.h5");
+  EXPECT_EQ(read.scenario().get("target.0.strength_db").number(), 16.0);
+  ASSERT_EQ(read.echoes().size(), before.echoes().size());
+  for (std::size_t i = 0; i < read.echoes().size(); ++i)
+    EXPECT_NEAR(read.echoes()[i].level_db - before.echoes()[i].level_db, 6.0, 1e-9);
+  EXPECT_TRUE(std::ranges::equal(asdic::ping(read.scenario()).pressure(), read.pressure()));
+}
+
+// Two transmitters, of which the second sends the second ping, 6 dB louder.
+asdic::Scenario two_senders() {
+  asdic::Scenario sea = small_sea();
+  sea.set("transmitter.name", "first").set("pings.count", 1);
+  asdic::Value second = sea.get("transmitter");
+  sea.add("transmitter", second.set("name", "second").set("source_level_db", 206.0));
+  return sea;
+}
+
+TEST(PublicFile, OfALaterPingAloneIsReadAndTold) {
+  const support::TemporaryDirectory folder;
+  const asdic::Scenario sea = two_senders();
+  const asdic::Pinger pinger(sea);
+  ASSERT_EQ(pinger.pings(), 2);
+  const asdic::Ping second = pinger.ping(2);
+  ASSERT_EQ(second.transmitter(), 1);
+  asdic::write_ping(folder / "second.h5", sea, second);
+  const asdic::Ping read = asdic::read_ping(folder / "second.h5");
+  EXPECT_EQ(read.number(), 2);
+  EXPECT_TRUE(std::ranges::equal(read.pressure(), second.pressure()));
+  try {
+    static_cast<void>(asdic::read_ping(folder / "second.h5", 1));
+    FAIL() << "there is no ping 1";
+  } catch (const asdic::InputError& error) {
+    EXPECT_EQ(error.key(), "ping");
+    EXPECT_STREQ(error.what(), "ping: found 1, expected 2, the file's only ping");
+  }
+  const std::string told = support::asdic(folder, "info second.h5").out;
+  EXPECT_THAT(told, HasSubstr(", complete\n"));
+  EXPECT_THAT(told, HasSubstr("1 ping (number 2)"));
+  EXPECT_THAT(told, HasSubstr("206 dB re 1 µPa at 1 m"));
+  EXPECT_THAT(told, testing::Not(HasSubstr("200 dB re 1 µPa at 1 m")));
+  EXPECT_THAT(told, testing::ContainsRegex("\n +2 +.*rock"));
+  EXPECT_EQ(support::asdic(folder, "export second.h5 --wav --ping 1").status, 2);
+  ASSERT_EQ(support::asdic(folder, "export second.h5 --wav --ping 2").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "second_ping002.wav"));
+}
+
 TEST(PublicFile, RefusesWhatIsNotItsOwn) {
   const support::TemporaryDirectory folder;
   const asdic::Ping ping = asdic::ping(small_sea());
@@ -227,6 +301,19 @@ TEST(PublicProcess, ReceivesAPingAsItsFile) {
   EXPECT_EQ(loudest->target, 0);
   EXPECT_FALSE(asdic::process(pings[0], asked).detections.empty());
   EXPECT_THROW(static_cast<void>(asdic::process(std::vector<asdic::Ping>{})), asdic::InputError);
+}
+
+// Next to no noise: rounding stands out of what is there for a background, and the run says so.
+TEST(PublicProcess, TellsOfDetectionsBelowWhatARecorderTakes) {
+  asdic::Scenario sea = asdic::Scenario::read(ASDIC_SCENARIOS "/deep_ocean.toml");
+  const auto faint = [](const asdic::Processed& processed) {
+    return std::ranges::count_if(processed.warnings, [](const std::string& warning) {
+      return warning.find("more than 120 dB below the loudest sample") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(faint(asdic::process(asdic::ping(sea))), 0);
+  sea.set("noise.spectral_level_db", -200.0);
+  EXPECT_EQ(faint(asdic::process(asdic::ping(sea))), 1);
 }
 
 TEST(PublicProcess, WantsAContinuousRecordOutOfAFile) {
