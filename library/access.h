@@ -10,6 +10,7 @@
 #include "asdic/scenario.h"
 #include "core/error.h"
 #include "io/text/toml_value.h"
+#include "raytrace/parallel/progress.h"
 
 // How the public classes (include/asdic) and the rest of the project see one another.
 namespace asdic {
@@ -59,6 +60,8 @@ auto translated(const Work& work, std::initializer_list<std::filesystem::path> f
     return work();
   } catch (const detail::InputError& error) {
     throw shown(error, files);
+  } catch (const detail::Interrupted&) {
+    throw Stopped();
   } catch (const detail::RunError& error) {
     throw RunError(error.what());
   }

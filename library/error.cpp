@@ -81,6 +81,9 @@ InputError shown(const detail::InputError& error,
   return InputError(fault.where, fault.got, fault.expected);
 }
 
+Stopped::Stopped() : std::runtime_error("called off") {}
+Stopped::~Stopped() = default;
+
 RunError::RunError(const std::string& what) : std::runtime_error(what) {}
 RunError::~RunError() = default;
 

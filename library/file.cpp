@@ -53,10 +53,11 @@ struct PingWriter::Data {
   int last = 0;  ///< number of the ping written last
 };
 
-PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenario)
+PingWriter::PingWriter(const std::filesystem::path& path, const Scenario& scenario,
+                       const Watch& watch)
     : data_(translated([&] {
         detail::OutputFile output(path, {.own = detail::own::hdf5, .option = "path"});
-        const detail::PingSimulator& simulator = Access::physics(scenario).ready_to_ping();
+        const detail::PingSimulator& simulator = Access::physics(scenario).ready_to_ping(watch);
         detail::PingFileWriter writer(std::move(output), simulator.scenario(), here());
         writer.write_rays(detail::drawn_rays(simulator));
         return std::unique_ptr<Data>(new Data{scenario, std::move(writer)});
@@ -96,9 +97,9 @@ void write_ping(const std::filesystem::path& path, const Scenario& scenario, con
   writer.finish();
 }
 
-void write_pings(const std::filesystem::path& path, const Scenario& scenario) {
-  PingWriter writer(path, scenario);
-  Pinger(scenario).run([&](const Ping& ping) { writer.append(ping); });
+void write_pings(const std::filesystem::path& path, const Scenario& scenario, const Watch& watch) {
+  PingWriter writer(path, scenario, {.stop = watch.stop});
+  Pinger(scenario).run([&](const Ping& ping) { writer.append(ping); }, watch);
   writer.finish();
 }
 

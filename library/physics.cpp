@@ -2,6 +2,7 @@
 
 #include "io/scenario/propagation.h"
 #include "io/scenario/scenario_reader.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic {
 namespace {
@@ -17,13 +18,19 @@ detail::Scenario physical(const Scenario::Data& data, const std::string& text) {
 Physics::Physics(const Scenario::Data& data)
     : simulator_(physical(data, document_text(data)), nullptr, detail::budget_of(data.document)) {}
 
-const detail::PingSimulator& Physics::ready_to_ping() {
+const detail::PingSimulator& Physics::ready_to_ping(const Watch& watch) {
   const std::scoped_lock lock(mutex_);
-  if (!judged_) {
-    static_cast<void>(simulator_.memory());
-    simulator_.judge_paths();
-    judged_ = true;
-  }
+  int step = 0;
+  const auto tell = [&] {
+    ++step;
+    if (watch.progress) watch.progress(step, 3);
+  };
+  tell();
+  if (!judged_) detail::until_stopped(watch.stop, [&] { static_cast<void>(simulator_.memory()); });
+  tell();
+  if (!judged_) detail::until_stopped(watch.stop, [&] { simulator_.judge_paths(); });
+  judged_ = true;
+  tell();
   return simulator_;
 }
 

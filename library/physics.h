@@ -1,6 +1,7 @@
 #pragma once
 #include <mutex>
 
+#include "asdic/watch.h"
 #include "library/access.h"
 #include "sonar/ping/ping.h"
 
@@ -13,7 +14,8 @@ class Physics {
 
   [[nodiscard]] const detail::PingSimulator& simulator() const noexcept { return simulator_; }
   /// The same, its memory asked for and its warnings complete: before pings.
-  [[nodiscard]] const detail::PingSimulator& ready_to_ping();
+  /// \param watch  its first step, reading, is done
+  [[nodiscard]] const detail::PingSimulator& ready_to_ping(const Watch& watch = {});
 
  private:
   detail::PingSimulator simulator_;

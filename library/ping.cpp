@@ -6,6 +6,7 @@
 #include "library/physics.h"
 #include "library/ping_access.h"
 #include "processing/truth.h"
+#include "raytrace/parallel/stop.h"
 
 namespace asdic {
 namespace {
@@ -90,10 +91,12 @@ const std::vector<Vector>& Ping::phones() const noexcept { return data_->phones;
 const std::vector<Echo>& Ping::echoes() const noexcept { return data_->echoes; }
 const Scenario& Ping::scenario() const noexcept { return data_->scenario; }
 
-Ping ping(const Scenario& scenario, int number) { return Pinger(scenario).ping(number); }
+Ping ping(const Scenario& scenario, int number, const Watch& watch) {
+  return Pinger(scenario, watch).ping(number, {.stop = watch.stop});
+}
 
-Pinger::Pinger(const Scenario& scenario) : scenario_(scenario) {
-  translated([&] { static_cast<void>(Access::physics(scenario_).ready_to_ping()); });
+Pinger::Pinger(const Scenario& scenario, const Watch& watch) : scenario_(scenario) {
+  translated([&] { static_cast<void>(Access::physics(scenario_).ready_to_ping(watch)); });
 }
 
 Pinger::Pinger(const Pinger&) noexcept = default;
@@ -106,21 +109,29 @@ std::vector<std::string> Pinger::warnings() const {
   return Access::physics(scenario_).simulator().scenario().notes;
 }
 
-Ping Pinger::ping(int number) const {
+Ping Pinger::ping(int number, const Watch& watch) const {
   if (number < 1 || number > pings())
     throw InputError("number", std::to_string(number),
                      "a ping from 1 to " + std::to_string(pings()));
   return translated([&] {
-    return handle_of(scenario_, Access::physics(scenario_).simulator().simulate(number));
+    detail::PingRecord record;
+    detail::until_stopped(
+        watch.stop, [&] { record = Access::physics(scenario_).simulator().simulate(number); });
+    if (watch.progress) watch.progress(1, 1);
+    return handle_of(scenario_, std::move(record));
   });
 }
 
-void Pinger::run(const std::function<void(const Ping&)>& take) const {
+void Pinger::run(const std::function<void(const Ping&)>& take, const Watch& watch) const {
   if (!take) throw InputError("take", "nothing", "a function that takes the pings");
   translated([&] {
-    detail::run_pings(Access::physics(scenario_).simulator(), [&](detail::PingRecord&& record) {
-      take(handle_of(scenario_, std::move(record)));
-    });
+    detail::PingOptions options{.stop = watch.stop};
+    if (watch.progress) options.progress = [&](int done) { watch.progress(done, pings()); };
+    const int done = detail::run_pings(
+        Access::physics(scenario_).simulator(),
+        [&](detail::PingRecord&& record) { take(handle_of(scenario_, std::move(record))); },
+        options);
+    if (done < pings()) throw Stopped();
   });
 }
 

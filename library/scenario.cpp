@@ -122,10 +122,10 @@ Value Scenario::get(std::string_view path) const {
 
 std::string Scenario::to_toml() const { return document_text(*data_); }
 
-std::vector<std::string> Scenario::validate() const {
+std::vector<std::string> Scenario::validate(const Watch& watch) const {
   return translated([&] {
     if (detail::has_sonar(data_->document))
-      return Access::physics(*this).ready_to_ping().scenario().notes;
+      return Access::physics(*this).ready_to_ping(watch).scenario().notes;
     std::vector<std::string> notes;
     static_cast<void>(detail::propagation_case_of(data_->document, data_->path, notes));
     return notes;

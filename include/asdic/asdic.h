@@ -29,3 +29,4 @@
 #include "asdic/target.h"
 #include "asdic/units.h"
 #include "asdic/value.h"
+#include "asdic/watch.h"

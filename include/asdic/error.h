@@ -42,6 +42,14 @@ class ASDIC_API InputError : public std::runtime_error {
   std::string where_, found_, expected_, file_;
 };
 
+/// The work was called off (asdic/watch.h).
+class ASDIC_API Stopped : public std::runtime_error {
+ public:
+  Stopped();
+  Stopped(const Stopped&) = default;
+  ~Stopped() override;
+};
+
 /// The world says no: the disk is full, a file is locked.
 class ASDIC_API RunError : public std::runtime_error {
  public:

@@ -20,6 +20,7 @@
 #include "asdic/export.h"
 #include "asdic/ping.h"
 #include "asdic/scenario.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -28,8 +29,9 @@ namespace asdic {
 /// or was moved from throws InputError when it is used.
 class ASDIC_API PingWriter {
  public:
-  /// \throws InputError if there must be no such file, RunError if there cannot be
-  PingWriter(const std::filesystem::path& path, const Scenario& scenario);
+  /// Checks the scenario as Scenario::validate(). \throws InputError if there must be no such file,
+  /// RunError if there cannot be, Stopped
+  PingWriter(const std::filesystem::path& path, const Scenario& scenario, const Watch& watch = {});
   PingWriter(PingWriter&&) noexcept;
   PingWriter& operator=(PingWriter&&) noexcept;
   /// Without finish(): there is no file, and what was written stays beside it for `asdic recover`.
@@ -50,8 +52,10 @@ class ASDIC_API PingWriter {
 /// A file of one ping. Its /scenario is scenario.to_toml().
 ASDIC_API void write_ping(const std::filesystem::path& path, const Scenario& scenario,
                           const Ping& ping);
-/// A file of all pings of a scenario: what `asdic ping` does.
-ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario);
+/// A file of all pings of a scenario: what `asdic ping` does. Called off, it leaves no file, and
+/// what was written stays beside it. \throws InputError, RunError, Stopped
+ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario,
+                           const Watch& watch = {});
 
 /// A ping of a file. Of a continuous record: all that is received of it, over the pings that
 /// follow. \throws InputError, RunError

@@ -25,6 +25,7 @@
 #include "asdic/export.h"
 #include "asdic/scenario.h"
 #include "asdic/units.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -82,8 +83,9 @@ class ASDIC_API Ping {
 };
 
 /// One ping of a scenario, by itself. The first one of a scenario prepares its ocean; others, of
-/// this or a copy of it, find it again. \param number  from 1   \throws InputError
-[[nodiscard]] ASDIC_API Ping ping(const Scenario& scenario, int number = 1);
+/// this or a copy of it, find it again. \param number  from 1   \throws InputError, Stopped
+[[nodiscard]] ASDIC_API Ping ping(const Scenario& scenario, int number = 1,
+                                  const Watch& watch = {});
 
 /// All pings of a scenario, one after the other, with what goes from ping to ping: the ocean, the
 /// paths, and of a continuous record what is still received of the pings before.
@@ -94,8 +96,8 @@ class ASDIC_API Ping {
 /// ```
 class ASDIC_API Pinger {
  public:
-  /// Checks the scenario and its memory. \throws InputError
-  explicit Pinger(const Scenario& scenario);
+  /// Checks the scenario and its memory, as Scenario::validate(). \throws InputError, Stopped
+  explicit Pinger(const Scenario& scenario, const Watch& watch = {});
   Pinger(const Pinger&) noexcept;
   Pinger& operator=(const Pinger&) noexcept;
   ~Pinger();
@@ -103,10 +105,11 @@ class ASDIC_API Pinger {
   [[nodiscard]] int pings() const noexcept;  ///< of all transmitters
   /// What to know before trusting a number.
   [[nodiscard]] std::vector<std::string> warnings() const;
-  /// One ping by itself. From any thread. \param number  from 1
-  [[nodiscard]] Ping ping(int number) const;
-  /// Simulates all pings, in parallel, and hands them over in order, one at a time.
-  void run(const std::function<void(const Ping&)>& take) const;
+  /// One ping by itself. From any thread. \param number  from 1   \throws InputError, Stopped
+  [[nodiscard]] Ping ping(int number, const Watch& watch = {}) const;
+  /// Simulates all pings, in parallel, and hands them over in order, one at a time. \throws Stopped
+  /// once those before it are handed over
+  void run(const std::function<void(const Ping&)>& take, const Watch& watch = {}) const;
 
  private:
   Scenario scenario_;

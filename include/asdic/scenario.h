@@ -29,6 +29,7 @@
 
 #include "asdic/export.h"
 #include "asdic/value.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -71,7 +72,10 @@ class ASDIC_API Scenario {
 
   /// Checks everything, as `asdic validate` does. \return warnings: what to know before trusting a
   /// number   \throws InputError at the first fault, with file, line, key, found and expected
-  std::vector<std::string> validate() const;
+  ///
+  /// What it finds on the way, pings find again: the ocean, and the paths to scatterers. Where the
+  /// ocean varies with range these may take minutes.
+  std::vector<std::string> validate(const Watch& watch = {}) const;
 
   struct Data;  ///< of the library alone
 

@@ -262,6 +262,56 @@ TEST(PublicFile, OfALaterPingAloneIsReadAndTold) {
   EXPECT_TRUE(std::filesystem::exists(folder / "second_ping002.wav"));
 }
 
+TEST(PublicWatch, TellsStepsAndPings) {
+  std::vector<int> steps, pings;
+  const asdic::Scenario sea = small_sea();
+  sea.validate({.progress = [&](int done, int total) { steps.push_back(10 * done + total); }});
+  EXPECT_THAT(steps, testing::ElementsAre(13, 23, 33));
+  asdic::Pinger(sea).run([](const asdic::Ping&) {}, {.progress = [&](int done, int total) {
+                           pings.push_back(10 * done + total);
+                         }});
+  EXPECT_THAT(pings, testing::ElementsAre(12, 22));
+}
+
+// A slope, whose paths to scatterers take seconds: called off by its first step, validate() is over
+// at once; asked again, it finds all.
+TEST(PublicWatch, CallsOff) {
+  asdic::Scenario sea = small_sea();
+  sea.erase("environment.bottom.depth")
+      .set("environment.bottom.shape",
+           asdic::Bathymetry{.range = {0.0, 5e3, 20e3}, .depth = {1000.0, 900.0, 1100.0}});
+  std::stop_source button;
+  int steps = 0;
+  const asdic::Watch watch{.stop = button.get_token(), .progress = [&](int done, int) {
+                             steps = done;
+                             button.request_stop();
+                           }};
+  EXPECT_THROW(sea.validate(watch), asdic::Stopped);
+  EXPECT_EQ(steps, 1);
+  EXPECT_THROW(asdic::Pinger(sea, watch), asdic::Stopped);
+  EXPECT_THROW(static_cast<void>(asdic::ping(sea, 1, watch)), asdic::Stopped);
+  EXPECT_EQ(sea.validate(), asdic::Scenario::parse(sea.to_toml()).validate());
+}
+
+TEST(PublicWatch, ARunThatIsCalledOffHandsOverWhatIsBefore) {
+  const support::TemporaryDirectory folder;
+  const asdic::Scenario sea = small_sea().set("pings.count", 40);
+  std::stop_source button;
+  int taken = 0;
+  EXPECT_THROW(asdic::Pinger(sea).run(
+                   [&](const asdic::Ping& ping) {
+                     EXPECT_EQ(ping.number(), ++taken);
+                     button.request_stop();
+                   },
+                   {.stop = button.get_token()}),
+               asdic::Stopped);
+  EXPECT_GE(taken, 1);
+  EXPECT_LT(taken, 40);
+  EXPECT_THROW(asdic::write_pings(folder / "x.h5", sea, {.stop = button.get_token()}),
+               asdic::Stopped);
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5"));
+}
+
 TEST(PublicFile, RefusesWhatIsNotItsOwn) {
   const support::TemporaryDirectory folder;
   const asdic::Ping ping = asdic::ping(small_sea());
