@@ -6,7 +6,8 @@
 namespace asdic::detail {
 namespace {
 
-constexpr double almost_across = 1e-9;  // |cos β| below which a line does not get along the transect
+/// |cos β| below which a line does not get along the transect.
+constexpr double almost_across = 1e-9;
 
 /// What a section says of one place: straight lines between the depths of its grid.
 SoundSpeedProfile profile_at(const SoundSpeedSection& section, double x) {
