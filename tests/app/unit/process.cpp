@@ -118,7 +118,7 @@ TEST_F(Process, SaysWhatIsWrong) {
           "--max-speed: Value 601 not in range 0.000000 to 600.000000");
   refused("process small.h5 --beamformer best", "conventional");
   refused("process small.h5 --target-depth deep", "a length such as 60km, 500m or 500");
-  refused("process small.h5 --target-depth 9000m", "target_depth: found 9000");
+  refused("process small.h5 --target-depth 9000m", "--target-depth: found 9000");
   refused("process small.h5 --target-depth 9000m", "a depth above the sea floor at ");
   refused("process small.h5 --from 3000",
           "--from: found 3000 s, expected a time before the record");
