@@ -50,7 +50,7 @@ cd "$prefix"
 cp -r asdic/share/asdic/scenarios/. .
 build/mine | tee said
 grep -q '^16 phones, 960000 samples each$' said
-grep -q ' dB re 1 uPa$' said
+grep -q ' dB re 1 µPa$' said
 asdic/bin/asdic info ping.h5 >/dev/null
 asdic/bin/asdic --version
 
