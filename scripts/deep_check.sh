@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What takes too long for every day: sanitizers, kills at random moments, a long run's memory. A line with a verdict for each.
+# What takes too long for every day: sanitizers, tests' full forms, kills at random moments,
+# a long run's memory. A line with a verdict for each.
 #   scripts/deep_check.sh [--no-asan]       ASDIC=path/to/asdic to test another than build/ci's
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -31,6 +32,21 @@ if [ "${1:-}" != --no-asan ]; then
     verdict fuzz FAILED "$(grep -v good <<<"$said" | tr '\n' ' ')"
   fi
 fi
+
+# The tests' full forms, of which the suite runs one of each kind: fans of 200 000 rays, all readers of all files, every
+# picture of every kind of file. And the programs that compute, whole, at the lowest instruction level.
+cmake --preset ci >/dev/null && cmake --build --preset ci >/dev/null
+if ASDIC_DEEP=1 ctest --preset ci -L 'property|validation' -j "$(nproc)" >"$folder/full.log" 2>&1; then
+  verdict full-forms good "$(grep 'tests passed' "$folder/full.log")"
+else
+  verdict full-forms FAILED "$(grep '(Failed)\|(Timeout)' "$folder/full.log" | tr -s ' \n' ' ')"
+fi
+wrong=''
+for program in build/ci/tests/{unit,property}_{core,raytrace,reverb,sonar,processing}; do
+  [ -x "$program" ] || continue
+  ASDIC_LEVEL=x86-64-v2 RC_PARAMS=seed=20130601 "$program" --gtest_brief=1 >"$folder/lowest.log" 2>&1 || wrong+=" ${program##*/}"
+done
+if [ -z "$wrong" ]; then verdict lowest good "all that computes, at x86-64-v2"; else verdict lowest FAILED "$wrong"; fi
 
 # Damaged HDF5 and netCDF: the libraries are nobody's to instrument, so a run of the plain build.
 cmake --preset ci >/dev/null && cmake --build --preset ci --target fuzz_damaged_files >/dev/null
