@@ -11,6 +11,7 @@
 #include "raytrace/layered/simd_column.h"
 #include "raytrace/layered/simd_reflection.h"
 #include "raytrace/paths/eigenrays.h"
+#include "support/deep.h"
 #include "support/fan_intervals.h"
 #include "support/test_id.h"
 
@@ -75,7 +76,8 @@ TEST_P(EveryRule, FastSearchIsThePlainSearch) {
   const bool closed_form =
       GetParam() == Law(Interpolation::c_linear) || GetParam() == Law(Interpolation::n2_linear);
   std::size_t brackets = 0, roots = 0;
-  for (int trial = 0; trial < 25; ++trial) {
+  const int trials = support::deep() ? 25 : 10;
+  for (int trial = 0; trial < trials; ++trial) {
     const RandomOcean ocean = random_ocean(random, GetParam());
     const EigenraySolver solver(ocean.environment);
     const PathLimits limits{
