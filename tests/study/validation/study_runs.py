@@ -18,6 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/support"))
+from deep import DEEP  # noqa: E402
 from same_study import differences  # noqa: E402
 
 import h5py  # noqa: E402
@@ -26,12 +27,13 @@ import numpy as np  # noqa: E402
 ASDIC = Path(os.environ["ASDIC"]).resolve()
 ASDIC_MPI = ASDIC.with_name("asdic-mpi")
 KILLS = int(sys.argv[1]) if len(sys.argv) > 1 else 3
-COUNT = 480
+COUNT = 480  # realisations: time to interrupt them
+FEW = 480 if DEEP else 120  # where nothing is to be interrupted
 
 STUDY = """
 [study]
 title = "to be interrupted"
-realisations = %d
+realisations = COUNT
 seed = 7
 [vary]
 "target.0.range" = { law = "uniform", low = 20e3, high = 40e3 }
@@ -72,7 +74,7 @@ samples = "baseband"
 baseband_rate = 4000.0
 recording_start = 20.0
 recording_duration = 40.0
-""" % COUNT
+"""
 
 
 def check(good, what):
@@ -90,8 +92,8 @@ def run(*words, status=0):
     return done
 
 
-def same(path, how):
-    different = differences("whole.h5", path)
+def same(path, how, whole="whole.h5"):
+    different = differences(whole, path)
     check(not different, f"{how}: {different} differ")
     check(not list(Path(".").glob(f"{path}*journal*")), f"{how}: a journal was left")
     print(f"{how}: the same bits")
@@ -134,20 +136,21 @@ def start(*words):
 
 
 def threads_and_parts():
-    run("study", "study.toml", "-o", "whole.h5", "-q", "--threads", 1)
+    run("study", "few.toml", "-o", "few.h5", "-q", "--threads", 1)
     for threads in (2, 7):
-        run("study", "study.toml", "-o", "t.h5", "-q", "--threads", threads)
-        same("t.h5", f"{threads} threads")
+        run("study", "few.toml", "-o", "t.h5", "-q", "--threads", threads)
+        same("t.h5", f"{threads} threads", "few.h5")
         Path("t.h5").unlink()
     for part in (1, 2, 3):
-        run("study", "study.toml", "-o", f"part{part}.h5", "-q", "--shard", f"{part}/3")
+        run("study", "few.toml", "-o", f"part{part}.h5", "-q", "--shard", f"{part}/3")
     parts = ["part2.h5", "part3.h5", "part1.h5"]
     run("merge", *parts, "-o", "merged.h5")
-    same("merged.h5", "3 parts, a catalogue")
+    same("merged.h5", "3 parts, a catalogue", "few.h5")
     run("merge", *parts, "-o", "copied.h5", "--copy")
-    same("copied.h5", "3 parts, copied")
+    same("copied.h5", "3 parts, copied", "few.h5")
     said = run("merge", *parts[:2], "-o", "no.h5", status=2).stderr
-    check("found no part with 160 of 480 realisations: 0:160" in said, f"a gap: {said}")
+    third = FEW // 3
+    check(f"found no part with {third} of {FEW} realisations: 0:{third}" in said, f"a gap: {said}")
 
 
 def memory():
@@ -230,16 +233,16 @@ def by_mpi():
         return
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
-    def mpirun(ranks, *more):
+    def mpirun(ranks, *more, study="study.toml"):
         words = ["mpirun", "--oversubscribe", "-n", str(ranks),
-                 *command("study", "study.toml", "-o", "m.h5", "-q", *more, program=ASDIC_MPI)]
+                 *command("study", study, "-o", "m.h5", "-q", *more, program=ASDIC_MPI)]
         return subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                 env=environment)
     for ranks in (2, 4):
-        job = mpirun(ranks)
+        job = mpirun(ranks, study="few.toml")
         said = job.communicate()
         check(job.returncode == 0, f"mpirun -n {ranks}: {said}")
-        same("m.h5", f"mpirun -n {ranks}")
+        same("m.h5", f"mpirun -n {ranks}", "few.h5")
         Path("m.h5").unlink()
     enough_by_mpi(environment)
     stopped_by_mpi(mpirun)
@@ -262,8 +265,7 @@ def by_mpi():
 
 def enough_by_mpi(environment):
     """A wanted width is looked at after the same realisations by ranks and by threads."""
-    Path("enough.toml").write_text(STUDY.replace("series_level = true", "").replace(
-        f"realisations = {COUNT}", "realisations = 5000"))
+    Path("enough.toml").write_text(STUDY.replace("series_level = true", "").replace("COUNT", "5000"))
     words = ["study", "enough.toml", "--until", 0.3, "-q", "-o"]
     run(*words, "one.h5")
     ranks = ["mpirun", "--oversubscribe", "-n", "3", *command(*words, "ranks.h5", program=ASDIC_MPI)]
@@ -317,7 +319,9 @@ def ranks_of(job):
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        Path("study.toml").write_text(STUDY)
+        Path("few.toml").write_text(STUDY.replace("COUNT", str(FEW)))
+        Path("study.toml").write_text(STUDY.replace("COUNT", str(COUNT)))
+        run("study", "study.toml", "-o", "whole.h5", "-q")
         threads_and_parts()
         time_series()
         memory()
