@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The quick part of the physics suite, docs/validation: asdic against closed forms and wave theory.
-And that a wrong truth is noticed.
+"""One problem of each kind of the physics suite, docs/validation: asdic against closed forms and wave theory. And that a
+wrong truth is noticed. With ASDIC_DEEP=1 all quick problems.
 
     ASDIC=path/to/asdic tests/scripts/validation/physics_suite.py
 """
@@ -12,12 +12,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = ROOT / "docs" / "validation"
-sys.path[:0] = [str(ROOT / "scripts"), str(PAGES)]
+sys.path[:0] = [str(ROOT / "scripts"), str(PAGES), str(ROOT / "tests" / "support")]
 sys.dont_write_bytecode = True
 
 import numpy as np  # noqa: E402
 import suite  # noqa: E402
 import validate_physics as command  # noqa: E402
+from deep import DEEP  # noqa: E402
+
+# A field over a half-space and in a guide, paths, an echo, reverberation. scripts/deep_check.sh runs all problems.
+EVERY_DAY = ["lloyd", "pekeris-field", "thesis-tables", "weston-echo", "rigid-reverberation"]
 
 
 def run(*words):
@@ -41,7 +45,7 @@ def main():
         assert suite.Check("x", 0.5, 1.0, gap="known").verdict == "HOLDS NOW"
         assert suite.Check("x", np.nan, 1.0).verdict == "FAIL"
 
-        done = run("--quick", "--out", folder)
+        done = run(*(["--quick"] if DEEP else EVERY_DAY), "--out", folder)
         print(done.stdout, end="")
         assert done.returncode == 0, done.stdout + done.stderr
 
