@@ -216,6 +216,7 @@ for locks in TRUE FALSE; do
   rm -f two.h5*
   start "$ASDIC" ping run.toml -o two.h5 -q
   wait_for_ping two.h5
+  kill -STOP "$run"  # at work, though not on our processor
   second ping run.toml -o two.h5 -q
   second ping small.toml -o two.h5 -q --force
   second recover "$(part_of two.h5)"

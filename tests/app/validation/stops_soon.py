@@ -4,11 +4,15 @@
 ASDIC=path/to/asdic tests/app/validation/stops_soon.py
 """
 import os
+import pathlib
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from deep import DEEP  # noqa: E402
 
 ASDIC = os.environ["ASDIC"]
 ALLOWED = 2.0  # of processor time [s]; each run below takes half a minute and more
@@ -138,9 +142,12 @@ def main():
             "field": ["field", "field.toml", "-o", "field.h5", "-q"],
             "arrivals": ["arrivals", "arrivals.toml", "-o", "arrivals.h5"],
         }
-        # early, in the middle of preparations, and later; each kind of signal
+        # early, in the middle of preparations, and later; each kind of signal. Of a command one of them, two of ping,
+        # and all in the deep check.
+        moments = ((0.3, signal.SIGTERM), (1.5, signal.SIGHUP), (0.8, signal.SIGINT))
+        of = {"ping": moments[1:], "study": moments[2:], "field": moments[:1], "arrivals": moments[2:]}
         for name, words in commands.items():
-            for seconds, number in ((0.3, signal.SIGTERM), (1.5, signal.SIGHUP), (0.8, signal.SIGINT)):
+            for seconds, number in moments if DEEP else of[name]:
                 process = start(words)
                 run_for(process, seconds)
                 stop(process, number, f"{name} at {seconds} s")

@@ -4,7 +4,7 @@
 Truth: samples are bit for bit those of `asdic ping`; every command is answered once; memory does
 not grow with the number of pings.
 
-    ASDIC=build/ci/bin/asdic serve.py [PINGS]        default 300; scripts/deep_check.sh takes 10000
+    ASDIC=build/ci/bin/asdic serve.py [PINGS]        default 150; scripts/deep_check.sh takes 10000
 """
 import contextlib
 import json
@@ -349,7 +349,7 @@ def does_not_grow(count):
                                    source_level_db=190 + i % 3)
                 check(ping.answer["ping"] == i + 1 and np.isfinite(ping.samples).all(), i)
 
-            warm = max(100, count // 10)
+            warm = max(50, count // 10)
             for i in range(warm):
                 step(i)
             before = rss(process)
@@ -365,7 +365,7 @@ def does_not_grow(count):
 
 
 def main():
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 150
     with tempfile.TemporaryDirectory(prefix="asdic_serve_") as folder:
         os.chdir(folder)
         Path("sea.toml").write_text(SCENARIO)
