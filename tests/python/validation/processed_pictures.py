@@ -18,12 +18,15 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "python")]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
 
 from asdic_pictures import bearing_time, command, processed, range_bearing, style  # noqa: E402
 from asdic_pictures.data import PingFile  # noqa: E402
+from deep import DEEP  # noqa: E402
 
 style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+if not DEEP:    # where words stand is no matter of these tests, and takes half of the time
+    style.plt.rcParams["figure.constrained_layout.use"] = False
 FOUND = ["ambiguity", "detections", "range_bearing", "tracks"]
 
 SCENARIO = """
@@ -77,18 +80,29 @@ ARRAYS = {
 }
 
 
+MADE = {}  # the processed file of a scenario, a number of pings and options
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="asdic_processed_"))
         self.addCleanup(shutil.rmtree, self.folder, True)
 
+    def made(self, scenario, pings, *options):
+        """A copy of the file of a scenario, processed: each is simulated and processed once for all cases."""
+        key = (scenario, pings, options)
+        if key not in MADE:
+            where = Path(tempfile.mkdtemp(prefix="asdic_processed_"))
+            unittest.addModuleCleanup(shutil.rmtree, where, True)
+            (where / "sea.toml").write_text(scenario)
+            for words in (["ping", "sea.toml", "-o", "sea.h5", "-q", "--pings", str(pings)],
+                          ["process", "sea.h5", "--target-depth", "400m", "-q", *options]):
+                subprocess.run([os.environ["ASDIC"], *words], cwd=where, check=True)
+            MADE[key] = where / "sea.h5"
+        return Path(shutil.copy(MADE[key], self.folder))
+
     def make(self, array, *options):
-        path = self.folder / "sea.h5"
-        (self.folder / "sea.toml").write_text(SCENARIO.format(array=ARRAYS[array]))
-        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q"],
-                      ["process", "sea.h5", "--target-depth", "400m", "-q", *options]):
-            subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
-        return path
+        return self.made(SCENARIO.format(array=ARRAYS[array]), 5, *options)
 
     def plot(self, path, *options):
         out, err = io.StringIO(), io.StringIO()
@@ -144,12 +158,7 @@ heading_deg = 90.0
 """
 
     def make_several(self):
-        text = SCENARIO.format(array="@").replace("[array]\n@\n", self.ARRAYS)
-        (self.folder / "sea.toml").write_text(text)
-        for words in (["ping", "sea.toml", "-o", "sea.h5", "-q", "--pings", "1"],
-                      ["process", "sea.h5", "--target-depth", "400m", "-q"]):
-            subprocess.run([os.environ["ASDIC"], *words], cwd=self.folder, check=True)
-        return self.folder / "sea.h5"
+        return self.made(SCENARIO.format(array="@").replace("[array]\n@\n", self.ARRAYS), 1)
 
     def test_each_is_steered_alone(self):
         """A line's axis is its sine from broadside, clockwise: minus the cosine of the angle
