@@ -19,6 +19,12 @@ struct MovingEnd {
          (1.0 - sender.velocity.dot(sender.slowness));
 }
 
+/// The slowness of a front as an array that moves meets it, s/(1 − s·v): its phone at x receives
+/// what the reference point receives s'·x later, having moved meanwhile.
+[[nodiscard]] inline Vec3 met_by(const Vec3& velocity, const Vec3& slowness) noexcept {
+  return slowness / (1.0 - slowness.dot(velocity));
+}
+
 /// The factor η of an echo: out to the target and back, s(η(t − τ)).
 /// \param target_in, target_out  the target where the outgoing ray ends and the returning one
 /// starts

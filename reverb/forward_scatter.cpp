@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/mixed_bits.h"
 #include "core/random.h"
-#include "reverb/scatterer_field.h"
 #include "reverb/scattering/motion.h"
 
 namespace asdic::detail {

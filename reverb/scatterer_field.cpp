@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/fields.h"
+#include "core/mixed_bits.h"
 #include "core/quantities.h"
 
 namespace asdic::detail {
@@ -63,13 +64,6 @@ void ScattererStatistics::describe(Fields& field) {
     field("correlation_length", correlation_length,
           {.noun = "length", .unit = "m", .low = 0.0, .high = 1e6, .above = true},
           "of the texture");
-}
-
-std::uint64_t mixed(std::uint64_t a, std::uint64_t b) noexcept {
-  std::uint64_t z = (a ^ (b * 0xD6E8FEB86659FD93ULL)) + 0x9E3779B97F4A7C15ULL;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31);
 }
 
 std::uint64_t ScattererKey::entity(std::uint64_t identity) const noexcept {

@@ -77,9 +77,6 @@ struct Scatterer {
   double fate = 0.5;          ///< uniform in (0, 1): which Bragg wave it meets
 };
 
-/// Mixes numbers into one of 64 bits (SplitMix64's finaliser).
-[[nodiscard]] std::uint64_t mixed(std::uint64_t a, std::uint64_t b) noexcept;
-
 /// Where a scatterer lies: copies of a cell share it in strips of bearing; within its strip a
 /// scatterer lies anywhere with the same chance per area. \param entity  of the key
 [[nodiscard]] Scatterer place_scatterer(const ScattererGrid& grid, const ScattererKey& key,

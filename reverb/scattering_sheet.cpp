@@ -4,8 +4,8 @@
 #include <array>
 #include <numbers>
 
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/stop.h"
-#include "reverb/uniform_of_bits.h"
 
 #include "core/doppler.h"
 #include "reverb/scattering/motion.h"

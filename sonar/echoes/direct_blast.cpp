@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "reverb/scatterer_field.h"
+#include "core/doppler.h"
+#include "core/mixed_bits.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/paths/moving_paths.h"
 #include "sonar/paths/plane_wave.h"

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/doppler.h"
+#include "core/mixed_bits.h"
 #include "core/settings_key.h"
 #include "reverb/forward_scatter.h"
-#include "reverb/scatterer_field.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"

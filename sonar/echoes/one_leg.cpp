@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/doppler.h"
+#include "core/mixed_bits.h"
 #include "reverb/forward_scatter.h"
-#include "reverb/scatterer_field.h"
 
 namespace asdic::detail {
 

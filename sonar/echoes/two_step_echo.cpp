@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/geometry.h"
-#include "reverb/scatterer_field.h"
+#include "core/mixed_bits.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"

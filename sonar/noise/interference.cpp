@@ -8,8 +8,8 @@
 
 #include "core/doppler.h"
 #include "core/geometry.h"
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "reverb/scatterer_field.h"
 #include "sonar/noise/interference_segment.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/paths/enough_bounces.h"

@@ -10,12 +10,6 @@ namespace asdic::detail {
 /// Unit vector of travel over the local speed of sound [s/m].
 [[nodiscard]] Vec3 slowness_vector(double bearing, double elevation, double sound_speed);
 
-/// The slowness of a front as an array that moves meets it, s/(1 − s·v): its phone at x receives
-/// what the reference point receives s'·x later, having moved meanwhile.
-[[nodiscard]] inline Vec3 met_by(const Vec3& velocity, const Vec3& slowness) noexcept {
-  return slowness / (1.0 - slowness.dot(velocity));
-}
-
 /// How much later the echo of a moving body's point at x is received than that of its reference
 /// point, as a vector a: a·x, fronts being plane. The front that passes the reference point with
 /// the slowness s_in meets the point δ = s_in·x/(1 − s_in·v_T) later, v_T·δ farther on; what that

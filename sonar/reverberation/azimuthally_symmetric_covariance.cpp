@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "sonar/signal/rotate_back.h"
+#include "core/rotate_back.h"
 
 namespace asdic::detail {
 

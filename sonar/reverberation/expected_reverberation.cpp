@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/grouped.h"
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/path_interference.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rotate_back.h"
 #include "reverb/scattering_field.h"
-#include "sonar/signal/rotate_back.h"
 
 namespace asdic::detail {
 namespace {

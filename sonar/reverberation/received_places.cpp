@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sonar/paths/moving_paths.h"
+#include "core/doppler.h"
 
 namespace asdic::detail {
 namespace {

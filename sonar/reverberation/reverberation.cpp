@@ -4,8 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/doppler.h"
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/paths/moving_paths.h"
 
 namespace asdic::detail {
 namespace {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mixed_bits.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/reverberation/reverberation.h"

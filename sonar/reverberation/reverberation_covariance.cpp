@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/grouped.h"
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/delay_bins.h"
 #include "sonar/reverberation/segment_covariance.h"

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mixed_bits.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/receiver_legs.h"
 #include "sonar/reverberation/ground_grid.h"

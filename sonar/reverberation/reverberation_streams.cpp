@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "reverb/uniform_of_bits.h"
 #include "sonar/reverberation/delay_bins.h"
 #include "sonar/reverberation/received_places.h"
 

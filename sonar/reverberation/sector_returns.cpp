@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reverb/uniform_of_bits.h"
+#include "core/mixed_bits.h"
 #include "sonar/reverberation/path_interference.h"
 #include "sonar/reverberation/reverberation.h"
 

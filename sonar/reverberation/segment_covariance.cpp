@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sonar/signal/rotate_back.h"
+#include "core/rotate_back.h"
 
 namespace asdic::detail {
 namespace {

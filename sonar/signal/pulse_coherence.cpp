@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "reverb/scatterer_field.h"
+#include "core/mixed_bits.h"
 #include "sonar/signal/fft.h"
 #include "sonar/signal/pulse.h"
 #include "sonar/signal/pulse_spectrum.h"

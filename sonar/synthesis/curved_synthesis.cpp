@@ -3,9 +3,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/rotate_back.h"
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/signal/rotate_back.h"
 #include "sonar/synthesis/rotating_phase.h"
 #include "sonar/synthesis/synthesis.h"
 #include "sonar/synthesis/synthesis_plan.h"

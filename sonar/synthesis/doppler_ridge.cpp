@@ -6,8 +6,8 @@
 #include <complex>
 #include <vector>
 
+#include "core/rotate_back.h"
 #include "core/units.h"
-#include "sonar/signal/rotate_back.h"
 
 namespace asdic::detail {
 namespace {

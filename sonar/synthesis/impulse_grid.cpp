@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sonar/signal/rotate_back.h"
+#include "core/rotate_back.h"
 
 namespace asdic::detail {
 namespace {

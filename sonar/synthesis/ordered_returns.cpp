@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/rotate_back.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/signal/rotate_back.h"
 
 namespace asdic::detail {
 namespace {

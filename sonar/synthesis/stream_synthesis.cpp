@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "core/normal.h"
+#include "core/rotate_back.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/reverberation/reverberation_covariance.h"
 #include "sonar/reverberation/reverberation_streams.h"
 #include "sonar/signal/band_response.h"
 #include "sonar/signal/complex_product.h"
 #include "sonar/signal/pulse_spectrum.h"
-#include "sonar/signal/rotate_back.h"
 #include "sonar/synthesis/own_grid.h"
 #include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis.h"

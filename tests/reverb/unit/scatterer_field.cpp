@@ -7,10 +7,10 @@
 #include <set>
 #include <vector>
 
+#include "core/mixed_bits.h"
 #include "core/settings_words.h"
 #include "reverb/scattering/models.h"
 #include "reverb/scattering/motion.h"
-#include "reverb/uniform_of_bits.h"
 
 namespace asdic::detail {
 namespace {
