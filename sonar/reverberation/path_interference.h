@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "raytrace/math/bessel_table.h"
 #include "reverb/scattering_sheet.h"
-#include "sonar/reverberation/azimuthally_symmetric_covariance.h"
 #include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
