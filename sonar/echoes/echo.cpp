@@ -11,7 +11,7 @@
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
 #include "core/settings_key.h"
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
 #include "sonar/paths/moving_paths.h"

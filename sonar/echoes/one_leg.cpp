@@ -5,7 +5,7 @@
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 
 namespace asdic::detail {
 

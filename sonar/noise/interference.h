@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raytrace/places/propagation_paths.h"
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 #include "sonar/noise/block_noise.h"
 #include "sonar/noise/received_path.h"
 #include "sonar/scenario/carried.h"
@@ -30,7 +30,7 @@ namespace asdic::detail {
 /// parts q_k, each through a hat over f_k, with an amplitude of its own.
 ///
 /// What rough boundaries scatter about a path is received beside it, by a few paths of equal
-/// strength (reverb/forward_scatter.h). docs/theory/interference.md
+/// strength (reverb/scattering/forward_scatter.h). docs/theory/interference.md
 class Interference {
  public:
   Interference(const Scenario& scenario, const PropagationPaths& paths);

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "reverb/receiver_leg.h"
+#include "reverb/pairs/receiver_leg.h"
 #include "sonar/scenario/track.h"
 
 namespace asdic::detail {

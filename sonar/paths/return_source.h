@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "reverb/doppler_span.h"
+#include "reverb/pairs/doppler_span.h"
 #include "sonar/paths/returns.h"
 
 namespace asdic::detail {

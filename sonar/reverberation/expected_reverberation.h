@@ -8,7 +8,7 @@
 
 #include "core/memory_budget.h"
 #include "core/propagation_memory.h"
-#include "reverb/scattering_field.h"
+#include "reverb/fields/scattering_field.h"
 #include "sonar/signal/pulse.h"
 
 namespace asdic::detail {

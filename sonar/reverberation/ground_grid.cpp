@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reverb/ground_spacing.h"
+#include "reverb/fields/ground_spacing.h"
 
 namespace asdic::detail {
 namespace {

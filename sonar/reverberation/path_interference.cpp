@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/rotate_back.h"
-#include "reverb/scattering_field.h"
+#include "reverb/fields/scattering_field.h"
 
 namespace asdic::detail {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "raytrace/math/bessel_table.h"
-#include "reverb/scattering_sheet.h"
+#include "reverb/pairs/scattering_sheet.h"
 #include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reverb/scattering_field.h"
+#include "reverb/fields/scattering_field.h"
 #include "sonar/reverberation/path_interference.h"
 
 namespace asdic::detail {

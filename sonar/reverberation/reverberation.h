@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/memory_budget.h"
-#include "reverb/boundary_fans.h"
-#include "reverb/scattering_field.h"
-#include "reverb/transmit_pattern.h"
+#include "reverb/fields/scattering_field.h"
+#include "reverb/pairs/boundary_fans.h"
+#include "reverb/pairs/transmit_pattern.h"
 #include "sonar/paths/return_source.h"
 #include "sonar/reverberation/expected_reverberation.h"
 #include "sonar/reverberation/patch_row.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "raytrace/places/propagation_paths.h"
-#include "reverb/scattering_sheet.h"
+#include "reverb/pairs/scattering_sheet.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmitter.h"
 #include "sonar/signal/band_response.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/propagation_memory.h"
-#include "reverb/scattering_field.h"
+#include "reverb/fields/scattering_field.h"
 #include "sonar/signal/band_response.h"
 #include "sonar/signal/pulse_coherence.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 #include "reverb/scattering/motion.h"
 
 namespace asdic::detail {

@@ -6,7 +6,7 @@
 
 #include "raytrace/ocean/environment.h"
 #include "raytrace/ocean/transect.h"
-#include "reverb/reverberation_settings.h"
+#include "reverb/fields/reverberation_settings.h"
 #include "sonar/scenario/array.h"
 #include "sonar/scenario/interferer.h"
 #include "sonar/scenario/noise_settings.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/units.h"
-#include "reverb/transmit_pattern.h"
+#include "reverb/pairs/transmit_pattern.h"
 #include "sonar/scenario/beams/beams.h"
 #include "sonar/signal/pulse.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "reverb/transmit_pattern.h"
+#include "reverb/pairs/transmit_pattern.h"
 #include "sonar/synthesis/synthesis.h"
 
 namespace asdic::detail::support {

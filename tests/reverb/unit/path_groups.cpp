@@ -1,5 +1,5 @@
 // Paths to a cell that are received as one, and bundles of very many of them.
-#include "reverb/path_groups.h"
+#include "reverb/pairs/path_groups.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reverb/scatterer_field.h"
+#include "reverb/fields/scatterer_field.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a rough sea scatters about the mirrored path: energy, delay, Doppler, fluctuation.
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 
 #include <gtest/gtest.h>
 

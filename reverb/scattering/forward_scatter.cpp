@@ -1,4 +1,4 @@
-#include "reverb/forward_scatter.h"
+#include "reverb/scattering/forward_scatter.h"
 
 #include <algorithm>
 #include <cmath>

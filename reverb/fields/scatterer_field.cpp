@@ -1,4 +1,4 @@
-#include "reverb/scatterer_field.h"
+#include "reverb/fields/scatterer_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,19 +33,6 @@ double gamma_of_mean_one(double shape, RandomStream& draw) {
 }
 
 }  // namespace
-
-void ScattererMotion::describe(Fields& field) {
-  field("motion", kind, "how the scatterers move, but for the current");
-  if (const auto only = field.only("motion", kind, Kind::bragg))
-    field("receding_share", receding_share, {.noun = "share", .low = 0.0, .high = 1.0},
-          "of the waves, those that lower the frequency");
-  if (const auto only = field.only("motion", kind, Kind::spread))
-    field(required("speed_rms"), speed_rms,
-          {.noun = "speed", .unit = "m/s", .low = 0.0, .high = 20.0},
-          "of each component of a scatterer's velocity");
-  field("current", current, quantity::velocity, "with which all of them drift",
-        "two numbers: towards east and north,");
-}
 
 void ScattererStatistics::describe(Fields& field) {
   bool frozen = std::isinf(coherence_time);

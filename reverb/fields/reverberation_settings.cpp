@@ -1,4 +1,4 @@
-#include "reverb/reverberation_settings.h"
+#include "reverb/fields/reverberation_settings.h"
 
 #include "core/fields.h"
 #include "core/quantities.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "reverb/boundary_fans.h"
+#include "reverb/pairs/boundary_fans.h"
 
 namespace asdic::detail {
 

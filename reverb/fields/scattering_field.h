@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "raytrace/places/bounces.h"
-#include "reverb/reverberation_settings.h"
-#include "reverb/scatterer_field.h"
-#include "reverb/scattering_sheet.h"
+#include "reverb/fields/reverberation_settings.h"
+#include "reverb/fields/scatterer_field.h"
+#include "reverb/pairs/scattering_sheet.h"
 
 namespace asdic::detail {
 

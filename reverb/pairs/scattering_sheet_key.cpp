@@ -1,5 +1,5 @@
 #include "core/settings_key.h"
-#include "reverb/scattering_sheet.h"
+#include "reverb/pairs/scattering_sheet.h"
 
 namespace asdic::detail {
 namespace {

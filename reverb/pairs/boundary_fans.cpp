@@ -1,4 +1,4 @@
-#include "reverb/boundary_fans.h"
+#include "reverb/pairs/boundary_fans.h"
 
 #include <tbb/collaborative_call_once.h>
 

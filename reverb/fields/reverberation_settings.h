@@ -5,8 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "reverb/scatterer_field.h"
+#include "reverb/fields/scatterer_field.h"
 #include "reverb/scattering/models.h"
+#include "reverb/scattering/motion.h"
 
 namespace asdic::detail {
 

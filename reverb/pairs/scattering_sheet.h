@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "core/kinematics.h"
-#include "reverb/boundary_fans.h"
-#include "reverb/doppler_span.h"
-#include "reverb/path_groups.h"
-#include "reverb/receiver_leg.h"
-#include "reverb/reverberation_settings.h"
-#include "reverb/scatterer_field.h"
+#include "reverb/pairs/boundary_fans.h"
+#include "reverb/pairs/doppler_span.h"
+#include "reverb/pairs/path_groups.h"
+#include "reverb/pairs/receiver_leg.h"
+#include "reverb/pairs/transmit_pattern.h"
 #include "reverb/scattering/models.h"
-#include "reverb/transmit_pattern.h"
+#include "reverb/scattering/motion.h"
 
 namespace asdic::detail {
 

@@ -1,4 +1,4 @@
-#include "reverb/path_groups.h"
+#include "reverb/pairs/path_groups.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reverb/scattering_sheet.h"
+#include "reverb/pairs/scattering_sheet.h"
 
 #include <algorithm>
 #include <array>

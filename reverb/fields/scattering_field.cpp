@@ -1,4 +1,4 @@
-#include "reverb/scattering_field.h"
+#include "reverb/fields/scattering_field.h"
 
 #include <algorithm>
 #include <cmath>
