@@ -17,7 +17,7 @@ ROOMS = {  # in the folders named here every file lies in a room, and a room inc
     "io": ["files", "isolated", "text", "hdf5", "wav", "settings", "scenario", "climatology", "bellhop", "compare", "ping", "result", "processing"],
     "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
     "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "places", "bellhop_emulation", "runs", "warnings", ""],
-    "reverb": ["scattering", "pairs", "fields"],
+    "reverb": ["scattering", "pairs", "fields", "power"],
     "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent

@@ -16,7 +16,7 @@ inline constexpr double slowest_sea = 1400.0;
 enum class ReceivedBy {
   scatterers,  ///< one after the other
   covariance,  ///< drawn from their covariance (sonar/reverberation/reverberation_covariance.h)
-  streams      ///< as streams of noise (sonar/reverberation/reverberation_streams.h)
+  streams      ///< as streams of noise (reverb/power/reverberation_streams.h)
 };
 
 /// The scatterers of one boundary or layer, as one ping meets them.

@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "raytrace/places/reuse.h"
+#include "reverb/power/patch_row.h"
 #include "sonar/echoes/echo_path.h"
 #include "sonar/noise/received_path.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/leg.h"
-#include "sonar/reverberation/patch_row.h"
 #include "sonar/scenario/track.h"
 #include "sonar/signal/recording.h"
 

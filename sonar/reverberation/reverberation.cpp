@@ -139,71 +139,24 @@ Returns PingReverberation::returns() const { return collect(blocks_, by_sectors_
 
 double PingReverberation::expected_db(double t) const {
   return context_.geometry.transmitter().source_level_db +
-         db_from_power(expected_->power(context_.pulse, t));
+         db_from_power(
+             expected_->power([&](double since) { return context_.pulse.analytic(since); },
+                              context_.pulse.duration(), t));
 }
 
 PatchRows PingReverberation::rows(std::size_t most, PropagationMemory* memory) const {
   if (fields_.empty()) return {};
+  const double source_level = context_.geometry.transmitter().source_level_db;
+  const auto find = [&] { return patch_rows(fields_, expected_->limits, source_level, most); };
   auto key = memory == nullptr
                  ? std::nullopt
                  : ExpectedReverberation::key(fields_, context_.pulse.duration(), Kept::patch_rows);
-  if (!key) return find_rows(most);
-  key->add(most).add(context_.geometry.transmitter().source_level_db);
+  if (!key) return find();
+  key->add(most).add(source_level);
   for (const ScatteringField& field : fields_) key->add_all(field.boundary, field.thickness);
   return *memory->remember(
-      *key, [&] { return std::make_shared<PatchRows>(find_rows(most)); },
+      *key, [&] { return std::make_shared<PatchRows>(find()); },
       [](const PatchRows& found) { return found.rows.size() * sizeof(PatchRow); });
-}
-
-PatchRows PingReverberation::find_rows(std::size_t most) const {
-  PathPairs pairs;
-  const double source_level = context_.geometry.transmitter().source_level_db;
-  const auto add = [&](const ScatteringField& field, std::uint32_t ring, int sector, double share,
-                       std::vector<PatchRow>& rows) {
-    const double ring_of = field.ring_area(ring);
-    field.sheet.pairs_at(field.centre(ring, sector), pairs, &expected_->limits, ring_of);
-    for (const PathPair& pair : pairs.found)
-      rows.push_back(
-          {.ground = field.thickness > 0.0 ? PatchRow::Ground::volume
-                     : field.boundary == 1 ? PatchRow::Ground::bottom
-                                           : PatchRow::Ground::surface,
-           .bearing = field.azimuthally_symmetric() ? std::nan("") : field.bearing(sector),
-           .range = (ring + 0.5) * field.grid.spacing,
-           .area = share * ring_of * pair.area,
-           .delay = pair.delay,
-           .grazing_in = pair.grazing_in,
-           .grazing_out = pair.grazing_out,
-           .launch_elevation = pair.out->launch_elevation,
-           .arrival_elevation = -pair.back->launch_elevation,
-           .scattering_strength_db = db_from_power(pair.cross_section),
-           .level_db = source_level +
-                       db_from_power(std::norm(pair.amplitude) * share * ring_of * pair.area)});
-  };
-  // Of a boundary whose sea is that of several anchors: the nearest one's rings tell all of it.
-  const auto nearest_anchors = [&](const ScatteringField& field) {
-    return &field == fields_.data() || (&field - 1)->boundary != field.boundary;
-  };
-  // Every how many rings: from the number of pairs of one ring in 32.
-  std::vector<PatchRow> counted;
-  for (const ScatteringField& field : fields_) {
-    if (!nearest_anchors(field)) continue;
-    const auto sectors = field.sample_sectors();
-    for (std::uint32_t ring = 0; ring < field.grid.rings; ring += 32)
-      for (const int sector : sectors) add(field, ring, sector, 1.0, counted);
-  }
-  PatchRows result;
-  const std::size_t all = 32 * counted.size();
-  result.every = static_cast<int>(std::max<std::size_t>(1, (all + most - 1) / most));
-  for (const ScatteringField& field : fields_) {
-    if (!nearest_anchors(field)) continue;
-    const auto sectors = field.sample_sectors();
-    const double share = 1.0 / static_cast<double>(sectors.size());
-    for (std::uint32_t ring = 0; ring < field.grid.rings;
-         ring += static_cast<std::uint32_t>(result.every))
-      for (const int sector : sectors) add(field, ring, sector, share, result.rows);
-  }
-  if (result.rows.size() > most) result.rows.resize(most);
-  return result;
 }
 
 }  // namespace asdic::detail

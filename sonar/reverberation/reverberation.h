@@ -8,9 +8,9 @@
 #include "reverb/fields/scattering_field.h"
 #include "reverb/pairs/boundary_fans.h"
 #include "reverb/pairs/transmit_pattern.h"
+#include "reverb/power/expected_reverberation.h"
+#include "reverb/power/patch_rows.h"
 #include "sonar/paths/return_source.h"
-#include "sonar/reverberation/expected_reverberation.h"
-#include "sonar/reverberation/patch_row.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/scenario.h"
@@ -48,12 +48,6 @@ struct ReverberationContext {
   [[nodiscard]] std::uint32_t ping() const noexcept {
     return static_cast<std::uint32_t>(geometry.ping());
   }
-};
-
-/// The patches as rows of the file; \return {rows, every}: each every-th ring is kept.
-struct PatchRows {
-  std::vector<PatchRow> rows;
-  int every = 1;
 };
 
 /// Reverberation of surface and bottom in one ping at one array: every scatterer of the fields with
@@ -144,7 +138,6 @@ class PingReverberation final : public ReturnSource {
   [[nodiscard]] std::vector<Block> sector_blocks() const;
   /// Half of 1/B, or as much as the limit of returns asks for [s].
   [[nodiscard]] double sector_bin(const ScatteringField& field) const;
-  [[nodiscard]] PatchRows find_rows(std::size_t most) const;
   [[nodiscard]] Returns collect(const std::vector<Block>& blocks, bool sectors) const;
 
   const Scenario& scenario_;
@@ -157,6 +150,9 @@ class PingReverberation final : public ReturnSource {
   bool by_sectors_;
   std::vector<Block> blocks_;  // those of returns()
 };
+
+/// Speed of sound at the surface over a scenario's first platform's first place [m/s].
+[[nodiscard]] double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths);
 
 /// Makes the reverberation of any ping at any array of a scenario. Built once; shared by threads.
 class ReverberationModel {

@@ -6,7 +6,7 @@
 #include "core/grouped.h"
 #include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/reverberation/delay_bins.h"
+#include "reverb/power/delay_bins.h"
 #include "sonar/reverberation/segment_covariance.h"
 
 namespace asdic::detail {

@@ -9,8 +9,8 @@
 
 #include "core/propagation_memory.h"
 #include "reverb/fields/scattering_field.h"
+#include "reverb/power/pulse_coherence.h"
 #include "sonar/signal/band_response.h"
-#include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
 

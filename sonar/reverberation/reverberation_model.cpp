@@ -2,14 +2,15 @@
 #include <cmath>
 
 #include "core/mixed_bits.h"
+#include "reverb/fields/ground_spacing.h"
+#include "reverb/power/reverberation_streams.h"
 #include "sonar/paths/enough_bounces.h"
 #include "sonar/paths/receiver_legs.h"
-#include "sonar/reverberation/ground_grid.h"
 #include "sonar/reverberation/reverberation.h"
 #include "sonar/reverberation/reverberation_covariance.h"
-#include "sonar/reverberation/reverberation_streams.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/scenario/ping_bounds.h"
+#include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
 namespace {
@@ -141,12 +142,20 @@ Resolutions resolutions(const ReverberationContext& context, const SheetEnds& en
 
 }  // namespace
 
+double speed_at_surface(const Scenario& scenario, const PropagationPaths& paths) {
+  Vec3 place = scenario.platforms[0].track.at(0.0).position;
+  place.z() = paths.surface_depth(place);
+  return paths.speed_at(place);
+}
+
 ReverberationModel::ReverberationModel(const Scenario& scenario, const PropagationPaths& paths,
                                        const Pulse& widest)
     : scenario_(scenario),
       paths_(paths),
       fans_(paths),
-      spacing_(asdic::detail::ground_spacing(scenario, widest, paths)),
+      spacing_(asdic::detail::ground_spacing(scenario.reverberation, scenario.environment,
+                                             widest.bandwidth_99(),
+                                             speed_at_surface(scenario, paths))),
       fastest_water_(asdic::detail::fastest_water(scenario.environment)),
       resolved_sectors_(scenario.reverberation.resolve_azimuth
                             ? resolved_sectors(scenario, speed_at_surface(scenario, paths))

@@ -3,8 +3,9 @@
 #include <limits>
 
 #include "core/mixed_bits.h"
-#include "sonar/reverberation/path_interference.h"
+#include "reverb/power/path_interference.h"
 #include "sonar/reverberation/reverberation.h"
+#include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
 namespace {

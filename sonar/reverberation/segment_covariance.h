@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/level_namespace.h"
+#include "reverb/power/received_places.h"
 #include "sonar/reverberation/azimuthally_symmetric_covariance.h"
-#include "sonar/reverberation/received_places.h"
 
 namespace asdic::detail {
 

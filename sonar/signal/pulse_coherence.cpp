@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
 
-#include "core/mixed_bits.h"
 #include "sonar/signal/fft.h"
 #include "sonar/signal/pulse.h"
 #include "sonar/signal/pulse_spectrum.h"
 
 namespace asdic::detail {
 
-// R(Δ) = Σ|C(ν)|²e^{i2πνΔ} / Σ|C|², over the band that holds 99 % of the energy.
-PulseCoherence::PulseCoherence(const Pulse& pulse) : duration_(pulse.duration()) {
+namespace {
+
+/// R(Δ) = Σ|C(ν)|²e^{i2πνΔ} / Σ|C|², over the band that holds 99 % of the energy.
+PulseCoherence coherence_of(const Pulse& pulse) {
   constexpr double dense = 16.0;
   const PulseSpectrum spectrum = pulse_spectrum(pulse, pulse.centre_frequency());
   const std::size_t all = spectrum.bins.size();
@@ -30,24 +33,14 @@ PulseCoherence::PulseCoherence(const Pulse& pulse) : duration_(pulse.duration())
   for (std::size_t k = 0; k <= half; ++k) put(k, k);
   for (std::size_t k = 1; k <= half; ++k) put(all - k, length - k);
   ComplexFft<double>(length).inverse(power.data());
-  step_ = 1.0 / (spectrum.bin_width * static_cast<double>(length));
-  const auto count = static_cast<std::size_t>(std::ceil(duration_ / step_)) + 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto& sample = samples_.emplace_back(power[i] / sum);
-    fingerprint_ = mixed(fingerprint_, std::bit_cast<std::uint64_t>(sample));
-  }
+  const double step = 1.0 / (spectrum.bin_width * static_cast<double>(length));
+  const auto count = static_cast<std::size_t>(std::ceil(pulse.duration() / step)) + 1;
+  std::vector<std::complex<float>> samples;
+  for (std::size_t i = 0; i < count; ++i) samples.emplace_back(power[i] / sum);
+  return {pulse.duration(), step, std::move(samples)};
 }
 
-std::complex<double> PulseCoherence::operator()(double later) const noexcept {
-  const double by = std::abs(later);
-  if (by >= duration_) return 0.0;
-  if (samples_.empty()) return 1.0;
-  const double at = by / step_;
-  const auto i = static_cast<std::size_t>(at);
-  const auto t = static_cast<float>(at - static_cast<double>(i));
-  const std::complex<double> found = samples_[i] + t * (samples_[i + 1] - samples_[i]);
-  return later < 0.0 ? std::conj(found) : found;
-}
+}  // namespace
 
 std::shared_ptr<const PulseCoherence> pulse_coherence(const Pulse& pulse) {
   struct Known {
@@ -58,7 +51,7 @@ std::shared_ptr<const PulseCoherence> pulse_coherence(const Pulse& pulse) {
   thread_local std::size_t next = 0;
   for (const Known& k : known)
     if (k.coherence && k.settings == pulse.settings()) return k.coherence;
-  auto found = std::make_shared<const PulseCoherence>(pulse);
+  auto found = std::make_shared<const PulseCoherence>(coherence_of(pulse));
   known[next++ % known.size()] = {pulse.settings(), found};
   return found;
 }

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "reverb/power/reverberation_streams.h"
 #include "sonar/reverberation/reverberation.h"
 #include "sonar/reverberation/reverberation_covariance.h"
-#include "sonar/reverberation/reverberation_streams.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/synthesis/synthesis.h"
 #include "support/thesis.h"

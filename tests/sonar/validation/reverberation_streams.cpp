@@ -7,8 +7,8 @@
 #include <complex>
 #include <vector>
 
+#include "reverb/power/reverberation_streams.h"
 #include "sonar/ping/ping.h"
-#include "sonar/reverberation/reverberation_streams.h"
 #include "support/reverberant_sea.h"
 #include "support/sound_moments.h"
 

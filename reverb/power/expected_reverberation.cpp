@@ -1,4 +1,4 @@
-#include "sonar/reverberation/expected_reverberation.h"
+#include "reverb/power/expected_reverberation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/grouped.h"
 #include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/reverberation/path_interference.h"
+#include "reverb/power/path_interference.h"
 
 namespace asdic::detail {
 namespace {
@@ -340,13 +340,14 @@ double ExpectedReverberation::returns_of(std::size_t field) const noexcept {
   return sum;
 }
 
-double ExpectedReverberation::power(const Pulse& pulse, double t) const {
+double ExpectedReverberation::power(const std::function<std::complex<double>(double)>& sent,
+                                    double duration, double t) const {
   double power = 0.0;
   std::vector<SoundNow> here;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double since = t - samples[i].delay;
-    if (since >= 0.0 && since <= pulse.duration()) {
-      const std::complex<double> received = samples[i].amplitude * pulse.analytic(since);
+    if (since >= 0.0 && since <= duration) {
+      const std::complex<double> received = samples[i].amplitude * sent(since);
       if (samples[i].by_itself)
         power += std::norm(received);
       else

@@ -7,7 +7,7 @@
 
 #include "raytrace/math/bessel_table.h"
 #include "reverb/pairs/scattering_sheet.h"
-#include "sonar/signal/pulse_coherence.h"
+#include "reverb/power/pulse_coherence.h"
 
 namespace asdic::detail {
 

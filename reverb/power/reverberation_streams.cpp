@@ -1,4 +1,4 @@
-#include "sonar/reverberation/reverberation_streams.h"
+#include "reverb/power/reverberation_streams.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 #include "core/mixed_bits.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/reverberation/delay_bins.h"
-#include "sonar/reverberation/received_places.h"
+#include "reverb/power/delay_bins.h"
+#include "reverb/power/received_places.h"
 
 namespace asdic::detail {
 namespace {

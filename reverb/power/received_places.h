@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "reverb/fields/scattering_field.h"
-#include "sonar/reverberation/path_interference.h"
+#include "reverb/power/path_interference.h"
 
 namespace asdic::detail {
 

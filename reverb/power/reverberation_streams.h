@@ -10,7 +10,7 @@
 #include "core/memory_budget.h"
 #include "core/propagation_memory.h"
 #include "reverb/fields/scattering_field.h"
-#include "sonar/signal/pulse_coherence.h"
+#include "reverb/power/pulse_coherence.h"
 
 namespace asdic::detail {
 

@@ -1,4 +1,4 @@
-#include "sonar/reverberation/path_interference.h"
+#include "reverb/power/path_interference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include <array>
 #include <complex>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,7 +10,6 @@
 #include "core/memory_budget.h"
 #include "core/propagation_memory.h"
 #include "reverb/fields/scattering_field.h"
-#include "sonar/signal/pulse.h"
 
 namespace asdic::detail {
 
@@ -57,7 +57,8 @@ struct ExpectedReverberation {
   /// Mean over weights of the peak envelope's square over that of the source at 1 m, at a time
   /// since the ping [s]: Σ_cells Σ_ab p_a·p_b*·exp(−½|Δ_a − Δ_b|²), p = A·D·s(t − τ) of the pairs a
   /// and b through the middle of a cell, Δ their phases' standard deviations over it.
-  [[nodiscard]] double power(const Pulse& pulse, double t) const;
+  [[nodiscard]] double power(const std::function<std::complex<double>(double)>& sent,
+                             double duration, double t) const;
 
  private:
   void cut_into_blocks(std::size_t field, const std::vector<double>& of_ring);

@@ -1,4 +1,4 @@
-#include "sonar/reverberation/received_places.h"
+#include "reverb/power/received_places.h"
 
 #include <cmath>
 

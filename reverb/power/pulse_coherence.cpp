@@ -1,0 +1,29 @@
+#include "reverb/power/pulse_coherence.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "core/mixed_bits.h"
+
+namespace asdic::detail {
+
+PulseCoherence::PulseCoherence(double duration, double step,
+                               std::vector<std::complex<float>> samples)
+    : duration_(duration), step_(step), samples_(std::move(samples)) {
+  for (const std::complex<float>& sample : samples_)
+    fingerprint_ = mixed(fingerprint_, std::bit_cast<std::uint64_t>(sample));
+}
+
+std::complex<double> PulseCoherence::operator()(double later) const noexcept {
+  const double by = std::abs(later);
+  if (by >= duration_) return 0.0;
+  if (samples_.empty()) return 1.0;
+  const double at = by / step_;
+  const auto i = static_cast<std::size_t>(at);
+  const auto t = static_cast<float>(at - static_cast<double>(i));
+  const std::complex<double> found = samples_[i] + t * (samples_[i + 1] - samples_[i]);
+  return later < 0.0 ? std::conj(found) : found;
+}
+
+}  // namespace asdic::detail
