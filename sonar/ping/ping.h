@@ -13,7 +13,7 @@
 #include "sonar/ping/ping_record.h"
 #include "sonar/ping/receiver_electronics.h"
 #include "sonar/reverberation/phone_groups.h"
-#include "sonar/reverberation/reverberation.h"
+#include "sonar/reverberation/reverberation_model.h"
 #include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/scenario/transmission.h"

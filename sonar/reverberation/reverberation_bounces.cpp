@@ -1,10 +1,11 @@
+#include "sonar/reverberation/reverberation_bounces.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/mixed_bits.h"
 #include "sonar/noise/noise_spectrum.h"
 #include "sonar/paths/enough_bounces.h"
-#include "sonar/reverberation/reverberation.h"
 
 namespace asdic::detail {
 namespace {
@@ -40,22 +41,21 @@ void look(const ScatteringSheet& sheet, double reach, int most, ReceivedBounces&
     }
 }
 
-}  // namespace
-
 /// What a segment may miss, 10 dB under the noise in the pulse's band, in units of what look() adds
 /// up: of a source of 1 at 1 m that sounds for a second.
-double ReverberationModel::inaudible(const ReverberationContext& context) const {
+double inaudible(const NoiseSettings& noise, const ReverberationContext& context) {
   const double source_db = context.geometry.transmitter().source_level_db;
   const Pulse& pulse = context.pulse;
-  const double noise_db =
-      noise_band_db(scenario_.noise, pulse.centre_frequency(), pulse.bandwidth_40db());
+  const double noise_db = noise_band_db(noise, pulse.centre_frequency(), pulse.bandwidth_40db());
   return 0.1 * power_from_db(noise_db - source_db) * context.latest / segments / pulse.duration();
 }
 
-Bounces ReverberationModel::enough(const Part& part, const SheetEnds& ends,
-                                   BoundaryFans::Settings fan,
-                                   const ReverberationContext& context) const {
-  const PropagationSettings& settings = scenario_.propagation;
+}  // namespace
+
+Bounces reverberation_bounces(const ScatteringPart& part, const SheetEnds& ends,
+                              const BoundaryFans& fans, BoundaryFans::Settings fan, bool layered,
+                              const Scenario& scenario, const ReverberationContext& context) {
+  const PropagationSettings& settings = scenario.propagation;
   if (in_numbers(settings) && !context.judged) return as_asked(settings);
   SheetEnds centre = ends;
   centre.band = {};
@@ -64,16 +64,16 @@ Bounces ReverberationModel::enough(const Part& part, const SheetEnds& ends,
   fan.spacing = reach / rings;
   fan.sectors = bearings_looked_at;
   const BounceSearch search{.first = first_try,
-                            .most = paths_.layered() ? most_ever : most_over_slopes,
+                            .most = layered ? most_ever : most_over_slopes,
                             .segments = segments,
                             .latest = context.latest,
-                            .floor = inaudible(context)};
+                            .floor = inaudible(scenario.noise, context)};
   return search_bounces(settings, search, [&](const PathLimits& limits, ReceivedBounces& received) {
     fan.limits = limits;
     fan.limits.max_delay = max_delay;
     fan.limits.home_slowness = home_slowness;
-    const ScatteringSheet sheet(fans_.around(ends.source.position, part.level, fan),
-                                fans_.around(ends.receiver.position, part.level, fan), part.law,
+    const ScatteringSheet sheet(fans.around(ends.source.position, part.level, fan),
+                                fans.around(ends.receiver.position, part.level, fan), part.law,
                                 centre, context.pattern);
     look(sheet, reach, std::max(limits.max_surface_bounces, limits.max_bottom_bounces), received);
   });

@@ -1,10 +1,11 @@
+#include "sonar/reverberation/sector_returns.h"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/mixed_bits.h"
 #include "reverb/power/path_interference.h"
-#include "sonar/reverberation/reverberation.h"
+#include "sonar/reverberation/scatterer_returns.h"
 #include "sonar/signal/pulse_coherence.h"
 
 namespace asdic::detail {
@@ -29,29 +30,32 @@ const PathPair* reciprocal(std::span<const PathPair> pairs, const PathPair& pair
 
 }  // namespace
 
-double PingReverberation::sector_bin(const ScatteringField& field) const {
-  const double bins_allowed = static_cast<double>(scenario_.reverberation.most_returns) /
-                              (2.0 * field.grid.azimuths * static_cast<double>(fields_.size()));
-  return std::max(0.5 / context_.pulse.bandwidth_99(), context_.latest / bins_allowed);
+SectorReturns::SectorReturns(const ScattererMeeting& meeting, const Pulse& pulse, double latest,
+                             std::size_t most, std::size_t fields)
+    : meeting_(meeting), pulse_(pulse), latest_(latest), most_(most), fields_(fields) {}
+
+double SectorReturns::bin(const ScatteringField& field) const {
+  const double bins_allowed =
+      static_cast<double>(most_) / (2.0 * field.grid.azimuths * static_cast<double>(fields_));
+  return std::max(0.5 / pulse_.bandwidth_99(), latest_ / bins_allowed);
 }
 
-void PingReverberation::add_sector(const ScatteringField& field, int sector,
-                                   ReturnBlock& into) const {
-  const ScattererWeights weights(field.field.statistics, Draw::sector_weight, scenario_.seed,
-                                 context_.geometry.time(), context_.ping());
-  const double bin = sector_bin(field);
-  const auto count = static_cast<std::size_t>(std::ceil(context_.latest / bin)) + 1;
+void SectorReturns::add(const ScatteringField& field, int sector, ReturnBlock& into) const {
+  const ScattererWeights weights(field.field.statistics, Draw::sector_weight, meeting_.seed,
+                                 meeting_.time, meeting_.ping);
+  const double width = bin(field);
+  const auto count = static_cast<std::size_t>(std::ceil(latest_ / width)) + 1;
   std::vector<Bin> bins(count * elevations);
   PathPairs pairs;
   PlaceSounds sounds;
-  const PathInterference interference(context_.phones, field.sheet.ends().frequency,
-                                      *pulse_coherence(context_.pulse), false);
+  const PathInterference interference({}, field.sheet.ends().frequency, *pulse_coherence(pulse_),
+                                      false);
   const double speed = field.sheet.ends().receiver_speed;
   const bool one_fan = field.sheet.one_fan();
   const auto with = [&](const PathPair& pair) {
     return one_fan ? reciprocal(pairs.found, pair) : nullptr;
   };
-  const auto put = [&](const ScattererKey& key, std::uint64_t entity, const Met& met) {
+  const auto put = [&](const ScattererKey& key, std::uint64_t entity, const MetScatterer& met) {
     sounds.clear();
     for (const PathPair& pair : pairs.found) {
       const PathPair* other = with(pair);
@@ -63,19 +67,20 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
     for (const PathPair& pair : pairs.found) {
       const PathPair* other = with(pair);
       if (other && pair.out_index > pair.back_index) continue;  // it goes with the other
-      const double alone = std::norm(met.strength) * (std::norm(pair.amplitude) +
-                                                      (other ? std::norm(other->amplitude) : 0.0));
+      const double alone =
+          met.strength * met.strength *
+          (std::norm(pair.amplitude) + (other ? std::norm(other->amplitude) : 0.0));
       const double power =
           alone * std::pow(gains[static_cast<std::size_t>(&pair - pairs.found.data())], 2);
       const double sine = -field.sheet.arriving(pair).z() * speed;
       const int elevation =
           std::clamp(static_cast<int>(0.5 * (sine + 1.0) * elevations), 0, elevations - 1);
-      const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / bin);
+      const auto late = static_cast<std::size_t>(std::max(0.0, pair.delay) / width);
       Bin& full =
           bins[std::min(late, count - 1) * elevations + static_cast<std::size_t>(elevation)];
       full.power += static_cast<float>(power);
       const std::uint64_t number = std::uint64_t{pair.out_index} << 16 | pair.back_index;
-      const double drawn = uniform_of_bits(mixed(mixed(entity, scenario_.seed), number));
+      const double drawn = uniform_of_bits(mixed(mixed(entity, meeting_.seed), number));
       if (drawn * static_cast<double>(full.power) >= power) continue;
       full = {.power = full.power,
               .chosen = static_cast<float>(alone),
@@ -87,7 +92,7 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
     }
   };
   for (std::uint32_t ring = 0; ring < field.grid.rings; ++ring)
-    for_each_scatterer(field, ring, sector, pairs, put);
+    for_each_scatterer(field, ring, sector, meeting_, pairs, put);
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const Bin& full = bins[i];
     if (full.chosen <= 0.0F) continue;
@@ -95,26 +100,27 @@ void PingReverberation::add_sector(const ScatteringField& field, int sector,
                            .sector = static_cast<std::uint32_t>(sector),
                            .copies = full.copies,
                            .copy = full.copy};
-    const Met met = meet(field, key, key.entity(field.grid.identity), pairs);
+    const MetScatterer met = meet(field, key, key.entity(field.grid.identity), meeting_, pairs);
     const std::uint64_t entity = mixed(mixed(field.grid.identity, ~std::uint64_t(sector)), i);
     const std::complex<double> weight =
         std::sqrt(static_cast<double>(full.power) / static_cast<double>(full.chosen)) *
         weights(entity);
     for (const PathPair& pair : pairs.found)
       if (pair.out_index == full.out && pair.back_index == full.back) {
-        receive(field, pairs, pair, met, weight, into);
+        add_return(field, pairs, pair, met, weight, into);
         const PathPair* other = one_fan ? reciprocal(pairs.found, pair) : nullptr;
-        if (other) receive(field, pairs, *other, met, weight, into);
+        if (other) add_return(field, pairs, *other, met, weight, into);
         break;
       }
   }
 }
 
-std::vector<PingReverberation::Block> PingReverberation::sector_blocks() const {
-  std::vector<Block> blocks;
-  for (std::size_t field = 0; field < fields_.size(); ++field) {
-    const auto sectors = static_cast<std::uint32_t>(fields_[field].grid.azimuths);
-    const double bins = context_.latest / sector_bin(fields_[field]);
+std::vector<ExpectedReverberation::Block> SectorReturns::blocks(
+    std::span<const ScatteringField> fields) const {
+  std::vector<ExpectedReverberation::Block> blocks;
+  for (std::size_t field = 0; field < fields.size(); ++field) {
+    const auto sectors = static_cast<std::uint32_t>(fields[field].grid.azimuths);
+    const double bins = latest_ / bin(fields[field]);
     for (std::uint32_t sector = 0; sector < sectors; ++sector)
       blocks.push_back({.field = field,
                         .begin = sector,

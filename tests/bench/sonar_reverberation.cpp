@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sonar/ping/ping.h"
-#include "sonar/reverberation/reverberation.h"
+#include "sonar/reverberation/reverberation_model.h"
 #include "sonar/scenario/array.h"
 #include "sonar/synthesis/synthesis.h"
 #include "support/deep_ocean.h"

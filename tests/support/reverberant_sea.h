@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "reverb/power/reverberation_streams.h"
-#include "sonar/reverberation/reverberation.h"
 #include "sonar/reverberation/reverberation_covariance.h"
+#include "sonar/reverberation/reverberation_model.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/synthesis/synthesis.h"
 #include "support/thesis.h"

@@ -1,0 +1,47 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "raytrace/places/propagation_paths.h"
+#include "reverb/power/expected_reverberation.h"
+#include "sonar/reverberation/ping_reverberation.h"
+#include "sonar/reverberation/reverberation_context.h"
+#include "sonar/reverberation/reverberation_fields.h"
+#include "sonar/scenario/scenario.h"
+
+namespace asdic::detail {
+
+/// Makes the reverberation of any ping at any array of a scenario, and chooses how it is received:
+/// scatterers one by one, by their covariance or as streams. Built once; shared by threads.
+class ReverberationModel {
+ public:
+  /// \param scenario, paths  must outlive this   \param widest  of the pulses: it sets the grid
+  ReverberationModel(const Scenario& scenario, const PropagationPaths& paths, const Pulse& widest);
+
+  [[nodiscard]] PingReverberation ping(const ReverberationContext& context) const;
+  /// What ping() would ask the context's budget for, though it may be known: takes it.
+  void take_memory(const ReverberationContext& context) const;
+  /// Of the rings of scatterers [m].
+  [[nodiscard]] double ground_spacing() const noexcept { return fields_.ground_spacing(); }
+  /// Of everything that scatters.
+  [[nodiscard]] std::vector<ScatteringSheet::Law> laws() const;
+  /// That a ping's paths follow, the most of all boundaries and layers.
+  [[nodiscard]] Bounces bounces(const ReverberationContext& context) const;
+
+ private:
+  [[nodiscard]] std::shared_ptr<const ExpectedReverberation> expected(
+      std::span<const ScatteringField> fields, const ReverberationContext& context) const;
+  [[nodiscard]] std::shared_ptr<const ReverberationCovariance> covariance(
+      std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+      const ReverberationContext& context) const;
+  [[nodiscard]] std::shared_ptr<const ReverberationStreams> streams(
+      std::span<ScatteringField> fields, const ExpectedReverberation& expected,
+      const ReverberationContext& context) const;
+
+  const Scenario& scenario_;
+  const PropagationPaths& paths_;
+  ReverberationFields fields_;
+};
+
+}  // namespace asdic::detail
