@@ -1,10 +1,11 @@
+#include "sonar/scenario/electronics.h"
+
 #include <cmath>
 #include <string>
 
 #include "core/fields.h"
 #include "core/quantities.h"
 #include "core/text.h"
-#include "sonar/scenario/array.h"
 
 namespace asdic::detail {
 namespace {

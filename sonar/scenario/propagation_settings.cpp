@@ -1,5 +1,9 @@
+#include "sonar/scenario/propagation_settings.h"
+
+#include <span>
+#include <string_view>
+
 #include "core/fields.h"
-#include "sonar/scenario/scenario.h"
 
 namespace asdic::detail {
 namespace {

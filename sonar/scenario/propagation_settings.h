@@ -1,0 +1,26 @@
+#pragma once
+#include <optional>
+
+#include "core/units.h"
+
+namespace asdic::detail {
+
+class Fields;
+
+/// What is searched for. A path is kept when it is within all the limits.
+struct PropagationSettings {
+  /// None ("auto"): as many as there is sound in, sonar/paths/enough_bounces.h.
+  std::optional<int> max_surface_bounces = {};
+  std::optional<int> max_bottom_bounces = {};
+  double max_launch_angle = 0.5 * pi;  ///< from the horizontal [rad]
+  bool direct_blast = true;            ///< arrays on other platforms receive the ping on its way
+  bool fathometer =
+      false;               ///< those on the transmitter's own receive it mirrored by the boundaries
+  bool wide_band = false;  ///< echoes' losses and patterns at every frequency of the pulse
+  bool diffraction = true;       ///< echoes and direct sound where no ray goes, in stratified water
+  bool exact_per_phone = false;  ///< eigenrays to every phone, also where a plane wave is enough
+
+  void describe(Fields& field);
+};
+
+}  // namespace asdic::detail
