@@ -117,8 +117,7 @@ struct SheetEnds {
 class ScatteringSheet {
  public:
   /// Every law there is, as one list.
-  using Law = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable, Lambert,
-                           EllisCrowe, VolumeSheet>;
+  using Law = AnyScattering;
 
   /// Which paths are received as one, out and back.
   struct Groups {

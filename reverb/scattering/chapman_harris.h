@@ -26,6 +26,13 @@ struct ChapmanHarris {
     field.derived(sound_speed);
   }
 
+  [[nodiscard]] static const Validity& validity() noexcept {
+    static constexpr ValidRange ranges[] = {{"frequency", "Hz", 400.0, 6400.0},
+                                            {"wind speed", "m/s", 0.0, 15.5}};
+    static constexpr Validity validity{"Chapman and Harris' law", "JASA 34, 1592, 1962", ranges};
+    return validity;
+  }
+
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
     const double theta = std::sqrt(std::max(0.0, g.grazing_in * g.grazing_out));
     if (wind_speed <= 0.0 || frequency <= 0.0 || theta <= 0.0) return 0.0;

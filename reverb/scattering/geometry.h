@@ -5,6 +5,7 @@
 
 #include "core/fields.h"
 #include "core/units.h"
+#include "core/validity.h"
 
 namespace asdic::detail {
 
@@ -58,7 +59,8 @@ struct LawByAngles {
 /// and the property tests what they need. cross_section must be reciprocal (in ↔ out) and finite,
 /// and 0 (never log of 0) where the model says nothing scatters. `at(frequency)` is the same law
 /// for many directions: what depends on the frequency alone is found once. One of the two is
-/// written with the other.
+/// written with the other. An empirical law also says where it holds: `static const Validity&
+/// validity() noexcept`.
 template <class Model>
 concept ScatteringModel = Described<Model> &&
     requires(const Model& constant, const ScatterGeometry& geometry, const ScatterSines& sines,

@@ -1,5 +1,7 @@
 #pragma once
+#include <concepts>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -17,6 +19,48 @@ namespace asdic::detail {
 using AnySurfaceScattering = std::variant<NrlSurface, ChapmanHarris, OgdenErskine, ScatteringTable>;
 /// Every law of bottom scattering.
 using AnyBottomScattering = std::variant<Lambert, EllisCrowe, ScatteringTable>;
+
+namespace scattering_list {
+
+/// A list with one law more, where it is not there yet.
+template <class List, class Law>
+struct With;
+template <class... Laws, class Law>
+struct With<std::variant<Laws...>, Law> {
+  using Type = std::conditional_t<(std::same_as<Laws, Law> || ...), std::variant<Laws...>,
+                                  std::variant<Laws..., Law>>;
+};
+/// Every law of two lists, once.
+template <class List, class More>
+struct Joined;
+template <class List>
+struct Joined<List, std::variant<>> {
+  using Type = List;
+};
+template <class List, class Law, class... Laws>
+struct Joined<List, std::variant<Law, Laws...>> {
+  using Type = typename Joined<typename With<List, Law>::Type, std::variant<Laws...>>::Type;
+};
+
+}  // namespace scattering_list
+
+/// Every law there is: of the surface, of the bottom and of a sheet of water between them.
+using AnyScattering =
+    scattering_list::With<scattering_list::Joined<AnySurfaceScattering, AnyBottomScattering>::Type,
+                          VolumeSheet>::Type;
+
+/// Where a law's source vouches for it. A law that says nothing of it holds anywhere.
+template <class... Model>
+[[nodiscard]] Validity scattering_validity(const std::variant<Model...>& scattering) {
+  return std::visit(
+      []<class Law>(const Law& /*any*/) {
+        if constexpr (requires { Law::validity(); })
+          return Law::validity();
+        else
+          return Validity{};
+      },
+      scattering);
+}
 
 /// σ [1/sr] of either at a frequency [Hz].
 template <class... Model>

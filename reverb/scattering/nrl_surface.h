@@ -40,6 +40,12 @@ struct NrlSurface {
     field.derived(sound_speed);
   }
 
+  [[nodiscard]] static const Validity& validity() noexcept {
+    static constexpr ValidRange ranges[] = {{"frequency", "Hz", 0.0, 5000.0}};
+    static constexpr Validity validity{"the NRL law", "NRL/FR/7100--02-10,042, 2002", ranges};
+    return validity;
+  }
+
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
     return at(frequency)(sines_of(g));
   }

@@ -29,6 +29,13 @@ struct OgdenErskine {
     field.derived(sound_speed);
   }
 
+  [[nodiscard]] static const Validity& validity() noexcept {
+    static constexpr ValidRange ranges[] = {{"frequency", "Hz", 50.0, 1000.0},
+                                            {"wind speed", "m/s", 0.0, 20.0}};
+    static constexpr Validity validity{"Ogden and Erskine's law", "JASA 95, 746, 1994", ranges};
+    return validity;
+  }
+
   [[nodiscard]] double cross_section(const ScatterGeometry& g, double frequency) const noexcept {
     const double theta = std::sqrt(std::max(0.0, g.grazing_in * g.grazing_out));
     if (wind_speed <= 0.0 || frequency <= 0.0 || theta <= 0.0) return 0.0;

@@ -13,7 +13,6 @@
 #include "raytrace/places/propagation_paths.h"
 #include "raytrace/waves/diffraction.h"
 #include "reverb/scattering/energy.h"
-#include "reverb/scattering/validity.h"
 #include "sonar/noise/ambient_noise.h"
 #include "sonar/noise/noise_coherence.h"
 #include "sonar/noise/noise_in_guide.h"
@@ -88,9 +87,7 @@ std::string surface_scattering_range(const Scenario& scenario) {
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   const std::array<Asked, 2> asked{{{"frequency", pulse.lowest, pulse.highest},
                                     {"wind speed", scenario.wind_speed, scenario.wind_speed}}};
-  const std::string text = std::visit(
-      [&]<class Law>(const Law& /*law*/) { return outside(scattering_validity<Law>, asked); },
-      sea.surface);
+  const std::string text = outside(scattering_validity(sea.surface), asked);
   return text.empty() ? "" : "reverberation.surface.kind: " + text;
 }
 
