@@ -333,7 +333,7 @@ inline SimdDoubles logarithm(const SimdDoubles& x) noexcept {
 }
 
 /// (atanh x)/x for |x| < 1.
-inline SimdDoubles atanh_over(const SimdDoubles& x) noexcept {
+[[gnu::always_inline]] inline SimdDoubles atanh_over(const SimdDoubles& x) noexcept {
   const SimdDoubles series = atanh_series(x);
   const auto small = abs(x) < short_series;
   if (all_of(small)) return series;

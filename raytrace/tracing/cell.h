@@ -47,7 +47,7 @@ struct Cell {
   const MunkParameters* munk = nullptr;
 
   /// Speed by the cell's law, whether the point lies inside or not.
-  [[nodiscard]] SoundSpeed2D speed(double range, double depth) const noexcept {
+  [[nodiscard, gnu::always_inline]] SoundSpeed2D speed(double range, double depth) const noexcept {
     const double t = depth - z0;
     switch (law) {
       case Law::arc:
@@ -79,7 +79,7 @@ struct Cell {
 struct Local {
   double c, c_r, c_z, c_nn;
 };
-[[nodiscard]] inline Local local(const Cell& cell, const RayState& y) noexcept {
+[[nodiscard, gnu::always_inline]] inline Local local(const Cell& cell, const RayState& y) noexcept {
   const SoundSpeed2D s = cell.speed(y.range, y.depth);
   const double tr = s.c * y.xi, tz = s.c * y.zeta;
   // ∂²c/∂n² with n = (−t_z, t_r)

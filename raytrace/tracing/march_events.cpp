@@ -114,9 +114,7 @@ void March::plan_series(bool down, double longest) {
     }
   }
   Place end = course_.at(step_);
-  const auto take = [&](Event event, const Line& line) {
-    const double beyond = -line.distance(end.range, end.depth);
-    if (beyond <= 0.0) return;
+  const auto cut = [&](Event event, const Line& line, double beyond) {
     event_ = event;
     const double before = std::max(line.distance(y_.range, y_.depth), 0.0);
     const double guess = step_ * before / (before + beyond);  // where the chord meets it
@@ -125,6 +123,11 @@ void March::plan_series(bool down, double longest) {
       return ValueSlope{line.distance(p.range, p.depth), line.nr * p.dr + line.nz * p.dz};
     });
     end = course_.at(step_);
+  };
+  // All lines are looked at, few are passed: without a call, as most numbers of a line are 0 or 1.
+  const auto take = [&](Event event, const Line& line) __attribute__((always_inline)) {
+    const double beyond = -line.distance(end.range, end.depth);
+    if (!(beyond <= 0.0)) cut(event, line, beyond);
   };
   const auto in_front = [](double range) { return Line{.range = range, .nr = -1.0, .nz = 0.0}; };
   const auto behind = [](double range) { return Line{.range = range, .nr = 1.0, .nz = 0.0}; };

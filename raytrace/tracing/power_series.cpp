@@ -206,8 +206,13 @@ double PowerSeries::speed_integral(double h) const noexcept {
     at[i] = 0.5 * h * (1.0 + Rule::node[i]);
     weight[i] = 0.5 * h * Rule::weight[i];
   }
-  Four c = double(order) * length[order] + Four{};
-  for (std::size_t i = order - 1; i > 0; --i) c = double(i) * length[i] + at * c;
+  static constexpr Series power = [] {
+    Series i{};
+    for (std::size_t k = 0; k < i.size(); ++k) i[k] = static_cast<double>(k);
+    return i;
+  }();
+  Four c = power[order] * length[order] + Four{};
+  for (std::size_t i = order - 1; i > 0; --i) c = power[i] * length[i] + at * c;
   const Four terms = weight * c * c;
   return (terms[0] + terms[2]) + (terms[1] + terms[3]);
 }
