@@ -40,7 +40,8 @@ void SampledSignal::at(std::span<const double> t, std::span<double> real,
   using Under = Eigen::Map<const Taps::Weights>;
   const auto place = [&](std::size_t i) { return (t[i] - first_) * rate_; };
   const auto within = [&](double p) { return p > -reach && p < count_ - 1.0 + reach; };
-  const auto put = [&](std::size_t i, const Taps::Weights& w, double below) {
+  const auto put = [&](std::size_t i, const Taps::Weights& w, double below)
+      __attribute__((always_inline)) {
     const auto from =
         static_cast<std::ptrdiff_t>(pad) + static_cast<std::ptrdiff_t>(below) - Taps::before;
     real[i] = (w * Under(real_.data() + from)).sum();

@@ -91,11 +91,21 @@ DopplerExpansion::DopplerExpansion(const BandLimitedPulse& pulse)
 
 std::size_t DopplerExpansion::nodes_needed(double span) const {
   std::size_t count = 1;
-  for (const auto& [time, amplitude] : envelope_) {
+  std::vector<double> tails;  // of the latest z that was looked at
+  double latest = infinity;
+  for (auto point = envelope_.rbegin(); point != envelope_.rend(); ++point) {
+    const auto& [time, amplitude] = *point;
     const double z = pi * highest_frequency_ * span * time;  // 2πf·(span/2)·u
-    if (z < 1e-9 || amplitude < 0.25 * expansion_error) continue;
-    const auto tails = bessel_tails(z);
-    while (count < tails.size() && 4.0 * amplitude * tails[count] > expansion_error) ++count;
+    if (z < 1e-9) break;
+    if (amplitude < 0.25 * expansion_error) continue;
+    const auto too_few = [&, share = 4.0 * amplitude] {
+      return count < tails.size() && share * tails[count] > expansion_error;
+    };
+    // |J_n(z)| grows with z up to n: what is enough for a later part is enough for this one.
+    if (static_cast<double>(count) >= latest && !too_few()) continue;
+    tails = bessel_tails(z);
+    latest = z;
+    while (too_few()) ++count;
   }
   return count;
 }

@@ -33,6 +33,16 @@ struct Run {
 void ImpulseGrid::add(const OrderedReturns& returns, const OrderedReturns::Band& band,
                       const Part& part, const Vec3& phone,
                       std::complex<float>* grids) const noexcept {
+  if (band.moved)
+    add_band<true>(returns, band, part, phone, grids);
+  else
+    add_band<false>(returns, band, part, phone, grids);
+}
+
+template <bool moved>
+void ImpulseGrid::add_band(const OrderedReturns& returns, const OrderedReturns::Band& band,
+                           const Part& part, const Vec3& phone,
+                           std::complex<float>* grids) const noexcept {
   const Weights even =
       Weights::NullaryExpr([](Eigen::Index i) { return i % 2 == 0 ? 1.0F : 0.0F; });
   const Weights odd = 1.0F - even;
@@ -41,17 +51,24 @@ void ImpulseGrid::add(const OrderedReturns& returns, const OrderedReturns::Band&
   Block at;
   std::array<Weights, block> taps;
   std::array<std::size_t, block> below;  // the sample at or below the impulse
-  constexpr double first_on_grid = DelayKernel::taps;
-  const auto last_on_grid = static_cast<double>(length - DelayKernel::taps);
+  // Where impulses lie on the grid, and where they are the middles of pulses that are received.
+  double first_on_grid = DelayKernel::taps;
+  auto last_on_grid = static_cast<double>(length - DelayKernel::taps);
+  if constexpr (!moved) {
+    first_on_grid = std::max(first_on_grid, first_position);
+    last_on_grid = std::min(last_on_grid, last_position);
+  }
 
   for (std::size_t start = part.begin; start < part.end; start += block) {
     const std::size_t n = std::min(block, part.end - start);
-    locate(returns, start, n, part.response, phone, at);
+    locate<moved>(returns, start, n, part.response, phone, at);
     for (std::size_t i = 0; i < n; ++i) {
       const double position = at.position[i];
-      const double middle = position - rate * returns.late[start + i];
-      const bool received = middle >= first_position && middle <= last_position &&
-                            position >= first_on_grid && position <= last_on_grid;
+      bool received = position >= first_on_grid && position <= last_on_grid;
+      if constexpr (moved) {
+        const double middle = position - rate * returns.late[start + i];
+        received = received && middle >= first_position && middle <= last_position;
+      }
       below[i] = received ? static_cast<std::size_t>(position) : not_received;
       if (!received) continue;
       const auto fraction = static_cast<float>(position - static_cast<double>(below[i]));
@@ -76,11 +93,12 @@ void ImpulseGrid::add(const OrderedReturns& returns, const OrderedReturns::Band&
   }
 }
 
+template <bool moved>
 void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::size_t n,
                          std::size_t response, const Vec3& phone, Block& at) const noexcept {
   const double x = phone.x(), y = phone.y(), z = phone.z();
   const double* __restrict impulse = returns.impulse.data() + start;
-  const double* __restrict late = returns.late.data() + start;
+  const double* __restrict late = moved ? returns.late.data() + start : nullptr;
   const double* __restrict sx = returns.slowness_x.data() + start;
   const double* __restrict sy = returns.slowness_y.data() + start;
   const double* __restrict sz = returns.slowness_z.data() + start;
@@ -89,7 +107,8 @@ void ImpulseGrid::locate(const OrderedReturns& returns, std::size_t start, std::
   for (std::size_t i = 0; i < n; ++i) {
     const double delay = impulse[i] + (sx[i] * x + sy[i] * y + sz[i] * z);
     double a = re[i], b = im[i];
-    rotate_back(carrier * (delay - late[i]), a, b);  // e^{−i2π f_c τ}
+    const double middle = moved ? delay - late[i] : delay;
+    rotate_back(carrier * middle, a, b);  // e^{−i2π f_c τ}
     at.position[i] = (delay - first) * rate;
     at.real[i] = static_cast<float>(a);
     at.imag[i] = static_cast<float>(b);

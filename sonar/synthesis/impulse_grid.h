@@ -33,11 +33,16 @@ struct ImpulseGrid {
            const Vec3& phone, std::complex<float>* grids) const noexcept;
 
  private:
+  template <bool moved>
+  void add_band(const OrderedReturns& returns, const OrderedReturns::Band& band, const Part& part,
+                const Vec3& phone, std::complex<float>* grids) const noexcept;
+
   static constexpr std::size_t block = 256;  // returns located at one time
   struct Block {                             // where they fall at one phone, and what they weigh
     std::array<double, block> position;      // [samples]
     std::array<float, block> real, imag;     // amplitude·e^{−i2π f_c τ}
   };
+  template <bool moved>
   void locate(const OrderedReturns& returns, std::size_t start, std::size_t n, std::size_t response,
               const Vec3& phone, Block& at) const noexcept;
 };

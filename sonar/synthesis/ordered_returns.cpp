@@ -29,7 +29,10 @@ OrderedReturns::OrderedReturns(std::vector<DopplerBand> found, const Grid& grid,
       channels_(channels),
       responses_(responses) {
   for (const DopplerBand& band : expansion_) {
-    bands.push_back({.first_node = nodes.size(), .nodes = band.nodes.size(), .ends = {}});
+    bands.push_back({.first_node = nodes.size(),
+                     .nodes = band.nodes.size(),
+                     .moved = band.ridge != 0.0,
+                     .ends = {}});
     for (const double node : band.nodes)
       nodes.push_back({.doppler = node,
                        .late = band.late(node),
@@ -58,8 +61,10 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
   const std::size_t n = first.back();
   source_.resize(n);
   for (auto* keys : {&sample_, &group_, &by_sample_, &order_}) keys->resize(n);
-  for (auto* array : {&impulse, &late, &slowness_x, &slowness_y, &slowness_z, &doppler_})
-    array->resize(n);
+  for (auto* array : {&impulse, &slowness_x, &slowness_y, &slowness_z, &doppler_}) array->resize(n);
+  const bool any_moved =
+      std::any_of(bands.begin(), bands.end(), [](const Band& band) { return band.moved; });
+  late.resize(any_moved ? n : 0);
   for (auto* array : {&real, &imag}) array->resize(responses_ * n);
 
   const auto middle_of = [&](const Return& r) {
@@ -75,8 +80,9 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       const auto band = static_cast<std::size_t>(above - expansion_.begin()) - 1;
       const auto listener = static_cast<std::size_t>(r.channel - Return::all_channels);
       source_[first[b] + i] = std::uint64_t{b} << 32 | i;
-      sample_[first[b] + i] =
-          static_cast<std::uint32_t>(sample_at(middle_of(r) + expansion_[band].late(r.doppler)));
+      double delay = middle_of(r);
+      if (any_moved) delay += expansion_[band].late(r.doppler);
+      sample_[first[b] + i] = static_cast<std::uint32_t>(sample_at(delay));
       group_[first[b] + i] = static_cast<std::uint32_t>(band * (channels_ + 1) + listener);
     }
   });
@@ -87,7 +93,6 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
       const std::uint64_t source = source_[order_[i]], in_block = source & 0xFFFFFFFFU;
       const ReturnBlock& block = blocks[source >> 32];
       const Return& r = block.returns[in_block];
-      late[i] = 0.0;
       impulse[i] = middle_of(r);
       doppler_[i] = r.doppler;
       slowness_x[i] = r.slowness.x();
@@ -123,7 +128,7 @@ void OrderedReturns::take(std::span<const ReturnBlock> blocks) {
     const Band& band = bands[b];
     const std::size_t from = band.ends.front();
     in_parallel_chunks(band.ends.back() - from, 1024, [&](std::size_t begin, std::size_t end) {
-      if (expansion_[b].ridge != 0.0) move(expansion_[b], from + begin, from + end);
+      if (band.moved) move(expansion_[b], from + begin, from + end);
       for (std::size_t i = begin; band.nodes > 1 && i < end; ++i) {
         const std::size_t row = band.first_weight + i * band.nodes;
         expansion_[b].weights(doppler_[from + i], std::span(weights).subspan(row, band.nodes));

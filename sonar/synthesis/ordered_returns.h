@@ -19,6 +19,7 @@ class OrderedReturns {
   struct Band {
     std::size_t first_node = 0, nodes = 0;  ///< among the nodes of all bands
     std::size_t first_weight = 0;           ///< in `weights`: [returns of the band × nodes]
+    bool moved = false;                     ///< impulses, along a ridge
     std::vector<std::size_t>
         ends;  ///< [2 + channels] begin; end of those all receive; of channel 0's …
   };
@@ -51,7 +52,7 @@ class OrderedReturns {
   std::vector<Band> bands;
   std::vector<DopplerNode> nodes;  ///< of all bands
   std::vector<double> impulse;     ///< its delay at the reference point [s]
-  std::vector<double> late;        ///< by which it is later than the pulse's middle [s]
+  std::vector<double> late;        ///< behind the pulse's middle, in bands that are moved [s]
   std::vector<double> slowness_x, slowness_y, slowness_z;  ///< [s/m]
   std::vector<float> real, imag;                           ///< [responses × returns] amplitude
   std::vector<float> weights;  ///< ℓ_m(η) of every return; none for a band of one node
