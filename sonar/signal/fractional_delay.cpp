@@ -7,7 +7,7 @@
 
 namespace asdic::detail {
 
-FractionalDelay::FractionalDelay() : weights_((places + 1) * taps) {
+FractionalDelay::FractionalDelay() : weights_((places + 2) * taps) {
   constexpr double beta = 10.0;  // 0.1102(A − 8.7) for A = 100 dB
   constexpr int before = taps / 2 - 1;
   for (int place = 0; place <= places; ++place) {

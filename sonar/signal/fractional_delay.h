@@ -25,7 +25,9 @@ class FractionalDelay {
 
  private:
   static constexpr int places = 1024;
-  std::vector<float> weights_;  // [places + 1][taps]
+  // [places + 2][taps]: a place that float rounds up to the next sample reads the row after that,
+  // of zeros, and weighs it by 0
+  std::vector<float> weights_;
 };
 
 }  // namespace asdic::detail

@@ -60,5 +60,17 @@ TEST(Interpolation, ToneBetweenSamplesIsThatTone) {
   }
 }
 
+// Float has no number between 1 − 3e-8 and 1. The table ends there: what lies behind it is not to
+// be read, for 0 times that need not be 0 (ships' noise had single samples that were no number).
+TEST(Interpolation, PlaceJustBelowASampleIsThatSample) {
+  std::vector<float> samples(64, 0.0F);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(i);
+  for (const double below : {1e-12, 1e-9, 1e-8}) {
+    const std::complex<float> got = FractionalDelay::shared().at(samples.data(), 0, 16.0 - below);
+    EXPECT_NEAR(got.real(), 32.0F, 1e-5F) << below;
+    EXPECT_NEAR(got.imag(), 33.0F, 1e-5F) << below;
+  }
+}
+
 }  // namespace
 }  // namespace asdic::detail
