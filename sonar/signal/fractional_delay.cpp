@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "sonar/signal/tap_sums.h"
 #include "sonar/signal/windowed_sinc.h"
 
 namespace asdic::detail {
@@ -35,11 +36,9 @@ std::complex<float> FractionalDelay::at(const float* samples, std::int64_t first
   std::array<float, taps> weight;
   for (int i = 0; i < taps; ++i)
     weight[static_cast<std::size_t>(i)] = a[i] + share * (a[i + taps] - a[i]);
-  float real = 0.0F, imaginary = 0.0F;
-  for (int i = 0; i < taps; ++i) {
-    real += weight[static_cast<std::size_t>(i)] * q[2 * i];
-    imaginary += weight[static_cast<std::size_t>(i)] * q[2 * i + 1];
-  }
+  const auto [real, imaginary] =
+      gather<float, taps, 2>([&](std::size_t k) { return weight[k]; },
+                             [&](std::size_t k, std::size_t part) { return q[2 * k + part]; });
   return {real, imaginary};
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sonar/signal/interpolation_taps.h"
+#include "sonar/signal/tap_sums.h"
 
 namespace asdic::detail {
 namespace {
@@ -37,15 +38,14 @@ void SampledSignal::at(std::span<const double> t, std::span<double> real,
                        std::span<double> imaginary) const noexcept {
   static const Taps weights(kaiser_beta);
   constexpr double reach = 0.5 * Taps::taps;
-  using Under = Eigen::Map<const Taps::Weights>;
   const auto place = [&](std::size_t i) { return (t[i] - first_) * rate_; };
   const auto within = [&](double p) { return p > -reach && p < count_ - 1.0 + reach; };
   const auto put = [&](std::size_t i, const Taps::Weights& w, double below)
       __attribute__((always_inline)) {
     const auto from =
         static_cast<std::ptrdiff_t>(pad) + static_cast<std::ptrdiff_t>(below) - Taps::before;
-    real[i] = (w * Under(real_.data() + from)).sum();
-    imaginary[i] = (w * Under(imaginary_.data() + from)).sum();
+    real[i] = gather(w, real_.data() + from);
+    imaginary[i] = gather(w, imaginary_.data() + from);
   };
   const auto one = [&](std::size_t i) {
     real[i] = imaginary[i] = 0.0;

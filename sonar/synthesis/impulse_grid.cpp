@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/rotate_back.h"
+#include "sonar/signal/tap_sums.h"
 
 namespace asdic::detail {
 namespace {
@@ -17,14 +18,10 @@ struct Run {
   const float* weights;  // ℓ_m(η) of the first
   std::size_t row;       // from the weights of one return to the next's
 
-  /// grid m + j += Σ_r weights[r][m + j]·taps[r], j < nodes. \param stride of the grids [floats]
+  /// To the grids of nodes m, m + 1, … \param stride of the grids [floats]
   template <std::size_t nodes>
   void add(std::size_t m, float* grid, std::size_t stride) const noexcept {
-    std::array<Weights, nodes> sum;
-    for (std::size_t j = 0; j < nodes; ++j) sum[j].setZero();
-    for (std::size_t r = 0; r < count; ++r)
-      for (std::size_t j = 0; j < nodes; ++j) sum[j] += weights[r * row + m + j] * taps[r];
-    for (std::size_t j = 0; j < nodes; ++j) Eigen::Map<Weights>(grid + (m + j) * stride) += sum[j];
+    deposit<nodes>(taps, count, weights + m, row, grid + m * stride, stride);
   }
 };
 

@@ -1,3 +1,4 @@
+// Part of Synthesizer: reverberation as streams of noise.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -14,6 +15,7 @@
 #include "sonar/signal/band_response.h"
 #include "sonar/signal/complex_product.h"
 #include "sonar/signal/pulse_spectrum.h"
+#include "sonar/signal/tap_sums.h"
 #include "sonar/synthesis/own_grid.h"
 #include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis.h"
@@ -133,7 +135,7 @@ class FineSpectrum {
     const double begin = beside / doppler / step_ - first_, on = spacing / doppler / step_;
     const double end = static_cast<double>(re_.size() - taps);
     const auto gain = static_cast<float>(scale / doppler);
-    alignas(64) std::array<float, lanes> t, re, im;
+    alignas(64) std::array<float, lanes> t;
     alignas(64) std::array<std::int32_t, lanes> at;
     alignas(64) std::array<std::array<float, lanes>, taps> weight;
     for (std::size_t k = 0; k < spectrum.size(); k += lanes) {
@@ -156,13 +158,11 @@ class FineSpectrum {
       for (std::size_t l = 0; l < lanes; ++l) {
         const float *const x = &re_[static_cast<std::size_t>(at[l]) - 2],
                            *const y = &im_[static_cast<std::size_t>(at[l]) - 2];
-        re[l] = im[l] = 0.0F;
-        for (std::size_t i = 0; i < taps; ++i) {
-          re[l] += weight[i][l] * x[i];
-          im[l] += weight[i][l] * y[i];
-        }
+        const auto [real, imaginary] = gather<float, taps, 2>(
+            [&](std::size_t i) { return weight[i][l]; },
+            [&](std::size_t i, std::size_t part) { return (part == 0 ? x : y)[i]; });
+        spectrum[k + l] = {real, imaginary};
       }
-      for (std::size_t l = 0; l < lanes; ++l) spectrum[k + l] = {re[l], im[l]};
     }
   }
 

@@ -15,6 +15,7 @@
 #include "core/simd.h"
 #include "core/units.h"
 #include "raytrace/parallel/parallel.h"
+#include "sonar/signal/tap_sums.h"
 #include "sonar/synthesis/place_weights.h"
 #include "sonar/synthesis/synthesis_plan.h"
 
@@ -179,12 +180,10 @@ void interpolate(const Baseband& baseband, std::size_t channel, std::size_t phon
   }
   std::array<float, block * stride> sums;
   for (std::size_t i = 0; i < at.count; ++i) {
-    std::array<Four, fours> sum{};
     const float* from = under.get() + at.first[i] * stride;
-#pragma GCC unroll 24
-    for (std::size_t k = 0; k < taps; ++k)
-      for (std::size_t q = 0; q < fours; ++q)
-        sum[q] += at.weights[i][k] * load_lanes<Four>(from + k * stride + 8 * q);
+    const auto sum = gather<Four, taps, fours>(
+        [&](std::size_t k) { return at.weights[i][k]; },
+        [&](std::size_t k, std::size_t q) { return load_lanes<Four>(from + k * stride + 8 * q); });
     const float c = at.rotation[i].real(), s = at.rotation[i].imag();
     const Four across = {-s, s, -s, s, -s, s, -s, s};
     for (std::size_t q = 0; q < fours; ++q) {
