@@ -240,17 +240,8 @@ inline void cos_sin(const SimdFloats& angle, SimdFloats& cosine, SimdFloats& sin
   constexpr float per_cycle = static_cast<float>(0.5 / pi);
   constexpr float cycle_high = 6.28125F, cycle_low = static_cast<float>(2.0 * pi - 6.28125);
   const SimdFloats cycles = nearest(angle * per_cycle);
-  const SimdFloats x = 0.5F * ((angle - cycles * cycle_high) - cycles * cycle_low);
-  const SimdFloats x2 = x * x;
-  const SimdFloats s =
-      x * (1.0F + x2 * (-1.0F / 6 +
-                        x2 * (1.0F / 120 + x2 * (-1.0F / 5040 +
-                                                 x2 * (1.0F / 362880 + x2 * (-1.0F / 39916800))))));
-  const SimdFloats c =
-      1.0F +
-      x2 * (-0.5F + x2 * (1.0F / 24 + x2 * (-1.0F / 720 +
-                                            x2 * (1.0F / 40320 + x2 * (-1.0F / 3628800 +
-                                                                       x2 * (1.0F / 479001600))))));
+  SimdFloats c, s;
+  cos_sin_of_half(0.5F * ((angle - cycles * cycle_high) - cycles * cycle_low), c, s);
   sine = 2.0F * s * c;
   cosine = 1.0F - 2.0F * s * s;
 }
