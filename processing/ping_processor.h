@@ -7,6 +7,7 @@
 
 #include "processing/detector.h"
 #include "processing/localiser.h"
+#include "processing/processing_settings.h"
 #include "processing/replica.h"
 #include "processing/scoring.h"
 #include "processing/tracker.h"
@@ -14,19 +15,6 @@
 #include "sonar/scenario/scenario.h"
 
 namespace asdic::detail {
-
-/// What a receiver of files and of studies is told.
-struct ProcessingSettings {
-  DetectorSettings detector;
-  double max_speed = 15.0;     ///< closing or opening, the Doppler filters reach so far [m/s]
-  double bank_loss_db = 0.25;  ///< at most, between two of them
-  std::optional<double> target_depth;  ///< as LocaliserSettings::depth [m]
-  std::optional<double> range_speed;   ///< as LocaliserSettings::speed [m/s]
-  TrackerSettings tracker;
-
-  /// What one ping needs; tracker, which needs several, describes itself.
-  void describe(Fields& field);
-};
 
 /// What one array recorded of one ping.
 struct ArrayRecording {

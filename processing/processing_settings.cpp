@@ -1,3 +1,5 @@
+#include "processing/processing_settings.h"
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -9,9 +11,7 @@
 #include "core/fields.h"
 #include "core/quantities.h"
 #include "core/text.h"
-#include "processing/ping_processor.h"
 
-// The receiver's settings, as [measure.receiver] of a study and `asdic process` have them.
 namespace asdic::detail {
 namespace {
 
