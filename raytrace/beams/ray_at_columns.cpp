@@ -1,11 +1,10 @@
+#include "raytrace/beams/ray_at_columns.h"
+
 #include <cmath>
 
-#include "core/simd.h"
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/larger.h"
-#include "raytrace/beams/tube_error.h"
 
-// What a ray foretells of its neighbours where it crosses the columns.
 namespace asdic::detail {
 namespace {
 
