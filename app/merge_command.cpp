@@ -9,6 +9,7 @@
 #include "io/scenario/embedded.h"
 #include "io/text/csv_table.h"
 #include "study/plan/study.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/merge.h"
 
 namespace asdic::detail::app {

@@ -12,6 +12,7 @@
 #include "app/study_progress.h"
 #include "core/error.h"
 #include "io/ping/provenance.h"
+#include "study/reader/study_reader.h"
 #include "study/sampling/shard.h"
 
 namespace asdic::detail::app {

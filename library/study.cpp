@@ -6,6 +6,7 @@
 #include "io/ping/provenance.h"
 #include "library/access.h"
 #include "study/plan/study.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/run_study.h"
 #include "study/runs/study_file.h"
 

@@ -39,11 +39,6 @@ struct Study {
   std::vector<std::string> warnings;   ///< what the reader met that the user should know
 };
 
-/// Reads a study file (docs/formats/study.md) and checks all of it, the scenario included.
-/// \throws InputError "FILE:LINE: key.path: found X, expected Y" at the first fault
-[[nodiscard]] Study read_study(const std::filesystem::path& path,
-                               std::span<const std::string> overrides = {});
-
 /// SHA-256 of all that decides the rows (seed, design, scenario with what it includes, variables,
 /// measures, overrides), as hexadecimal text: parts with the same one belong together. How many
 /// realisations are asked for enters only where the design depends on it (Latin hypercube);

@@ -1,12 +1,14 @@
+#include "study/reader/study_reader.h"
+
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "io/scenario/document.h"
 #include "io/scenario/scenario_reader.h"
 #include "io/text/csv_table.h"
 #include "io/text/toml_table.h"
 #include "study/measures/sampler.h"
-#include "study/plan/study.h"
 #include "study/plan/target_keys.h"
 #include "study/reader/measure_reader.h"
 #include "study/reader/summary_reader.h"

@@ -19,6 +19,7 @@
 #include "io/result/result_file.h"
 #include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/study_file.h"
 #include "support/synthetic_study.h"
 

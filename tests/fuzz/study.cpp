@@ -1,6 +1,7 @@
 #include "study/plan/study.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch.h"
+#include "study/reader/study_reader.h"
 
 // A study file, with the files that its seeds name beside it: its scenario, casts, modes.
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/random.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/run_study.h"
 #include "support/program.h"
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "study/measures/realisation.h"
+#include "study/reader/study_reader.h"
 
 namespace asdic::detail::study {
 namespace {

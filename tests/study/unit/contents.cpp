@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "io/hdf5/hdf5_file.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/merge.h"
 #include "study/runs/run_study.h"
 #include "support/plain_sea.h"

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "study/measures/realisation.h"
+#include "study/reader/study_reader.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "core/error.h"
+#include "study/reader/study_reader.h"
 #include "study/runs/run_study.h"
 #include "study/runs/study_file.h"
 #include "support/plain_sea.h"

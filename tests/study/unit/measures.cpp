@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "io/scenario/scenario_reader.h"
 #include "study/measures/echo_filter.h"
+#include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"

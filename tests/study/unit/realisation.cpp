@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"

@@ -2,6 +2,7 @@
 
 #include "io/scenario/scenario_reader.h"
 #include "study/measures/measures.h"
+#include "study/reader/study_reader.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

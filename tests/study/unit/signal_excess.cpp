@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "processing/detection_threshold.h"
 #include "study/measures/measures.h"
+#include "study/reader/study_reader.h"
 #include "support/plain_sea.h"
 #include "support/temporary_directory.h"
 

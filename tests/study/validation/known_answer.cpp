@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "study/reader/study_reader.h"
 #include "study/summary/summary.h"
 
 namespace asdic::detail::study {
