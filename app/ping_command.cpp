@@ -21,6 +21,7 @@
 #include "io/scenario/scenario_reader.h"
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
+#include "sonar/ping/run_pings.h"
 
 namespace asdic::detail::app {
 namespace {

@@ -7,6 +7,7 @@
 #include "library/ping_access.h"
 #include "processing/truth.h"
 #include "raytrace/parallel/stop.h"
+#include "sonar/ping/run_pings.h"
 
 namespace asdic {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <stop_token>
 
 #include "core/memory_budget.h"
 #include "raytrace/paths/eigenrays.h"
@@ -157,16 +156,5 @@ class PingSimulator {
   double latest_ = 0.0;  // end of a ping's record [s]
   bool one_ping_ = false;
 };
-
-struct PingOptions {
-  std::stop_token stop;  ///< when requested, pings in hand are called off, no new one is begun
-  std::function<void(int done)> progress = {};  ///< called in the sink's thread after each ping
-};
-
-/// Runs the scenario's pings through a tbb::parallel_pipeline: simulated in parallel, handed to
-/// `sink` in order, one at a time; memory is bounded by the pings in flight. \return the number of
-/// pings handed over
-int run_pings(const PingSimulator& simulator, const std::function<void(PingRecord&&)>& sink,
-              const PingOptions& options = {});
 
 }  // namespace asdic::detail

@@ -1,3 +1,5 @@
+#include "sonar/ping/run_pings.h"
+
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -6,7 +8,6 @@
 
 #include "raytrace/parallel/stop.h"
 #include "raytrace/propagation.h"
-#include "sonar/ping/ping.h"
 #include "sonar/ping/stream.h"
 
 namespace asdic::detail {

@@ -9,6 +9,7 @@
 #include "io/ping/ping_file.h"
 #include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
+#include "sonar/ping/run_pings.h"
 
 // The ping of the thesis: 60 s on 16 phones at 16 kHz, with target, reverberation and noise,
 // written to HDF5.

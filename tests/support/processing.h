@@ -5,6 +5,7 @@
 #include "processing/scoring.h"
 #include "processing/truth.h"
 #include "sonar/ping/ping.h"
+#include "sonar/ping/run_pings.h"
 
 namespace asdic::detail::support {
 

@@ -12,6 +12,7 @@
 #include "io/processing/results.h"
 #include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
+#include "sonar/ping/run_pings.h"
 #include "support/left_of.h"
 #include "support/program.h"
 

@@ -6,6 +6,7 @@
 
 #include "io/scenario/scenario_reader.h"
 #include "sonar/ping/ping.h"
+#include "sonar/ping/run_pings.h"
 #include "sonar/scenario/sampling.h"
 
 namespace asdic::detail {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "sonar/ping/run_pings.h"
 #include "support/listen.h"
 #include "support/thesis.h"
 

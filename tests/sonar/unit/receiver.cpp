@@ -7,6 +7,7 @@
 #include "sonar/paths/plane_wave.h"
 #include "sonar/ping/ping.h"
 #include "sonar/ping/receiver_electronics.h"
+#include "sonar/ping/run_pings.h"
 #include "sonar/scenario/carried.h"
 #include "sonar/signal/fft.h"
 #include "support/two_platforms.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sonar/echoes/direct_blast.h"
+#include "sonar/ping/run_pings.h"
 #include "sonar/scenario/sampling.h"
 #include "support/two_platforms.h"
 

@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include "raytrace/ocean/slice.h"
+#include "sonar/ping/run_pings.h"
 #include "support/thesis.h"
 
 namespace asdic::detail {
