@@ -1,7 +1,7 @@
+#include "sonar/synthesis/direct_synthesis.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "sonar/synthesis/synthesis.h"
 
 namespace asdic::detail {
 

@@ -142,10 +142,4 @@ class Synthesizer {
   PropagationMemory* memory_ = nullptr;  // null: nothing is kept
 };
 
-/// The reference: every return's exact stretched pulse evaluated at every sample. \return [phones ×
-/// recording.samples]
-[[nodiscard]] std::vector<double> direct_synthesis(const Pulse& pulse, const Recording& recording,
-                                                   std::span<const Return> returns,
-                                                   std::span<const Vec3> phones);
-
 }  // namespace asdic::detail

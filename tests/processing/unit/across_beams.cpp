@@ -10,6 +10,7 @@
 #include "processing/detector.h"
 #include "processing/listening_band.h"
 #include "sonar/signal/pulse.h"
+#include "sonar/synthesis/direct_synthesis.h"
 #include "sonar/synthesis/synthesis.h"
 
 namespace asdic::detail {

@@ -16,6 +16,7 @@
 #include "processing/replica.h"
 #include "sonar/noise/noise.h"
 #include "sonar/signal/pulse.h"
+#include "sonar/synthesis/direct_synthesis.h"
 #include "sonar/synthesis/synthesis.h"
 
 namespace asdic::detail {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sonar/synthesis/direct_synthesis.h"
 #include "sonar/synthesis/doppler_expansion.h"
 #include "sonar/synthesis/synthesis.h"
 #include "support/random_returns.h"

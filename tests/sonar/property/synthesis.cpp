@@ -1,4 +1,5 @@
 #include "sonar/synthesis/synthesis.h"
+#include "sonar/synthesis/direct_synthesis.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

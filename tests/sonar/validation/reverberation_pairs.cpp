@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sonar/synthesis/direct_synthesis.h"
 #include "support/received_spectrum.h"
 #include "support/reverberant_sea.h"
 
