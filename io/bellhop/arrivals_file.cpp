@@ -1,3 +1,4 @@
+// Arrivals of bellhop_files.h: .arr, ASCII or binary.
 #include <cmath>
 #include <limits>
 

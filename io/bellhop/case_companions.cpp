@@ -1,3 +1,4 @@
+// Part of case_parts.h: the files beside an .env file.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Part of case_parts.h: a case in words.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// Part of case_parts.h: the profile, and what is behind the boundaries.
 #include <cmath>
 
 #include "core/error.h"

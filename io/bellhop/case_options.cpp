@@ -1,3 +1,4 @@
+// Part of case_parts.h: the head of an .env file, and its letters of options.
 #include <cmath>
 
 #include "io/bellhop/case_parts.h"

@@ -1,3 +1,4 @@
+// Part of case_parts.h: run type, fan, step and box.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Part of case_parts.h: sources and receivers, and how vectors are given.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Rays of bellhop_files.h: .ray.
 #include <cmath>
 
 #include "io/bellhop/bellhop_files.h"

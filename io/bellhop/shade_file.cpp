@@ -1,3 +1,4 @@
+// Pressure fields of bellhop_files.h: .shd.
 #include <algorithm>
 #include <cmath>
 

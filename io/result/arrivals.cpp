@@ -1,3 +1,4 @@
+// Arrivals of tables.h.
 #include <algorithm>
 #include <cmath>
 #include <complex>

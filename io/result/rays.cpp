@@ -1,3 +1,4 @@
+// Rays of tables.h.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Part of ocean.h: [environment.surface] and [environment.bottom].
 #include "core/quantities.h"
 #include "core/text.h"
 #include "io/scenario/ocean.h"

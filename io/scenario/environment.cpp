@@ -1,3 +1,4 @@
+// Part of ocean.h and sections.h: [environment] as a whole.
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -1,3 +1,4 @@
+// Part of ocean.h: what is behind a boundary.
 #include <array>
 #include <cmath>
 #include <utility>

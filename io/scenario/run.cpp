@@ -1,3 +1,4 @@
+// Part of propagation.h: [run].
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// Part of sections.h: the tables of a sonar, in the order in which they are read.
 #include <algorithm>
 #include <limits>
 

@@ -1,3 +1,4 @@
+// Part of ocean.h: [environment.sound_speed].
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Part of ocean.h: density, absorption, biology and attenuation of the water.
 #include "core/quantities.h"
 #include "core/text.h"
 #include "io/scenario/ocean.h"

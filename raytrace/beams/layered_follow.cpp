@@ -1,3 +1,4 @@
+// Part of layered_crossings.h: the way of a ray from layer to layer.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Part of Synthesizer: reverberation drawn by its covariance.
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <algorithm>

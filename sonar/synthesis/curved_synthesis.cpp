@@ -1,3 +1,4 @@
+// Part of Synthesizer: returns whose delay curves over the pulse.
 #include <algorithm>
 #include <array>
 #include <cassert>

@@ -1,3 +1,4 @@
+// Part of summary_parts.h: proportions and means along axes.
 #include <algorithm>
 #include <cmath>
 #include <set>

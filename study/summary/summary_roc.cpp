@@ -1,3 +1,4 @@
+// Part of summary_parts.h: receiver operating characteristics.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Part of summary_parts.h: sensitivity to the inputs, and convergence.
 #include <algorithm>
 #include <array>
 #include <cmath>
