@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """A sentence carries one thought and ends: none in the pages has more than 40 words.
 
-Pages are README.md, CONTRIBUTING.md and every page under docs/. Prose is looked at: no code, tables,
-headings, displayed formulae or lists of literature. A name in backticks, a formula within a line and
-a link's text count as they are read: one word each for the first two, its words for a link. Numbers,
-units and signs that stand alone are no words. A list's items are sentences of their own.
+Pages are README.md, CONTRIBUTING.md and every page under docs/. Prose is looked at: no code,
+tables, headings or lists of literature. A name in backticks and a formula are one word each, a link
+is the words of its text. Numbers, units and signs that stand alone are no words. A list's items are
+sentences of their own.
 
     sentences_in_docs.py [--longer-than N] [PAGE.md ...]
 """
@@ -16,7 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 MOST_WORDS = 40
 # Ends with a point, and no sentence ends there.
-SHORT = r"(?:\b(?:e\.g|i\.e|cf|al|ch|eqs?|figs?|nos?|pp?|vol|vs|etc)|(?<!\S)[A-Z])\."
+SHORT = (r"(?:\b(?:e\.g|i\.e|cf|al|approx|vs)|(?<!\S)[A-Z])\."
+         r"|\b(?:chs?|eqs?|figs?|nos?|pp?|vol)\.(?=\s+\d)")
 ITEM = re.compile(r"\s*(?:[-*+]|\d+\.)\s+")
 LITERATURE = re.compile(r"\s*\[\d+\] ")
 
@@ -28,7 +29,7 @@ def with_formulae_in_line(text):
         goes_on = re.match(r"[a-z(]", text[found.end():])
         return " formula" + ("\0" * lines if goes_on else "\n" * lines)
 
-    return re.sub(r"\n\s*\$\$\n.*?\n\$\$\n\s*", word, text + "\n", flags=re.DOTALL)
+    return re.sub(r"\n\s*\$\$\n.*?\n[ \t]*\$\$\n\s*", word, text + "\n", flags=re.DOTALL)
 
 
 def paragraphs(text):
@@ -47,7 +48,8 @@ def paragraphs(text):
         code ^= fence
         comment = (comment or bare.startswith("<!--")) and "-->" not in bare
         indented = not lines and line.startswith("    ")
-        if code or fence or comment or indented or not bare or bare.startswith(("#", "|", "![", "<")):
+        other = bare.startswith(("#", "|", "![", "<"))
+        if code or fence or comment or indented or other or not bare:
             yield from ended()
         else:
             item = ITEM.match(line)
@@ -70,7 +72,7 @@ def plain(text):
 def sentences(text):
     """→ the sentences of a paragraph of plain text."""
     held = re.sub(SHORT, lambda m: m.group().replace(".", "\0"), text)
-    parts = re.split(r"(?<=[.!?])[)\"”]*\s+(?=[^a-z\s])", held)
+    parts = re.split(r"(?<=[.!?])[)\"”]*\s+", held)
     return [part.replace("\0", ".") for part in parts]
 
 
@@ -88,14 +90,16 @@ def proves_itself():
     """Each way to be long is found, each way to be no sentence is not."""
     word = "word "
     for text, most in [
-        (word * 39 + "end.", 40), ("A `" + word * 9 + "` name.", 3), ("In $" + word * 9 + "$ too.", 3),
+        (word * 39 + "end.", 40), ("A `" + word * 9 + "` name.", 3),
+        ("In $" + word * 9 + "$ too.", 3),
         ("```\n" + word * 50 + "\n```", 0), ("| " + word * 50 + "|", 0), ("## " + word * 50, 0),
         ("So:\n\n$$\n" + word * 50 + "\n$$", 2), ("- one item\n- another item", 2),
         ("One thought. Another thought.", 2), ("Jensen et al. Wrote it.", 5),
         ("The sum\n\n$$\nx\n$$\n\nis right.", 5), ("One\nline of three.", 4),
         ("Ends here:\n\n$$\nx\n$$\n\nThen more.", 3), ("[1] A. Author, a very long title.", 0),
         ("See [two words](a-long-address.md).", 3), ("2 < 3 · 4 m/s holds.", 1),
-        ("Ends. (Another one.) A third.", 2),
+        ("Ends. (Another one.) A third.", 2), ("See ch. 3 of it.", 4),
+        ("She says no. He does not.", 3),
     ]:
         counts = [words(one) for _, whole in paragraphs(text) for one in sentences(plain(whole))]
         if max(counts, default=0) != most:
