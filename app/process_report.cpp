@@ -40,7 +40,7 @@ const Detection* loudest_of(const ProcessedPing& ping, const TargetScore& score)
 
 /// Whether it was found; and if it has no place, why not.
 std::string found_text(const TargetScore& score, const Detection* d) {
-  if (!score.hit) return score.audible ? "no" : "not audible";
+  if (!score.hit) return score.detectable ? "no" : "not detectable";
   if (d == nullptr || d->unplaced == Unplaced::no) return "yes";
   return fmt::format("yes, no place: {}", words_for(d->unplaced));
 }
@@ -158,7 +158,7 @@ std::string process_json(const ProcessedRun& run, const Scenario& scenario,
       const Location* place = d != nullptr && !d->locations.empty() ? &d->locations[0] : nullptr;
       targets.push_back({{"target", scenario.targets[static_cast<std::size_t>(s.target)].name},
                          {"present", s.present},
-                         {"audible", s.audible},
+                         {"detectable", s.detectable},
                          {"hit", s.hit},
                          {"time_s", value(d != nullptr ? d->time : std::nan(""))},
                          {"snr_db", value(d != nullptr ? d->snr_db : std::nan(""))},

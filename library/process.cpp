@@ -7,7 +7,7 @@
 #include "io/processing/recordings.h"
 #include "io/scenario/scenario_reader.h"
 #include "library/ping_access.h"
-#include "processing/heard_pings.h"
+#include "processing/received_pings.h"
 #include "processing/truth.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse.h"

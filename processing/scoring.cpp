@@ -83,7 +83,7 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
                     .position_error = std::nan(""),
                     .range_error = std::nan(""),
                     .bearing_error = std::nan("")};
-    row.audible = std::any_of(echoes.begin(), echoes.end(), [&](const TrueEcho& echo) {
+    row.detectable = std::any_of(echoes.begin(), echoes.end(), [&](const TrueEcho& echo) {
       return echo.target == target.target && echo.time >= first && echo.time <= last &&
              together(echoes, echo, resolution.time).power_db >= echo.threshold_db;
     });
@@ -93,8 +93,8 @@ PingScore score_detections(std::span<const Detection> detections, std::span<cons
            detections[i].snr_db > detections[static_cast<std::size_t>(row.detection)].snr_db))
         row.detection = static_cast<int>(i);
     row.hit = row.detection >= 0;
-    row.audible = row.audible || row.hit;  // by luck
-    if (target.present && row.audible) ++(row.hit ? score.hits : score.misses);
+    row.detectable = row.detectable || row.hit;  // by luck
+    if (target.present && row.detectable) ++(row.hit ? score.hits : score.misses);
     if (row.hit) {
       const Detection& own = detections[static_cast<std::size_t>(row.detection)];
       const Vec3 received_at = array.at(own.time).position;

@@ -48,8 +48,7 @@ struct Resolution {
 struct TargetScore {
   int target = 0;
   bool present = false;
-  bool audible =
-      false;  ///< an echo of it lies within the time that is searched, over its threshold
+  bool detectable = false;  ///< an echo of it, over the threshold, is in the time searched
   bool hit = false;
   int detection = -1;           ///< the loudest that is its
   double position_error = 0.0;  ///< horizontal, of the better of two sides; NaN without a place [m]
@@ -68,8 +67,8 @@ struct PingScore {
 /// pairs in time, Doppler factor and direction (of pairs closer than a cell it may lie anywhere
 /// between) that can be so loud: whose target's pairs within a cell, all in phase, are no more than
 /// 10 dB below it or below the threshold. It belongs to the one whose echo is loudest there. A
-/// target is audible if its pairs within a cell have together, as powers, the level that they need.
-/// Ranges and bearings are those from where the array was when it received the detection.
+/// target is detectable if its pairs within a cell have together, as powers, the level that they
+/// need. Ranges and bearings are those from where the array was when it received the detection.
 /// \param array  from when the ping was sent on [m]   \param first, last  time that is searched
 /// [s]
 [[nodiscard]] PingScore score_detections(std::span<const Detection> detections,

@@ -267,7 +267,7 @@ class Connection::Impl {
   std::array<char, 65536> buffer_{};
   std::string_view pending_;  // read, but not yet taken
   Outbox outbox_;
-  double active_;  // when the client was last heard of, or took something [s]
+  double active_;  // when the client last sent or took something [s]
   double leaves_at_ = 0.0;
 
   std::string refused_;    // why the handshake was

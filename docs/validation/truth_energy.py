@@ -155,8 +155,8 @@ def reverberation(grid, leg_a, leg_b, mu_db, source_level, pulse, times, width=1
             spectrum += np.fft.rfft(a, size) * np.fft.rfft(b, size) / (2 * np.pi * r * grid.ring)
     n = int(round(pulse / grid.bin))
     window = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 4      # Hann squared
-    heard = np.fft.irfft(spectrum * np.fft.rfft(window, size), size)[:grid.bins]
+    received = np.fft.irfft(spectrum * np.fft.rfft(window, size), size)[:grid.bins]
     # bins add their middles: half of each leg's and of the window's, less a half
     t = (np.arange(grid.bins) + 1.0) * grid.bin
-    power = 10 ** (0.1 * (source_level + mu_db)) * heard
+    power = 10 ** (0.1 * (source_level + mu_db)) * received
     return np.array([10 * np.log10(power[np.abs(t - x) < width / 2].mean()) for x in times])

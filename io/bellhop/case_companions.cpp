@@ -102,7 +102,7 @@ BoundaryShape read_shape(CaseReading& reading, bool surface) {
   file.end();
   if (type[0] == 'C' && type[1] != ' ')
     reading.note(file.file() + ": curvilinear as of type 'C'; BELLHOP mistakes '" +
-                 type.substr(0, 2) + "' and does not turn the normals");
+                 type.substr(0, 2) + "' and keeps the normals of facets");
 
   const char letter = surface ? reading.options.surface : reading.options.bottom;
   const bool with_materials = type[1] == 'L', they_count = letter == 'A' || letter == 'G';

@@ -118,7 +118,7 @@ void take_fan(CaseReading& reading, GivenVector given) {
                          last != given.values.front();
   if (full_turn) {  // the last beam is the first once more
     reading.note("the last of the " + std::to_string(n) +
-                 " launch angles is the first, a full turn on: left out, as BELLHOP does");
+                 " launch angles is the first, a full circle on: left out, as BELLHOP does");
     if (given.are_ends())
       last -= (last - given.values.front()) / double(n - 1);
     else

@@ -115,8 +115,8 @@ Hdf5File open_ping_file(const std::filesystem::path& path) {
   if (const std::string type = file.attribute_text("", "filetype"); type != "asdic ping")
     throw wrong("filetype \"" + type + "\"", "\"asdic ping\"");
   const std::string version = file.attribute_text("", "version");
-  if (!version.starts_with("1.") && !version.starts_with("2."))
-    throw wrong("version " + version, "version 1.x or 2.x");
+  if (!version.starts_with("1.") && !version.starts_with("2.") && !version.starts_with("3."))
+    throw wrong("version " + version, "version 1.x, 2.x or 3.x");
   return file;
 }
 

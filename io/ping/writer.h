@@ -36,7 +36,7 @@ struct PingFileWriter::Impl {
         echoes(file, "echoes", "echo", ping_file::echo_columns()),
         patches(file, "patches", "patch", ping_file::patch_columns()) {
     if (scenario.interferers.empty()) return;
-    interference.emplace(file, "interference", "heard_path", ping_file::interference_columns());
+    interference.emplace(file, "interference", "received_path", ping_file::interference_columns());
     std::string names;
     for (const Interferer& ship : scenario.interferers)
       names += (names.empty() ? "" : ",") + ship.name;

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "io/processing/results.h"
-#include "processing/heard_pings.h"
+#include "processing/received_pings.h"
 
 namespace asdic::detail {
 

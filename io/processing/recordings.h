@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "io/ping/ping_file.h"
-#include "processing/heard_pings.h"
 #include "processing/ping_processor.h"
+#include "processing/received_pings.h"
 #include "processing/scoring.h"
 #include "sonar/scenario/scenario.h"
 

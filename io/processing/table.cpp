@@ -61,7 +61,7 @@ Table detections_table(const ProcessedRun& run) {
       {"look_elevation_deg", "positive up; NaN where the array tells none", "degree"},
       {"target", "whose echo it is, -1: a false alarm, -2: the transmitter's own sound", "",
        Type::int32},
-      {"places", "that fit it: 2 where two sides cannot be told apart", "", Type::int32}};
+      {"places", "that fit it: 2 where two sides cannot be resolved", "", Type::int32}};
   for (const auto& columns : {place_columns("", ""), place_columns("mirror_", ", the other side")})
     table.columns.insert(table.columns.end(), columns.begin(), columns.end());
   for (const ProcessedPing& ping : run.pings)
@@ -129,7 +129,7 @@ Table targets_table(const ProcessedRun& run) {
       {"array", "number of the array", "", Type::int32},
       {"target", "number of the target", "", Type::int32},
       {"present", "1 if the target is there", "", Type::int32},
-      {"audible", "1 if an echo of it lies in the time that is searched", "", Type::int32},
+      {"detectable", "1 if an echo over the threshold is in the time searched", "", Type::int32},
       {"hit", "1 if it was detected", "", Type::int32},
       {"detection", "row of detections, the loudest; -1: none", "", Type::int32},
       {"position_error", "horizontal, of the better of two places", "m"},
@@ -140,7 +140,7 @@ Table targets_table(const ProcessedRun& run) {
     const int first = first_row(run, k);
     for (const TargetScore& s : ping.score.targets)
       table.rows.push_back({double(ping.array.ping), double(ping.array.array), double(s.target),
-                            s.present ? 1.0 : 0.0, s.audible ? 1.0 : 0.0, s.hit ? 1.0 : 0.0,
+                            s.present ? 1.0 : 0.0, s.detectable ? 1.0 : 0.0, s.hit ? 1.0 : 0.0,
                             double(s.detection < 0 ? -1 : first + s.detection), s.position_error,
                             s.range_error, degrees(s.bearing_error)});
   }

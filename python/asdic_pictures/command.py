@@ -57,7 +57,7 @@ def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None,
 
     A picture of an earlier run that is left out now is removed, if it is ours, so a folder never
     shows two files' pictures. Those of `asdic process` are spoken of only where it has run.
-    Without `array`, what the first hears, and range over bearing of the first that tells bearings.
+    Without `array`, what the first receives; range over bearing of the first that tells bearings.
     """
     from . import (ambiguity, bearing_time, detections, levels, matched_filter, pressure, processed,
                    range_bearing, rays, spectrogram, style, sweep, tracks)
@@ -141,7 +141,7 @@ def draw_comparison(options) -> None:
 
 
 def short_name(path: str) -> str:
-    """A file's name with the last two folders: cases are often told apart by them."""
+    """A file's name with the last two folders: cases often differ in them alone."""
     parts = Path(path).parts
     return str(Path(*parts[-3:])) if parts else path
 

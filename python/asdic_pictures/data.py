@@ -78,9 +78,9 @@ class PingFile:
                              f'filetype "{kind}"' if kind else "an HDF5 file without a filetype",
                              'filetype "asdic ping"')
         version = self._text(self.file.attrs, "version") or "none"
-        if version.split(".")[0] not in ("1", "2"):
+        if version.split(".")[0] not in ("1", "2", "3"):
             self.file.close()
-            raise InputError(path, f"version {version} of the format", "version 1 or 2")
+            raise InputError(path, f"version {version} of the format", "version 1, 2 or 3")
         shape = self._dataset("pressure").shape
         self.complex = len(shape) == 4 and shape[3] == 2
         if (len(shape) != 3 and not self.complex) or 0 in shape:
@@ -182,7 +182,7 @@ class PingFile:
         return [names[i] or f"array {i + 1}" for i in range(count)]
 
     def select_array(self, number: int | None) -> None:
-        """What is heard, from now on, is what this array hears; None: all of them together."""
+        """What is received, from now on, is what this array receives; None: all of them together."""
         if number != self.array:
             self.array = number
             self._envelopes.clear()
@@ -425,9 +425,9 @@ class PingFile:
                 for i in range(len(self.target_names)) if np.all(np.isfinite(place[i]))]
 
     def echoes(self, row: int, array: int | None = None) -> list[Echo]:
-        """One entry a target that answers, as heard at the array's reference point.
+        """One entry a target that answers, as received at the array's reference point.
 
-        Where every phone has its own paths, as heard at the middle phone.
+        Where every phone has its own paths, as received at the middle phone.
         """
         several = len(self.array_names) > 1
         t = self._of_ping("echoes", row,
@@ -454,8 +454,8 @@ class PingFile:
     def loudest_echo(self, row: int) -> float:
         """Level of the strongest path inside the record [dB re 1 µPa]; −∞ without one"""
         last = self.start + self.valid_samples[row] / self.sample_rate
-        return max((float(e.level_db[heard].max()) for e in self.echoes(row)
-                    if (heard := e.strong(self.start, last)).any()), default=-np.inf)
+        return max((float(e.level_db[received].max()) for e in self.echoes(row)
+                    if (received := e.strong(self.start, last)).any()), default=-np.inf)
 
     def levels(self, row: int):
         """Time [s] and the mean-square pressures [Pa²] of echo, reverberation and noise"""

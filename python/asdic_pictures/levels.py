@@ -1,4 +1,4 @@
-"""Level against time with echo, reverberation and noise told apart."""
+"""Level against time with echo, reverberation and noise each by itself."""
 from __future__ import annotations
 
 import numpy as np
@@ -80,7 +80,7 @@ def draw_all_phones(data, ping):
 
 
 def all_echoes(data, ping):
-    """Of every array: marks of what each hears."""
+    """Of every array: marks of what each receives."""
     return [echo for number in range(len(data.array_names)) for echo in data.echoes(ping, number)]
 
 
@@ -106,6 +106,6 @@ def limits(axes, curves):
         style.silence(axes, values)
         return
     top = values.max() + 5.0
-    heard = np.concatenate(good[:2])
-    low = (np.percentile(heard, 2) if heard.size else values.min()) - 10.0
+    received = np.concatenate(good[:2])
+    low = (np.percentile(received, 2) if received.size else values.min()) - 10.0
     axes.set_ylim(max(low, top - 100.0), top)

@@ -64,14 +64,14 @@ def filtered(data, ping, echo):
     beam = None
     phones = data.phones(ping)
     if echo is not None and data.channels > 1 and np.all(np.isfinite(phones)):
-        heard = towards(b, phones, echo.direction[echo.strongest],
-                        data.sound_speed(float(phones[:, 2].mean())))
-        beam = signal.decibels(0.5 * np.abs(compress(heard, replica)[0]) ** 2)
+        received = towards(b, phones, echo.direction[echo.strongest],
+                           data.sound_speed(float(phones[:, 2].mean())))
+        beam = signal.decibels(0.5 * np.abs(compress(received, replica)[0]) ** 2)
     return b.times, signal.decibels(mean), beam
 
 
 def peaks(time, db):
-    """The largest value of each of at most COLUMNS stretches: a narrow peak is never lost."""
+    """The largest value of each of at most COLUMNS spans: a narrow peak is never lost."""
     _, most, starts = extremes(np.nan_to_num(db, nan=-300.0), COLUMNS)
     return time[starts], most
 
@@ -91,9 +91,9 @@ def draw(data, ping):
     for db, colour, label in lines:
         whole.plot(*peaks(time, db), color=colour, lw=0.9, label=label)
     everything = np.concatenate([peaks(time, db)[1] for db, _, _ in lines])
-    heard = everything[everything > -300.0]
-    top = heard.max(initial=0.0) + 5.0
-    low = np.percentile(peaks(time, lines[-1][0])[1], 5) - 10.0 if heard.size else top - 60.0
+    received = everything[everything > -300.0]
+    top = received.max(initial=0.0) + 5.0
+    low = np.percentile(peaks(time, lines[-1][0])[1], 5) - 10.0 if received.size else top - 60.0
     whole.set_ylim(max(low, top - 80.0), top)
     style.time_axis(whole, data.start, last)
     style.subtitle(whole, f"{data.heading(ping)}  ·  {data.pulse_kind} pulse of "

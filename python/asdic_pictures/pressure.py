@@ -15,9 +15,9 @@ def nothing_to_show(data, ping):
 
 
 def extremes(p, columns: int = COLUMNS):
-    """Smallest and largest sample of each stretch, which draw what all samples would.
+    """Smallest and largest sample of each span, which draw what all samples would.
 
-    → least, greatest, index of each stretch's first sample
+    → least, greatest, index of each span's first sample
     """
     columns = max(min(columns, len(p)), 1)
     starts = np.linspace(0, len(p), columns + 1).astype(int)[:-1]
@@ -63,7 +63,7 @@ def mark_echoes(axes, echoes):
             axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(),
                       clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))
             label = f"{style.name(echo.name)}: true echo times"
-            if label not in [h.get_label() for h in handles]:  # heard by several arrays
+            if label not in [h.get_label() for h in handles]:  # received by several arrays
                 handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
     return handles[:6]
 

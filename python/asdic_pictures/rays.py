@@ -28,15 +28,15 @@ def eigenray_target(r, z, places):
 
 
 def largest_range(data, row, r, targets):
-    """The farthest range that makes sense [m]: what the record can hear, or a target.
+    """The farthest range that makes sense [m]: what the record can hold, or a target.
 
     Sound is back from there when the record ends; without that, the farthest ray.
     """
     c = data.profile[1]
     duration = data.valid_samples[row] / data.sample_rate
-    heard = 0.5 * float(np.nanmax(c)) * duration
+    received = 0.5 * float(np.nanmax(c)) * duration
     on_earth = [t for t in targets if t <= HALF_THE_EARTH]
-    return max([heard] + on_earth)
+    return max([received] + on_earth)
 
 
 def disc(target, there):

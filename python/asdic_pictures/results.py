@@ -65,7 +65,7 @@ class Field:
 
 @dataclass
 class Receiver:
-    """What one receiver hears. [n] each"""
+    """What one receiver receives. [n] each"""
 
     label: str
     range: float

@@ -121,7 +121,7 @@ def band_width(bandwidth: float, carrier: float, doppler_span: float, duration: 
 
 
 def average(power, count: int):
-    """Means of `power` [..., sample] over `count` equal stretches of time. → [..., count]"""
+    """Means of `power` [..., sample] over `count` equal spans of time. → [..., count]"""
     n = power.shape[-1]
     return average_between(power, np.linspace(0.0, n, max(min(count, n), 1) + 1))
 
@@ -235,8 +235,8 @@ def beam_power(b: Baseband, phones, looks, speed: float, times):
             bins = slice(low, min(low + 64, m))
             weights = further[: bins.stop - low] * np.exp(2j * np.pi * f[low] * delay[mine])
             beam[:, bins] = (weights @ spectrum[:, bins].T[:, :, None])[:, :, 0].T / len(phones)
-        heard = np.fft.ifft(np.fft.ifftshift(beam, axes=1), axis=1)[:, : b.values.shape[1]]
-        out[mine] = b.average(0.5 * np.abs(heard) ** 2, times)
+        received = np.fft.ifft(np.fft.ifftshift(beam, axes=1), axis=1)[:, : b.values.shape[1]]
+        out[mine] = b.average(0.5 * np.abs(received) ** 2, times)
     return out
 
 

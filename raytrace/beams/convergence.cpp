@@ -183,7 +183,7 @@ std::string note_of(const LevelRays& level, double source_depth) {
          " m is on a kink where the sound speed is least: rays within " +
          decimals(degrees(level.angle), 3) + " deg of the horizontal stay within " +
          decimals(1e3 * level.height, 1) +
-         " mm of that depth and are not told apart; only there the field has no ray limit, and "
+         " mm of that depth and are not resolved; only there the field has no ray limit, and "
          "receivers there do not count in the error unless there are no others";
 }
 

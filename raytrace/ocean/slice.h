@@ -9,9 +9,9 @@ namespace asdic::detail {
 ///
 ///   x = x0 + r·cos β
 ///
-/// of the transect: the same ocean with its range axis shifted, stretched by 1/cos β, and turned
-/// round where cos β < 0. Slopes shrink by cos β. Sound is followed in that plane alone (N × 2D):
-/// what a slope across it would turn aside is left out. docs/theory/transect.md
+/// of the transect: the same ocean with its range axis shifted, made longer by 1/cos β, and
+/// reversed where cos β < 0. Slopes shrink by cos β. Sound is followed in that plane alone (N ×
+/// 2D): what a slope across it deflects is left out. docs/theory/transect.md
 ///
 /// Almost across the transect (|cos β| < 10⁻⁹: a millimetre in a thousand kilometres), and in any
 /// ocean that does not vary along it, the plane is layered: profile, depths and materials of x0.

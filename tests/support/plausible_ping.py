@@ -227,9 +227,9 @@ def simulate(s: Settings):
                     level = s.source_level + gain[a] - loss[a] - loss[b] + s.strength
                     delay = time[a] + time[b]
                     eta = 1.0 + 2.0 * s.target_speed * np.cos(np.radians(launch[a])) / 1500.0
-                    heard = (-launch[b], (bearing + 180.0) % 360.0)
-                    out["echoes"].append((ping + 1, index, -1, -1, a, b, delay, eta, level, *heard))
-                    add_echo(parts["echo"], offsets, s, delay, travel_direction(*heard), eta, level,
+                    arrival = (-launch[b], (bearing + 180.0) % 360.0)
+                    out["echoes"].append((ping + 1, index, -1, -1, a, b, delay, eta, level, *arrival))
+                    add_echo(parts["echo"], offsets, s, delay, travel_direction(*arrival), eta, level,
                              c)
                     if not level <= best[1]:
                         best = (delay, level)

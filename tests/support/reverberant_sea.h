@@ -14,8 +14,8 @@
 
 namespace asdic::detail::support {
 
-/// 1500 m/s everywhere, a vehicle at 4500 m, 4 kHz, 220 dB all round, one phone, no bounces: the
-/// sea of reverb_isovelocity.csv but for its pulse.
+/// 1500 m/s everywhere, a vehicle at 4500 m, 4 kHz, 220 dB at all bearings, one phone, no bounces:
+/// the sea of reverb_isovelocity.csv but for its pulse.
 inline Scenario even_sea() {
   Scenario s = thesis(SoundSpeedProfile::isovelocity(1500.0));
   s.transmitters[0].source_level_db = 220.0;

@@ -4,7 +4,7 @@ exp(ik₀Δr √(1 + X)) as sums of poles. Prints transmission loss [dB], and ho
 with the wavenumber integral.
 
 p√r = ψ, ∂ψ/∂r = ik₀ √(1 + X) ψ, X = (ρ ∂_z (1/ρ) ∂_z + k² − k₀²)/k₀², exp(−iωt). The sea is the
-same all round the source. Between the steps of the floor ψ/√(ρc) goes on, which keeps the energy
+same around the source. Between the steps of the floor ψ/√(ρc) goes on, which keeps the energy
 (M. D. Collins, JASA 94, 1736 (1993)); sound that returns is left out.
 """
 import sys
@@ -107,14 +107,14 @@ def march(frequency, last, floor, step_z, step_r, bottom=1000.0, receivers=(30.0
         begin, matrix, smooth)
     at = [int(round(z / step_z)) - 1 for z in receivers]
     ranges = start + step_r * np.arange(int((last - start) / step_r) + 1)
-    heard = np.empty((len(at), len(ranges)), complex)
+    received = np.empty((len(at), len(ranges)), complex)
     for i, r in enumerate(ranges):
-        heard[:, i] = psi[at] / np.sqrt(r)
+        received[:, i] = psi[at] / np.sqrt(r)
         after = column(floor(r + step_r / 2), k0, step_z, count, omega)
         psi = psi * matrix[3] / after[3]
         matrix = after
         psi = applied(advance, matrix, psi) * np.exp(1j * k0 * step_r)
-    return ranges, heard, (advance[3], begin[3], len(advance[0]), len(begin[0]))
+    return ranges, received, (advance[3], begin[3], len(advance[0]), len(begin[0]))
 
 
 def slope(r):
@@ -128,10 +128,10 @@ def steps(frequency):
 
 def pressure(frequency, ranges, receivers=(30.0, 150.0)):
     """Pressure re 1 m at ranges of 50 m to 3.9 km → complex [receivers, ranges]"""
-    there, heard, _ = march(frequency, np.max(ranges) + 20.0, slope, *steps(frequency),
+    there, received, _ = march(frequency, np.max(ranges) + 20.0, slope, *steps(frequency),
                             receivers=receivers)
     k0 = 2 * np.pi * frequency / WATER[0]
-    turned = heard * np.exp(-1j * k0 * there)
+    turned = received * np.exp(-1j * k0 * there)
     return np.array([np.interp(ranges, there, h.real) + 1j * np.interp(ranges, there, h.imag)
                      for h in turned]) * np.exp(1j * k0 * np.asarray(ranges))
 
@@ -139,14 +139,14 @@ def pressure(frequency, ranges, receivers=(30.0, 150.0)):
 def flat_check(frequency=25.0):
     """Largest difference [dB] of the mean intensity over 500 m between the parabolic equation over
     a flat floor and the wavenumber integral, at both depths, to 4 km."""
-    there, heard, _ = march(frequency, 4000.0, lambda r: DEPTH, *steps(frequency))
+    there, received, _ = march(frequency, 4000.0, lambda r: DEPTH, *steps(frequency))
     some = there[there > 200.0][::4]
     omega = 2 * np.pi * frequency
     k, dk = waves.contour(0.0, 1.5 * omega / WATER[0], 4000.0)
     exact = waves.integrate(waves.pekeris_green(k, omega, DEPTH, SOURCE, (30.0, 150.0), WATER,
                                                 BOTTOM), k, dk, some)
     centres = np.arange(500.0, 3800.0, 500.0)
-    mine = heard[:, there > 200.0][:, ::4]
+    mine = received[:, there > 200.0][:, ::4]
     return np.abs(waves.windows(mine, some, centres, 250.0)
                   - waves.windows(exact, some, centres, 250.0)).max()
 

@@ -27,7 +27,7 @@ def levels(times, law=lambert, width=0.2, cell=4.0, bin_=0.002):
     floor in squares of `cell`, half of it by symmetry."""
     reach = 0.5 * (max(times) + width) * SPEED
     x = np.arange(APART / 2 - reach, APART / 2 + reach, cell) + cell / 2
-    heard = np.zeros(int((max(times) + 2 * width + PULSE) / bin_) + 1)
+    received = np.zeros(int((max(times) + 2 * width + PULSE) / bin_) + 1)
     for y in np.arange(0.0, reach, cell) + cell / 2:
         there, back = np.hypot(x, y), np.hypot(x - APART, y)
         s1, s2 = np.hypot(there, DEPTH - SOURCE), np.hypot(back, DEPTH - RECEIVER)
@@ -37,12 +37,12 @@ def levels(times, law=lambert, width=0.2, cell=4.0, bin_=0.002):
         power = 2 * cell**2 * law((DEPTH - SOURCE) / s1, (DEPTH - RECEIVER) / s2,
                                   cos_turn) / (s1 * s2) ** 2
         k = ((s1 + s2) / SPEED / bin_).astype(int)
-        inside = k < len(heard)
-        heard += np.bincount(k[inside], weights=power[inside], minlength=len(heard))
+        inside = k < len(received)
+        received += np.bincount(k[inside], weights=power[inside], minlength=len(received))
     n = int(round(PULSE / bin_))
     window = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 4        # Hann squared
-    power = 10 ** (LEVEL / 10) * np.convolve(heard, window)[:len(heard)]
-    t = (np.arange(len(heard)) + 0.5) * bin_
+    power = 10 ** (LEVEL / 10) * np.convolve(received, window)[:len(received)]
+    t = (np.arange(len(received)) + 0.5) * bin_
     return np.array([10 * np.log10(power[np.abs(t - c) < width / 2].mean()) for c in times])
 
 

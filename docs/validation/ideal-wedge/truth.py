@@ -5,7 +5,7 @@ transmission loss [dB] of a point and of a line source."""
 import numpy as np
 from scipy.special import hankel1
 
-PARTS = 60                          # the angle is π/60: even, so that signs agree all round
+PARTS = 60                          # the angle is π/60: even, so that signs agree all around the apex
 APEX, SOURCE, SPEED, FREQUENCY = 4000.0, 100.0, 1500.0, 250.0
 
 

@@ -46,7 +46,7 @@ def down_up(power_of):
     return np.array([suite.db(power_of(-e) / power_of(e)) for e in np.radians(STEER_DEG)])
 
 
-def heard_ratio(found, frequency, depths):
+def received_ratio(found, frequency, depths):
     def power(elevation):
         return sum(np.mean(np.abs(steering(depths, elevation, f).conj() @ found[:LINE, :, q]) ** 2)
                    for q, f in enumerate(frequency))
@@ -71,7 +71,7 @@ def compare(asdic, truth):
                    ((c, steering(line, elevation, f)) for c, f in zip(each, BAND)))
 
     waves = down_up(wave_power)
-    heard, alone = heard_ratio(found, frequency, line), heard_ratio(sheet, frequency, line)
+    received, alone = received_ratio(found, frequency, line), received_ratio(sheet, frequency, line)
     kept = suite.db(truth.kept(np.radians(STEER_DEG)))
 
     # coherence between the uppermost phone of the line, and all of line and cross
@@ -90,7 +90,7 @@ def compare(asdic, truth):
     def draw(axes, style):
         axes.plot(STEER_DEG, waves, color=style.INK, lw=2.2, label="Kuperman–Ingenito")
         axes.plot(STEER_DEG, kept, color=style.GREEN, lw=1.0, label="|R_b|²")
-        axes.plot(STEER_DEG, heard, "o--", color=style.BLUE, lw=1.0, ms=4, label="asdic, profile")
+        axes.plot(STEER_DEG, received, "o--", color=style.BLUE, lw=1.0, ms=4, label="asdic, profile")
         axes.plot(STEER_DEG, alone, "s--", color=style.VERMILION, lw=1.0, ms=4,
                   label="asdic, surface")
         axes.set(xlabel="grazing angle / °", ylabel="from below over from above / dB",
@@ -98,10 +98,10 @@ def compare(asdic, truth):
         axes.legend()
 
     rows = [[f"{a:.0f}", f"{k:.2f}", f"{w:.2f}", f"{h:.2f}", f"{h - w:+.2f}", f"{s:.1f}"]
-            for a, k, w, h, s in zip(STEER_DEG, kept, waves, heard, alone)]
+            for a, k, w, h, s in zip(STEER_DEG, kept, waves, received, alone)]
     return suite.Result(
         [suite.Check(f"down/up ratio, profile, worst of {len(rows)} angles",
-                     float(max(heard - waves, key=abs)), round(0.5 + 3 * sigma_db, 2)),
+                     float(max(received - waves, key=abs)), round(0.5 + 3 * sigma_db, 2)),
          suite.Check("down/up ratio, kind surface, worst angle",
                      float(max(alone - waves, key=abs)), round(0.5 + 3 * sigma_db, 2)),
          suite.Check(f"coherence, profile, worst of {len(pairs)} pairs", float(off.max()),

@@ -22,7 +22,7 @@ def edge():
 
 def pressure(frequency, ranges):
     """→ complex [ranges], exp(−iωt). Grazing angles to 18° are kept (taper to 25°): all that is
-    heard here beyond 1.9 km."""
+    received here beyond 1.9 km."""
     omega = 2 * np.pi * frequency
     k0 = omega / SPEED
     steep = k0 * np.cos(np.radians(25.0))

@@ -9,7 +9,7 @@ TRUTH = "energy of all 3-D images"
 QUICK = False
 TIMES, WIDTH, PINGS = np.array([0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0]), 0.2, 40
 MANY = {"propagation__max_bottom_bounces": 12, "propagation__max_surface_bounces": 12}
-LOSSY = {"environment__bottom__magnitude": [0.4, 0.4]}      # 8 dB a bounce: few are heard
+LOSSY = {"environment__bottom__magnitude": [0.4, 0.4]}      # 8 dB a bounce: few are received
 RETURNED = "what turns round up the slope and strikes the floor behind the sonar is left out, and so " \
            "is refraction out of planes that cut the slope obliquely"
 
@@ -28,9 +28,9 @@ def compare(asdic, truth):
                 TIMES, WIDTH)
 
         exact = truth.levels(TIMES, down=bearing > 0, width=WIDTH)
-        heard = levels(**MANY), levels()
+        received = levels(**MANY), levels()
         lossy = levels(**LOSSY) - truth.levels(TIMES, down=bearing > 0, width=WIDTH, kept=0.4**2)
-        off, default = (h - exact for h in heard)
+        off, default = (h - exact for h in received)
         times = f"of {len(TIMES)} times"
         checks += [suite.Check(f"{label}, R = 0.4, worst {times}", float(max(lossy, key=abs)),
                                worst),
@@ -41,19 +41,20 @@ def compare(asdic, truth):
                                gap=gap),
                    suite.Check(f"{label}, default bounces, worst {times}",
                                float(max(default, key=abs)), worst, gap=gap)]
-        columns.append((label, exact, heard[0], heard[1]))
+        columns.append((label, exact, received[0], received[1]))
 
     def draw(axes, style):
         axes.plot(TIMES, flat, ":", color=style.INK, lw=1.0, label="images, flat floor")
-        for (label, exact, heard, default), colour in zip(columns, (style.VERMILION, style.BLUE)):
+        for (label, exact, received, default), colour in zip(columns,
+                                                             (style.VERMILION, style.BLUE)):
             axes.plot(TIMES, exact, color=colour, lw=2.0, alpha=0.6, label=f"images, {label}")
-            axes.plot(TIMES, heard, "o", color=colour, ms=4, label=f"asdic, {label}")
+            axes.plot(TIMES, received, "o", color=colour, ms=4, label=f"asdic, {label}")
             axes.plot(TIMES, default, "x", color=colour, ms=4, label="default bounces")
         axes.set(xlabel="time after the start of transmission / s", ylabel="level / dB re 1 µPa²")
         axes.legend()
 
-    rows = [[f"{t:g}", f"{flat[i]:.2f}", *(text for _, exact, heard, default in columns for text in
-             (f"{exact[i]:.2f}", f"{heard[i] - exact[i]:+.2f}", f"{default[i] - exact[i]:+.2f}"))]
+    rows = [[f"{t:g}", f"{flat[i]:.2f}", *(text for _, exact, received, default in columns for text in
+             (f"{exact[i]:.2f}", f"{received[i] - exact[i]:+.2f}", f"{default[i] - exact[i]:+.2f}"))]
             for i, t in enumerate(TIMES)]
     return suite.Result(checks, ["t / s", "flat / dB", "upslope / dB", "12 bounces / dB",
                                  "default / dB", "downslope / dB", "12 bounces / dB",

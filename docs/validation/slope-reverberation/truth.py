@@ -40,7 +40,7 @@ def levels(times, angle=ANGLE, down=False, width=0.2, cell=6.0, bin_=0.001, orde
     reach = 0.5 * last * SPEED
     foot = DEPTH / np.sin(angle)    # the place under the origin, from the apex
     along = np.arange(max(cell / 2, foot - reach), foot + reach, cell)
-    heard = np.zeros(int((last + PULSE) / bin_) + 1)
+    received = np.zeros(int((last + PULSE) / bin_) + 1)
     for y in np.arange(0.0, reach, cell) + cell / 2:
         out = list(legs(SOURCE, along, y, angle, orders, kept))
         back = list(legs(RECEIVER, along, y, angle, orders, kept))
@@ -49,13 +49,13 @@ def levels(times, angle=ANGLE, down=False, width=0.2, cell=6.0, bin_=0.001, orde
             energy_a = energy_a * 10 ** (0.1 * beam)
             for way_b, energy_b, _ in back:
                 k = ((way_a + way_b) / SPEED / bin_).astype(int)
-                inside = k < len(heard)
-                heard += np.bincount(k[inside], minlength=len(heard),
-                                     weights=2 * cell**2 * (energy_a * energy_b)[inside])
+                inside = k < len(received)
+                received += np.bincount(k[inside], minlength=len(received),
+                                        weights=2 * cell**2 * (energy_a * energy_b)[inside])
     n = int(round(PULSE / bin_))
     window = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 4        # Hann squared
-    power = 10 ** (0.1 * (LEVEL + MU)) * np.convolve(heard, window)[:len(heard)]
-    t = (np.arange(len(heard)) + 0.5) * bin_
+    power = 10 ** (0.1 * (LEVEL + MU)) * np.convolve(received, window)[:len(received)]
+    t = (np.arange(len(received)) + 0.5) * bin_
     return np.array([10 * np.log10(power[np.abs(t - c) < width / 2].mean()) for c in times])
 
 

@@ -36,10 +36,10 @@ def compare(asdic, truth):
         for frequency, exact, tl in curve:
             colour = style.BLUE if frequency == 500.0 else style.VERMILION
             for i, marker in enumerate("o^s"):
-                heard = np.where(tl[i] < 300, tl[i], np.nan)
+                received = np.where(tl[i] < 300, tl[i], np.nan)
                 axes.plot(centres / 1e3, exact[i], color=colour, marker=marker, ms=4, lw=1.2,
                           label=f"{frequency:.0f} Hz, {(40, 100, 150)[i]} m")
-                axes.plot(centres / 1e3, heard, color=colour, marker=marker, mfc="white", ms=6,
+                axes.plot(centres / 1e3, received, color=colour, marker=marker, mfc="white", ms=6,
                           ls="none")
         axes.set(xlabel="range / km (lines: truth, open marks: asdic)",
                  ylabel="transmission loss / dB", ylim=(125, 65))

@@ -15,7 +15,7 @@ LEVEL, STRENGTH = 220.0, 10.0
 
 
 def intensity(distance, a, b, most=4000):
-    """Σ |R|^{2|m|}/s² over all images of depth a heard at depth b: heights 2mD ± (a − b), 2mD ± (a
+    """Σ |R|^{2|m|}/s² over all images of depth a seen from depth b: heights 2mD ± (a − b), 2mD ± (a
     + b) with |m| bottom bounces."""
     m = np.arange(-most, most + 1)
     total = 0.0

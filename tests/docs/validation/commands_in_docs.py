@@ -71,7 +71,7 @@ def run_page(page, environment):
 
 
 def proves_itself(environment):
-    """Passing, failing, expected-to-fail and broken blocks are told apart; blocks of a page share a
+    """Passing, failing, expected-to-fail and broken blocks are distinguished; blocks of a page share a
     directory.
     """
     def faults(text):

@@ -151,15 +151,15 @@ TEST(PingFile, TimesOfFilesOfVersionOneAreThoseOfTheirAxis) {
   EXPECT_EQ(time_of_first(file, "pressure", "time"), 0.5);
 }
 
-TEST(PingFile, VersionsOneAndTwoAreRead) {
+TEST(PingFile, VersionsOneToThreeAreRead) {
   const TemporaryDirectory folder;
   const Scenario scenario = small_scenario();
   const auto path = folder / "p.h5";
   PingFileWriter writer(path, scenario, provenance);
   writer.append(small_record(scenario, 1));
   writer.finish(true);
-  for (const auto& [version, good] :
-       {std::pair{"1.0", true}, std::pair{"2.7", true}, std::pair{"3.0", false}}) {
+  for (const auto& [version, good] : {std::pair{"1.0", true}, std::pair{"2.7", true},
+                                      std::pair{"3.0", true}, std::pair{"4.0", false}}) {
     {
       Hdf5File file = Hdf5File::edit(path);
       file.set_attribute("", "version", version);

@@ -191,7 +191,7 @@ TEST(AcrossBeams, TheBeamsMeantLieBesideTheMainLobe) {
   for (std::size_t b = 0; b < wide.looks.size(); ++b) EXPECT_TRUE(none.beside(b).empty());
 }
 
-// A square of 10 by 10 wavelengths has thousands of beams, and asks 64 of them, all round.
+// A square of 10 by 10 wavelengths has thousands of beams, and asks 64 of them, at all bearings.
 TEST(AcrossBeams, OfManyBeamsSomeAreAsked) {
   std::vector<Vec3> square;
   for (int i = 0; i <= 10; ++i)

@@ -76,7 +76,7 @@ TEST(Scoring, TellsHitsMissesAndFalseAlarms) {
   EXPECT_TRUE(score.targets[0].hit);
   EXPECT_EQ(score.targets[0].detection, 0);  // the louder one
   EXPECT_NEAR(score.targets[0].position_error, std::hypot(50.0, 30.0), 1e-9);
-  EXPECT_FALSE(score.targets[1].audible);
+  EXPECT_FALSE(score.targets[1].detectable);
   // Nothing is missed that was not searched for.
   const PingScore nothing = score_detections({}, echoes, targets, line, Track{}, cell, 11.0, 20.0);
   EXPECT_EQ(nothing.misses, 0);

@@ -122,7 +122,7 @@ TEST(ProcessedTruth, DoesNotExplainABurstByAWhisper) {
   const PingScore whisper = score(40.0);
   EXPECT_EQ(whisper.hits, 0);
   EXPECT_EQ(whisper.misses, 0);
-  EXPECT_FALSE(whisper.targets[0].audible);
+  EXPECT_FALSE(whisper.targets[0].detectable);
   EXPECT_EQ(whisper.owner[0], -1);
 }
 

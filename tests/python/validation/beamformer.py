@@ -81,10 +81,10 @@ class Signals(unittest.TestCase):
         about = np.maximum.reduce([np.roll(phone, k) for k in (-1, 0, 1)])
         self.assertLess((level.max(axis=0) - about).max(), 0.5)
         within = (edges[:-1] > 20.2) & (edges[1:] < 20.8)
-        heard = level[:, within]
-        np.testing.assert_allclose(heard.max(axis=0), 30.0, atol=0.05)
+        received = level[:, within]
+        np.testing.assert_allclose(received.max(axis=0), 30.0, atol=0.05)
         travel = np.array([[np.sqrt(1 - 0.09), -0.3, 0.0]])
-        loudest = where.coordinate[heard.argmax(axis=0)]
+        loudest = where.coordinate[received.argmax(axis=0)]
         np.testing.assert_allclose(loudest, signal.apparent(where, travel)[0], atol=0.006)
 
     def test_spectral_level_of_white_noise(self):
@@ -130,7 +130,7 @@ class Beamformer(unittest.TestCase):
 
     SPEED, RATE, CARRIER = 1530.0, 10000.0, 4000.0
 
-    def heard(self, phones, elevation_deg, bearing_deg, bandwidth=0.0):
+    def received(self, phones, elevation_deg, bearing_deg, bandwidth=0.0):
         """→ envelopes of a Hann pulse of rms 1 Pa at its peak that travels along the direction
         given
         """
@@ -144,7 +144,7 @@ class Beamformer(unittest.TestCase):
 
     def check_peak(self, phones, elevation_deg, bearing_deg, half_width, bandwidth=0.0,
                    expected=None):
-        b, travel = self.heard(phones, elevation_deg, bearing_deg, bandwidth)
+        b, travel = self.received(phones, elevation_deg, bearing_deg, bandwidth)
         where = signal.scan(phones, beams=361)
         power = signal.beam_power(b, phones, where.looks, self.SPEED,
                                   b.edges(b.values.shape[1]))
@@ -220,7 +220,7 @@ class Beamformer(unittest.TestCase):
         peak.
         """
         phones = self.line(0.0)
-        b, travel = self.heard(phones, 0.0, 90.0 + 40.0 + 180.0)
+        b, travel = self.received(phones, 0.0, 90.0 + 40.0 + 180.0)
         where = signal.scan(phones, beams=361)
         power = signal.beam_power(b, phones, where.looks, self.SPEED, b.edges(100)).max(axis=1)
         truth = signal.apparent(where, travel)[0]

@@ -153,7 +153,7 @@ class OddFilesAreDrawn(Case):
         self.check_plot(small(phones=1), [n for n in ALWAYS if n != "bearing_time"])
 
     def test_silence(self):
-        """Nothing was heard at all: there is nothing to be drawn in colour, and that is no
+        """Nothing was received at all: there is nothing to be drawn in colour, and that is no
         failure.
         """
         synthetic.write(self.file, small(targets=[], noise_level=None, reverberation=False))

@@ -41,7 +41,7 @@ TEST(Transect, RangeIsTheDistanceAlong) {
 }
 
 // In any vertical plane the ocean at s is the ocean of the place that s leads to. 1e-9: ranges of
-// 1e4 m are stretched and looked up again; materials are compared away from their edges.
+// 1e4 m are made longer and looked up again; materials are compared away from their edges.
 TEST(Transect, AnOceanAlongAnyBearingIsTheOceanThere) {
   const Environment ocean = slope_and_front();
   for (const double bearing_deg : {90.0, 60.0, 0.0, 170.0, 200.0, 270.0, 359.0}) {

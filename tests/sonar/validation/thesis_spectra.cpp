@@ -63,7 +63,7 @@ TEST_P(ThesisDoppler, TheEchoIsShiftedTheReverberationIsNot) {
   const double received =
       support::frequency(echo, support::broadside(echo), time, time + 1.0) - 4000.0;
   EXPECT_NEAR(received, expected, 0.05);
-  RecordProperty("heard_hz", std::to_string(received));
+  RecordProperty("received_hz", std::to_string(received));
   // Reverberation before the echo: a Gaussian process under the pulse's spectrum, centroid of rms
   // width 1/(√3 T) = 0.58 Hz over some ten independent pulses' lengths: 0.2 Hz; five sigma.
   const Baseband both = support::demodulate(record, 4000.0, 100.0);

@@ -225,7 +225,7 @@ TEST(WideBand, ReverberationIsThePlainSumAtEveryFrequency) {
   EXPECT_GT(db_from_amplitude(narrow.worst / narrow.largest), -25.0);
 }
 
-// One path each way, all round: nothing is left out, and the interpolation's 10⁻⁴ remains.
+// One path each way, at all bearings: nothing is left out, and the interpolation's 10⁻⁴ remains.
 TEST(WideBand, ReverberationOfOnePathIsExactToTheInterpolation) {
   Scenario s = wide_sea();
   std::get<LineBeam>(s.transmitters[0].beam).taper = Taper::omnidirectional;
