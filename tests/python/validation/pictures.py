@@ -237,9 +237,9 @@ class BadInput(Case):
     def test_newer_format(self):
         synthetic.write(self.file, small())
         with h5py.File(self.file, "r+") as f:
-            f.attrs["version"] = "3.0"
+            f.attrs["version"] = "4.0"
         self.assertRegex(self.refused(self.file),
-                         r"found version 3\.0 of the format, expected version ")
+                         r"found version 4\.0 of the format, expected version ")
 
     def test_datasets_that_are_missing(self):
         whole = self.folder / "whole.h5"
