@@ -77,7 +77,7 @@ std::string transmitter_text(const PingSimulator& simulator, std::size_t t) {
   const Scenario& s = simulator.scenario();
   const Transmitter& one = s.transmitters[t];
   const std::string who = carried(s, "projector", one, s.transmitters.size());
-  const double depth = transmitter_at(s, static_cast<int>(t), 0.0).position.z();
+  const double depth = sender_of(s, static_cast<int>(t)).at(0.0).position.z();
   const std::string where = depth_text(s, one.platform, depth, depth) + "\n";
   double elevation = one.elevation;
   for (int ping = 1; ping <= simulator.pings(); ++ping) {
@@ -123,10 +123,10 @@ std::string array_text(const Scenario& s, std::size_t index) {
   } else {
     text += fmt::format(", {:g} m across", aperture);
   }
-  const auto number = static_cast<int>(index);
-  const double hung = array_at(s, number, 0.0).position.z();
+  const ArrayMotion motion(s, static_cast<int>(index));
+  const double hung = motion.at(0.0).position.z();
   double shallowest = infinity, deepest = -infinity;
-  for (const Vec3& phone : phones_at(s, number, 1, 0.0)) {
+  for (const Vec3& phone : motion.phones(1, 0.0)) {
     shallowest = std::min(shallowest, hung + phone.z());
     deepest = std::max(deepest, hung + phone.z());
   }

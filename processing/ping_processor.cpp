@@ -10,7 +10,7 @@
 #include "core/geometry.h"
 #include "processing/listening_band.h"
 #include "raytrace/parallel/parallel.h"
-#include "sonar/scenario/carried.h"
+#include "sonar/scenario/ping_geometry.h"
 #include "sonar/scenario/transmission.h"
 
 namespace asdic::detail {
@@ -132,25 +132,29 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
                                               recording.start, band, silence);
 
   ProcessedArray done{.ping = recording.ping, .array = recording.array};
-  done.places.source = transmitter_at(scenario_, recording.transmitter, recording.ping_time);
-  const Carried reference = reference_of(scenario_, recording.array);
+  const PingGeometry geometry(scenario_,
+                              {.transmitter = recording.transmitter, .time = recording.ping_time},
+                              recording.ping);
+  const ArrayMotion& motion = geometry.motion(recording.array);
+  done.places.source = geometry.source();
+  const Carried& reference = motion.reference();
   done.places.array = reference.track.since(recording.ping_time, reference.offset);
   const Vec3 at_ping = done.places.array.at(0.0).position;
   done.sound_speed = paths_.speed_at(at_ping);
   std::vector<Vec3> phones;
   for (const Vec3& x : recording.phones) phones.push_back(x - at_ping);
-  if (deforms(scenario_, recording.array)) {  // its shape in the middle of the record
+  if (motion.deforms()) {  // its shape in the middle of the record
     const auto values = recording.carrier ? recording.envelope.size() : recording.pressure.size();
     const double samples = static_cast<double>(values / std::max<std::size_t>(channels, 1));
     const double middle = recording.start + 0.5 * samples / recording.sample_rate;
-    phones = phones_at(scenario_, recording.array, recording.ping, recording.ping_time + middle);
+    phones = motion.phones(recording.ping, recording.ping_time + middle);
   }
   const double heading = chord_bearing(phones);
   // How far the line has turned from the shape that its beams are formed for [rad].
   const auto rotated_by = [&](double time) {
-    if (!deforms(scenario_, recording.array)) return 0.0;
-    return chord_bearing(phones_at(scenario_, recording.array, recording.ping,
-                                   recording.ping_time + time + 0.5 * pulse.duration())) -
+    if (!motion.deforms()) return 0.0;
+    return chord_bearing(
+               motion.phones(recording.ping, recording.ping_time + time + 0.5 * pulse.duration())) -
            heading;
   };
   const double wavelength = done.sound_speed / pulse.centre_frequency();
@@ -175,8 +179,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
       ping < sent.size() ? projector_of(scenario_, sent[ping])
                          : scenario_.transmitters[static_cast<std::size_t>(recording.transmitter)];
   const double c = paths_.speed_at(done.places.source.position);
-  const BeamPattern pattern(projector, c / pulse.centre_frequency(), c,
-                            platform_heading(scenario_, projector.platform, recording.ping_time));
+  const BeamPattern pattern(projector, c / pulse.centre_frequency(), c, geometry.source_heading());
   SonarPlaces places = done.places;
   places.pattern = &pattern;
   const Localiser& localiser =

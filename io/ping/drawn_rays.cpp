@@ -67,8 +67,7 @@ double bearing_of_fan(const Scenario& scenario, const Vec3& source) {
 RayPaths drawn_rays(const PingSimulator& simulator) {
   const Scenario& scenario = simulator.scenario();
   const PropagationPaths& paths = simulator.paths();
-  const Transmission& sent = simulator.transmission(1);  // whose fan is drawn
-  const Vec3 source = transmitter_at(scenario, sent.transmitter, sent.time).position;
+  const Vec3 source = simulator.geometry(1).source().position;  // whose fan is drawn
   const PropagationSettings& limits = scenario.propagation;
   const int bounces = limits.max_surface_bounces.value_or(fewest_bounces) +
                       limits.max_bottom_bounces.value_or(fewest_bounces);

@@ -69,11 +69,9 @@ int owner_of(const ContactTrack& track, const std::vector<const ProcessedPing*>&
 /// there. \param end  of the record, since the ping [s]
 std::string bending(const PingProcessor& processor, const ProcessedArray& made,
                     const ArrayRecording& received, double end) {
-  const Scenario& scenario = processor.scenario();
-  if (!deforms(scenario, received.array)) return "";
-  const auto phones = [&](double time) {
-    return phones_at(scenario, received.array, received.ping, time);
-  };
+  const ArrayMotion motion(processor.scenario(), received.array);
+  if (!motion.deforms()) return "";
+  const auto phones = [&](double time) { return motion.phones(received.ping, time); };
   const std::vector<Vec3> middle = phones(received.ping_time + 0.5 * (received.start + end)),
                           later = phones(received.ping_time + end);
   double moved = 0.0, turned = 0.0;

@@ -16,9 +16,9 @@ constexpr std::uint32_t before_all = 0x80000000U;  // no ping has that number
 
 /// Its phones to the micrometre: a towed line that goes straight on has the shape that it had, and
 /// its factors are found again.
-std::vector<Vec3> shape_of(const Scenario& scenario, std::size_t array, int ping, double time) {
-  std::vector<Vec3> phones = phones_at(scenario, static_cast<int>(array), ping, time);
-  const ReceiverArray& one = scenario.arrays[array];
+std::vector<Vec3> shape_of(const ArrayMotion& motion, int ping, double time) {
+  std::vector<Vec3> phones = motion.phones(ping, time);
+  const ReceiverArray& one = motion.array();
   if (!one.towed && one.shapes.empty()) return phones;
   for (Vec3& phone : phones) phone = (phone * 1e6).array().round().matrix() / 1e6;
   return phones;
@@ -40,31 +40,31 @@ double extent(const ReceiverArray& array) {
 }  // namespace
 
 double noise_block(const Scenario& scenario, int array) {
-  const auto a = static_cast<std::size_t>(array);
+  const ArrayMotion motion(scenario, array);
   const double rate = recorded_rate(scenario);
   const std::size_t samples =
-      BlockNoise::block_length(rate, phones_at(scenario, array, 1, 0.0), extent(scenario.arrays[a]),
-                               speed_at(scenario, array_at(scenario, array, 0.0).position));
+      BlockNoise::block_length(rate, motion.phones(1, 0.0), extent(motion.array()),
+                               speed_at(scenario, motion.at(0.0).position));
   return static_cast<double>(samples) / rate;
 }
 
 AmbientNoise::AmbientNoise(const Scenario& scenario, const PropagationPaths& paths)
-    : scenario_(scenario),
-      settings_(scenario.noise),
+    : settings_(scenario.noise),
       seed_(scenario.seed),
       continuous_(scenario.pings.continuous),
       rate_(recorded_rate(scenario)),
-      carrier_(recorded_carrier(scenario)) {
+      carrier_(recorded_carrier(scenario)),
+      motions_(array_motions(scenario)) {
   if (!settings_.any()) return;
   const double low = carrier_ > 0.0 ? std::max(0.0, carrier_ - 0.5 * rate_) : 0.0;
   recorded_power_ = noise_power(settings_, low, carrier_ + 0.5 * rate_);
   if (settings_.plain()) return;
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     first_channels_.push_back(first_channel(scenario, static_cast<int>(a)));
-    const double c = paths.speed_at(array_at(scenario, static_cast<int>(a), 0.0).position);
+    const double c = paths.speed_at(motions_[a].at(0.0).position);
     const NoiseField field = noise_field(scenario, static_cast<int>(a));
     arrays_.emplace_back([&](double f) { return noise_density(settings_, f); }, rate_, carrier_,
-                         shape_of(scenario, a, 1, 0.0), field.coherence, field.directions, c,
+                         shape_of(motions_[a], 1, 0.0), field.coherence, field.directions, c,
                          NoiseKey{.seed = seed_,
                                   .purpose = Draw::coherent_noise,
                                   .first_channel = first_channels_.back()},
@@ -93,8 +93,8 @@ void AmbientNoise::add(const RecordSamples& record, std::int64_t later) const {
     const std::span<float> rows = record.pressure.subspan(
         first_channels_[a] * row, (first_channels_[a + 1] - first_channels_[a]) * row);
     const std::uint32_t realisation = continuous_ ? 0 : ping;
-    const auto shape = [&](double time) { return shape_of(scenario_, a, record.ping, time); };
-    if (deforms(scenario_, static_cast<int>(a)))
+    const auto shape = [&](double time) { return shape_of(motions_[a], record.ping, time); };
+    if (motions_[a].deforms())
       arrays_[a].add(rows, first, realisation, [&](std::int64_t sample) {
         return shape(zero + static_cast<double>(sample) / rate_);
       });

@@ -4,6 +4,7 @@
 
 #include "raytrace/places/propagation_paths.h"
 #include "sonar/noise/block_noise.h"
+#include "sonar/scenario/carried.h"
 #include "sonar/scenario/scenario.h"
 #include "sonar/signal/recording.h"
 
@@ -28,11 +29,11 @@ class AmbientNoise {
   [[nodiscard]] double recorded_power() const noexcept { return recorded_power_; }
 
  private:
-  const Scenario& scenario_;
   const NoiseSettings& settings_;
   std::uint64_t seed_;
   bool continuous_;
   double rate_, carrier_, recorded_power_ = 0.0;
+  std::vector<ArrayMotion> motions_;         // [arrays]
   std::vector<BlockNoise> arrays_;           // [arrays], empty for plain noise
   std::vector<std::size_t> first_channels_;  // [arrays + 1]
 };

@@ -63,6 +63,7 @@ double hat(const std::vector<double>& nodes, std::size_t k, double f) {
 Interference::Interference(const Scenario& scenario, const PropagationPaths& paths)
     : scenario_(scenario),
       paths_(paths),
+      motions_(array_motions(scenario)),
       frequency_(scenario.interferers.empty() ? 0.0
                                               : Pulse(pulse_of(scenario, 0)).centre_frequency()),
       rate_(recorded_rate(scenario)),
@@ -155,12 +156,12 @@ std::vector<Interference::Received> Interference::received_at(const Interferer& 
 
 bool Interference::plane_waves(const Interferer& ship, int array, const RecordSamples& record,
                                const Clock& clock) const {
+  const ArrayMotion& motion = motions_[static_cast<std::size_t>(array)];
   const Listening here{
-      .scenario = scenario_, .array = array, .ping = record.ping, .ping_time = record.start_time};
+      .scenario = scenario_, .motion = motion, .ping = record.ping, .ping_time = record.start_time};
   const double begin = clock.time(clock.first), end = clock.time(clock.first + clock.samples);
-  const Carried reference = reference_of(scenario_, array);
   for (const double time : {begin, end})
-    for (const Received& one : received_at(ship, array, reference, time, false))
+    for (const Received& one : received_at(ship, array, motion.reference(), time, false))
       if (!is_plane_wave(here, {.slowness = one.path.slowness,
                                 .length = one.path.path.path_length,
                                 .delay = begin - record.start_time,
@@ -370,18 +371,19 @@ std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::in
     }
     for (std::size_t a = 0; a < scenario_.arrays.size(); ++a) {
       const int array = static_cast<int>(a);
-      const Carried reference = reference_of(scenario_, array);
+      const ArrayMotion& motion = motions_[a];
+      const Carried& reference = motion.reference();
       for (Received& one :
            received_at(ship, array, reference, clock.time(clock.first - later), false)) {
         one.path.interferer = static_cast<int>(ship_index);
         paths.push_back(std::move(one.path));
       }
-      std::vector<Vec3> phones = phones_at(scenario_, array, record.ping, record.start_time);
+      std::vector<Vec3> phones = motion.phones(record.ping, record.start_time);
       std::vector<std::vector<Segment>> received;  // by all phones together, or by each
       if (scenario_.propagation.exact_per_phone || !plane_waves(ship, array, record, clock)) {
         for (std::size_t n = 0; n < phones.size(); ++n)
-          received.push_back(segments(
-              ship, array, phone_of(scenario_, array, record.ping, static_cast<int>(n)), clock));
+          received.push_back(
+              segments(ship, array, motion.phone(record.ping, static_cast<int>(n)), clock));
         std::fill(phones.begin(), phones.end(), Vec3::Zero());
       } else {
         received.push_back(segments(ship, array, reference, clock));
@@ -412,7 +414,7 @@ std::vector<ReceivedPath> Interference::add(const RecordSamples& record, std::in
       for (std::size_t k = 0; broadband && k < parts; ++k)
         sources_[ship_index * parts + k].add(
             std::span(source).subspan(k * part_length, part_length), begin, 0);
-      const double depth = array_at(scenario_, array, clock.time(clock.first)).position.z();
+      const double depth = motion.at(clock.time(clock.first)).position.z();
       std::vector<double> loss;
       for (const Tonal& tonal : ship.tonals)
         loss.push_back(attenuation_np_per_m(scenario_.environment, tonal.frequency).at(depth) -

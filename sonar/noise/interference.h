@@ -71,7 +71,8 @@ class Interference {
 
   const Scenario& scenario_;
   const PropagationPaths& paths_;
-  double frequency_;  ///< of the eigenrays' losses [Hz]
+  std::vector<ArrayMotion> motions_;  // [arrays]
+  double frequency_;                  ///< of the eigenrays' losses [Hz]
   double rate_, carrier_;
   std::vector<double> band_;         // frequencies of losses; empty: frequency_ alone
   std::vector<BlockNoise> sources_;  // [interferers × max(1, band)]

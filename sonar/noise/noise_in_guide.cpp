@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raytrace/ocean/environment.h"
+#include "sonar/scenario/carried.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/signal/pulse.h"
 
@@ -162,7 +163,7 @@ NoiseField noise_field(const Scenario& scenario, int array) {
   constexpr double received = 1e-3;
   if (sent_up(scenario.environment, frequency).share < received) return field;
   return {NoiseCoherence::profile,
-          surface_noise(scenario.environment, array_at(scenario, array, 0.0).position.z(),
+          surface_noise(scenario.environment, ArrayMotion(scenario, array).at(0.0).position.z(),
                         asked.directions.dipole_exponent, frequency)};
 }
 

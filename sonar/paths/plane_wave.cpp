@@ -15,11 +15,11 @@ double plane_wave_error(const Listening& here, const Front& front, const Carried
                         PhoneRange phones) {
   const double begin = here.ping_time + front.delay;
   const auto phones_then = [&](double time) {
-    return phones_from(point, here.scenario, here.array, here.ping, time);
+    return here.motion.phones_from(point, here.ping, time);
   };
   const std::vector<Vec3> shape = phones_then(here.ping_time);
   std::vector<std::vector<Vec3>> later;  // shapes while it passes
-  if (deforms(here.scenario, here.array))
+  if (here.motion.deforms())
     for (const double share : {0.0, 0.5, 1.0})
       later.push_back(phones_then(begin + share * front.duration));
   const Vec3 place = point.at(begin).position;
@@ -43,9 +43,8 @@ double plane_wave_error(const Listening& here, const Front& front, const Carried
 }
 
 double plane_wave_error(const Listening& here, const Front& front) {
-  const auto array = static_cast<std::size_t>(here.array);
-  return plane_wave_error(here, front, reference_of(here.scenario, here.array),
-                          {0, here.scenario.arrays[array].phones.size()});
+  return plane_wave_error(here, front, here.motion.reference(),
+                          {0, here.motion.array().phones.size()});
 }
 
 bool is_plane_wave(const Listening& here, const Front& front) {

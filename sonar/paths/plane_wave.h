@@ -10,14 +10,14 @@ namespace asdic::detail {
 /// An array that listens.
 struct Listening {
   const Scenario& scenario;
-  int array = 0;
+  const ArrayMotion& motion;
   int ping = 1;            ///< of the run, counted from 1
   double ping_time = 0.0;  ///< whose shape is kept, since the start of the scenario [s]
 };
 
 /// An array that listens to a ping.
 [[nodiscard]] inline Listening listening(const PingGeometry& geometry, int array) {
-  return {geometry.scenario(), array, geometry.ping(), geometry.time()};
+  return {geometry.scenario(), geometry.motion(array), geometry.ping(), geometry.time()};
 }
 
 /// A front that passes it.

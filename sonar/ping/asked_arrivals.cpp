@@ -24,13 +24,21 @@ void AskedReceiver::check() const {
   hold("frequency", frequency, quantity::frequency);
 }
 
-Vec3 source_of(const PingSimulator& simulator, int ping) {
+namespace {
+
+/// \throws InputError if there is no such ping
+PingGeometry geometry_of(const PingSimulator& simulator, int ping) {
   if (ping < 1 || ping > simulator.pings())
     throw InputError({.where = "ping",
                       .got = std::to_string(ping),
                       .expected = "a ping from 1 to " + std::to_string(simulator.pings())});
-  const Transmission& sent = simulator.transmission(ping);
-  return transmitter_at(simulator.scenario(), sent.transmitter, sent.time).position;
+  return simulator.geometry(ping);
+}
+
+}  // namespace
+
+Vec3 source_of(const PingSimulator& simulator, int ping) {
+  return geometry_of(simulator, ping).source().position;
 }
 
 Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiver) {
@@ -61,11 +69,11 @@ Leg leg_to(const PingSimulator& simulator, int ping, const AskedReceiver& receiv
 std::vector<Leg> legs_of_targets(const PingSimulator& simulator, int ping,
                                  std::optional<int> target, std::optional<double> frequency) {
   const Scenario& scenario = simulator.scenario();
-  const double c = simulator.paths().speed_at(source_of(simulator, ping));
-  const Transmission& sent = simulator.transmission(ping);
-  const PingGeometry geometry(scenario, sent, ping);
+  const PingGeometry geometry = geometry_of(simulator, ping);
+  const double c = simulator.paths().speed_at(geometry.source().position);
   const Transmitter transmitter = simulator.transmitter(ping);
-  const double f = frequency.value_or(simulator.pulse(sent.transmitter).centre_frequency());
+  const double f =
+      frequency.value_or(simulator.pulse(geometry.sent().transmitter).centre_frequency());
   const BeamPattern pattern(transmitter, c / f, c, geometry.source_heading());
   const EchoContext context{
       .paths = simulator.paths(), .geometry = geometry, .pattern = pattern, .frequency = f};

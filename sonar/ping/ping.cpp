@@ -253,7 +253,7 @@ Baseband PingSimulator::sea_of_groups(const Synthesizer& synthesizer, const Emis
   for (const PhoneRange& part : groups.parts) {
     MemoryBudget own = budget;
     ReverberationContext context = reverberation_context(emission, array, record, {}, band, &own);
-    context.point = middle_of(scenario_, array, record.ping, part);
+    context.point = emission.geometry.middle_of(array, part);
     const std::vector<Vec3> phones = emission.geometry.phones_from(*context.point, array);
     const PingReverberation sea = reverberation_->ping(context);
     append_channels(all, sea.blocks() > 0 ? synthesizer.baseband(sea, std::span(phones).subspan(
@@ -316,9 +316,8 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
   std::optional<Synthesizer> filtered;
   if (scenario_.propagation.wide_band && scenario_.reverberation.enabled) {
     band.emplace(scenario_, *paths_, reverberation_->laws(), emission.projector, record.platform,
-                 platform_heading(scenario_, emission.projector.platform, sent.time),
-                 emission.pulse.centre_frequency(), synthesizer.half_band(),
-                 end_of(record.recording));
+                 geometry.source_heading(), emission.pulse.centre_frequency(),
+                 synthesizer.half_band(), end_of(record.recording));
     filtered.emplace(emission.pulse, record.recording, max_doppler_, band->filters());
     record.band = {static_cast<int>(band->points().size()), band->reached()};
   }
@@ -357,7 +356,7 @@ PingRecord PingSimulator::sound(int ping, const Transmission& sent, const Choose
     const bool plane = whole.error <= reverberation_periods;
     // A line that bends while it listens has phones with velocities of their own.
     const bool drawn =
-        !scenario_.propagation.exact_per_phone && (plane || !deforms(scenario_, array));
+        !scenario_.propagation.exact_per_phone && (plane || !geometry.motion(array).deforms());
     scattered.push_back(reverberation(
         emission, array, record, drawn ? std::span<const Vec3>(around) : std::span<const Vec3>(),
         points, budget, plane));

@@ -96,6 +96,10 @@ class PingSimulator {
   [[nodiscard]] const Transmission& transmission(int ping) const noexcept {
     return transmissions_[static_cast<std::size_t>(ping - 1)];
   }
+  /// Where everything is while it sounds.
+  [[nodiscard]] PingGeometry geometry(int ping) const {
+    return {scenario_, transmission(ping), ping};
+  }
   [[nodiscard]] Transmitter transmitter(int ping) const;  ///< with the elevation of that ping
   [[nodiscard]] double ground_spacing() const;  ///< of the reverberation's ground grid [m]
 

@@ -8,9 +8,7 @@
 namespace asdic::detail {
 namespace {
 
-std::size_t phones_of(const Listening& here) {
-  return here.scenario.arrays[static_cast<std::size_t>(here.array)].phones.size();
-}
+std::size_t phones_of(const Listening& here) { return here.motion.array().phones.size(); }
 
 /// Height of a place above or below the nearest sheet that scatters [m].
 double height_of(const Scenario& scenario, const Vec3& place) {
@@ -28,7 +26,7 @@ double height_of(const Scenario& scenario, const Vec3& place) {
 /// Of the phones about their own middle [periods].
 double error_of(const Listening& here, const Front& front, PhoneRange phones) {
   if (phones.count < 2) return 0.0;
-  const Carried middle = middle_of(here.scenario, here.array, here.ping, phones);
+  const Carried middle = here.motion.middle_of(here.ping, phones);
   return plane_wave_error(here, front, middle, phones) * front.highest_frequency;
 }
 
@@ -63,12 +61,10 @@ Front nearest_reverberation(const PingGeometry& geometry, int array, double dura
 bool has_long_arrays(const Scenario& scenario) {
   constexpr double wavelengths = 16.0;
   const double highest = pulse_frequencies(scenario).highest;
-  for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
-    const int array = static_cast<int>(a);
+  for (const ArrayMotion& motion : array_motions(scenario)) {
     double farthest = 0.0;  // from the middle
-    for (const Vec3& phone : phones_at(scenario, array, 1, 0.0))
-      farthest = std::max(farthest, phone.norm());
-    const double c = speed_at(scenario, array_at(scenario, array, 0.0).position);
+    for (const Vec3& phone : motion.phones(1, 0.0)) farthest = std::max(farthest, phone.norm());
+    const double c = speed_at(scenario, motion.at(0.0).position);
     if (2.0 * farthest * highest > wavelengths * c) return true;
   }
   return false;

@@ -1,4 +1,4 @@
-// Where an array's phones and their middle are, and how they move.
+// Where transmitters, an array's phones and their middle are, and how they move.
 #include "sonar/scenario/carried.h"
 
 #include <algorithm>
@@ -88,7 +88,7 @@ double mean_behind(const TowedLine& line) { return mean_behind(line, {0, line.be
 
 /// The middle of phones that are not towed, as they are given; exactly zero where it is so but for
 /// rounding.
-Vec3 middle_of(const ReceiverArray& array) {
+Vec3 middle_of_given(const ReceiverArray& array) {
   const std::vector<std::vector<Vec3>> one{array.phones};
   Vec3 sum = Vec3::Zero();
   double count = 0.0, farthest = 0.0;
@@ -102,14 +102,6 @@ Vec3 middle_of(const ReceiverArray& array) {
   return sum.norm() <= rounding * count * farthest ? Vec3::Zero() : Vec3(sum / count);
 }
 
-const ReceiverArray& array_of(const Scenario& scenario, int array) {
-  return scenario.arrays[static_cast<std::size_t>(array)];
-}
-
-const Track& carrier_of(const Scenario& scenario, int array) {
-  return scenario.platforms[static_cast<std::size_t>(array_of(scenario, array).platform)].track;
-}
-
 /// As given, of one that is not towed.
 const std::vector<Vec3>& given_phones(const ReceiverArray& array, int ping) {
   if (array.shapes.empty()) return array.phones;
@@ -118,67 +110,84 @@ const std::vector<Vec3>& given_phones(const ReceiverArray& array, int ping) {
 
 }  // namespace
 
-Carried reference_of(const Scenario& scenario, int array) {
-  const ReceiverArray& one = array_of(scenario, array);
-  const Track& carrier = carrier_of(scenario, array);
-  if (one.towed)
-    return {trailing(carrier, mean_behind(*one.towed), one.towed->heading), one.offset};
-  return {carrier, one.offset + middle_of(one)};
+Carried sender_of(const Scenario& scenario, int transmitter) {
+  const Transmitter& one = scenario.transmitters[static_cast<std::size_t>(transmitter)];
+  return {scenario.platforms[static_cast<std::size_t>(one.platform)].track, one.offset};
 }
 
-Carried middle_of(const Scenario& scenario, int array, int ping, PhoneRange phones) {
-  const ReceiverArray& one = array_of(scenario, array);
-  const Track& carrier = carrier_of(scenario, array);
-  if (one.towed)
-    return {trailing(carrier, mean_behind(*one.towed, phones), one.towed->heading), one.offset};
-  const std::vector<Vec3>& given = given_phones(one, ping);
+ArrayMotion::ArrayMotion(const Scenario& scenario, int array)
+    : array_(&scenario.arrays[static_cast<std::size_t>(array)]),
+      carrier_(&scenario.platforms[static_cast<std::size_t>(array_->platform)].track) {
+  if (array_->towed)
+    reference_ = {trailing(*carrier_, mean_behind(*array_->towed), array_->towed->heading),
+                  array_->offset};
+  else
+    reference_ = {*carrier_, array_->offset + middle_of_given(*array_)};
+}
+
+std::vector<ArrayMotion> array_motions(const Scenario& scenario) {
+  std::vector<ArrayMotion> all;
+  for (int a = 0; a < static_cast<int>(scenario.arrays.size()); ++a) all.emplace_back(scenario, a);
+  return all;
+}
+
+Carried ArrayMotion::middle_of(int ping, PhoneRange phones) const {
+  if (array_->towed)
+    return {trailing(*carrier_, mean_behind(*array_->towed, phones), array_->towed->heading),
+            array_->offset};
+  const std::vector<Vec3>& given = given_phones(*array_, ping);
   Vec3 sum = Vec3::Zero();
   for (std::size_t n = 0; n < phones.count; ++n) sum += given[phones.first + n];
-  return {carrier, one.offset + sum / static_cast<double>(phones.count)};
+  return {*carrier_, array_->offset + sum / static_cast<double>(phones.count)};
 }
 
-Carried phone_of(const Scenario& scenario, int array, int ping, int phone) {
-  return middle_of(scenario, array, ping, {static_cast<std::size_t>(phone), 1});
+Carried ArrayMotion::phone(int ping, int phone) const {
+  return middle_of(ping, {static_cast<std::size_t>(phone), 1});
 }
 
-bool deforms(const Scenario& scenario, int array) {
-  return array_of(scenario, array).towed && carrier_of(scenario, array).waypoints.size() > 2;
+bool ArrayMotion::deforms() const noexcept {
+  return array_->towed && carrier_->waypoints.size() > 2;
 }
 
-Kinematics array_at(const Scenario& scenario, int array, double time) {
-  return reference_of(scenario, array).at(time);
-}
-
-std::vector<Vec3> phones_at(const Scenario& scenario, int array, int ping, double time) {
-  const ReceiverArray& one = array_of(scenario, array);
+std::vector<Vec3> ArrayMotion::phones(int ping, double time) const {
   std::vector<Vec3> phones;
-  if (one.towed) {
-    const Track& carrier = carrier_of(scenario, array);
+  if (array_->towed) {
     const auto at = [&](double behind) {
-      return on_the_path(carrier, time, behind, one.towed->heading);
+      return on_the_path(*carrier_, time, behind, array_->towed->heading);
     };
-    const Vec3 reference = at(mean_behind(*one.towed));
-    for (const double behind : one.towed->behind) phones.emplace_back(at(behind) - reference);
+    const Vec3 reference = at(mean_behind(*array_->towed));
+    for (const double behind : array_->towed->behind) phones.emplace_back(at(behind) - reference);
     return phones;
   }
-  phones = given_phones(one, ping);
-  const Vec3 middle = middle_of(one);
+  phones = given_phones(*array_, ping);
+  const Vec3 middle = middle_of_given(*array_);
   if (!middle.isZero(0.0))
     for (Vec3& phone : phones) phone -= middle;
   return phones;
 }
 
-std::vector<Vec3> phones_from(const Carried& point, const Scenario& scenario, int array, int ping,
-                              double time) {
-  const ReceiverArray& one = array_of(scenario, array);
-  std::vector<Vec3> phones =
-      one.towed ? phones_at(scenario, array, ping, time) : given_phones(one, ping);
-  const Vec3 from = one.towed ? array_at(scenario, array, time).position
-                              : Vec3(carrier_of(scenario, array).at(time).position + one.offset);
+std::vector<Vec3> ArrayMotion::phones_from(const Carried& point, int ping, double time) const {
+  std::vector<Vec3> found = array_->towed ? phones(ping, time) : given_phones(*array_, ping);
+  const Vec3 from =
+      array_->towed ? at(time).position : Vec3(carrier_->at(time).position + array_->offset);
   const Vec3 aside = from - point.at(time).position;
   if (!aside.isZero(0.0))
-    for (Vec3& phone : phones) phone += aside;
-  return phones;
+    for (Vec3& phone : found) phone += aside;
+  return found;
+}
+
+// What is asked once.
+
+Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time) {
+  return sender_of(scenario, transmitter).at(time);
+}
+
+Kinematics array_at(const Scenario& scenario, int array, double time) {
+  return ArrayMotion(scenario, array).at(time);
+}
+
+std::vector<Vec3> phones_at(const Scenario& scenario, int array, int ping, double time) {
+  return ArrayMotion(scenario, array).phones(ping, time);
 }
 
 }  // namespace asdic::detail

@@ -7,10 +7,6 @@ bool rests(const Track& track) {
   return track.waypoints.empty() && track.start.velocity.isZero(0.0);
 }
 
-const Track& track_of(const Scenario& scenario, int platform) {
-  return scenario.platforms[static_cast<std::size_t>(platform)].track;
-}
-
 }  // namespace
 
 PingGeometry::PingGeometry(const Scenario& scenario, const Transmission& sent, int ping)
@@ -18,15 +14,13 @@ PingGeometry::PingGeometry(const Scenario& scenario, const Transmission& sent, i
       sent_(sent),
       ping_(ping),
       transmitter_(&scenario.transmitters[static_cast<std::size_t>(sent.transmitter)]),
-      sender_{track_of(scenario, transmitter_->platform), transmitter_->offset},
+      sender_(sender_of(scenario, sent.transmitter)),
       source_(sender_.at(sent.time)),
       source_heading_(platform_heading(scenario, transmitter_->platform, sent.time)) {
-  for (int a = 0; a < static_cast<int>(scenario.arrays.size()); ++a) {
-    Carried reference = reference_of(scenario, a);
-    const Kinematics place = reference.at(sent.time);
-    listeners_.push_back({.reference = std::move(reference),
-                          .place = place,
-                          .phones = phones_at(scenario, a, ping, sent.time)});
+  for (ArrayMotion& motion : array_motions(scenario)) {
+    const Kinematics place = motion.at(sent.time);
+    std::vector<Vec3> phones = motion.phones(ping, sent.time);
+    listeners_.push_back({std::move(motion), place, std::move(phones)});
   }
 }
 
@@ -42,8 +36,10 @@ bool PingGeometry::is_own(int array) const noexcept {
   return transmitter_->platform == this->array(array).platform;
 }
 
+const ArrayMotion& PingGeometry::motion(int array) const noexcept { return listener(array).motion; }
+
 const Carried& PingGeometry::reference(int array) const noexcept {
-  return listener(array).reference;
+  return motion(array).reference();
 }
 
 const Kinematics& PingGeometry::reference_place(int array) const noexcept {
@@ -55,18 +51,21 @@ const std::vector<Vec3>& PingGeometry::phones(int array) const noexcept {
 }
 
 std::vector<Vec3> PingGeometry::phones_from(const Carried& point, int array) const {
-  return asdic::detail::phones_from(point, *scenario_, array, ping_, time());
+  return motion(array).phones_from(point, ping_, time());
+}
+
+Carried PingGeometry::middle_of(int array, PhoneRange phones) const {
+  return motion(array).middle_of(ping_, phones);
 }
 
 Carried PingGeometry::receiver(int array, int phone) const {
-  return phone < 0 ? reference(array) : phone_of(*scenario_, array, ping_, phone);
+  return phone < 0 ? reference(array) : motion(array).phone(ping_, phone);
 }
 
 Carried PingGeometry::reverberation_point(int array, double frequency) const {
   constexpr double in_phase = 0.25, sea = 1500.0;  // [wavelengths], [m/s]
-  const bool stays = is_own(array) || (rests(sender_.track) &&
-                                       rests(track_of(*scenario_, this->array(array).platform)));
-  if (!stays || deforms(*scenario_, array)) return reference(array);
+  const bool stays = is_own(array) || (rests(sender_.track) && rests(motion(array).carrier()));
+  if (!stays || motion(array).deforms()) return reference(array);
   const double away = (source_.position - reference_place(array).position).norm();
   return away * frequency <= in_phase * sea ? sender_ : reference(array);
 }

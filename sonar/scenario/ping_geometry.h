@@ -32,6 +32,8 @@ class PingGeometry {
   [[nodiscard]] const ReceiverArray& array(int index) const noexcept;
   /// Whether the transmitter's own platform carries it.
   [[nodiscard]] bool is_own(int array) const noexcept;
+  /// Where its phones are at any time.
+  [[nodiscard]] const ArrayMotion& motion(int array) const noexcept;
   /// Its reference point, and its place when the leading edge leaves.
   [[nodiscard]] const Carried& reference(int array) const noexcept;
   [[nodiscard]] const Kinematics& reference_place(int array) const noexcept;
@@ -39,6 +41,8 @@ class PingGeometry {
   [[nodiscard]] const std::vector<Vec3>& phones(int array) const noexcept;
   /// The same from another point that moves. [n] [m]
   [[nodiscard]] std::vector<Vec3> phones_from(const Carried& point, int array) const;
+  /// The middle of some of them.
+  [[nodiscard]] Carried middle_of(int array, PhoneRange phones) const;
   /// Who receives at one of its phones; −1: at its reference point.
   [[nodiscard]] Carried receiver(int array, int phone) const;
   /// The point about which the array receives reverberation. The transmitter's own place, where it
@@ -51,9 +55,9 @@ class PingGeometry {
 
  private:
   struct Listener {
-    Carried reference;
+    ArrayMotion motion;
     Kinematics place;
-    std::vector<Vec3> phones;  // from it
+    std::vector<Vec3> phones;  // from the reference point
   };
   [[nodiscard]] const Listener& listener(int array) const noexcept;
 

@@ -1,13 +1,6 @@
 #include "sonar/scenario/scenario.h"
 
 namespace asdic::detail {
-Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time) {
-  const Transmitter& one = scenario.transmitters[static_cast<std::size_t>(transmitter)];
-  Kinematics place = scenario.platforms[static_cast<std::size_t>(one.platform)].track.at(time);
-  place.position += one.offset;
-  return place;
-}
-
 double platform_heading(const Scenario& scenario, int platform, double time) {
   const Track& track = scenario.platforms[static_cast<std::size_t>(platform)].track;
   return track.course_at(time).value_or(0.0);

@@ -42,10 +42,11 @@ struct Scenario {
   std::vector<std::string> notes;      ///< what the reader did that the user should know
 };
 
-/// Where a transmitter is and how it moves. \param transmitter  index   \param time  since the
-/// start of the scenario [s]
+/// Where a transmitter is and how it moves: asked once, of a scenario as it is read. What asks
+/// again and again has a PingGeometry or an ArrayMotion (sonar/scenario/ping_geometry.h,
+/// carried.h). \param transmitter  index   \param time  since the start of the scenario [s]
 [[nodiscard]] Kinematics transmitter_at(const Scenario& scenario, int transmitter, double time);
-/// The same of an array's reference point, the middle of its phones (sonar/scenario/carried.h).
+/// The same of an array's reference point, the middle of its phones.
 [[nodiscard]] Kinematics array_at(const Scenario& scenario, int array, double time);
 /// Its phones as they lie then, from its reference point at that time.
 /// \param ping  of the run, counted from 1: its shape   \param time  since the start of the

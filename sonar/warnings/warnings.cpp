@@ -100,9 +100,8 @@ const ReceiverArray& array_of(const Scenario& scenario, int array) {
 }
 
 /// How far phones get from where they are at a time, seen from their middle [m].
-double bent_by(const Scenario& scenario, int array, double time, double later) {
-  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
-                          after = phones_at(scenario, array, 1, time + later);
+double bent_by(const ArrayMotion& motion, double time, double later) {
+  const std::vector<Vec3> before = motion.phones(1, time), after = motion.phones(1, time + later);
   double most = 0.0;
   for (std::size_t n = 0; n < before.size(); ++n)
     most = std::max(most, (after[n] - before[n]).norm());
@@ -111,10 +110,9 @@ double bent_by(const Scenario& scenario, int array, double time, double later) {
 
 /// By how much the coherence of any two phones changes meanwhile: of neighbours, and of some
 /// others.
-double coherence_change(const Scenario& scenario, int array, double time, double later,
-                        double wavenumber, const NoiseField& noise) {
-  const std::vector<Vec3> before = phones_at(scenario, array, 1, time),
-                          after = phones_at(scenario, array, 1, time + later);
+double coherence_change(const ArrayMotion& motion, double time, double later, double wavenumber,
+                        const NoiseField& noise) {
+  const std::vector<Vec3> before = motion.phones(1, time), after = motion.phones(1, time + later);
   constexpr std::size_t looked_at = 16;  // each with as many
   const std::size_t step = (before.size() + looked_at - 1) / looked_at;
   double most = 0.0;
@@ -150,7 +148,7 @@ std::string reverberation_plane_waves(const Scenario& scenario) {
   if (!sea.enabled || sea.synthesis != ScattererSynthesis::covariance ||
       scenario.arrays.size() != 1 || scenario.propagation.exact_per_phone || !has_still_sea(sea))
     return "";
-  const Kinematics receives = array_at(scenario, 0, 0.0);
+  const Kinematics receives = ArrayMotion(scenario, 0).at(0.0);
   if (array_of(scenario, 0).phones.size() < 2 || !receives.velocity.isZero()) return "";
   for (std::size_t t = 0; t < scenario.transmitters.size(); ++t) {
     const PingGeometry geometry(scenario, {.transmitter = static_cast<int>(t)}, 1);
@@ -179,7 +177,8 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
   const double highest = pulse_frequencies(scenario).highest;
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
     const int array = static_cast<int>(a);
-    if (!deforms(scenario, array)) continue;
+    const ArrayMotion motion(scenario, array);
+    if (!motion.deforms()) continue;
     // Half of a block's power lies within a quarter of it from its middle.
     const double block = noise_block(scenario, array), quarter = 0.25 * block;
     const PingSchedule& pings = scenario.pings;
@@ -194,15 +193,15 @@ std::string noise_of_a_bent_line(const Scenario& scenario) {
       for (std::size_t k = 0; k < each; ++k) {
         const double time = sent[i].time + pings.recording_start +
                             pings.recording_duration * double(k) / double(each);
-        bent.emplace_back(bent_by(scenario, array, time, quarter), time);
+        bent.emplace_back(bent_by(motion, time, quarter), time);
       }
     std::sort(bent.rbegin(), bent.rend());
-    const double c = speed_at(scenario, array_at(scenario, array, 0.0).position);
+    const double c = speed_at(scenario, motion.at(0.0).position);
     const NoiseField field = noise_field(scenario, array);
     double change = 0.0;
     for (std::size_t i = 0; i < std::min(closely, bent.size()) && bent[i].first > 0.0; ++i)
-      change = std::max(change, coherence_change(scenario, array, bent[i].second, quarter,
-                                                 2.0 * pi * highest / c, field));
+      change = std::max(
+          change, coherence_change(motion, bent[i].second, quarter, 2.0 * pi * highest / c, field));
     constexpr double received = 0.1;
     if (change <= received) continue;
     char text[256];
@@ -286,7 +285,7 @@ std::string left_out_diffraction(const Scenario& scenario) {
            "ducts is left out";
   const PulseFrequencies pulse = pulse_frequencies(scenario);
   const double frequency = 0.5 * (pulse.lowest + pulse.highest);
-  const Vec3 source = transmitter_at(scenario, 0, 0.0).position;
+  const Vec3 source = sender_of(scenario, 0).at(0.0).position;
   for (const Target& target : scenario.targets) {
     const Vec3 place = target.track.at(0.0).position;
     const double range = separation(source, place).range;

@@ -36,9 +36,8 @@ const EchoPath* strongest(const PingRecord& record, int array, int target, int c
 }
 
 Listened listened(const PingSimulator& simulator, const PingRecord& record,
-                  const MatchedFilterPlan& plan, int array, int target) {
+                  const MatchedFilterPlan& plan, int array, int target, const Vec3& reference) {
   const Scenario& scenario = simulator.scenario();
-  const Vec3 reference = array_at(scenario, array, record.start_time).position;
   const std::size_t first = first_channel(scenario, array);
   const std::size_t phones = scenario.arrays[static_cast<std::size_t>(array)].phones.size();
   Listened all;
@@ -82,11 +81,10 @@ bool holds(const SampleRange& part, const MatchedFilterAt& filter, std::ptrdiff_
 /// Times at which the array receives the ping: echoes of any target, and the ping on its way out.
 class Busy {
  public:
-  /// \param duration  of the pulse as it is received [s]
+  /// \param duration  of the pulse as it is received [s]   \param reference  the array's point
   Busy(const PingSimulator& simulator, const PingRecord& record, const Listened& echo, int array,
-       double duration)
+       double duration, const Vec3& reference)
       : rate_(record.recording.sample_rate) {
-    const Vec3 reference = array_at(simulator.scenario(), array, record.start_time).position;
     // Two pulses that are one duration apart have nothing in common; the rest is for windows that
     // ring and for Doppler.
     const double apart = 1.1 * duration;
@@ -161,7 +159,8 @@ class TargetFilter {
       : plan_(plan),
         whole_(recording_of(simulator.scenario())),
         pulse_(simulator.pulse(record.transmitter)),
-        echo_(listened(simulator, record, plan, array, target)),
+        reference_(simulator.geometry(record.ping).reference_place(array).position),
+        echo_(listened(simulator, record, plan, array, target, reference_)),
         filter_({.sample_rate = whole_.sample_rate,
                  .start = whole_.start,
                  .samples = whole_.samples,
@@ -169,7 +168,7 @@ class TargetFilter {
                  .epoch = record.recording.epoch},
                 pulse_, echo_.doppler, echo_.phones),
         duration_(pulse_.duration() / echo_.doppler),
-        busy_(simulator, record, echo_, array, duration_),
+        busy_(simulator, record, echo_, array, duration_, reference_),
         cell_(
             static_cast<std::ptrdiff_t>(std::ceil(whole_.sample_rate / noise_bandwidth(pulse_)))) {}
   TargetFilter(const TargetFilter&) = delete;
@@ -206,6 +205,7 @@ class TargetFilter {
   const MatchedFilterPlan& plan_;
   Recording whole_;
   const Pulse& pulse_;
+  Vec3 reference_;  // of the array when the ping is sent
   Listened echo_;
   MatchedFilterAt filter_;
   double duration_;  // of the pulse as it is received [s]

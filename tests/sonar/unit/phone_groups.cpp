@@ -119,20 +119,21 @@ TEST(ReverberationPoint, TheExpectedLevelDoesNotDependOnTheArraysLength) {
 TEST(PhonesFrom, GiveTheirPlacesSeenFromAnyPoint) {
   for (Scenario s : {ship(line(5, 1.0, 0.0)), towed()}) {
     s.transmitters[0].offset = {3.0, -2.0, 5.0};
+    const ArrayMotion motion(s, 0);
     const auto places = [&](const Carried& point) {
-      std::vector<Vec3> found = phones_from(point, s, 0, 1, 7.0);
+      std::vector<Vec3> found = motion.phones_from(point, 1, 7.0);
       for (Vec3& x : found) x += point.at(7.0).position;
       return found;
     };
-    const std::vector<Vec3> about = places(reference_of(s, 0));
-    for (const Carried& point : {Carried{s.platforms[0].track, s.transmitters[0].offset},
-                                 middle_of(s, 0, 1, {1, 2}), phone_of(s, 0, 1, 4)}) {
+    const std::vector<Vec3> about = places(motion.reference());
+    for (const Carried& point :
+         {sender_of(s, 0), motion.middle_of(1, {1, 2}), motion.phone(1, 4)}) {
       const std::vector<Vec3> found = places(point);
       ASSERT_EQ(found.size(), about.size());
       for (std::size_t n = 0; n < found.size(); ++n)
         EXPECT_LT((found[n] - about[n]).norm(), 1e-9) << n;
     }
-    EXPECT_LT(phones_from(phone_of(s, 0, 1, 4), s, 0, 1, 7.0)[4].norm(), 1e-9);
+    EXPECT_LT(motion.phones_from(motion.phone(1, 4), 1, 7.0)[4].norm(), 1e-9);
   }
 }
 
@@ -184,7 +185,8 @@ TEST(NearestReverberation, IsTheSheetsHeightOrTheEllipsesEnd) {
 // each: by the distances themselves, out of many directions.
 TEST(PhoneGroups, AreSmallEnoughForPlaneWaves) {
   const Scenario s = towed();
-  const Listening here{.scenario = s};
+  const ArrayMotion motion(s, 0);
+  const Listening here{.scenario = s, .motion = motion};
   const Front front{.length = 60.0, .highest_frequency = 1000.0};
   const PhoneGroups groups = phone_groups(here, front, infinity);
   EXPECT_GT(groups.parts.size(), 2U);
@@ -194,7 +196,7 @@ TEST(PhoneGroups, AreSmallEnoughForPlaneWaves) {
   for (const PhoneRange& part : groups.parts) {
     EXPECT_EQ(part.first, next);
     next += part.count;
-    const std::vector<Vec3> phones = phones_from(middle_of(s, 0, 1, part), s, 0, 1, 0.0);
+    const std::vector<Vec3> phones = motion.phones_from(motion.middle_of(1, part), 1, 0.0);
     for (std::size_t n = part.first; n < next; ++n)
       for (int degree = 0; degree < 360; degree += 5) {
         const Vec3 look(std::cos(radians(degree)), 0.0, std::sin(radians(degree)));
@@ -212,7 +214,8 @@ TEST(PhoneGroups, AreSmallEnoughForPlaneWaves) {
   EXPECT_EQ(phone_groups(here, front, infinity, 0.0).parts.size(), 24U);
   EXPECT_EQ(phone_groups(here, front, infinity, 0.0).error, 0.0);
   const Scenario alone = ship({Vec3::Zero()});
-  EXPECT_EQ(phone_groups({.scenario = alone}, front, infinity).parts.size(), 1U);
+  const ArrayMotion of_one(alone, 0);
+  EXPECT_EQ(phone_groups({.scenario = alone, .motion = of_one}, front, infinity).parts.size(), 1U);
 }
 
 // A line so far astern, in a sea that is received one scatterer after the other, receives them in

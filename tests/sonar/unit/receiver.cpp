@@ -282,8 +282,9 @@ TEST(TowedLine, LiesOnThePathOfItsTowPoint) {
 // corner is passed 40 s after the tow point has passed it.
 TEST(TowedLine, EachPhoneHasItsOwnVelocity) {
   const Scenario s = turning_line();
+  const ArrayMotion line(s, 0);
   const auto velocity = [&](int phone, double time) {
-    return phone_of(s, 0, 1, phone).at(time).velocity;
+    return line.phone(1, phone).at(time).velocity;
   };
   EXPECT_LT((velocity(0, 130.0) - Vec3(0, 2, 0)).norm(), 1e-9);
   EXPECT_LT((velocity(1, 130.0) - Vec3(2, 0, 0)).norm(), 1e-9);
@@ -292,13 +293,13 @@ TEST(TowedLine, EachPhoneHasItsOwnVelocity) {
   EXPECT_TRUE(velocity(2, 200.1).isZero());
   for (int phone = 0; phone < 3; ++phone)
     for (double time = 0.5; time < 210.0; time += 7.3)
-      EXPECT_LT(
-          (phone_of(s, 0, 1, phone).at(time).position - place_of(s, std::size_t(phone), 1, time))
-              .norm(),
-          1e-9)
+      EXPECT_LT((line.phone(1, phone).at(time).position - place_of(s, std::size_t(phone), 1, time))
+                    .norm(),
+                1e-9)
           << phone << " at " << time;
-  EXPECT_TRUE(deforms(s, 0));
-  EXPECT_FALSE(deforms(two_platforms(), 0));
+  EXPECT_TRUE(line.deforms());
+  const Scenario straight = two_platforms();
+  EXPECT_FALSE(ArrayMotion(straight, 0).deforms());
 }
 
 /// Largest difference of a record from a ping that goes straight from the first platform, at rest,
@@ -308,9 +309,10 @@ double worst_of_straight(const Scenario& s) {
   const PingRecord record = simulator.sound(1);
   const Vec3 source = s.platforms[0].track.at(0.0).position;
   const std::size_t n = record.recording.samples;
+  const ArrayMotion motion(s, 0);
   double worst = 0.0;
   for (std::size_t phone = 0; phone < record.phones.size(); ++phone) {
-    const Carried own = phone_of(s, 0, 1, static_cast<int>(phone));
+    const Carried own = motion.phone(1, static_cast<int>(phone));
     const auto lag = [&](double t) { return (own.at(t).position - source).norm() / 1500.0; };
     double first = 0.0;
     for (int i = 0; i < 50; ++i) first = lag(first);
@@ -367,7 +369,7 @@ TEST(PlaneWave, ErrorIsThatOfACurvedFront) {
     const Vec3 away =
         range * Vec3(std::cos(radians(off_broadside)), std::sin(radians(off_broadside)), 0.0);
     const Front front{.slowness = -away / range / 1500.0, .length = range};
-    const double said = plane_wave_error({.scenario = s}, front);
+    const double said = plane_wave_error({.scenario = s, .motion = ArrayMotion(s, 0)}, front);
     double worst = 0.0;
     for (const double x : {-20.0, 20.0}) {
       const Vec3 phone(0.0, x, 0.0);
