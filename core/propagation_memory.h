@@ -1,5 +1,6 @@
 #pragma once
 #include <bit>
+#include <complex>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -7,10 +8,15 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <ranges>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "core/settings_words.h"
 #include "core/units.h"
 
 namespace asdic::detail {
@@ -18,6 +24,7 @@ namespace asdic::detail {
 /// What is kept: the first word of its keys. One kind, one type.
 enum class Kept : std::uint64_t {
   slice,
+  cycle_waves,
   legs,
   followed_legs,
   pulse_moments,
@@ -33,27 +40,52 @@ enum class Kept : std::uint64_t {
   noise_factors
 };
 
-/// All the numbers that decide a result, bit for bit.
+/// All the numbers that decide a result, bit for bit: best made of what the function that finds it
+/// takes, so that none is forgotten.
 class ExactKey {
  public:
-  explicit ExactKey(Kept kind, std::uint64_t ocean) {
-    constexpr std::size_t usual = 24;  // words of a key of paths
+  /// \param ocean  or what else the numbers are about: its identity
+  template <class... Values>
+  explicit ExactKey(Kept kind, std::uint64_t ocean, const Values&... values) {
+    constexpr std::size_t usual = 32;  // words of a key of paths
     words_.reserve(usual);
     words_.push_back(static_cast<std::uint64_t>(kind));
     words_.push_back(ocean);
+    add_all(values...);
   }
 
-  template <std::integral T>
-  ExactKey& add(T value) {
-    words_.push_back(static_cast<std::uint64_t>(value));
+  /// A number, a choice, a place; a struct that describes its settings (core/settings_words.h); one
+  /// that has `add_to(ExactKey&, value)` beside it, which names every member; or several of these.
+  template <class T>
+  ExactKey& add(const T& value) {
+    if constexpr (std::integral<T> || std::is_enum_v<T>) {
+      words_.push_back(static_cast<std::uint64_t>(value));
+    } else if constexpr (std::floating_point<T>) {
+      words_.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(value)));
+    } else if constexpr (std::same_as<T, std::complex<double>>) {
+      add_all(value.real(), value.imag());
+    } else if constexpr (std::same_as<T, Vec2> || std::same_as<T, Vec3>) {
+      for (const double coordinate : value) add(coordinate);
+    } else if constexpr (Described<T>) {
+      const std::vector<std::uint64_t> words = settings_words(value);
+      words_.insert(words_.end(), words.begin(), words.end());
+    } else if constexpr (requires { add_to(*this, value); }) {
+      add_to(*this, value);
+    } else {
+      add(std::ranges::size(value));
+      for (const auto& one : value) add(one);
+    }
     return *this;
   }
-  ExactKey& add(double value) { return add(std::bit_cast<std::uint64_t>(value)); }
-  ExactKey& add(const Vec2& value) { return add_all(value.x(), value.y()); }
-  ExactKey& add(const Vec3& value) { return add_all(value.x(), value.y(), value.z()); }
-  ExactKey& add(const std::vector<double>& values) {
-    add(values.size());
-    for (const double value : values) add(value);
+  template <class T>
+  ExactKey& add(const std::optional<T>& value) {
+    add(value.has_value());
+    return value ? add(*value) : *this;
+  }
+  template <class... T>
+  ExactKey& add(const std::variant<T...>& value) {
+    add(value.index());
+    std::visit([this](const auto& one) { add(one); }, value);
     return *this;
   }
   template <class... Values>

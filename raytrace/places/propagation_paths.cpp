@@ -25,7 +25,7 @@ std::uint64_t next_identity() {
   return next++;
 }
 
-std::size_t bytes_of(const Arrivals& arrivals) {
+std::size_t bytes_of_arrivals(const Arrivals& arrivals) {
   std::size_t bytes = sizeof(Arrivals) + arrivals.capacity() * sizeof(Arrival);
   for (const Arrival& a : arrivals) bytes += a.bounces.capacity() * sizeof(Bounce);
   return bytes;
@@ -33,7 +33,7 @@ std::size_t bytes_of(const Arrivals& arrivals) {
 
 /// Of a solver of a range-dependent ocean and its tracer, roughly: they hold the section's speeds
 /// and the boundaries' nodes a few times, with derivatives.
-std::size_t bytes_of(const Environment& slice) {
+std::size_t bytes_of_slice(const Environment& slice) {
   constexpr std::size_t doubles_a_sample = 16;
   std::size_t samples = 256 + slice.water.depths().size();
   if (slice.section) samples += slice.section->speeds().size();
@@ -79,9 +79,23 @@ bool keeps_amplitude(const Arrival& known, Arrival& followed, double frequency) 
 }  // namespace
 
 void add_path(ExactKey& key, const Arrival& path) {
-  key.add(int(path.kind));
-  key.add_all(path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
+  key.add_all(path.kind, path.launch_elevation, path.horizontal_slowness, path.surface_bounces,
               path.bottom_bounces, path.upper_turns, path.lower_turns, path.caustics);
+}
+
+void add_to(ExactKey& key, const CycleNeed& need) {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [source_depth, receiver_depth, frequency, furthest, without_surface, without_bottom] =
+      need;
+  key.add_all(source_depth, receiver_depth, frequency, furthest, without_surface, without_bottom);
+}
+
+void add_to(ExactKey& key, const PathLimits& limits) {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest,
+               delay, home_slowness] = limits;
+  key.add_all(surface_bounces, bottom_bounces, launch_angle, vertices, diffraction, faintest, delay,
+              home_slowness);
 }
 
 PropagationPaths::PropagationPaths(const Environment& ocean, const Transect& transect,
@@ -118,34 +132,21 @@ double PropagationPaths::speed_at(const Vec3& place) const noexcept {
 std::shared_ptr<const EigenraySolver> PropagationPaths::solver(const Plane& plane) const {
   if (layered_) return {std::shared_ptr<void>(), &along_};  // not owned
   return memory_->remember(
-      key(Kept::slice).add(plane.origin).add(plane.cos_beta),
+      key(Kept::slice, plane.origin, plane.cos_beta),
       [&] {
         return std::make_shared<EigenraySolver>(
             slice(along_.environment(), plane.origin, plane.cos_beta));
       },
-      [](const EigenraySolver& made) { return bytes_of(made.environment()); });
+      [](const EigenraySolver& made) { return bytes_of_slice(made.environment()); });
 }
 
 /// All that a search depends on: in a layered ocean depths and range, otherwise the plane, too.
 ExactKey PropagationPaths::leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                    const PathLimits& limits) const {
-  ExactKey leg = key(kind);
-  leg.add(from.z()).add(to.z()).add(separation(from, to).range).add(frequency);
-  leg.add(limits.max_surface_bounces).add(limits.max_bottom_bounces).add(limits.max_launch_angle);
-  leg.add(limits.max_vertices).add(limits.faintest).add(limits.max_delay).add(limits.diffraction);
+  ExactKey leg = key(kind, from.z(), to.z(), separation(from, to).range, frequency, limits);
   if (layered_) return leg;
   const Plane line = plane(from, to);
-  return leg.add(line.origin).add(line.cos_beta);
-}
-
-template <class Find>
-Arrivals PropagationPaths::recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const {
-  bool known = false;
-  const auto found = memory_->remember(
-      key, [&] { return std::make_shared<Arrivals>(find()); },
-      [](const Arrivals& paths) { return bytes_of(paths); }, &known);
-  if (reuse != nullptr) ++(known ? reuse->legs_reused : reuse->legs_searched);
-  return *found;
+  return leg.add_all(line.origin, line.cos_beta);
 }
 
 Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequency,
@@ -157,10 +158,7 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
       put_caustics(along_, from.z(), to.z(), range, frequency, limits, found);
       put_waves(along_, from.z(), to.z(), range, frequency, limits, found,
                 [&](const CycleNeed& need, const CyclesMaker& make) {
-                  ExactKey kept_as = key(Kept::slice);  // of which layered oceans have none
-                  kept_as.add_all(need.source_depth, need.receiver_depth, need.frequency,
-                                  need.furthest, need.without_surface, need.without_bottom);
-                  return memory_->remember(kept_as, make);
+                  return memory_->remember(key(Kept::cycle_waves, need), make);
                 });
       auto more =
           diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency, found);
@@ -175,42 +173,56 @@ Arrivals PropagationPaths::search(const Vec3& from, const Vec3& to, double frequ
 
 Arrivals PropagationPaths::find(const Vec3& from, const Vec3& to, double frequency,
                                 const PathLimits& limits, Reuse* reuse) const {
-  return recall_or(leg_key(Kept::legs, from, to, frequency, limits), reuse,
-                   [&] { return search(from, to, frequency, limits); });
+  bool known = false;
+  const auto found = memory_->remember(
+      leg_key(Kept::legs, from, to, frequency, limits),
+      [&] { return std::make_shared<Arrivals>(search(from, to, frequency, limits)); },
+      bytes_of_arrivals, &known);
+  if (reuse != nullptr) reuse->count_legs(known);
+  return *found;
 }
 
-Arrivals PropagationPaths::follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+Arrivals PropagationPaths::follow(std::span<const Arrival> paths, const Vec3& from, const Vec3& to,
                                   double frequency, const PathLimits& limits, Reuse* reuse) const {
   ExactKey key = leg_key(Kept::followed_legs, from, to, frequency, limits);
-  for (const Arrival& path : known) {
+  for (const Arrival& path : paths) {
     add_path(key, path);
     if (path.kind == ArrivalKind::caustic)
       key.add_all(path.delay, path.amplitude.real(), path.amplitude.imag());
   }
-  return recall_or(key, reuse, [&] {
-    const double range = separation(from, to).range;
-    std::optional<RayTracer> tracer;
-    if (!layered_) {
-      const Plane line = plane(from, to);
-      tracer.emplace(slice(along_.environment(), line.origin, line.cos_beta), frequency);
-    }
-    Arrivals followed;
-    for (const Arrival& path : known) {
-      std::optional<Arrival> same;
-      if (path.kind == ArrivalKind::diffracted)
-        same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
-      else if (layered_)
-        same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
-      else if (!layered_)
-        same = followed_path(*tracer, path, from.z(), to.z(), range);
-      if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
-        return find(from, to, frequency, limits);  // that of all rays of its term
-      if (!same) return search(from, to, frequency, limits_around(known, limits));
-      followed.push_back(std::move(*same));
-    }
-    sort_by_delay(followed);
-    return followed;
-  });
+  bool known = false;
+  const auto found = memory_->remember(
+      key, [&] { return std::make_shared<Arrivals>(followed(paths, from, to, frequency, limits)); },
+      bytes_of_arrivals, &known);
+  if (reuse != nullptr) reuse->count_legs(known);
+  return *found;
+}
+
+Arrivals PropagationPaths::followed(std::span<const Arrival> known, const Vec3& from,
+                                    const Vec3& to, double frequency,
+                                    const PathLimits& limits) const {
+  const double range = separation(from, to).range;
+  std::optional<RayTracer> tracer;
+  if (!layered_) {
+    const Plane line = plane(from, to);
+    tracer.emplace(slice(along_.environment(), line.origin, line.cos_beta), frequency);
+  }
+  Arrivals found;
+  for (const Arrival& path : known) {
+    std::optional<Arrival> same;
+    if (path.kind == ArrivalKind::diffracted)
+      same = diffracted_arrival(along_.environment(), from.z(), to.z(), range, frequency);
+    else if (layered_)
+      same = along_.follow(path, from.z(), to.z(), range, frequency, limits);
+    else if (!layered_)
+      same = followed_path(*tracer, path, from.z(), to.z(), range);
+    if (path.kind == ArrivalKind::caustic && !(same && keeps_amplitude(path, *same, frequency)))
+      return find(from, to, frequency, limits);  // that of all rays of its term
+    if (!same) return search(from, to, frequency, limits_around(known, limits));
+    found.push_back(std::move(*same));
+  }
+  sort_by_delay(found);
+  return found;
 }
 
 }  // namespace asdic::detail

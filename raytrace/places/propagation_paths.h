@@ -38,7 +38,10 @@ class PropagationPaths {
 
   [[nodiscard]] PropagationMemory& memory() const noexcept { return *memory_; }
   /// A key of this ocean, to which is added what else a result depends on.
-  [[nodiscard]] ExactKey key(Kept kind) const { return ExactKey(kind, identity_); }
+  template <class... Values>
+  [[nodiscard]] ExactKey key(Kept kind, const Values&... values) const {
+    return ExactKey(kind, identity_, values...);
+  }
 
   /// The plane through a place in a direction [rad, clockwise from north].
   [[nodiscard]] Plane plane(const Vec3& from, double bearing) const noexcept;
@@ -62,8 +65,8 @@ class PropagationPaths {
                               const PathLimits& limits, Reuse* reuse = nullptr) const;
   /// The same paths after the places have moved by metres, each followed from what it was, sorted
   /// by delay; all of them searched anew, no wider than they ask for, if one cannot be. \param
-  /// known paths between two places nearby
-  [[nodiscard]] Arrivals follow(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+  /// paths  between two places nearby
+  [[nodiscard]] Arrivals follow(std::span<const Arrival> paths, const Vec3& from, const Vec3& to,
                                 double frequency, const PathLimits& limits,
                                 Reuse* reuse = nullptr) const;
 
@@ -73,8 +76,8 @@ class PropagationPaths {
                                 const PathLimits& limits) const;
   [[nodiscard]] ExactKey leg_key(Kept kind, const Vec3& from, const Vec3& to, double frequency,
                                  const PathLimits& limits) const;
-  template <class Find>
-  Arrivals recall_or(const ExactKey& key, Reuse* reuse, Find&& find) const;
+  [[nodiscard]] Arrivals followed(std::span<const Arrival> known, const Vec3& from, const Vec3& to,
+                                  double frequency, const PathLimits& limits) const;
 
   EigenraySolver along_;
   Transect transect_;
@@ -83,6 +86,7 @@ class PropagationPaths {
   std::shared_ptr<PropagationMemory> memory_;
 };
 
+void add_to(ExactKey& key, const PathLimits& limits);
 /// Adds all that a path is followed by to a key: its angle and history.
 void add_path(ExactKey& key, const Arrival& path);
 

@@ -10,6 +10,8 @@ struct Reuse {
   int legs_reused = 0;          ///< the same, out of what is kept
   bool reverberation = false;   ///< all paths to the scattering boundaries and layers were known
   bool expected_level = false;  ///< so were the reverberation's expected level and what is audible
+
+  void count_legs(bool known) noexcept { ++(known ? legs_reused : legs_searched); }
 };
 
 }  // namespace asdic::detail

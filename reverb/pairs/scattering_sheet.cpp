@@ -6,7 +6,7 @@
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
-#include "core/settings_key.h"
+#include "core/propagation_memory.h"
 #include "raytrace/parallel/stop.h"
 #include "reverb/scattering/motion.h"
 
@@ -539,8 +539,7 @@ void add(ExactKey& key, const Kinematics& end) {
 }  // namespace
 
 bool ScatteringSheet::add_to(ExactKey& key) const {
-  key.add_all(out_->identity, back_->identity, law_.index());
-  std::visit([&](const auto& law) { add_settings(key, law); }, law_);
+  key.add_all(out_->identity, back_->identity, law_);
   const auto& [source, receiver, legs, source_speed, receiver_speed, frequency, latest, band] =
       ends_;
   for (const auto& groups : {groups_.out, groups_.back}) {

@@ -10,7 +10,7 @@
 
 #include "core/doppler.h"
 #include "core/mixed_bits.h"
-#include "core/settings_key.h"
+#include "core/propagation_memory.h"
 #include "reverb/scattering/forward_scatter.h"
 #include "sonar/echoes/one_leg.h"
 #include "sonar/echoes/target_response.h"
@@ -424,15 +424,10 @@ class EchoFinder {
   /// pulse_moments(), out of what is kept for equal ways and paths.
   std::vector<PulseMoment> moments_of(const MovingPath& path, const TwoWayPaths& pair,
                                       const Carried& receiver) const {
-    const PathLimits& limits = limits_;
-    ExactKey key = context_.paths.key(Kept::pulse_moments);
-    key.add_all(geometry_.time(), context_.frequency, path.pulse_duration,
-                geometry_.sender().offset, receiver.offset, limits.max_surface_bounces,
-                limits.max_bottom_bounces, limits.max_launch_angle, limits.max_vertices,
-                limits.faintest);
-    key.add_all(path.source_course_changes, path.target_course_changes, path.array_course_changes);
-    for (const Track* const track : {&geometry_.sender().track, &target_.track, &receiver.track})
-      add_settings(key, *track);
+    ExactKey key = context_.paths.key(Kept::pulse_moments, geometry_.time(), context_.frequency,
+                                      path.pulse_duration, limits_, geometry_.sender(),
+                                      target_.track, receiver, path.source_course_changes,
+                                      path.target_course_changes, path.array_course_changes);
     add_path(key, pair.there.path);
     add_path(key, pair.home.path);
     Reuse* const reuse = context_.reuse;

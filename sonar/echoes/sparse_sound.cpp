@@ -43,8 +43,7 @@ std::vector<PathWaves> waves_of(const EchoContext& context, std::span<const Echo
         all.emplace_back(PathWaves{.ray_length = path.response.path_length, .legs = {}});
     for (const WaveLeg& leg : wave_legs(context, path, legs)) {
       waves.ray_length -= leg.path.path_length;
-      ExactKey key = context.paths.key(Kept::legs);
-      key.add_all(leg.from, leg.to, leg.path.delay);
+      ExactKey key = context.paths.key(Kept::legs, leg.from, leg.to, leg.limits, leg.path.delay);
       add_path(key, leg.path);
       auto found = std::find_if(known.begin(), known.end(),
                                 [&](const auto& one) { return one.first == key; });

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "core/settings_key.h"
+#include "core/propagation_memory.h"
 #include "raytrace/parallel/parallel.h"
 #include "sonar/signal/windowed_sinc.h"
 
@@ -321,11 +321,9 @@ std::shared_ptr<const CoherenceFactors> CoherenceFactors::recalled(
                                               bins);
   };
   if (memory == nullptr) return made();
-  ExactKey key(Kept::noise_factors, 0);
-  add_settings(key, NoiseField{kind, directions});
-  key.add_all(sound_speed, first, step, bins);
-  for (const Vec3& phone : phones) key.add(phone);
-  return memory->remember(key, made);
+  return memory->remember(ExactKey(Kept::noise_factors, 0, NoiseField{kind, directions}, phones,
+                                   sound_speed, first, step, bins),
+                          made);
 }
 
 std::size_t CoherenceFactors::bytes() const noexcept {

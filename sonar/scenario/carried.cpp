@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/geometry.h"
+#include "core/propagation_memory.h"
 
 namespace asdic::detail {
 namespace {
@@ -109,6 +110,12 @@ const std::vector<Vec3>& given_phones(const ReceiverArray& array, int ping) {
 }
 
 }  // namespace
+
+void add_to(ExactKey& key, const Carried& carried) {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [track, offset] = carried;
+  key.add_all(track, offset);
+}
 
 Carried sender_of(const Scenario& scenario, int transmitter) {
   const Transmitter& one = scenario.transmitters[static_cast<std::size_t>(transmitter)];

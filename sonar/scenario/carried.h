@@ -7,6 +7,8 @@
 
 namespace asdic::detail {
 
+class ExactKey;
+
 /// Something that goes along a track, `offset` from it: a transmitter, an array's reference point
 /// or a phone.
 struct Carried {
@@ -20,6 +22,7 @@ struct Carried {
     return place;
   }
 };
+void add_to(ExactKey& key, const Carried& carried);
 
 /// A transmitter on the way of its platform.
 [[nodiscard]] Carried sender_of(const Scenario& scenario, int transmitter);

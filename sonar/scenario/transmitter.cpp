@@ -25,6 +25,12 @@ AnyBeamPattern pattern_of(const AnyBeam& beam, const BeamMount& mount) {
 
 }  // namespace
 
+void add_to(ExactKey& key, const BeamMount& mount) {
+  // Every member by name: one more does not compile until it is here.
+  const auto& [wavelength, sound_speed, heading, elevation, reference] = mount;
+  key.add_all(wavelength, sound_speed, heading, elevation, reference);
+}
+
 void Transmitter::describe(Fields& field) {
   field.name(name, "by which others name it");
   field.reference("platform", platform, "platform", "that carries it");
@@ -48,11 +54,13 @@ void Transmitter::describe(Fields& field) {
 
 BeamPattern::BeamPattern(const Transmitter& transmitter, double wavelength, double sound_speed,
                          double heading, double reference)
-    : pattern_(pattern_of(transmitter.beam, {.wavelength = wavelength,
-                                             .sound_speed = sound_speed,
-                                             .heading = heading,
-                                             .elevation = transmitter.elevation,
-                                             .reference = reference})) {}
+    : beam_(transmitter.beam),
+      mount_{.wavelength = wavelength,
+             .sound_speed = sound_speed,
+             .heading = heading,
+             .elevation = transmitter.elevation,
+             .reference = reference},
+      pattern_(pattern_of(beam_, mount_)) {}
 
 double BeamPattern::operator()(double elevation) const noexcept {
   if (azimuthally_symmetric()) return towards(0.0, elevation).real();
@@ -72,8 +80,7 @@ bool BeamPattern::azimuthally_symmetric() const noexcept {
 }
 
 bool BeamPattern::add_to(ExactKey& key) const {
-  key.add(pattern_.index());
-  std::visit([&](const auto& one) { one.add_to(key); }, pattern_);
+  key.add_all(beam_, mount_);
   return true;
 }
 

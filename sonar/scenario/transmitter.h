@@ -50,6 +50,8 @@ class BeamPattern final : public TransmitPattern {
   [[nodiscard]] double line_length() const noexcept;  ///< of a vertical line, else 0 [m]
 
  private:
+  AnyBeam beam_;  // what the pattern is made of: its key
+  BeamMount mount_;
   AnyBeamPattern pattern_;
 };
 

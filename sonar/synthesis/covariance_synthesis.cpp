@@ -141,11 +141,10 @@ std::shared_ptr<const std::vector<std::complex<float>>> Synthesizer::covariance_
     return spectra;
   };
   if (memory_ == nullptr) return make();
-  ExactKey key(Kept::covariance_spectra, plan.identity);
-  key.add_all(band.centre, band.half_width, band.frequencies);
-  return memory_->remember(key, make, [](const Spectra& spectra) {
-    return spectra.size() * sizeof(Spectra::value_type);
-  });
+  return memory_->remember(
+      ExactKey(Kept::covariance_spectra, plan.identity, band.centre, band.half_width,
+               band.frequencies),
+      make, [](const Spectra& spectra) { return spectra.size() * sizeof(Spectra::value_type); });
 }
 
 Baseband Synthesizer::silence(const ReverberationCovariance& covariance,

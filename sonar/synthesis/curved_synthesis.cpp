@@ -171,12 +171,8 @@ class CurvedSynthesis {
                                                       const Waveforms& w) const {
     const auto made = [&] { return std::make_shared<Shape>(shape(curve, w)); };
     if (memory_ == nullptr) return made();
-    ExactKey key(Kept::waveform, plan_.identity);
-    key.add(w.span.begin).add(w.span.end);
-    for (const double lag : w.lags) key.add(lag);
-    for (const DelayCurve::Piece& piece : curve.pieces())
-      for (std::size_t i = 0; i < piece.received.size(); ++i)
-        key.add(piece.received[i]).add(piece.sent[i]);
+    ExactKey key(Kept::waveform, plan_.identity, w.span.begin, w.span.end, w.lags);
+    for (const DelayCurve::Piece& piece : curve.pieces()) key.add_all(piece.received, piece.sent);
     return memory_->remember(key, made, [](const Shape& values) {
       return values.capacity() * sizeof(Shape::value_type);
     });

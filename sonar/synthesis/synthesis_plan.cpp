@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/settings_key.h"
+#include "core/propagation_memory.h"
 #include "core/units.h"
 
 namespace asdic::detail {
@@ -90,10 +90,9 @@ Recording without_epoch(Recording recording) {
 
 /// All that a plan depends on; a file's name and the epoch change nothing.
 ExactKey key_of(const PulseSettings& pulse, const Recording& record, double max_doppler) {
-  ExactKey key(Kept::synthesis, 0);
-  add_settings(key, pulse);
-  key.add(record.sample_rate).add(record.start).add(record.samples).add(record.carrier);
-  return key.add(max_doppler);
+  // Every member by name: one more does not compile until it is here.
+  const auto& [rate, start, samples, carrier, epoch] = record;
+  return ExactKey(Kept::synthesis, 0, pulse, rate, start, samples, carrier, max_doppler);
 }
 
 }  // namespace

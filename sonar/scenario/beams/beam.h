@@ -19,15 +19,15 @@ struct BeamMount {
   double elevation = 0.0;  ///< of the beam's axis, positive up [rad]
   double reference = 0.0;  ///< wavelength to which a line's beamwidth refers [m]; 0: `wavelength`
 };
+void add_to(ExactKey& key, const BeamMount& mount);
 
 /// What a beam sends in every direction: far-field amplitude over bearing and elevation [rad].
 template <class P>
-concept FarField = requires(const P& pattern, double angle, ExactKey& key) {
+concept FarField = requires(const P& pattern, double angle) {
   { pattern.towards(angle, angle) } -> std::same_as<std::complex<double>>;
   { P::azimuthally_symmetric } -> std::convertible_to<bool>;  // the same at every bearing
   /// Delay between its parts as the far field sees them, at most [s].
   { pattern.longest_delay() } -> std::same_as<double>;
-  pattern.add_to(key);
 };
 
 /// A beam as scenarios say it.

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/propagation_memory.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "sonar/signal/windowed_sinc.h"
@@ -57,12 +56,6 @@ double LinePattern::at(double elevation) const noexcept {
   if (taper_ == Taper::omnidirectional) return 1.0;
   const double u = length_over_wavelength_ * (std::sin(elevation) - sin_axis_);
   return taper_ == Taper::rectangular ? sinc(u) : hann_pattern(u);
-}
-
-void LinePattern::add_to(ExactKey& key) const {
-  // Every member by name: one more does not compile until it is here.
-  const auto& [taper, wavelength, sound_speed, length, axis] = *this;
-  key.add(static_cast<int>(taper)).add_all(wavelength, sound_speed, length, axis);
 }
 
 }  // namespace asdic::detail

@@ -28,7 +28,6 @@ class LinePattern {
   [[nodiscard]] double length() const noexcept {
     return length_over_wavelength_ * wavelength_;
   }  ///< [m]
-  void add_to(ExactKey& key) const;
 
  private:
   [[nodiscard]] double at(double elevation) const noexcept;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/geometry.h"
-#include "core/propagation_memory.h"
 #include "core/quantities.h"
 #include "core/text.h"
 
@@ -65,13 +64,6 @@ double ProjectorPattern::longest_delay() const noexcept {
   double furthest = 0.0;
   for (const Element& e : elements_) furthest = std::max(furthest, e.place.norm());
   return 4.0 * furthest * wavelength_ / sound_speed_;
-}
-
-void ProjectorPattern::add_to(ExactKey& key) const {
-  // Every member by name: one more does not compile until it is here.
-  const auto& [wavelength, sound_speed, elements] = *this;
-  key.add_all(wavelength, sound_speed).add(elements.size());
-  for (const auto& [place, weight] : elements) key.add_all(place, weight.real(), weight.imag());
 }
 
 }  // namespace asdic::detail

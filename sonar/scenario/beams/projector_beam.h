@@ -29,7 +29,6 @@ class ProjectorPattern {
                    const BeamMount& mount);
   [[nodiscard]] std::complex<double> towards(double bearing, double elevation) const noexcept;
   [[nodiscard]] double longest_delay() const noexcept;
-  void add_to(ExactKey& key) const;
 
  private:
   struct Element {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/propagation_memory.h"
 #include "core/quantities.h"
 #include "core/text.h"
 
@@ -107,13 +106,6 @@ TablePattern::TablePattern(BeamTable table, double turned)
 
 std::complex<double> TablePattern::towards(double bearing, double elevation) const noexcept {
   return amplitude_from_db(table_.level(bearing - turned_, elevation));
-}
-
-void TablePattern::add_to(ExactKey& key) const {
-  // Every member by name: one more does not compile until it is here.
-  const auto& [table, turned] = *this;
-  const auto& [bearings, elevations, level_db] = table;
-  key.add(turned).add_all(bearings, elevations, level_db);
 }
 
 }  // namespace asdic::detail

@@ -26,7 +26,6 @@ class TablePattern {
   TablePattern(BeamTable table, double turned);
   [[nodiscard]] std::complex<double> towards(double bearing, double elevation) const noexcept;
   [[nodiscard]] double longest_delay() const noexcept { return 0.0; }
-  void add_to(ExactKey& key) const;
 
  private:
   BeamTable table_;
