@@ -58,7 +58,8 @@ std::span<const SettingsSection> settings_sections() {
       {"study", "measure.receiver", "the receiver, and the options of asdic process",
        of_struct<ProcessingSettings>},
       {"process", "tracks", "options of asdic process for tracks", of_struct<TrackerSettings>},
-      {"serve", "ping", "keys of the command ping", of_struct<serve::PingRequest>},
+      {"serve", "ping", "keys of the command ping",
+       [](std::string_view) { return serve::ping_settings(); }},
       {"serve", "update", "keys of the command update",
        [](std::string_view) { return serve::update_settings(); }},
       {"serve", "limits", "what a client may ask for: --limit", of_struct<serve::SessionLimits>}};

@@ -1,11 +1,12 @@
 #include "serve/client_key.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <optional>
+#include <vector>
 
 #include "serve/client_names.h"
+#include "serve/motion.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -58,8 +59,8 @@ const TomlValue* below(const TomlValue* at, std::string_view path) {
 /// The key by which a command moves what the scenario moves by another: ".waypoints[0].position" of
 /// a platform whose "position" it gave. "": neither is of motion.
 std::string same_motion(const TomlValue* table, std::string_view rest) {
-  constexpr std::array<std::string_view, 8> ways{
-      "position", "waypoints", "velocity", "speed", "heading_deg", "range", "depth", "bearing_deg"};
+  std::vector<std::string_view> ways(motion_keys.begin(), motion_keys.end());
+  ways.insert(ways.end(), {"range", "depth", "bearing_deg"});  // of files alone
   const std::string_view first = rest.substr(std::min<std::size_t>(1, rest.size()));
   const std::string_view word = first.substr(0, first.find_first_of(".["));
   if (table == nullptr || std::find(ways.begin(), ways.end(), word) == ways.end()) return "";
@@ -72,19 +73,19 @@ std::string same_motion(const TomlValue* table, std::string_view rest) {
 
 ClientKey client_key(const std::string& key, const TomlValue& fields, const TomlValue& document) {
   const Indexed scenario = without_index(key);
-  for (const auto& [section, name, of_a_ping] : client_names()) {
+  for (const ClientName& one : client_names()) {
+    const std::string& section = one.section;
     const std::string_view rest =
         std::string_view(scenario.key).substr(std::min(section.size(), scenario.key.size()));
     if (!scenario.key.starts_with(section) ||
         !(rest.empty() || rest.front() == '.' || rest.front() == '['))
       continue;
     const std::string tail(rest);
-    const TomlValue* table = below(&fields, name);
-    std::string where(name);
+    const TomlValue* table = below(&fields, one.name);
+    std::string where = one.name;
     if (table != nullptr && std::holds_alternative<TomlValue::Array>(table->data) &&
         scenario.index) {
-      const auto i =
-          same_name(*table, name_in(element(document.find(std::string(section)), *scenario.index)));
+      const auto i = same_name(*table, name_in(element(document.find(section), *scenario.index)));
       where += i ? "[" + std::to_string(*i) + "]" : "";
       table = i ? element(table, *i) : nullptr;
     }

@@ -7,6 +7,8 @@
 #include "io/text/toml_writer.h"
 #include "serve/caps.h"
 #include "serve/client_key.h"
+#include "serve/client_names.h"
+#include "serve/motion.h"
 #include "serve/update.h"
 
 namespace asdic::detail::serve {
@@ -95,7 +97,7 @@ void LiveScenario::update(const TomlValue& fields, double now) {
       fields, {.scenario = state_.scenario, .data = data_, .limits = limits_, .now = now},
       document);
   for (const std::string& section : changed)
-    set_change(changes, section, inline_toml(*find_section(document, section)));
+    set_change(changes, section, inline_toml(*find_at(document, section)));
   state_ = read_for_client(changes, fields, document);
   document_ = std::move(document);
   changes_ = std::move(changes);
@@ -117,11 +119,11 @@ std::string LiveScenario::elevation_override(int transmitter, double elevation) 
 }
 
 LiveScenario::State LiveScenario::with(const PingChanges& wanted, const TomlValue& fields) const {
-  if (!wanted.any()) return state_;
+  if (wanted.values.empty()) return state_;
   TomlValue document = document_;
   Changes changes = changes_;
-  for (const std::string& section : apply_ping_changes(wanted, state_.scenario, document))
-    set_change(changes, section, inline_toml(*find_section(document, section)));
+  for (const std::string& section : apply_ping_changes(wanted, document))
+    set_change(changes, section, inline_toml(*find_at(document, section)));
   return read_for_client(changes, fields, document);
 }
 
@@ -129,13 +131,13 @@ namespace {
 
 /// Which of the command's files an error is of: "sound_speed.file"; "a file" if it is none of them.
 std::string file_key(const TomlValue& fields, const std::string& where) {
-  for (const char* key : {"sound_speed", "noise", "waveform"}) {
-    const TomlValue* table = fields.find(key);
-    const TomlValue* file = table == nullptr ? nullptr : table->find("file");
+  for (const ClientName& one : client_names()) {
+    const std::string& key = one.name;
+    const TomlValue* file = one.is_table ? find_at(fields, key + ".file") : nullptr;
     const auto* name = file == nullptr ? nullptr : std::get_if<std::string>(&file->data);
     if (name == nullptr || name->empty()) continue;
     const std::string last = std::filesystem::path(*name).filename().string();
-    if (where.find(last) != std::string::npos) return std::string(key) + ".file";
+    if (where.find(last) != std::string::npos) return key + ".file";
   }
   return "a file";
 }
@@ -150,8 +152,8 @@ std::string platform_motion(const TomlValue& fields) {
     if (several->empty()) return "";
     platform = &several->front();
   }
-  for (const char* key : {"position", "waypoints", "velocity", "speed", "heading_deg"})
-    if (platform->find(key) != nullptr) return std::string("platform.") + key;
+  for (const std::string_view key : motion_keys)
+    if (platform->find(key) != nullptr) return "platform." + std::string(key);
   return "";
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,11 +22,8 @@ struct ScenarioSource {
 
 /// What a ping may have of its own, for itself alone.
 struct PingChanges {
-  int transmitter = 0;  ///< index
-  std::optional<TomlValue> waveform;
-  std::optional<double> source_level_db, beamwidth_deg;
-
-  [[nodiscard]] bool any() const { return waveform || source_level_db || beamwidth_deg; }
+  int transmitter = 0;                                         ///< index
+  std::vector<std::pair<std::string, TomlValue>> values = {};  ///< by names of the command's
 };
 
 /// A scenario that a client changes while it goes on.

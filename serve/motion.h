@@ -7,9 +7,10 @@
 
 namespace asdic::detail::serve {
 
-/// How a command says that something moves. `speed`, with `heading_deg`, is of commands alone.
-inline constexpr std::array<std::string_view, 5> motion_keys{"position", "velocity", "heading_deg",
-                                                             "speed", "waypoints"};
+/// How a command says that something moves, what decides first. `speed`, with `heading_deg`, is of
+/// commands alone.
+inline constexpr std::array<std::string_view, 5> motion_keys{"position", "waypoints", "velocity",
+                                                             "speed", "heading_deg"};
 
 /// Whether a command says how something moves, by any of these.
 [[nodiscard]] bool has_motion(TomlTable& wanted);

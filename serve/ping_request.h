@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/fields.h"
+#include "core/settings_catalogue.h"
 #include "serve/live_scenario.h"
 
 namespace asdic::detail::serve {
@@ -21,9 +22,12 @@ struct PingRequest {
   PingChanges changes;              ///< its transmitter is set when that is known
   Delivery deliver = Delivery::none;
 
-  /// But for `transmitter` and `waveform`, which the client's scenario has a say in.
+  /// But for `transmitter` and what the client's scenario says itself.
   void describe(Fields& field);
 };
+
+/// The keys of the command, as the manual lists them.
+[[nodiscard]] SettingsList ping_settings();
 
 /// \param usual  delivery where the command does not say \throws Refusal ("value", "file")
 [[nodiscard]] PingRequest read_ping(const TomlValue& fields, const LiveScenario& live,

@@ -1,7 +1,9 @@
 #include "serve/update.h"
 
 #include <algorithm>
-#include <limits>
+#include <cassert>
+#include <map>
+#include <optional>
 
 #include "core/quantities.h"
 #include "core/text.h"
@@ -9,6 +11,7 @@
 #include "io/text/toml_table.h"
 #include "io/text/toml_value.h"
 #include "serve/client_names.h"
+#include "serve/client_value.h"
 #include "serve/motion.h"
 
 namespace asdic::detail::serve {
@@ -41,42 +44,40 @@ std::size_t index_of(TomlTable& wanted, const List& list, const std::string& kin
   return static_cast<std::size_t>(found - list.begin());
 }
 
-/// A value of the command as it stands; a file in it lies in the data folder.
-TomlValue with_file(TomlTable& reader, const std::string& key, const TomlValue& fields,
-                    const UpdateContext& context) {
-  TomlTable table = reader.table(key);
-  TomlValue value = *fields.find(key);
-  if (table.has("file")) {
-    const auto file =
-        context.data.file(table.text("file"), key + ".file", context.limits.file_bytes);
-    set_key(value, "file", {.data = file.string(), .origin = ""});
-  }
-  return value;
-}
+/// An update under way.
+struct Update {
+  TomlTable reader;  ///< of the command
+  const TomlValue& fields;
+  const UpdateContext& context;
+  double time;  ///< of positions and velocities [s]
+  TomlValue& document;
+  std::vector<std::string> changed = {};  ///< sections
+};
 
 /// Places that were given from the platform's start stay where they are when that moves.
-void fix_targets(const Scenario& scenario, TomlValue& document, std::vector<std::string>& changed) {
-  const std::vector<TomlValue*> tables = tables_of(document, "target");
+void fix_targets(Update& to) {
+  const std::vector<TomlValue*> tables = tables_of(to.document, "target");
   for (std::size_t i = 0; i < tables.size(); ++i) {
     if (tables[i]->find("range") == nullptr) continue;
-    const Kinematics& start = scenario.targets[i].track.start;
+    const Kinematics& start = to.context.scenario.targets[i].track.start;
     for (const char* key : {"range", "bearing_deg", "depth"}) erase_key(*tables[i], key);
     set_key(*tables[i], "position", toml_vector(start.position));
     set_key(*tables[i], "velocity", toml_vector(start.velocity));
-    changed.emplace_back("target");
+    to.changed.emplace_back("target");
   }
 }
 
-void update_platforms(TomlTable& reader, const UpdateContext& context, double time,
-                      TomlValue& document) {
-  const std::vector<TomlValue*> tables = tables_of(document, "platform");
-  for (TomlTable& wanted : reader.one_or_more("platform")) {
-    const std::size_t i = index_of(wanted, context.scenario.platforms, "platforms");
+void update_platforms(Update& to) {
+  fix_targets(to);
+  const std::vector<TomlValue*> tables = tables_of(to.document, "platform");
+  const auto& platforms = to.context.scenario.platforms;
+  for (TomlTable& wanted : to.reader.one_or_more("platform")) {
+    const std::size_t i = index_of(wanted, platforms, "platforms");
     if (!has_motion(wanted)) {
       wanted.finish();  // a key that is misspelt is told as that
       throw wanted.fault("position", "a position, velocity, heading_deg, speed or waypoints");
     }
-    set_motion(wanted, context.scenario.platforms[i].track, time, *tables[i]);
+    set_motion(wanted, platforms[i].track, to.time, *tables[i]);
     wanted.finish();
   }
 }
@@ -96,14 +97,13 @@ std::vector<std::string> keys_of_choices(std::string_view section) {
   return keys;
 }
 
-void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlValue& fields,
-                   TomlValue& document) {
-  const std::vector<TomlValue*> tables = tables_of(document, "array");
-  const std::vector<const TomlValue*> given = tables_of(fields, "array");
+void update_arrays(Update& to) {
+  const std::vector<TomlValue*> tables = tables_of(to.document, "array");
+  const std::vector<const TomlValue*> given = tables_of(to.fields, "array");
   std::size_t place = 0;
-  for (TomlTable& wanted : reader.one_or_more("array")) {
+  for (TomlTable& wanted : to.reader.one_or_more("array")) {
     const TomlValue& values = *given[place++];
-    TomlValue& table = *tables[index_of(wanted, context.scenario.arrays, "arrays")];
+    TomlValue& table = *tables[index_of(wanted, to.context.scenario.arrays, "arrays")];
     if (wanted.has("positions")) {
       static_cast<void>(
           wanted.vectors("positions", scenario::setting_at("array.positions").quantity));
@@ -117,10 +117,10 @@ void update_arrays(TomlTable& reader, const UpdateContext& context, const TomlVa
 }
 
 /// One target of the command: changed, taken out, or a new one.
-void update_target(TomlTable& wanted, const TomlValue& values, const UpdateContext& context,
-                   double time, TomlValue::Array& targets) {
-  const std::string name =
-      wanted.text("name", targets.size() == 1 ? context.scenario.targets[0].name : std::string());
+void update_target(TomlTable& wanted, const TomlValue& values, const Update& to,
+                   TomlValue::Array& targets) {
+  const std::vector<Target>& known = to.context.scenario.targets;
+  const std::string name = wanted.text("name", targets.size() == 1 ? known[0].name : std::string());
   if (name.empty()) throw wanted.fault("name", "the name of a target");
   const auto by_name = [&](const TomlValue& table) {
     return std::get<std::string>(table.find("name")->data) == name;
@@ -149,97 +149,93 @@ void update_target(TomlTable& wanted, const TomlValue& values, const UpdateConte
     targets.push_back(std::move(table));
     found = targets.end() - 1;
   }
-  for (const Target& target : context.scenario.targets)
+  for (const Target& target : known)
     if (target.name == name) track = target.track;
   const bool moves = has_motion(wanted);
   for (const std::string& key : settings)
     if (wanted.has(key)) set_key(*found, key, *values.find(key));
-  if (moves) set_motion(wanted, track, time, *found);
+  if (moves) set_motion(wanted, track, to.time, *found);
   if (moves && wanted.has("heading_deg") && found->find("position") != nullptr)
     set_key(*found, "heading_deg", *values.find("heading_deg"));  // it lies there
   wanted.finish();
 }
 
-void update_targets(TomlTable& reader, const UpdateContext& context, const TomlValue& fields,
-                    double time, TomlValue& document) {
+void update_targets(Update& to) {
   TomlValue::Array targets;
-  for (TomlValue* table : tables_of(document, "target")) {
-    set_key(*table, "name", {.data = context.scenario.targets[targets.size()].name, .origin = ""});
+  for (TomlValue* table : tables_of(to.document, "target")) {
+    const std::string& name = to.context.scenario.targets[targets.size()].name;
+    set_key(*table, "name", {.data = name, .origin = ""});
     targets.push_back(*table);
   }
-  const std::vector<const TomlValue*> given = tables_of(fields, "targets");
+  const std::vector<const TomlValue*> given = tables_of(to.fields, "targets");
   std::size_t place = 0;
-  for (TomlTable& wanted : reader.one_or_more("targets"))
-    update_target(wanted, *given[place++], context, time, targets);
-  if (targets.size() > context.limits.targets)
+  for (TomlTable& wanted : to.reader.one_or_more("targets"))
+    update_target(wanted, *given[place++], to, targets);
+  const std::size_t most = to.context.limits.targets;
+  if (targets.size() > most)
     throw Refusal("limit", refusal_text("targets", std::to_string(targets.size()),
-                                        "at most " + std::to_string(context.limits.targets)));
-  set_key(document, "target", {.data = std::move(targets), .origin = ""});
+                                        "at most " + std::to_string(most)));
+  set_key(to.document, "target", {.data = std::move(targets), .origin = ""});
 }
 
-TomlValue& table_in(TomlValue& document, const std::string& section) {
-  if (document.find(section) == nullptr)
-    set_key(document, section, {.data = TomlValue::Table{}, .origin = ""});
-  return *document.find(section);
+/// Lists of things: each kind moves, comes and goes by rules of its own.
+struct ListUpdate {
+  std::string_view section;
+  void (*update)(Update& to);
+};
+constexpr ListUpdate list_updates[] = {
+    {"platform", update_platforms}, {"array", update_arrays}, {"target", update_targets}};
+
+void update_list(const ClientName& list, Update& to) {
+  if (!to.reader.has(list.name)) return;
+  const auto found = std::find_if(std::begin(list_updates), std::end(list_updates),
+                                  [&](const auto& one) { return one.section == list.section; });
+  assert(found != std::end(list_updates));
+  found->update(to);
+  to.changed.push_back(list.section);
 }
 
-void update_recording(TomlTable& reader, const TomlValue& fields, TomlValue& document,
-                      std::vector<std::string>& changed) {
-  TomlTable wanted = reader.table("recording");
-  for (const std::string& name : live_keys("pings")) {  // recording_duration is recording.duration
-    const std::string key = name.substr(name.find('_') + 1);
-    if (!wanted.has(key)) continue;
-    set_key(table_in(document, "pings"), name, *fields.find("recording")->find(key));
-    changed.push_back("pings." + name);
-  }
-  wanted.finish();
+/// A table that chooses a kind and does not say which is of the first.
+void choose_kind(const std::string& section, TomlValue& value) {
+  const auto kind = scenario::settings_at(section + ".kind");
+  if (!kind.empty() && kind.front()->required && value.find("kind") == nullptr)
+    set_key(value, "kind", {.data = kind.front()->words.front(), .origin = ""});
+}
+
+/// What stands once in the scenario. \param parts  tables of the command, by their names
+void update_value(const ClientName& one, Update& to, std::map<std::string, TomlTable>& parts) {
+  const std::size_t dot = one.name.find('.');
+  const bool alone = dot == std::string::npos;
+  TomlTable* const reader =
+      alone ? &to.reader
+            : &parts.try_emplace(one.head(), to.reader.table(one.head())).first->second;
+  const UpdateContext& context = to.context;
+  std::optional<TomlValue> value =
+      client_value(*reader, to.fields, alone ? one.name : one.name.substr(dot + 1), one,
+                   context.data, context.limits);
+  if (!value) return;
+  if (one.is_table) choose_kind(one.section, *value);
+  value_at(to.document, one.section, "") = std::move(*value);
+  to.changed.push_back(one.section);
 }
 
 std::vector<std::string> update_all(const TomlValue& fields, const UpdateContext& context,
                                     TomlValue& document) {
   TomlTable reader(fields);
-  std::vector<std::string> changed;
   const double time = reader.number("time", quantity::time, context.now);
-  if (reader.has("platform")) {
-    fix_targets(context.scenario, document, changed);
-    update_platforms(reader, context, time, document);
-    changed.emplace_back("platform");
+  Update to{std::move(reader), fields, context, time, document};
+  std::map<std::string, TomlTable> parts;
+  for (const ClientName& one : client_names()) {
+    if (one.of_a_ping) continue;
+    if (one.is_list)
+      update_list(one, to);
+    else
+      update_value(one, to, parts);
   }
-  if (reader.has("array")) {
-    update_arrays(reader, context, fields, document);
-    changed.emplace_back("array");
-  }
-  if (reader.has("targets")) {
-    update_targets(reader, context, fields, time, document);
-    changed.emplace_back("target");
-  }
-  if (reader.has("wind_speed")) {
-    static_cast<void>(
-        reader.number("wind_speed", scenario::setting_at("environment.wind_speed").quantity));
-    set_key(table_in(document, "environment"), "wind_speed", *fields.find("wind_speed"));
-    changed.emplace_back("environment.wind_speed");
-  }
-  if (reader.has("sound_speed")) {
-    TomlValue profile = with_file(reader, "sound_speed", fields, context);
-    if (profile.find("kind") == nullptr)
-      set_key(profile, "kind", {.data = std::string("table"), .origin = ""});
-    set_key(table_in(document, "environment"), "sound_speed", std::move(profile));
-    changed.emplace_back("environment.sound_speed");
-  }
-  if (reader.has("noise")) {
-    set_key(document, "noise", with_file(reader, "noise", fields, context));
-    changed.emplace_back("noise");
-  }
-  if (reader.has("seed")) {
-    constexpr auto most = std::numeric_limits<std::int64_t>::max() - 1;  // so that it is told
-    static_cast<void>(reader.integer("seed", 0, most));
-    set_key(document, "seed", *fields.find("seed"));
-    changed.emplace_back("seed");
-  }
-  if (reader.has("recording")) update_recording(reader, fields, document, changed);
-  reader.finish();
-  if (changed.empty()) throw Refusal("value", refusal_text("update", "nothing", update_keys()));
-  return changed;
+  for (const auto& [name, part] : parts) part.finish();
+  to.reader.finish();
+  if (to.changed.empty()) throw Refusal("value", refusal_text("update", "nothing", update_keys()));
+  return std::move(to.changed);
 }
 
 }  // namespace
@@ -253,31 +249,25 @@ std::vector<std::string> apply_update(const TomlValue& fields, const UpdateConte
   }
 }
 
-std::vector<std::string> apply_ping_changes(const PingChanges& wanted, const Scenario& scenario,
-                                            TomlValue& document) {
+std::vector<std::string> apply_ping_changes(const PingChanges& wanted, TomlValue& document) {
+  const std::string section = "transmitter", below = section + ".";
   const auto index = static_cast<std::size_t>(wanted.transmitter);
-  TomlValue& table = *tables_of(document, "transmitter")[index];
+  TomlValue& table = *tables_of(document, section)[index];
   std::vector<std::string> changed;
-  if (wanted.source_level_db)
-    set_key(table, "source_level_db", {.data = *wanted.source_level_db, .origin = ""});
-  if (wanted.beamwidth_deg)
-    set_key(table, "beamwidth_deg", {.data = *wanted.beamwidth_deg, .origin = ""});
-  const bool own = scenario.transmitters[index].pulse.has_value();
-  if (wanted.waveform) set_key(own ? table : document, "pulse", *wanted.waveform);
-  if (wanted.source_level_db || wanted.beamwidth_deg || (wanted.waveform && own))
-    changed.emplace_back("transmitter");
-  if (wanted.waveform && !own) changed.emplace_back("pulse");
-  return changed;
-}
-
-const TomlValue* find_section(const TomlValue& document, const std::string& path) {
-  const TomlValue* at = &document;
-  for (std::size_t start = 0; at != nullptr && start <= path.size();) {
-    const std::size_t dot = std::min(path.find('.', start), path.size());
-    at = at->find(path.substr(start, dot - start));
-    start = dot + 1;
+  for (const auto& [name, value] : wanted.values) {
+    const ClientName *own = nullptr, *common = nullptr;  // of one transmitter, and of all
+    for (const ClientName& one : client_names())
+      if (one.of_a_ping && one.name == name) (one.section.starts_with(below) ? own : common) = &one;
+    const std::string key = own == nullptr ? "" : own->section.substr(below.size());
+    if (common == nullptr || (own != nullptr && find_at(table, key) != nullptr)) {
+      value_at(table, key, "") = value;
+      changed.insert(changed.begin(), section);
+    } else {
+      value_at(document, common->section, "") = value;
+      changed.push_back(common->section);
+    }
   }
-  return at;
+  return changed;
 }
 
 Refusal refusal_of_value(const InputError& error) {

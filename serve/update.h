@@ -19,19 +19,15 @@ struct UpdateContext {
   double now = 0.0;  ///< of positions, where the command says no time [s]
 };
 
-/// Writes what a client wants into the tree of a scenario's file. What may change is what is named
-/// here, and nothing else.
+/// Writes what a client wants into the tree of a scenario's file. What may change is what its
+/// description calls `live` (serve/client_names.h), and nothing else.
 /// \return the sections that changed: "platform", "environment.wind_speed"
 /// \throws Refusal ("value", "file") naming the command's key
 std::vector<std::string> apply_update(const TomlValue& fields, const UpdateContext& context,
                                       TomlValue& document);
 
 /// The same of what a ping has of its own.
-std::vector<std::string> apply_ping_changes(const PingChanges& wanted, const Scenario& scenario,
-                                            TomlValue& document);
-
-/// A value of the tree by its path of names; it is there.
-[[nodiscard]] const TomlValue* find_section(const TomlValue& document, const std::string& path);
+std::vector<std::string> apply_ping_changes(const PingChanges& wanted, TomlValue& document);
 
 /// A fault of a command's own value: key, found, expected.
 [[nodiscard]] Refusal refusal_of_value(const InputError& error);

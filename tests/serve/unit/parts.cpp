@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include "core/error.h"
 #include "io/scenario/catalogue.h"
@@ -327,6 +328,39 @@ TEST(ClientNames, AreOfWhatIsLive) {
     EXPECT_TRUE(std::any_of(live.begin(), live.end(),
                             [&](const auto& path) { return is_within(path, one.section); }))
         << one.section << " is not live";
+}
+
+// A setting becomes one of commands by a word of its description: serve/ knows none of these.
+TEST(ClientNames, FollowFromAWordOfTheDescription) {
+  const auto live_setting = [](const char* path) {
+    SettingRecord made;
+    made.path = path;
+    made.live = true;
+    return made;
+  };
+  SettingsList list;
+  for (const char* path : {"propagation.tide", "pings.recording_gain", "environment.ice",
+                           "transmitter[].duty", "target[].colour", "buoy[].position"})
+    list.settings.push_back(live_setting(path));
+  list.settings.push_back({.path = "environment.snow"});  // is not live
+  list.tables.push_back({.path = "propagation.current", .help = "", .live = true});
+  std::vector<std::string> names;
+  for (const ClientName& one : client_names_of(list))
+    names.push_back(one.section + " " + one.name + (one.of_a_ping ? " of a ping" : "") +
+                    (one.is_list ? " list" : "") + (one.is_table ? " table" : ""));
+  EXPECT_THAT(names,
+              testing::ElementsAre("target targets list", "environment.ice ice",
+                                   "pings.recording_gain recording.gain",
+                                   "transmitter.duty duty of a ping", "propagation.tide tide",
+                                   "buoy buoy list", "propagation.current current table"));
+}
+
+TEST(ClientNames, AreInTheManual) {
+  std::ifstream page(std::string(ASDIC_SCENARIOS) + "/../docs/formats/serve.md");
+  std::ostringstream text;
+  text << page.rdbuf();
+  for (const ClientName& one : client_names())
+    EXPECT_THAT(text.str(), testing::ContainsRegex("`" + one.head() + "[`.[]")) << one.section;
 }
 
 TEST(ClientNames, HaveTheKeysAndBoundsOfTheScenario) {
