@@ -164,6 +164,7 @@ TemperatureSalinity::operator Value() const {
       .put("salinity", salinity)
       .put("equation", equation)
       .put("latitude_deg", latitude_deg)
+      .put("interpolation", interpolation)
       .value();
 }
 SoundSpeedSection::operator Value() const {

@@ -48,6 +48,7 @@ struct ASDIC_API TemperatureSalinity {
   std::vector<double> salinity{};         ///< [n] [psu]
   std::string equation = "chen-millero";  ///< mackenzie, del-grosso
   double latitude_deg = 45.0;
+  std::string interpolation = "c-linear";  ///< of the speed; those of SoundSpeed
   operator Value() const;
 };
 
