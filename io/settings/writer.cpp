@@ -219,14 +219,6 @@ void TreeWriter::alternatives(const Setting& s, const OneOf& one) {
 
 namespace {
 
-/// A key as it may stand in a path: bare where it can be.
-std::string key_text(const std::string& key) {
-  const bool bare = !key.empty() && key.find_first_not_of(
-                                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                        "0123456789_-") == std::string::npos;
-  return bare ? key : inline_toml({.data = key, .origin = ""});
-}
-
 bool is_table_of_its_own(const TomlValue& value) {
   return value.table() != nullptr && !value.in_line;
 }
@@ -253,7 +245,7 @@ std::string array_text(const TomlValue::Array& items) {
 std::string in_line_text(const TomlValue::Table& entries) {
   std::string text;
   for (const TomlEntry& entry : entries)
-    text += (text.empty() ? "" : ", ") + key_text(entry.key) + " = " + inline_toml(entry.value);
+    text += (text.empty() ? "" : ", ") + toml_key(entry.key) + " = " + inline_toml(entry.value);
   return "{ " + text + " }";
 }
 
@@ -263,11 +255,11 @@ void print_values(TomlWriter& out, const TomlValue::Table& table) {
     if (std::holds_alternative<std::monostate>(value.data))
       out.comment(key);
     else if (const auto* items = std::get_if<TomlValue::Array>(&value.data))
-      out.line(key_text(key), array_text(*items));
+      out.line(toml_key(key), array_text(*items));
     else if (const auto* entries = value.table())
-      out.line(key_text(key), in_line_text(*entries));
+      out.line(toml_key(key), in_line_text(*entries));
     else
-      out.line(key_text(key), inline_toml(value));
+      out.line(toml_key(key), inline_toml(value));
   }
 }
 
@@ -275,7 +267,7 @@ void print_values(TomlWriter& out, const TomlValue::Table& table) {
 void print_table(TomlWriter& out, const TomlValue::Table& table, const std::string& path) {
   print_values(out, table);
   for (const auto& [key, value] : table) {
-    const std::string name = path + key_text(key);
+    const std::string name = path + toml_key(key);
     if (is_table_of_its_own(value)) {
       out.table(name);
       print_table(out, *value.table(), name + ".");

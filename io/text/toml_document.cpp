@@ -7,14 +7,6 @@
 namespace asdic::detail {
 namespace {
 
-std::string key_text(const std::string& key) {
-  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  });
-  return bare ? key : inline_toml({.data = key, .origin = ""});
-}
-
 bool is_list_of_tables(const TomlValue& value) {
   const auto* items = std::get_if<TomlValue::Array>(&value.data);
   return items != nullptr && !items->empty() &&
@@ -25,11 +17,11 @@ bool is_list_of_tables(const TomlValue& value) {
 /// What a table holds: first its values, then its tables, which TOML would else put them into.
 void add_table(const TomlValue::Table& table, const std::string& path, std::string& text) {
   const auto below = [&](const std::string& key) {
-    return path.empty() ? key_text(key) : path + "." + key_text(key);
+    return path.empty() ? toml_key(key) : path + "." + toml_key(key);
   };
   for (const TomlEntry& entry : table)
     if (entry.value.table() == nullptr && !is_list_of_tables(entry.value))
-      text += key_text(entry.key) + " = " + inline_toml(entry.value) + "\n";
+      text += toml_key(entry.key) + " = " + inline_toml(entry.value) + "\n";
   for (const TomlEntry& entry : table) {
     if (const TomlValue::Table* inner = entry.value.table()) {
       text += (text.empty() ? "[" : "\n[") + below(entry.key) + "]\n";

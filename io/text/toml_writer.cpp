@@ -148,6 +148,13 @@ void TomlWriter::angles(const std::string& name, std::span<const double> angles)
   line(name + "_deg", list(items));
 }
 
+std::string toml_key(const std::string& key) {
+  const bool bare = !key.empty() && key.find_first_not_of(
+                                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                        "0123456789_-") == std::string::npos;
+  return bare ? key : toml_quoted(key);
+}
+
 std::string inline_toml(const TomlValue& value) { return std::visit(Inline{}, value.data); }
 
 }  // namespace asdic::detail

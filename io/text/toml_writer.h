@@ -39,6 +39,9 @@ class TomlWriter {
 /// A number as TOML takes it: like to_text(), but −0 keeps its sign.
 [[nodiscard]] std::string toml_number(double value);
 
+/// A key as it may stand in a path: bare where it can be.
+[[nodiscard]] std::string toml_key(const std::string& key);
+
 /// A value on one line: {"name" = "ship", "position" = [0, 0, 100]}. Numbers read back as the same
 /// bits.
 [[nodiscard]] std::string inline_toml(const TomlValue& value);
