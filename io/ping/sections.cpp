@@ -8,9 +8,11 @@
 #include "core/fields.h"
 #include "core/fields_viewer.h"
 #include "core/text.h"
+#include "core/unit_text.h"
 #include "io/files/digest.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/growing_table.h"
+#include "io/scenario/ocean.h"
 #include "io/scenario/writer.h"
 #include "io/text/material_text.h"
 #include "raytrace/places/propagation_paths.h"
@@ -198,15 +200,27 @@ class NumberAttributes final : public FieldsViewer {
   std::string group_, prefix_;
 };
 
-std::string text_of(const Absorption& absorption) {
-  std::string text(std::visit([](const auto& law) { return law.name; }, absorption));
-  for_each_water_property(absorption, [&](std::string_view name, double value) {
-    if (name == "pH") text += ", pH " + to_text(value);
-    if (name == "temperature") text += ", " + to_text(value) + " degC";
-    if (name == "salinity") text += ", " + to_text(value) + " psu";
-    if (name == "depth") text += ", " + to_text(value) + " m";
-  });
-  return text;
+/// A choice and its numbers in words: "francois-garrison, 8 degC, 35 psu, pH 8, 1000 m".
+class Words final : public FieldsViewer {
+ public:
+  std::string text;
+
+ private:
+  void alternatives(const Setting&, const OneOf& one) override {
+    text += one.names[one.index];
+    one.chosen().describe(*this);
+  }
+  void number(const Setting&, const Quantity& q, double& value, bool*) override {
+    const std::string number = to_text(value);
+    text +=
+        ", " + (q.unit.empty() ? std::string(q.noun) + " " + number : number + " " + unit_of(q));
+  }
+};
+
+std::string absorption_of(const Environment& ocean) {
+  Words words;
+  scenario::describe_absorption(words, ocean);
+  return words.text;
 }
 
 std::string interpolation_of(const Environment& ocean) {
@@ -292,7 +306,7 @@ void write_environment(Hdf5File& file, const Scenario& scenario) {
   file.set_attribute(group, "bottom", material_text(ocean.bottom.material));
   file.set_attribute(group, "bottom_depth_m", bottom);
   file.set_attribute(group, "wind_speed_mps", scenario.wind_speed);
-  file.set_attribute(group, "absorption", text_of(ocean.absorption));
+  file.set_attribute(group, "absorption", absorption_of(ocean));
   file.set_attribute(group, "interpolation", interpolation_of(ocean));
   write_transect(file, scenario);
   const auto write_law = [&](const auto& law, const std::string& prefix) {

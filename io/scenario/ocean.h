@@ -58,6 +58,9 @@ void describe_density(Fields& field, Environment& ocean);
 /// [environment.absorption], [[environment.biology]], [environment.attenuation], of all walkers.
 void describe_losses(Fields& field, Environment& ocean);
 
+/// Of absorption alone, for a walker that does not read.
+void describe_absorption(Fields& field, const Environment& ocean);
+
 /// [environment] for a walker that does not read, without what only a sonar needs.
 struct OceanTable {
   const Environment& ocean;

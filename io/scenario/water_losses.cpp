@@ -119,11 +119,27 @@ void describe_density(Fields& field, Environment& ocean) {
   if (table) ocean.water_density = DepthFunction::table(table->depth, table->density);
 }
 
+namespace {
+
+void describe_law(Fields& field, AbsorptionTable& absorption) {
+  field("absorption", absorption, "what sea water takes out of sound");
+}
+
+AbsorptionTable table_of(const Absorption& absorption) {
+  return std::visit([](const auto& law) { return form_of_law(law); }, absorption);
+}
+
+}  // namespace
+
+void describe_absorption(Fields& field, const Environment& ocean) {
+  AbsorptionTable absorption = table_of(ocean.absorption);
+  describe_law(field, absorption);
+}
+
 void describe_losses(Fields& field, Environment& ocean) {
   AbsorptionTable absorption;
-  if (!field.reads() && !field.exhaustive())
-    absorption = std::visit([](const auto& law) { return form_of_law(law); }, ocean.absorption);
-  field("absorption", absorption, "what sea water takes out of sound");
+  if (!field.reads() && !field.exhaustive()) absorption = table_of(ocean.absorption);
+  describe_law(field, absorption);
 
   std::vector<BiologyTable> biology;
   for (const BiologicalLayer& layer : ocean.biology) biology.push_back({layer});
