@@ -90,7 +90,7 @@ struct Strong {
   std::size_t most;
 };
 /// Where a few groups hold all but a hundredth, as far away over a bottom that loses, they may all
-/// but cancel, and a thousandth more is heard; where many are as strong, they are worth a sum of
+/// but cancel, and a thousandth more is received; where many are as strong, they are worth a sum of
 /// energies.
 constexpr Strong all_but_a_little{.least = 1e-3, .enough = 0.99, .most = 12},
     the_strongest{.least = 1.0 / 16.0, .enough = 0.75, .most = 8};
