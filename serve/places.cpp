@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "serve/refusal.h"
+#include "sonar/scenario/carried.h"
 
 namespace asdic::detail::serve {
 namespace {
@@ -53,35 +54,42 @@ std::string called(const std::string& kind, const List& list, std::size_t index)
 
 void check_places(const Scenario& scenario, int ping, int transmitter, double time) {
   const double end = time + scenario.pings.recording_start + scenario.pings.recording_duration;
-  const auto check = [&](const Track& track, const Vec3& offset, const std::string& what) {
+  const auto check = [&](const Track& track, const std::string& what, const auto& place_at) {
     for (const double t : moments(scenario, track, time, end))
-      check_depth(scenario, track.at(t).position + offset, t, what);
+      check_depth(scenario, place_at(t), t, what);
   };
-  for (const Transmitter& one : scenario.transmitters) {
-    const auto platform = static_cast<std::size_t>(one.platform);
-    check(scenario.platforms[platform].track, one.offset,
-          called("platform", scenario.platforms, platform));
+  const auto check_track = [&](const Track& track, const std::string& what) {
+    check(track, what, [&](double t) { return track.at(t).position; });
+  };
+  for (std::size_t i = 0; i < scenario.transmitters.size(); ++i) {
+    const auto platform = static_cast<std::size_t>(scenario.transmitters[i].platform);
+    check(scenario.platforms[platform].track, called("platform", scenario.platforms, platform),
+          [sender = sender_of(scenario, static_cast<int>(i))](double t) {
+            return sender.at(t).position;
+          });
   }
   for (std::size_t a = 0; a < scenario.arrays.size(); ++a) {
-    const ReceiverArray& array = scenario.arrays[a];
-    for (const Vec3& phone : phones_at(scenario, static_cast<int>(a), ping, time))
-      check(scenario.platforms[static_cast<std::size_t>(array.platform)].track,
-            array.offset + phone, called("array", scenario.arrays, a));
+    const ArrayMotion array(scenario, static_cast<int>(a));
+    const std::size_t phones = array.phones(ping, time).size();
+    for (std::size_t n = 0; n < phones; ++n)
+      check(array.carrier(), called("array", scenario.arrays, a),
+            [phone = array.phone(ping, static_cast<int>(n))](double t) {
+              return phone.at(t).position;
+            });
   }
-  const Vec3 source = transmitter_at(scenario, transmitter, time).position;
+  const Vec3 source = sender_of(scenario, transmitter).at(time).position;
   for (std::size_t i = 0; i < scenario.targets.size(); ++i) {
     const Target& target = scenario.targets[i];
     if (ping < target.first_ping || ping > target.last_ping) continue;
     const std::string what = called("targets", scenario.targets, i);
-    check(target.track, Vec3::Zero(), what);
+    check_track(target.track, what);
     const double distance = (target.track.at(time).position - source).norm();
     if (distance < 1.0)  // levels refer to 1 m
       throw Refusal("scenario",
                     refusal_text(what, to_text(distance) + " m", "at least 1 m from the platform"));
   }
   for (std::size_t i = 0; i < scenario.interferers.size(); ++i)
-    check(scenario.interferers[i].track, Vec3::Zero(),
-          called("interferer", scenario.interferers, i));
+    check_track(scenario.interferers[i].track, called("interferer", scenario.interferers, i));
 }
 
 }  // namespace asdic::detail::serve

@@ -10,6 +10,7 @@
 #include "io/scenario/sections.h"
 #include "sonar/ping/ping_memory.h"
 #include "sonar/ping/stream.h"
+#include "sonar/scenario/carried.h"
 #include "sonar/scenario/ping_bounds.h"
 #include "sonar/scenario/sampling.h"
 #include "sonar/scenario/transmission.h"
@@ -128,11 +129,12 @@ std::string depth_at_time(double depth, double time) {
 
 /// An array whose shape changes is looked at when each ping is sent.
 void check_shapes(const Scenario& scenario, int array, TomlTable& table) {
+  const ArrayMotion motion(scenario, array);
   int ping = 0;
   for (const Transmission& sent : transmissions(scenario)) {
-    const Vec3 reference = array_at(scenario, array, sent.time).position;
+    const Vec3 reference = motion.at(sent.time).position;
     int phone = 0;
-    for (const Vec3& offset : phones_at(scenario, array, ++ping, sent.time)) {
+    for (const Vec3& offset : motion.phones(++ping, sent.time)) {
       const Vec3 place = reference + offset;
       const WaterColumn water(scenario, place);
       if (!water.holds(place.z()))

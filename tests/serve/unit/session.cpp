@@ -395,6 +395,21 @@ TEST(Session, LooksWhereThingsAreWhenAPingIsSent) {
             "scenario: targets: found 0 m, expected at least 1 m from the platform");
 }
 
+// Phones are where the offset puts them, also where the platform is not in their middle.
+TEST(Session, LooksWhereThePhonesOfALineBelowThePlatformAre) {
+  std::string line = support::served_scenario;
+  const std::string level = "kind = \"horizontal\"\nphones = 2\nspacing = 0.75\n";
+  const auto at = line.find(level);
+  ASSERT_NE(at, std::string::npos);
+  line.replace(at, level.size(), "kind = \"positions\"\npositions = [[0, 0, 0], [0, 0, 100]]\n");
+  Served served(line);
+  ASSERT_EQ(served(R"({"command": "update", "platform": {"velocity": [0, 0, 10]}})")["ok"], true);
+  EXPECT_EQ(served(R"({"command": "ping", "time": 64})")["ok"], true);  // 940 m; 990 m at the end
+  EXPECT_EQ(served.refusal(R"({"command": "ping", "time": 68})"),
+            "scenario: array: found depth 1030 m at 73 s, expected a depth between the surface "
+            "(0 m) and the bottom (1000 m)");
+}
+
 TEST(Session, ContinuousRecordsAreNotServed) {
   EXPECT_THROW(Served(std::string(support::served_scenario) + "continuous = true\n"), InputError);
 }
