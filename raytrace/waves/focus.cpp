@@ -15,6 +15,24 @@ namespace {
 constexpr double flattest_ray = 1e-7;  // that is looked at [rad]
 constexpr double widest_zone = radians(10.0);
 
+/// The steepest gradient of the speed between surface and bottom, of a table or a law that bends
+/// little within an eighth of it [1/s].
+double steepest_gradient(const Environment& ocean) {
+  constexpr int parts = 8;
+  const double top = ocean.surface.depth, floor = ocean.bottom.depth;
+  std::vector<double> edges{top};
+  for (const double depth : ocean.water.depths())
+    if (depth > top && depth < floor) edges.push_back(depth);
+  edges.push_back(floor);
+  double steepest = 0.0;
+  for (std::size_t i = 1; i < edges.size(); ++i)
+    for (int k = 0; k < parts; ++k) {
+      const double depth = std::lerp(edges[i - 1], edges[i], (k + 0.5) / parts);
+      steepest = std::max(steepest, std::abs(ocean.water.at(depth).dc_dz));
+    }
+  return steepest;
+}
+
 /// The widths of ray tubes over the angle at that end where sound is faster: each family of rays is
 /// a smooth function of it, through the horizontal too, where it goes on with one vertex more.
 class TubeWidths {
@@ -82,19 +100,25 @@ std::vector<double> focusing_errors(const EigenraySolver& solver, double source_
   double energy = 0.0;
   for (const Arrival& ray : rays) energy += std::norm(ray.amplitude);
   std::optional<TubeWidths> tubes;
-  const double wavelength = solver.environment().water.at(source_depth).c / frequency;
+  const double speed = solver.environment().water.at(source_depth).c;
+  const double wavelength = speed / frequency;
+  const double steepest = steepest_gradient(solver.environment());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Arrival& ray = rays[i];
     if (ray.kind == ArrivalKind::diffracted || !(std::norm(ray.amplitude) > faintest * energy))
       continue;
-    if (!tubes) tubes.emplace(solver, source_depth, receiver_depth, limits);
-    const double angle = tubes->angle(ray);
-    const auto here = tubes->at(ray, angle);
-    if (!here) continue;
     // The phase of a ray δθ beside it differs by ½k·q·δθ², its wavefront's turn being that of its
     // launch about a focus.
     const double zone =
         std::min(widest_zone, std::sqrt(wavelength / std::max(std::abs(ray.q), 1e-9)));
+    // No ray is bent by more than |dc/dz|·τ. Where that is less than the zone of straight rays,
+    // nothing focuses, and sound spreads as from images: near the horizontal tubes differ, but what
+    // they lack is in waves that do not run (Weyl's integral).
+    if (steepest * ray.delay < std::sqrt(wavelength / (speed * ray.delay))) continue;
+    if (!tubes) tubes.emplace(solver, source_depth, receiver_depth, limits);
+    const double angle = tubes->angle(ray);
+    const auto here = tubes->at(ray, angle);
+    if (!here) continue;
     const auto above = tubes->at(ray, angle + zone), below = tubes->at(ray, angle - zone);
     if (!above || !below) {
       errors[i] = std::numeric_limits<double>::infinity();
