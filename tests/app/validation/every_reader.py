@@ -5,8 +5,8 @@ h5py, with names and units by the CF conventions; and `asdic info` reads every r
     ASDIC=build/ci/bin/asdic every_reader.py [KIND...]     of these kinds alone
     every_reader.py --file FILE.h5...                      these files
 
-xarray by h5netcdf, which takes longer than all the others together, reads each layout of a group once;
-with ASDIC_DEEP=1 every group of every file.
+xarray and h5netcdf read each layout of a group once, which is what decides how they take it; with ASDIC_DEEP=1
+every group of every file. h5py, ncdump and netCDF read all of every file.
 """
 import argparse
 import os
@@ -19,6 +19,7 @@ from pathlib import Path
 
 import h5netcdf
 import h5py
+import netCDF4
 import numpy as np
 import xarray
 
@@ -367,7 +368,7 @@ def is_unterminated(kind, value):
             and any(len(text) >= kind.get_size() for text in np.ravel(value)))
 
 
-def check_h5py(path, f, fault):
+def check_h5py(path, f, groups, fault):
     if text(f.attrs.get("Conventions", "")) != "CF-1.10":
         fault("no Conventions = CF-1.10")
 
@@ -399,68 +400,87 @@ def variables_of(group):
             if isinstance(item, h5py.Dataset) and not is_bare(item)}
 
 
-def layout(group):
-    """What decides how a reader takes a group: all but the lengths and the numbers"""
+def layout(group, names):
+    """What decides how a reader takes a group: all but the lengths and the numbers. `names` of the file's
+    datasets by their addresses, as to find the name of a scale takes HDF5 a search of the whole file."""
     def scales(item):
-        return tuple(tuple(scale.name for scale in dimension.values()) for dimension in item.dims)
+        return tuple(tuple(names[h5py.h5o.get_info(scale.id).addr] for scale in dimension.values())
+                     for dimension in item.dims)
     return (group.name, tuple(sorted(group.attrs)),
             *((name, item.dtype.str, item.shape == (), 0 in item.shape, is_bare(item), scales(item),
                tuple(sorted(item.attrs)))
               for name, item in sorted(group.items()) if isinstance(item, h5py.Dataset)))
 
 
-layouts_read = set()  # by xarray's engine h5netcdf
+layouts_read = set()  # by the slow readers
 
 
-def is_read_again(group):
-    """\\return whether a group of this layout was read by the slow engine before, notes that it is now"""
-    known = layout(group) in layouts_read
-    layouts_read.add(layout(group))
-    return known and not DEEP
+def groups_to_read(f):
+    """\return the groups whose layout no slow reader has read before, notes that they have now"""
+    names = {}
+    f.visititems(lambda name, item: names.update({h5py.h5o.get_info(item.id).addr: name}))
+    some = []
+    for group in groups_of(f):
+        now = layout(f[group], names)
+        if DEEP or now not in layouts_read:
+            some.append(group)
+        layouts_read.add(now)
+    return some
 
 
-def check_xarray(path, f, fault):
-    """All groups, with the numbers that h5py reads and without dimensions of no name"""
+def check_variables(where, group, there, numbers, fault):
+    """The variables and the numbers that h5py reads in a group. `numbers` gives those of a name."""
+    expected = variables_of(group)
+    if set(there) != set(expected):
+        fault(f"{where}: variables {sorted(there)}, expected {sorted(expected)}")
+    for name, item in expected.items():
+        if item.dtype.kind in "iuf" and name in there and not np.array_equal(
+                numbers(name), item[()], equal_nan=item.dtype.kind == "f"):
+            fault(f"{where}: {name}: other numbers than in h5py")
+
+
+def check_netcdf(path, f, groups, fault):
+    """All groups of every file"""
+    try:
+        with netCDF4.Dataset(path) as data:
+            data.set_auto_maskandscale(False)
+            for group in groups_of(f):
+                there = data[group].variables if group != "/" else data.variables
+                check_variables(f"netCDF, {group}", f[group], there, lambda name: there[name][...], fault)
+    except Exception as error:  # whatever comes out of the library
+        fault(f"netCDF: {type(error).__name__}: {str(error)[:200]}")
+
+
+def check_xarray(path, f, groups, fault):
+    """With the numbers that h5py reads and without dimensions of no name"""
     for engine in ("netcdf4", "h5netcdf"):
-        for group in groups_of(f):
-            if engine == "h5netcdf" and is_read_again(f[group]):
-                continue
+        for group in groups:
             where = f"xarray, {engine}, {group}"
             try:
                 with xarray.open_dataset(path, engine=engine, group=group) as data:
                     data.load()
-                    there = set(data.variables)
-                    if there != set(variables_of(f[group])):
-                        fault(f"{where}: variables {sorted(there)}, expected "
-                              f"{sorted(variables_of(f[group]))}")
+                    check_variables(where, f[group], data.variables, lambda name: data[name].values, fault)
                     phony = [d for d in data.dims if "phony" in d]
                     if phony:
                         fault(f"{where}: dimensions {phony}")
-                    for name, item in variables_of(f[group]).items():
-                        if item.dtype.kind in "iuf" and name in data.variables and not np.array_equal(
-                                data[name].values, item[()], equal_nan=item.dtype.kind == "f"):
-                            fault(f"{where}: {name}: other numbers than in h5py")
-            except Exception as error:  # whatever comes out of the library
+            except Exception as error:
                 fault(f"{where}: {type(error).__name__}: {str(error)[:200]}")
 
 
-def check_h5netcdf(path, f, fault):
+def check_h5netcdf(path, f, groups, fault):
     """Names, types and dimensions; xarray's engine h5netcdf reads the numbers."""
-    def walk(group):
-        for variable in group.variables.values():
-            variable.dtype
-            variable.dimensions
-        for inner in group.groups.values():
-            walk(inner)
     try:
         with h5netcdf.File(path, "r") as g:
-            walk(g)
+            for group in groups:
+                for variable in (g[group] if group != "/" else g).variables.values():
+                    variable.dtype
+                    variable.dimensions
     except Exception as error:
         fault(f"h5netcdf: {type(error).__name__}: {str(error)[:200]}")
 
 
-def check_ncdump(path, f, fault):
-    """Large files as headers: xarray's engine netcdf4 reads the numbers by the same library."""
+def check_ncdump(path, f, groups, fault):
+    """Large files as headers: check_netcdf() reads the numbers by the same library."""
     large = Path(path).stat().st_size > 500_000
     done = subprocess.run(["ncdump", *(["-h"] if large else []), path], capture_output=True,
                           text=True, errors="replace")
@@ -474,8 +494,9 @@ def check_file(path):
     """\\return the number of faults, which it prints"""
     faults = []
     with h5py.File(path, "r") as f:
-        for check in (check_h5py, check_xarray, check_h5netcdf, check_ncdump):
-            check(path, f, faults.append)
+        groups = groups_to_read(f)
+        for check in (check_h5py, check_netcdf, check_xarray, check_h5netcdf, check_ncdump):
+            check(path, f, groups, faults.append)
     for fault in faults:
         print(f"{Path(path).name}: {fault}")
     return len(faults)
@@ -531,11 +552,11 @@ def proves_itself(path, folder):
             spoil(f)
         faults = []
         with h5py.File(bad, "r") as f:
-            check_h5py(bad, f, faults.append)
+            check_h5py(bad, f, [], faults.append)
             if name == "no scale":  # what readers said of every baseband file once
                 for check in (check_xarray, check_ncdump):
                     some = []
-                    check(bad, f, some.append)
+                    check(bad, f, groups_of(f), some.append)
                     if not some:
                         print(f"{check.__name__} does not see {name}")
                         unseen += 1
