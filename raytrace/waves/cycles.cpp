@@ -18,7 +18,6 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double flattest_zones = 0.1;  // of the slope that a wave of one Fresnel zone notices
-constexpr double window_radians = 200.0;
 constexpr double behind_turn = 10.0;  // phase behind a turn beyond which there is nothing [rad]
 
 /// f·g′ − f′·g
@@ -26,8 +25,10 @@ Complex wronskian(Complex f, Complex f_slope, Complex g, Complex g_slope) {
   return f * g_slope - f_slope * g;
 }
 
-Complex grown(const DepthWave& wave, double reference) {
-  return wave.u * std::exp(std::min(wave.growth - reference, 100.0));
+/// f·g, each with its exponent: alone one may be too small for a number and the other too great.
+/// \param reference  of the exponents' sum
+Complex product(const DepthWave& f, const DepthWave& g, double reference) {
+  return f.u * g.u * std::exp(std::min(f.growth + g.growth - reference, 100.0));
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ CycleWaves::CycleWaves(const Environment& ocean, double frequency, double source
                        double receiver_depth, double furthest)
     : source_is_upper_(source_depth <= receiver_depth) {
   const WaveColumn column(ocean, frequency, source_depth, std::span(&receiver_depth, 1));
-  window_ = water_window(ocean, column, frequency, furthest, window_radians);
+  window_ = water_window(ocean, column, frequency, furthest);
   slowest_ = column.at_slowest();
   const double widest = std::sqrt(2.0 * column.largest_wavenumber() / furthest);
   least_slope_ = flattest_zones * widest * widest * widest;
@@ -79,9 +80,9 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
   const Complex q = slowest_.k2 - xi * xi;
   const double slope =
       std::copysign(std::max(std::abs(slowest_.slope), least_slope_), slowest_.slope);
+  const Complex uv = product(over.above, under.below, u.growth + v.growth);
   if (q.real() < 0.0 && std::abs(q * std::sqrt(q)) > 1.5 * behind_turn * std::abs(slope)) {
-    const Complex all = -2.0 * grown(over.above, u.growth) * grown(under.below, v.growth) /
-                        wronskian(u.u, u.du, v.u, v.du);
+    const Complex all = -2.0 * uv / wronskian(u.u, u.du, v.u, v.du);
     return {all, 0.0, 0.0, all};
   }
   // Up and down are resolved where all rays are steepest.
@@ -92,22 +93,15 @@ CycleWaves::Kernel CycleWaves::kernel(const WaveColumn& column, Complex xi) cons
                 d = wronskian(wave.up, wave.up_slope, v.u, v.du) / both;
   const Complex above = wronskian(wave.up, wave.up_slope, u.u, u.du) / (both * a),
                 below = wronskian(v.u, v.du, wave.down, wave.down_slope) / (both * d);
-  const Complex u_over = grown(over.above, u.growth) / a,
-                v_under = grown(under.below, v.growth) / d;
   const Complex cycle = above * below, scale = -2.0 / both;
-  const Complex all = scale * u_over * v_under / (1.0 - cycle);
-  if (turns_ == Turns::above) {
-    const Complex u_under = grown(under.above, u.growth) / a;
-    const Complex down_under = (v_under - below * u_under) / (1.0 - cycle);
-    return {scale * u_over * down_under, scale * u_over * below * u_under, cycle, all};
-  }
-  if (turns_ == Turns::below) {
-    const Complex v_over = grown(over.below, v.growth) / d;
-    const Complex up_over = (u_over - above * v_over) / (1.0 - cycle);
-    return {scale * up_over * v_under, scale * above * v_over * v_under, cycle, all};
-  }
-  const Complex first = scale * u_over * v_under;
-  return {first, first * cycle, cycle, all};
+  const Complex term = scale * uv / (a * d), all = term / (1.0 - cycle);
+  if (turns_ == Turns::between) return {term, term * cycle, cycle, all};
+  // What has turned at the one side before both ends, and after: a sum over the others' turns.
+  const Complex turned = turns_ == Turns::above
+                             ? below * product(over.above, under.above, 2.0 * u.growth) / (a * a)
+                             : above * product(over.below, under.below, 2.0 * v.growth) / (d * d);
+  const Complex next = scale * turned;
+  return {(term - next) / (1.0 - cycle), next, cycle, all};
 }
 
 std::vector<Complex> CycleWaves::terms(std::size_t count, double range) const {

@@ -18,8 +18,7 @@ constexpr double nearest_shadow = 50.0;   // wavelengths: no shadow is nearer
 constexpr double faintest = 1e-3;         // of 1/r: the integral's own noise is 1e-5
 constexpr double faintest_beside = 0.01;  // of the rays
 constexpr double slowness_share = 0.02;   // by which slownesses may differ from 1/c
-constexpr double window_edge = 60.0;
-constexpr double depth_step = 0.05;  // wavelengths
+constexpr double depth_step = 0.05;       // wavelengths
 
 /// The pressure at a place and how it changes there.
 struct WaveAt {
@@ -40,8 +39,8 @@ class WaterborneField {
   /// Whether two frequencies are.
   [[nodiscard]] bool affordable(double frequency) const {
     const WaveColumn column(ocean_, frequency, source_, std::span(&receiver_, 1));
-    const double steps = double(column.layers()) *
-                         double(water_window(ocean_, column, frequency, range_, window_edge).count);
+    const double steps =
+        double(column.layers()) * double(water_window(ocean_, column, frequency, range_).count);
     return 2.0 * steps <= most_diffraction_steps;
   }
 
@@ -52,7 +51,7 @@ class WaterborneField {
                                              receiver_,
                                              std::min(ocean_.bottom.depth, receiver_ + h)};
     const WaveColumn column(ocean_, frequency, source_, depths);
-    const WaterWindow w = water_window(ocean_, column, frequency, range_, window_edge);
+    const WaterWindow w = water_window(ocean_, column, frequency, range_);
     constexpr std::size_t piece = 16;
     std::vector<Complex> g(rows * w.count), by_source(rows * w.count);
     in_parallel_chunks(w.count, piece, [&](std::size_t begin, std::size_t end) {

@@ -9,6 +9,9 @@ namespace asdic::detail {
 namespace {
 
 constexpr double least_angle = radians(4.0), airy_spreads = 6.0;
+// What the edges of the window hold at the furthest range, at least: 80 dB off what lies outside,
+// where g falls off as slowly as between depths less than a wavelength apart.
+constexpr double edge_radians = 200.0;
 constexpr double ranges_of_a_period = 1.5, suppressed = 9.21;
 
 /// The steepest |dc/dz| [1/s].
@@ -36,7 +39,7 @@ std::complex<double> WaterWindow::factor(std::complex<double> xi, double range) 
 }
 
 WaterWindow water_window(const Environment& ocean, const WaveColumn& column, double frequency,
-                         double range, double edge) {
+                         double range) {
   const double slow = column.largest_wavenumber(), fast = column.smallest_wavenumber();
   const double spread = std::cbrt(2.0 * steepest_gradient(ocean) / (2.0 * pi * frequency));
   const double angle = std::clamp(airy_spreads * spread, least_angle, radians(50.0));
@@ -44,8 +47,8 @@ WaterWindow water_window(const Environment& ocean, const WaveColumn& column, dou
   WaterWindow w;
   w.spacing = 2.0 * pi / (ranges_of_a_period * range);
   w.offset = suppressed / (ranges_of_a_period * range);
-  w.low_width = std::max(flat - steep, edge / range);
-  w.high_width = std::max(0.003 * slow, edge / range);
+  w.low_width = std::max(flat - steep, edge_radians / range);
+  w.high_width = std::max(0.003 * slow, edge_radians / range);
   w.begin = std::max(flat - w.low_width, 0.02 * fast);
   w.end = slow + w.high_width;
   w.count = std::size_t((w.end - w.begin) / w.spacing);

@@ -24,9 +24,8 @@ struct WaterWindow {
   [[nodiscard]] std::complex<double> factor(std::complex<double> xi, double range) const noexcept;
 };
 
-/// \param range  the furthest [m]   \param edge  radians that its edges hold there, at least: 60
-/// for two depths apart; where g falls off as slowly as between equal depths 200 take 80 dB off
+/// \param range  the furthest [m]
 [[nodiscard]] WaterWindow water_window(const Environment& ocean, const WaveColumn& column,
-                                       double frequency, double range, double edge);
+                                       double frequency, double range);
 
 }  // namespace asdic::detail
