@@ -173,11 +173,7 @@ ProcessedArray PingProcessor::process(const ArrayRecording& recording,
       detect(baseband, phones, done.sound_speed, pulse, factors, detector, probes, proceed);
 
   // The transmitter as it was for that ping.
-  const std::vector<Transmission> sent = transmissions(scenario_);
-  const auto ping = static_cast<std::size_t>(recording.ping - 1);
-  const Transmitter projector =
-      ping < sent.size() ? projector_of(scenario_, sent[ping])
-                         : scenario_.transmitters[static_cast<std::size_t>(recording.transmitter)];
+  const Transmitter projector = projector_of(scenario_, recording.transmitter, recording.ping);
   const double c = paths_.speed_at(done.places.source.position);
   const BeamPattern pattern(projector, c / pulse.centre_frequency(), c, geometry.source_heading());
   SonarPlaces places = done.places;

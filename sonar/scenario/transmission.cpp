@@ -41,4 +41,12 @@ Transmitter projector_of(const Scenario& scenario, const Transmission& sent) {
   return projector;
 }
 
+Transmitter projector_of(const Scenario& scenario, int transmitter, int ping) {
+  const std::vector<Transmission> sent = transmissions(scenario);
+  const auto at = static_cast<std::size_t>(ping - 1);
+  if (at < sent.size() && sent[at].transmitter == transmitter)
+    return projector_of(scenario, sent[at]);
+  return scenario.transmitters[static_cast<std::size_t>(transmitter)];
+}
+
 }  // namespace asdic::detail

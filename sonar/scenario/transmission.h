@@ -19,5 +19,9 @@ struct Transmission {
 
 /// The transmitter as it is for that ping: with its elevation.
 [[nodiscard]] Transmitter projector_of(const Scenario& scenario, const Transmission& sent);
+/// The same of a ping out of a file. One that was sent on command may have a number of the schedule
+/// and another transmitter: then, and beyond the schedule's end, with the elevation of its own.
+/// \param transmitter  index   \param ping  counted from 1
+[[nodiscard]] Transmitter projector_of(const Scenario& scenario, int transmitter, int ping);
 
 }  // namespace asdic::detail
