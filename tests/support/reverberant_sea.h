@@ -33,6 +33,24 @@ inline Scenario quiet_sea() {
   return s;
 }
 
+/// Lambert's law on the bottom alone, heard and lit by itself and by a still surface, which turns
+/// the sign (Lloyd's mirror); every ping sees other scatterers. \param mu_db  Mackenzie's
+inline Scenario mirrored_floor(double depth, double source_depth, double mu_db,
+                               const PulseSettings& pulse) {
+  Scenario s = even_sea();
+  s.wind_speed = 0.0;
+  s.environment.bottom.depth = depth;
+  s.platforms[0].track.start.position = {0.0, 0.0, source_depth};
+  s.pulse = pulse;
+  s.propagation = {};
+  s.propagation.max_surface_bounces = 1;
+  s.propagation.max_bottom_bounces = 0;
+  s.reverberation.surface_scatters = false;
+  s.reverberation.bottom = Lambert{.mu_db = mu_db};
+  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+  return s;
+}
+
 /// The reverberation alone of a scenario's pings, from its first transmitter to its first array.
 class ReverberantSea {
  public:

@@ -21,19 +21,10 @@ constexpr std::array<double, 9> times = {0.35, 0.5, 0.65, 0.8, 0.95, 1.1, 1.3, 1
 
 /// 100 m of water over a bottom that scatters by Lambert's law, no bounces but off the surface.
 Scenario mirror(std::vector<Vec3> phones) {
-  Scenario s = support::even_sea();
-  s.wind_speed = 0.0;
-  s.environment.bottom.depth = depth;
-  s.platforms[0].track.start.position = {0.0, 0.0, source_depth};
+  Scenario s = support::mirrored_floor(
+      depth, source_depth, mu_db,
+      {.waveform = Cw{.frequency = frequency}, .duration = duration, .window = PulseWindow::hann});
   s.arrays[0].phones = std::move(phones);
-  s.pulse = {
-      .waveform = Cw{.frequency = frequency}, .duration = duration, .window = PulseWindow::hann};
-  s.propagation = {};
-  s.propagation.max_surface_bounces = 1;
-  s.propagation.max_bottom_bounces = 0;
-  s.reverberation.surface_scatters = false;
-  s.reverberation.bottom = Lambert{.mu_db = mu_db};
-  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
   s.reverberation.resolve_azimuth = false;
   s.pings.recording_duration = 2.0;
   s.pings.sample_rate = 4000.0;

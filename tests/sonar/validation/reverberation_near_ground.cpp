@@ -54,20 +54,10 @@ double truth(const Near& near, double time) {
 }
 
 Scenario scenario_of(const Near& near) {
-  Scenario s = support::even_sea();
-  s.wind_speed = 0.0;
-  s.environment.bottom = {.depth = depth,
-                          .material = ReflectionTable{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}}};
-  s.platforms[0].track.start.position = {0.0, 0.0, depth - near.height};
-  s.arrays[0].phones = {Vec3::Zero()};
-  s.pulse = {
-      .waveform = Cw{.frequency = frequency}, .duration = duration, .window = PulseWindow::hann};
-  s.propagation = {};
-  s.propagation.max_surface_bounces = 1;
-  s.propagation.max_bottom_bounces = 0;
-  s.reverberation.surface_scatters = false;
-  s.reverberation.bottom = Lambert{.mu_db = mu_db};
-  s.reverberation.bottom_field.statistics.coherence_time = 0.0;
+  Scenario s = support::mirrored_floor(
+      depth, depth - near.height, mu_db,
+      {.waveform = Cw{.frequency = frequency}, .duration = duration, .window = PulseWindow::hann});
+  s.environment.bottom.material = ReflectionTable{{0.0, 0.5 * pi}, {0.0, 0.0}, {0.0, 0.0}};
   s.pings.recording_duration = near.times.back() + 0.3;
   s.pings.sample_rate = 8000.0;
   return s;
