@@ -18,7 +18,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double flattest_zones = 0.1;  // of the slope that a wave of one Fresnel zone notices
-constexpr double behind_turn = 10.0;  // phase behind a turn beyond which there is nothing [rad]
+constexpr double behind_turn = 10.0;    // phase behind a turn beyond which there is nothing [rad]
 
 /// f·g′ − f′·g
 Complex wronskian(Complex f, Complex f_slope, Complex g, Complex g_slope) {
