@@ -9,8 +9,7 @@
 #include "core/error.h"
 #include "io/bellhop/case_writer.h"
 #include "io/hdf5/own_files.h"
-#include "io/ping/provenance.h"
-#include "io/result/result_file.h"
+#include "io/result/write_result.h"
 #include "io/scenario/propagation.h"
 #include "io/scenario/writer.h"
 
@@ -28,10 +27,6 @@ std::string extension_of(const std::string& name) {
   std::string extension = std::filesystem::path(name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
-}
-
-bool is_hdf5_name(const std::string& extension) {
-  return extension == ".h5" || extension == ".hdf5" || extension == ".nc";
 }
 
 [[noreturn]] void refuse(const ConvertOptions& options, const std::string& expected) {
@@ -59,31 +54,14 @@ std::vector<std::string> toml_to_env(const ConvertOptions& options) {
 }
 
 /// A field, arrivals or rays from one kind of file to another.
-std::vector<std::string> convert_result(const ConvertOptions& options, const std::string& to) {
+std::vector<std::string> convert_result(const ConvertOptions& options) {
   PropagationFile result = read_result(options.input);
-  const auto dialect = [&](bellhop::Dialect as_it_is) {
-    if (!options.wide) return as_it_is;
-    return *options.wide ? bellhop::Dialect::wide : bellhop::Dialect::fortran;
-  };
-  OutputFile to_file(options.output, rules_for(options.output, options.force));
-  if (is_hdf5_name(to)) {
-    Hdf5Output output(std::move(to_file));
-    output.file().set_attribute("", "program_version", provenance(1).program_version);
-    write_hdf5_result(output.file(), result);
-    output.finish();
-  } else if (auto* field = std::get_if<bellhop::ShadeFile>(&result); field && to == ".shd") {
-    field->dialect = dialect(field->dialect);
-    write_shade_file(std::move(to_file), *field);
-  } else if (auto* arrivals = std::get_if<bellhop::ArrivalsFile>(&result);
-             arrivals && to == ".arr") {
-    arrivals->dialect = dialect(arrivals->dialect);
-    arrivals->binary = options.binary.value_or(arrivals->binary);
-    write_arrivals_file(std::move(to_file), *arrivals);
-  } else if (const auto* rays = std::get_if<bellhop::RayFile>(&result); rays && to == ".ray") {
-    write_ray_file(std::move(to_file), *rays);
-  } else {
-    refuse(options, fmt::format("{} into .h5 or into their own kind of file (.shd, .arr, .ray)",
-                                kind_of(result)));
+  try {
+    write_result(OutputFile(options.output, rules_for(options.output, options.force)),
+                 std::move(result), {.wide = options.wide, .binary = options.binary});
+  } catch (const InputError& error) {
+    if (error.fault().where != "output") throw;
+    refuse(options, error.fault().expected);
   }
   return {};
 }
@@ -99,7 +77,7 @@ int convert(const ConvertOptions& options) {
   } else if (from == ".env" || from == ".toml" || to == ".env" || to == ".toml") {
     refuse(options, "a case (.env) to a scenario (.toml) or back");
   } else {
-    notes = convert_result(options, to);
+    notes = convert_result(options);
   }
   if (!options.quiet) {
     for (const std::string& note : notes) print("note: " + note + '\n');

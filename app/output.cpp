@@ -2,35 +2,11 @@
 
 #include "core/error.h"
 #include "io/files/digest.h"
-#include "io/hdf5/own_files.h"
 #include "io/hdf5/scale.h"
 #include "io/ping/provenance.h"
 #include "io/result/result_file.h"
 
 namespace asdic::detail::app {
-Hdf5Output::Hdf5Output(OutputFile&& output)
-    : output_(std::move(output)), file_(Hdf5File::create(output_.part())) {}
-
-void Hdf5Output::finish() {
-  file_.close();
-  output_.finish();
-}
-
-OutputRules rules_for(const std::filesystem::path& path, bool force,
-                      const std::filesystem::path& input) {
-  OutputRules rules{.own = own::hdf5, .force = force};
-  const std::string ending = path.extension().string();
-  const std::initializer_list<std::pair<const char*, Recognise>> kinds = {
-      {".arr", own::arrivals_file},
-      {".ray", own::ray_file},
-      {".shd", own::shade_file},
-      {".env", own::case_file},
-      {".toml", own::scenario}};
-  for (const auto& [other, own] : kinds)
-    if (ending == other) rules.own = own;
-  if (!input.empty()) rules.inputs = {input};
-  return rules;
-}
 
 void check_kind(const std::filesystem::path& path, std::string_view own) {
   const std::string ending = path.extension().string();

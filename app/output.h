@@ -3,29 +3,10 @@
 #include <string>
 #include <string_view>
 
-#include "io/files/output_file.h"
-#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/hdf5_output.h"
 #include "sonar/scenario/scenario.h"
 
 namespace asdic::detail::app {
-
-/// A small HDF5 file that gets its name when it is whole.
-class Hdf5Output {
- public:
-  explicit Hdf5Output(OutputFile&& output);
-
-  [[nodiscard]] Hdf5File& file() noexcept { return file_; }
-  void finish();  ///< \throws RunError
-
- private:
-  OutputFile output_;
-  Hdf5File file_;
-};
-
-/// What may be written over by a result of this name: files of its kind, which the ending tells.
-/// \param input  of the run, which may not be read yet
-[[nodiscard]] OutputRules rules_for(const std::filesystem::path& path, bool force,
-                                    const std::filesystem::path& input = {});
 
 /// The scenario that results were made of.
 struct ResultOrigin {
