@@ -70,44 +70,27 @@ std::optional<DelayCurve> curve_of(const EchoContext& context, const Kinematics&
 /// The blast at one phone, or at the reference point for all of them.
 void receive(const EchoContext& context, int channel, DirectBlast& blast) {
   const PingGeometry& geometry = context.geometry;
-  const Scenario& scenario = context.scenario();
-  const ReceiverArray& array = geometry.array(context.array);
-  const Carried receiver = geometry.receiver(context.array, channel);
   // Of the phone from the reference point, as it was at the ping: what its return is gridded by.
   const Vec3 x = channel < 0 ? Vec3(Vec3::Zero())
                              : geometry.phones(context.array)[static_cast<std::size_t>(channel)];
   const Kinematics& source = geometry.source();
-  const Bounces followed = enough_bounces(context.paths, scenario.propagation, source.position,
-                                          receiver.at(geometry.time()).position, context.frequency,
-                                          end_of_record(scenario));
-  blast.bounces.include(followed);
-  const PathLimits limits = limits_of(scenario.propagation, followed);
-  const MovingPaths moving(context.paths, limits, context.frequency, geometry.time(), 1e-7,
-                           context.reuse);
-  Way way = moving.way(source.position, 0.0, receiver.track, receiver.offset);
-  way.leg.kind = Leg::Kind::source_to_array;
-  way.leg.array = context.array;
-  way.leg.channel = channel;
-  if (geometry.is_own(context.array))
-    std::erase_if(way.leg.arrivals, [](const Arrival& path) {
-      return path.surface_bounces + path.bottom_bounces == 0;
-    });
-  for (const Arrival& path : way.leg.arrivals) {
-    const MetPath met =
-        moving.meet(source.position, 0.0, receiver.track, receiver.offset, way, path);
+  BlastPaths paths = blast_paths(context, channel);
+  blast.bounces.include(paths.followed);
+  for (const MetPath& met : paths.met) {
     EchoPath path_received = received_along(context, source, met);
     path_received.received.delay -=
         path_received.received.slowness.dot(x);  // at the reference point
     path_received.received.channel = channel < 0 ? Return::all_channels : channel;
-    path_received.curve =
-        curve_of(context, source, receiver, channel, met, path_received.received, limits);
+    path_received.curve = curve_of(context, source, paths.receiver, channel, met,
+                                   path_received.received, paths.limits);
     blast.received.push_back(path_received);
     scatter_along(context, source, 0.0, met,
                   mixed(static_cast<std::uint64_t>(geometry.sent().transmitter), ~0ULL),
                   path_received, blast.received);
   }
-  shorten_bounces(way.leg.arrivals, channel < 0 ? 1 : array.phones.size());
-  blast.legs.push_back(std::move(way.leg));
+  shorten_bounces(paths.leg.arrivals,
+                  channel < 0 ? 1 : geometry.array(context.array).phones.size());
+  blast.legs.push_back(std::move(paths.leg));
 }
 
 /// Whether all that is received at the reference point is a plane wave to the phones.
@@ -118,6 +101,36 @@ bool plane_waves(const EchoContext& context, const DirectBlast& blast) {
 }
 
 }  // namespace
+
+BlastPaths blast_paths(const EchoContext& context, int channel) {
+  const PingGeometry& geometry = context.geometry;
+  const Scenario& scenario = context.scenario();
+  const Vec3 from = geometry.source().position;
+  BlastPaths found{.leg = {},
+                   .met = {},
+                   .receiver = geometry.receiver(context.array, channel),
+                   .followed = {},
+                   .limits = {}};
+  const Carried& receiver = found.receiver;
+  found.followed = enough_bounces(context.paths, scenario.propagation, from,
+                                  receiver.at(geometry.time()).position, context.frequency,
+                                  end_of_record(scenario));
+  found.limits = limits_of(scenario.propagation, found.followed);
+  const MovingPaths moving(context.paths, found.limits, context.frequency, geometry.time(), 1e-7,
+                           context.reuse);
+  Way way = moving.way(from, 0.0, receiver.track, receiver.offset);
+  way.leg.kind = Leg::Kind::source_to_array;
+  way.leg.array = context.array;
+  way.leg.channel = channel;
+  if (geometry.is_own(context.array))
+    std::erase_if(way.leg.arrivals, [](const Arrival& path) {
+      return path.surface_bounces + path.bottom_bounces == 0;
+    });
+  for (const Arrival& path : way.leg.arrivals)
+    found.met.push_back(moving.meet(from, 0.0, receiver.track, receiver.offset, way, path));
+  found.leg = std::move(way.leg);
+  return found;
+}
 
 DirectBlast direct_blast(const EchoContext& context) {
   DirectBlast blast;

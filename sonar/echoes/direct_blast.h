@@ -1,5 +1,6 @@
 #pragma once
 #include "sonar/echoes/echo.h"
+#include "sonar/paths/moving_paths.h"
 #include "sonar/paths/returns.h"
 
 namespace asdic::detail {
@@ -12,6 +13,18 @@ struct DirectBlast {
                                    ///< target −1
   Bounces bounces;                 ///< that were followed
 };
+
+/// The ways from the transmitter to one phone, each to where the phone is when that path arrives.
+struct BlastPaths {
+  Leg leg;                   ///< with the paths to where it is when the first of them comes
+  std::vector<MetPath> met;  ///< [paths]
+  Carried receiver;          ///< what receives
+  Bounces followed;
+  PathLimits limits;
+};
+/// Of an array on the transmitter's own platform without what comes straight.
+/// \param channel  of the array; −1: its reference point
+[[nodiscard]] BlastPaths blast_paths(const EchoContext& context, int channel);
 
 /// Delays are solved for where the array is when each path arrives; every path has its exact
 /// Doppler factor. An array on the transmitter's own platform receives what surface and bottom
