@@ -43,6 +43,8 @@ struct Access {
   /// As Scenario::parse(), with changes as of --set.
   [[nodiscard]] static Scenario parsed(std::string_view text, const std::filesystem::path& name,
                                        std::span<const std::string> changes);
+  /// A scenario of a document that was read and checked. \param path  files it names lie beside it
+  [[nodiscard]] static Scenario document(detail::TomlValue tree, std::filesystem::path path);
   [[nodiscard]] static Physics& physics(const Scenario& scenario);
 };
 

@@ -40,14 +40,19 @@ std::vector<detail::TrueEcho> truth_of(const detail::PingRecord& record, int arr
 }
 
 Ping handle_of(const Scenario& scenario, detail::PingRecord record) {
-  std::vector<std::vector<detail::TrueEcho>> truth;
-  const auto arrays = Access::physics(scenario).simulator().scenario().arrays.size();
-  for (std::size_t array = 0; array < arrays; ++array)
-    truth.push_back(truth_of(record, static_cast<int>(array)));
-  return PingAccess::made(scenario, std::move(record), std::move(truth), false);
+  return PingAccess::made(scenario, Access::physics(scenario).simulator(), std::move(record));
 }
 
 }  // namespace
+
+Ping PingAccess::made(const Scenario& scenario, const detail::PingSimulator& simulator,
+                      detail::PingRecord record) {
+  std::vector<std::vector<detail::TrueEcho>> truth;
+  const auto arrays = simulator.scenario().arrays.size();
+  for (std::size_t array = 0; array < arrays; ++array)
+    truth.push_back(truth_of(record, static_cast<int>(array)));
+  return made(scenario, std::move(record), std::move(truth), false);
+}
 
 Ping PingAccess::made(const Scenario& scenario, detail::PingRecord record,
                       std::vector<std::vector<detail::TrueEcho>> truth, bool from_file) {

@@ -5,7 +5,7 @@
 #include "asdic/ping.h"
 #include "library/access.h"
 #include "processing/scoring.h"
-#include "sonar/ping/ping_record.h"
+#include "sonar/ping/ping.h"
 
 namespace asdic {
 
@@ -22,6 +22,9 @@ struct PingAccess {
   /// \param truth  [arrays] what each of them receives
   [[nodiscard]] static Ping made(const Scenario& scenario, detail::PingRecord record,
                                  std::vector<std::vector<detail::TrueEcho>> truth, bool from_file);
+  /// With the truth that is in the record.
+  [[nodiscard]] static Ping made(const Scenario& scenario, const detail::PingSimulator& simulator,
+                                 detail::PingRecord record);
   [[nodiscard]] static const Ping::Data& data(const Ping& ping) { return *ping.data_; }
 };
 

@@ -45,6 +45,16 @@ std::string document_text(const Scenario::Data& data) {
   return data.text ? *data.text : detail::toml_text(data.document);
 }
 
+Scenario Access::document(TomlValue tree, std::filesystem::path path) {
+  auto data = std::make_shared<Scenario::Data>();
+  data->document = std::move(tree);
+  data->path = std::move(path);
+  detail::erase_key(data->document, "include");
+  Scenario scenario;
+  scenario.data_ = std::move(data);
+  return scenario;
+}
+
 Scenario Access::parsed(std::string_view text, const std::filesystem::path& name,
                         std::span<const std::string> changes) {
   return translated([&] {

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "io/ping/provenance.h"
-#include "library/access.h"
+#include "library/ping_access.h"
 #include "study/plan/study.h"
 #include "study/reader/study_reader.h"
 #include "study/runs/run_study.h"
@@ -41,6 +41,31 @@ void answer(const detail::study::Study& study, const detail::study::Table& table
   result.high = found->high;
 }
 
+/// \throws InputError for a name that is no column's, or that another has
+detail::study::OwnMeasure own_measure(const detail::study::Study& study,
+                                      const StudyMeasure& asked) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (asked.name.empty() || !std::all_of(asked.name.begin(), asked.name.end(), fits))
+    throw InputError("measures", '"' + asked.name + '"', "a name of small letters, digits and _");
+  for (const detail::study::Column& column : detail::study::columns(study))
+    if (column.name == asked.name)
+      throw InputError("measures", '"' + asked.name + "\", which the study has",
+                       "a name of its own");
+  if (!asked.of) throw InputError("measures", "no function for " + asked.name, "one");
+  return {.name = asked.name,
+          .unit = asked.unit.empty() ? "1" : asked.unit,
+          .meaning = asked.meaning,
+          .version = asked.version,
+          .samples = asked.samples,
+          .of = [of = asked.of, path = study.scenario_path](const detail::TomlValue& drawn,
+                                                            const detail::PingSimulator& simulator,
+                                                            const detail::PingRecord& record) {
+            return of(PingAccess::made(Access::document(drawn, path), simulator, record));
+          }};
+}
+
 }  // namespace
 
 std::size_t StudyResult::rows() const noexcept { return values.empty() ? 0 : values[0].size(); }
@@ -57,11 +82,14 @@ StudyResult study(const std::filesystem::path& file, const std::filesystem::path
                   const StudyOptions& options) {
   return translated(
       [&] {
-        const detail::study::Study plan = detail::study::read_study(file, options.changes);
+        detail::study::Study plan = detail::study::read_study(file, options.changes);
+        for (const StudyMeasure& measure : options.measures)
+          plan.measure.own.push_back(own_measure(plan, measure));
         const detail::study::Realiser realiser(plan);
         const detail::study::Work work = detail::study::work_of(plan, realiser);
         detail::study::StudyRun run{.output = output, .range = {0, plan.realisations}};
         run.fresh = options.fresh;
+        run.stop = options.stop;
         run.session.made =
             detail::provenance(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
         run.session.study_path = std::filesystem::absolute(file).string();
@@ -70,6 +98,7 @@ StudyResult study(const std::filesystem::path& file, const std::filesystem::path
             options.progress(p.done, p.total);
           };
         const detail::study::StudyOutcome outcome = detail::study::run_study(work, run);
+        if (options.stop.stop_requested() && !outcome.complete) throw Stopped();
         if (options.progress) options.progress(outcome.before + outcome.made, outcome.total);
         const detail::study::StudyFile written(output);
         StudyResult result = shown(written);

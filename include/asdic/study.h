@@ -16,16 +16,33 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "asdic/export.h"
+#include "asdic/ping.h"
 
 namespace asdic {
 
+/// A measure of one's own: one more column of the table.
+struct StudyMeasure {
+  std::string name{};     ///< of its column: small letters, digits and _
+  std::string unit{};     ///< "dB"; "": none
+  std::string meaning{};  ///< in a few words
+  /// What it computes, in a word or a number. Rows of another version are not taken over.
+  std::string version{};
+  bool samples = true;  ///< false: levels and echoes are enough, which are had much faster
+  /// \return the number, NaN where there is none. Called from many threads at once; what it throws
+  /// ends the study   \param ping  whose scenario() has what was drawn
+  std::function<double(const Ping& ping)> of{};
+};
+
 struct StudyOptions {
-  std::vector<std::string> changes = {};  ///< "key.path=value" each, as of --set
-  bool fresh = false;                     ///< begins anew, whatever results are there
+  std::vector<std::string> changes = {};    ///< "key.path=value" each, as of --set
+  std::vector<StudyMeasure> measures = {};  ///< after those of the file
+  std::stop_token stop = {};  ///< rows that are there stay, and the same call goes on from them
+  bool fresh = false;         ///< begins anew, whatever results are there
   /// Told now and then how many rows are done, and of how many.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress = {};
 };
@@ -46,7 +63,7 @@ struct ASDIC_API StudyResult {
 };
 
 /// Runs a study into a file, as `asdic study` does: rows that are there are not made again, so a
-/// study that was stopped goes on. \throws InputError, RunError
+/// study that was stopped goes on. \throws InputError, RunError, Stopped
 [[nodiscard]] ASDIC_API StudyResult study(const std::filesystem::path& file,
                                           const std::filesystem::path& output,
                                           const StudyOptions& options = {});

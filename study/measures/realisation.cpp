@@ -68,6 +68,8 @@ const std::vector<Column>& reuse_columns() {
 std::vector<Column> columns(const Study& study) {
   std::vector<Column> all = Sampler(study).columns();
   for (Column& column : measure_columns(study, example_of(study))) all.push_back(std::move(column));
+  for (const OwnMeasure& own : study.measure.own)
+    all.push_back({.name = own.name, .unit = own.unit, .meaning = own.meaning});
   return all;
 }
 
@@ -139,6 +141,8 @@ Row Realiser::Impl::make(std::uint64_t index, double bytes) {
     Measured measured = measure(study, simulator);
     row.reuse = reuse_of(measured.record.reuse);
     row.values.insert(row.values.end(), measured.values.begin(), measured.values.end());
+    for (const OwnMeasure& own : study.measure.own)
+      row.values.push_back(own.of(tree, simulator, measured.record));
     if (keeps_series(study.measure, index))
       keep_series(measured.record, study, simulator.scenario(), row);
   } catch (const MemoryError& error) {

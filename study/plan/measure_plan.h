@@ -1,12 +1,19 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/text/toml_value.h"
 #include "processing/ping_processor.h"
+
+namespace asdic::detail {
+class PingSimulator;
+struct PingRecord;
+}  // namespace asdic::detail
 
 namespace asdic::detail::study {
 
@@ -41,6 +48,19 @@ struct Needs {
   bool receiver = false;        ///< [measure.receiver], and all samples
 };
 
+/// A measure that no file can say: a function of a program that uses the library.
+struct OwnMeasure {
+  std::string name;     ///< of its column, in [a-z0-9_]
+  std::string unit;     ///< "dB", "1"
+  std::string meaning;  ///< of the column
+  std::string version;  ///< rows of another one are not this study's
+  bool samples = true;  ///< it takes what the phones receive, and not levels alone
+  /// From any thread. \param scenario  of the realisation, with what was drawn in it
+  std::function<double(const TomlValue& scenario, const PingSimulator& simulator,
+                       const PingRecord& record)>
+      of{};
+};
+
 /// What is measured in every realisation.
 struct MeasurePlan {
   int ping = 1;                      ///< of the scenario, counted from 1
@@ -50,6 +70,7 @@ struct MeasurePlan {
   MatchedFilterPlan matched_filter;  ///< how the matched filter's answers are had
   std::optional<DetectionPlan> detection;
   ProcessingSettings receiver;     ///< of detection by = "receiver", localisation
+  std::vector<OwnMeasure> own;     ///< after all others
   std::uint64_t series_every = 0;  ///< the time series of every k-th index; 0: none
 
   [[nodiscard]] bool wants(std::string_view measure) const {
@@ -57,7 +78,11 @@ struct MeasurePlan {
   }
   /// Whether there is anything that needs samples, and not levels alone.
   [[nodiscard]] bool needs_samples() const noexcept {
-    return needs.samples || uses_matched_filter() || uses_receiver() || series_every > 0;
+    return needs.samples || uses_matched_filter() || uses_receiver() || series_every > 0 ||
+           own_takes_samples();
+  }
+  [[nodiscard]] bool own_takes_samples() const noexcept {
+    return std::any_of(own.begin(), own.end(), [](const OwnMeasure& one) { return one.samples; });
   }
   [[nodiscard]] bool uses_receiver() const noexcept {
     return needs.receiver || (detection && detection->by == DetectionPlan::By::receiver);
@@ -68,7 +93,8 @@ struct MeasurePlan {
   }
   /// Whether of the samples only those count that a matched filter looks at.
   [[nodiscard]] bool filter_alone() const noexcept {
-    return uses_matched_filter() && !uses_receiver() && !needs.samples && series_every == 0;
+    return uses_matched_filter() && !uses_receiver() && !needs.samples && series_every == 0 &&
+           !own_takes_samples();
   }
 };
 

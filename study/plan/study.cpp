@@ -53,6 +53,8 @@ std::string identity(const Study& study) {
       write(*value, "", study.path.parent_path(), text);
   // The order of the variables is that of their lines, which the tree does not tell.
   for (const Variable& variable : study.variables) text += variable.name + ";";
+  for (const OwnMeasure& own : study.measure.own)
+    text += "own=" + own.name + ' ' + own.version + ';';
   return sha256(text);
 }
 
