@@ -4,6 +4,7 @@
 #include "library/arguments.h"
 #include "library/physics.h"
 #include "library/propagation.h"
+#include "library/watched.h"
 #include "raytrace/ocean/depth_in_water.h"
 #include "sonar/ping/asked_arrivals.h"
 
@@ -68,8 +69,9 @@ detail::InputError told_of_receiver(const detail::InputError& error) {
 
 double Arrival::level_db() const noexcept { return detail::db_from_amplitude(std::abs(amplitude)); }
 
-std::vector<Arrival> arrivals(const Scenario& scenario, const Receiver& receiver) {
-  return translated([&] {
+std::vector<Arrival> arrivals(const Scenario& scenario, const Receiver& receiver,
+                              const Watch& watch) {
+  return watched(watch, [&] {
     const detail::AskedReceiver asked{.range = receiver.range,
                                       .depth = receiver.depth,
                                       .source_depth = receiver.source_depth,
@@ -87,8 +89,8 @@ std::vector<Arrival> arrivals(const Scenario& scenario, const Receiver& receiver
   });
 }
 
-std::vector<Leg> legs(const Scenario& scenario, int ping) {
-  return translated([&] {
+std::vector<Leg> legs(const Scenario& scenario, int ping, const Watch& watch) {
+  return watched(watch, [&] {
     std::vector<Leg> result;
     for (const detail::Leg& leg :
          detail::legs_of_targets(Access::physics(scenario).simulator(), ping))

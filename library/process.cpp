@@ -7,6 +7,7 @@
 #include "io/processing/recordings.h"
 #include "io/scenario/scenario_reader.h"
 #include "library/ping_access.h"
+#include "library/watched.h"
 #include "processing/received_pings.h"
 #include "processing/truth.h"
 #include "sonar/scenario/sampling.h"
@@ -169,11 +170,15 @@ Track shown(const detail::ProcessedTrack& made) {
 }
 
 Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Replica> replicas,
-                    const Receiving& receiving) {
+                    const Receiving& receiving, const Watch& watch) {
   const detail::ProcessingSettings settings = settings_of(receiving, replicas);
   const detail::PingProcessor processor(pings.scenario(), std::move(replicas), settings);
   const detail::ProcessedRun run = detail::process_pings(
-      pings, processor, {}, [](int) {}, [] { return true; });
+      pings, processor, {},
+      [&](int done) {
+        if (watch.progress) watch.progress(done, static_cast<int>(pings.pings()));
+      },
+      [&] { return !watch.stop.stop_requested(); });
   Processed result{.warnings = run.warnings};
   for (const detail::ProcessedPing& ping : run.pings)
     for (std::size_t i = 0; i < ping.array.result.detections.size(); ++i)
@@ -184,24 +189,25 @@ Processed processed(const detail::ReceivedPings& pings, std::vector<detail::Repl
 
 }  // namespace
 
-Processed process(const std::filesystem::path& file, const Receiving& receiving) {
-  return translated(
-      [&] {
-        const detail::PingRecordings recordings(file);
-        return processed(recordings, recordings.replicas(), receiving);
-      },
-      {file});
+Processed process(const std::filesystem::path& file, const Receiving& receiving,
+                  const Watch& watch) {
+  return watched(watch,
+                 [&] {
+                   const detail::PingRecordings recordings(file);
+                   return processed(recordings, recordings.replicas(), receiving, watch);
+                 },
+                 {file});
 }
 
-Processed process(const std::vector<Ping>& pings, const Receiving& receiving) {
-  return translated([&] {
+Processed process(const std::vector<Ping>& pings, const Receiving& receiving, const Watch& watch) {
+  return watched(watch, [&] {
     const PingsAtHand received(pings);
-    return processed(received, received.replicas(), receiving);
+    return processed(received, received.replicas(), receiving, watch);
   });
 }
 
-Processed process(const Ping& ping, const Receiving& receiving) {
-  return process(std::vector<Ping>{ping}, receiving);
+Processed process(const Ping& ping, const Receiving& receiving, const Watch& watch) {
+  return process(std::vector<Ping>{ping}, receiving, watch);
 }
 
 }  // namespace asdic

@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "io/scenario/scenario_reader.h"
 #include "library/arguments.h"
+#include "library/watched.h"
 #include "raytrace/ocean/depth_in_water.h"
 #include "raytrace/ocean/slice.h"
 #include "raytrace/paths/trace_ray.h"
@@ -87,8 +88,8 @@ detail::PropagationResult run_of(const Scenario& scenario,
   }
 }
 
-std::vector<Ray> rays(const Scenario& scenario, const Fan& fan) {
-  return translated([&] {
+std::vector<Ray> rays(const Scenario& scenario, const Fan& fan, const Watch& watch) {
+  return watched(watch, [&] {
     const std::vector<double> elevations = elevations_of(fan);
     require("fan.range", fan.range, detail::traced_range);
     require("fan.bounces", fan.bounces, 0, detail::most_traced_bounces);
@@ -123,8 +124,8 @@ double Field::loss_db(std::size_t row, std::size_t column, std::size_t source) c
   return -detail::db_from_amplitude(std::abs(p));
 }
 
-Field field(const Scenario& scenario) {
-  return translated([&] {
+Field field(const Scenario& scenario, const Watch& watch) {
+  return watched(watch, [&] {
     Field result;
     detail::PropagationCase run = run_case_of(scenario, result.warnings);
     run.task = detail::Task::field;

@@ -18,6 +18,7 @@
 
 #include "asdic/export.h"
 #include "asdic/scenario.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -72,9 +73,10 @@ struct Receiver {
 /// there is no bearing, and ping is 1
 ///
 /// \throws InputError naming the argument, "receiver.range", for what is no number or lies out of
-/// the water
+/// the water; Stopped
 [[nodiscard]] ASDIC_API std::vector<Arrival> arrivals(const Scenario& scenario,
-                                                      const Receiver& receiver);
+                                                      const Receiver& receiver,
+                                                      const Watch& watch = {});
 
 /// Eigenrays from the transmitter to a target, or from a target to an array.
 struct Leg {
@@ -88,6 +90,7 @@ struct Leg {
 };
 
 /// The ways out and home of one ping. \param ping  from 1
-[[nodiscard]] ASDIC_API std::vector<Leg> legs(const Scenario& scenario, int ping = 1);
+[[nodiscard]] ASDIC_API std::vector<Leg> legs(const Scenario& scenario, int ping = 1,
+                                              const Watch& watch = {});
 
 }  // namespace asdic

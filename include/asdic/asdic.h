@@ -14,6 +14,8 @@
 
 #include "asdic/array.h"
 #include "asdic/arrivals.h"
+#include "asdic/bellhop.h"
+#include "asdic/channel.h"
 #include "asdic/environment.h"
 #include "asdic/error.h"
 #include "asdic/field.h"
@@ -25,6 +27,7 @@
 #include "asdic/rays.h"
 #include "asdic/reverberation.h"
 #include "asdic/scenario.h"
+#include "asdic/settings.h"
 #include "asdic/study.h"
 #include "asdic/target.h"
 #include "asdic/units.h"

@@ -18,6 +18,7 @@
 
 #include "asdic/export.h"
 #include "asdic/scenario.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -45,7 +46,7 @@ struct ASDIC_API Field {
   [[nodiscard]] double loss_db(std::size_t row, std::size_t column, std::size_t source = 0) const;
 };
 
-/// What [run] of the scenario asks for: `asdic field`. \throws InputError naming the key
-[[nodiscard]] ASDIC_API Field field(const Scenario& scenario);
+/// What [run] of the scenario asks for: `asdic field`. \throws InputError naming the key, Stopped
+[[nodiscard]] ASDIC_API Field field(const Scenario& scenario, const Watch& watch = {});
 
 }  // namespace asdic

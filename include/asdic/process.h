@@ -23,6 +23,7 @@
 #include "asdic/export.h"
 #include "asdic/ping.h"
 #include "asdic/units.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -91,11 +92,12 @@ struct Processed {
 
 /// All pings of a file. The file stays as it is. \throws InputError, RunError
 [[nodiscard]] ASDIC_API Processed process(const std::filesystem::path& file,
-                                          const Receiving& receiving = {});
+                                          const Receiving& receiving = {}, const Watch& watch = {});
 /// One ping. Of a continuous record only one that was read from a file will do.
-[[nodiscard]] ASDIC_API Processed process(const Ping& ping, const Receiving& receiving = {});
+[[nodiscard]] ASDIC_API Processed process(const Ping& ping, const Receiving& receiving = {},
+                                          const Watch& watch = {});
 /// Pings of one scenario, in the order in which they were sent.
 [[nodiscard]] ASDIC_API Processed process(const std::vector<Ping>& pings,
-                                          const Receiving& receiving = {});
+                                          const Receiving& receiving = {}, const Watch& watch = {});
 
 }  // namespace asdic

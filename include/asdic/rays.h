@@ -18,6 +18,7 @@
 #include "asdic/export.h"
 #include "asdic/scenario.h"
 #include "asdic/units.h"
+#include "asdic/watch.h"
 
 namespace asdic {
 
@@ -44,7 +45,8 @@ struct Ray {
 };
 
 /// Traces them along the scenario's transect. \return [count] in the order of the fan
-/// \throws InputError for a source out of the water, elevations of 90 degrees
-[[nodiscard]] ASDIC_API std::vector<Ray> rays(const Scenario& scenario, const Fan& fan = {});
+/// \throws InputError for a source out of the water, elevations of 90 degrees; Stopped
+[[nodiscard]] ASDIC_API std::vector<Ray> rays(const Scenario& scenario, const Fan& fan = {},
+                                              const Watch& watch = {});
 
 }  // namespace asdic

@@ -1,0 +1,53 @@
+#include "asdic/bellhop.h"
+
+#include "io/bellhop/case_reader.h"
+#include "io/result/write_result.h"
+#include "io/scenario/writer.h"
+#include "library/propagation.h"
+#include "library/watched.h"
+
+namespace asdic {
+
+BellhopCase read_bellhop(const std::filesystem::path& root) {
+  std::filesystem::path name = root;
+  if (name.extension() == ".env") name.replace_extension();
+  return translated(
+      [&] {
+        const detail::bellhop::Input input = detail::bellhop::read_case(name);
+        return BellhopCase{
+            .scenario = Scenario::parse(detail::to_toml(input.run_case), name.string() + ".toml"),
+            .notes = input.notes};
+      },
+      {root});
+}
+
+std::vector<std::string> write_run(const std::filesystem::path& path, const Scenario& scenario,
+                                   const Watch& watch) {
+  return watched(watch,
+                 [&] {
+                   detail::OutputRules rules = detail::rules_for(path, false);
+                   rules.option = "path";
+                   detail::OutputFile output(path, rules);
+                   std::vector<std::string> notes;
+                   const detail::PropagationCase run = run_case_of(scenario, notes);
+                   detail::PropagationResult found = run_of(scenario, run);
+                   notes.insert(notes.end(), found.notes.begin(), found.notes.end());
+                   detail::write_result(std::move(output),
+                                        detail::propagation_file(run, std::move(found)));
+                   return notes;
+                 },
+                 {path});
+}
+
+void convert_result(const std::filesystem::path& from, const std::filesystem::path& to) {
+  translated(
+      [&] {
+        detail::OutputRules rules = detail::rules_for(to, false, from);
+        rules.option = "to";
+        detail::PropagationFile result = detail::read_result(from);
+        detail::write_result(detail::OutputFile(to, rules), std::move(result));
+      },
+      {from, to});
+}
+
+}  // namespace asdic
