@@ -18,7 +18,7 @@ namespace asdic {
 class Physics;
 
 /// Where values come from that no file holds.
-inline constexpr const char* set_in_cpp = "set in C++";
+inline constexpr const char* set_in_program = "set in the program";
 
 struct Value::Data {
   detail::TomlValue value;

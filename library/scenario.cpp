@@ -14,7 +14,7 @@ using detail::TomlValue;
 
 std::shared_ptr<Scenario::Data> empty_document() {
   auto data = std::make_shared<Scenario::Data>();
-  data->document = {.data = TomlValue::Table{}, .origin = set_in_cpp};
+  data->document = {.data = TomlValue::Table{}, .origin = set_in_program};
   data->path = "scenario.toml";
   return data;
 }
@@ -32,7 +32,7 @@ std::shared_ptr<Scenario::Data> changed(const Scenario::Data& data) {
 TomlValue& place_at(Scenario::Data& data, std::string_view path) {
   if (!detail::is_utf8(path)) throw InputError("path", std::string(path), "a text in UTF-8");
   try {
-    return detail::value_at(data.document, path, set_in_cpp);
+    return detail::value_at(data.document, path, set_in_program);
   } catch (const detail::InputError& error) {
     throw InputError(path.empty() ? "path" : std::string(path), error.fault().got,
                      error.fault().expected);
@@ -102,7 +102,7 @@ Scenario& Scenario::add(std::string_view path, const Value& table) {
   const auto data = changed(*data_);
   const bool first = detail::find_at(data->document, path) == nullptr;
   TomlValue& place = place_at(*data, path);
-  if (first) place = {.data = TomlValue::Array{}, .origin = set_in_cpp};
+  if (first) place = {.data = TomlValue::Array{}, .origin = set_in_program};
   if (place.table() != nullptr)  // one that stands alone: [target]
     place = {.data = TomlValue::Array{TomlValue(place)}, .origin = place.origin};
   auto* items = std::get_if<TomlValue::Array>(&place.data);

@@ -14,8 +14,8 @@ using detail::TomlValue;
 template <class Items>
 TomlValue list_of(const Items& items) {
   TomlValue::Array array;
-  for (const auto& item : items) array.push_back({.data = item, .origin = set_in_cpp});
-  return {.data = std::move(array), .origin = set_in_cpp};
+  for (const auto& item : items) array.push_back({.data = item, .origin = set_in_program});
+  return {.data = std::move(array), .origin = set_in_program};
 }
 
 /// A text, or a key. \throws InputError for what no file can hold
@@ -56,9 +56,9 @@ const TomlValue& Access::given(const Value& value) {
 }
 
 Value::Value() = default;
-Value::Value(bool flag) : Value(Access::made({.data = flag, .origin = set_in_cpp})) {}
-Value::Value(double number) : Value(Access::made({.data = number, .origin = set_in_cpp})) {}
-Value::Value(Whole whole) : Value(Access::made({.data = whole.number, .origin = set_in_cpp})) {
+Value::Value(bool flag) : Value(Access::made({.data = flag, .origin = set_in_program})) {}
+Value::Value(double number) : Value(Access::made({.data = number, .origin = set_in_program})) {}
+Value::Value(Whole whole) : Value(Access::made({.data = whole.number, .origin = set_in_program})) {
   if (whole.above_zero && whole.number < 0)  // it was unsigned, and wrapped
     throw InputError("value", std::to_string(static_cast<std::uint64_t>(whole.number)),
                      "a whole number of at most 9223372036854775807");
@@ -67,7 +67,8 @@ Value::Value(const char* text) {
   if (text == nullptr) throw InputError("value", "a null pointer", "a text");
   *this = std::string(text);
 }
-Value::Value(std::string text) : Value(Access::made({.data = utf8(text), .origin = set_in_cpp})) {}
+Value::Value(std::string text)
+    : Value(Access::made({.data = utf8(text), .origin = set_in_program})) {}
 Value::Value(const std::vector<double>& numbers) : Value(Access::made(list_of(numbers))) {}
 Value::Value(const std::array<double, 3>& vector) : Value(Access::made(list_of(vector))) {}
 Value::Value(const std::vector<std::string>& texts)
@@ -75,13 +76,13 @@ Value::Value(const std::vector<std::string>& texts)
 Value::Value(const std::vector<Value>& items) {
   TomlValue::Array array;
   for (const Value& item : items) array.push_back(Access::given(item));
-  *this = Access::made({.data = std::move(array), .origin = set_in_cpp});
+  *this = Access::made({.data = std::move(array), .origin = set_in_program});
 }
 
 Value Value::list(std::initializer_list<Value> items) { return Value(std::vector<Value>(items)); }
 
 Value Value::table(std::initializer_list<std::pair<std::string_view, Value>> entries) {
-  Value result = Access::made({.data = TomlValue::Table{}, .origin = set_in_cpp});
+  Value result = Access::made({.data = TomlValue::Table{}, .origin = set_in_program});
   for (const auto& [key, value] : entries) result.set(key, value);
   return result;
 }

@@ -12,7 +12,9 @@
 /// ```
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "asdic/export.h"
 
@@ -26,6 +28,11 @@ using Vector = std::array<double, 3>;  ///< east, north, depth [m], or [m/s]
 [[nodiscard]] ASDIC_API double amplitude_from_db(double db) noexcept;     ///< 10^(x/20)
 [[nodiscard]] ASDIC_API double db_from_power(double ratio) noexcept;      ///< 10·log₁₀ x
 [[nodiscard]] ASDIC_API double db_from_amplitude(double ratio) noexcept;  ///< 20·log₁₀ x
+
+/// A number with its unit as files may have it, "25km", in the unit of a setting ("m"); nothing for
+/// what is no number, or a number of something else.
+[[nodiscard]] ASDIC_API std::optional<double> measured(std::string_view text,
+                                                       std::string_view unit);
 
 /// "0.1.0"
 [[nodiscard]] ASDIC_API std::string version();

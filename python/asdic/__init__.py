@@ -1,0 +1,24 @@
+"""Active sonar in a real ocean: eigenrays, fields, pings, processing, channels, studies.
+
+    import asdic
+    s = asdic.Scenario("deep_ocean.toml")
+    ping = s.ping()
+    print(asdic.process(ping).detections)
+
+All numbers are SI. Names that end in ``_deg`` are in degrees, in ``_db`` in decibels. Positions are
+(east, north, depth), depth positive down; elevations are positive up; bearings are true.
+docs/guide/python.md
+"""
+from ._core import InputError, RunError, Stopped, build, version
+from . import bellhop
+from .channel import Channel
+from .datasets import group
+from .files import open  # noqa: A004  asdic.open
+from .processing import Processed, process
+from .scenario import Scenario, settings
+from .studies import Measure, StudyResult, read_study, study
+
+__version__ = version()
+__all__ = ["Channel", "InputError", "Measure", "Processed", "RunError", "Scenario", "Stopped",
+           "StudyResult", "bellhop", "build", "group", "open", "process", "read_study", "settings",
+           "study", "version"]

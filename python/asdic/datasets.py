@@ -1,0 +1,153 @@
+"""What the library computes as pandas and xarray hold it, with the units of asdic's files."""
+from __future__ import annotations
+
+import numpy as np
+
+_xarray = None
+
+
+def xarray():
+    """xarray, imported when it is first needed; it knows `ds.asdic` from then on."""
+    global _xarray
+    if _xarray is None:
+        import xarray as xr
+
+        xr.register_dataset_accessor("asdic")(Accessor)
+        _xarray = xr
+    return _xarray
+
+
+class Accessor:
+    """`ds.asdic`: what a dataset of asdic's holds beyond its arrays."""
+
+    def __init__(self, dataset):
+        self._dataset = dataset
+
+    @property
+    def times(self):
+        """[samples] when the samples of ``pressure`` are received, after the start of the ping [s]"""
+        told = self._dataset["pressure"].attrs
+        return told["time_start"] + told["time_step"] * np.arange(self._dataset.sizes["sample"])
+
+    @property
+    def pressure(self):
+        """Pressure as complex64 where the file holds complex baseband as pairs; else as it is."""
+        pressure = self._dataset["pressure"]
+        if pressure.dims[-1] not in ("iq", "re_im"):
+            return pressure
+        values = np.ascontiguousarray(pressure.values, np.float32).view(np.complex64)[..., 0]
+        return xarray().DataArray(values, dims=pressure.dims[:-1], name="pressure",
+                                  attrs=pressure.attrs,
+                                  coords={n: c for n, c in pressure.coords.items() if n not in ("iq", "re_im")})
+
+    def group(self, name: str):
+        """The arrays of a group of the file under their own names: ``ds.asdic.group("echoes")``."""
+        return group(self._dataset, name)
+
+    def table(self, name: str):
+        """A group that is a table, as a pandas.DataFrame."""
+        return group(self._dataset, name).to_dataframe()
+
+    @property
+    def scenario(self):
+        """The scenario that it was made of. → asdic.Scenario"""
+        from .scenario import Scenario
+        return Scenario.parse(str(self._dataset["scenario"].values))
+
+
+def group(dataset, name: str):
+    """The arrays of a group of a file (``"echoes"``) under their own names. → xarray.Dataset"""
+    before = name.rstrip("/") + "/"
+    found = {key[len(before):]: value for key, value in dataset.variables.items()
+             if str(key).startswith(before)}
+    if not found:
+        raise KeyError(f"{name}: no such group")
+    attrs = {key[len(before):]: value for key, value in dataset.attrs.items()
+             if str(key).startswith(before)}
+    return xarray().Dataset(found, attrs=attrs)
+
+
+UNITS = {"delay": "s", "struck": "s", "path_length": "m", "range": "m", "depth": "m"}
+
+
+def arrivals(columns, legs=None):
+    """Eigenrays as a table. → pandas.DataFrame"""
+    import pandas as pd
+
+    data = dict(legs or {})
+    for name in columns.names:
+        data[name] = getattr(columns, name)
+    for name in ("bounce_range", "bounce_grazing_deg", "bounce_bottom"):
+        data[name] = _objects(getattr(columns, name))
+    return pd.DataFrame(data, copy=False)
+
+
+def _objects(arrays: list):
+    """A column of arrays."""
+    made = np.empty(len(arrays), object)
+    for i, array in enumerate(arrays):
+        made[i] = array
+    return made
+
+
+def rays(found: list):
+    """Rays as a table. → pandas.DataFrame"""
+    import pandas as pd
+
+    names = list(found[0]) if found else []
+    data = {}
+    for name in names:
+        values = [ray[name] for ray in found]
+        if isinstance(values[0], np.ndarray):
+            column = np.empty(len(values), object)
+            for i, value in enumerate(values):
+                column[i] = value
+            data[name] = column
+        else:
+            data[name] = values
+    return pd.DataFrame(data)
+
+
+def field(found: dict):
+    """A pressure field. → xarray.DataArray, complex"""
+    xr = xarray()
+    units = {"units": "m"}
+    attrs = {"long_name": "pressure re 1 m", "frequency_hz": found["frequency"],
+             "beam_error_db": found["beam_error_db"], "warnings": found["warnings"]}
+    pressure = found["pressure"]
+    if found["irregular"]:
+        dims = ["source_depth", "receiver"]
+        coords = {"depth": ("receiver", found["depth"], units),
+                  "range": ("receiver", found["range"], units)}
+    else:
+        dims = ["source_depth", "depth", "range"]
+        coords = {"depth": ("depth", found["depth"], units),
+                  "range": ("range", found["range"], units)}
+    coords["source_depth"] = ("source_depth", found["source_depth"], units)
+    made = xr.DataArray(pressure, dims=dims, coords=coords, name="pressure", attrs=attrs)
+    return made.isel(source_depth=0) if len(found["source_depth"]) == 1 else made
+
+
+def ping(scenario, handle):
+    """A ping's record. → xarray.Dataset with the names of docs/formats/ping.md"""
+    xr = xarray()
+    pressure = handle.pressure
+    rate = handle.sample_rate
+    told = {"units": "Pa", "long_name": "acoustic pressure", "sample_rate_hz": rate,
+            "time_start": handle.start, "time_step": 1.0 / rate}
+    if handle.is_complex:
+        told |= {"carrier_hz": handle.carrier, "long_name": "complex baseband of the pressure"}
+    variables = {
+        "pressure": (("channel", "sample"), pressure, told),
+        "phone_position": (("channel", "xyz"), handle.phones, {"units": "m"}),
+        "ping": ((), handle.number), "transmitter": ((), handle.transmitter),
+        "ping_time": ((), handle.time, {"units": "s"}),
+        "scenario": ((), handle.scenario.to_toml())}
+    for name, values in handle.echoes.items():
+        unit = UNITS.get(name, "degrees" if name.endswith("_deg")
+                         else "dB re 1 µPa" if name == "level_db" else "1")
+        variables[f"echoes/{name}"] = ("echo", values, {"units": unit})
+    made = xr.Dataset(variables, coords={"channel": np.arange(pressure.shape[0])},
+                      attrs={"filetype": "asdic ping", "title": scenario.title or ""})
+    made.encoding["asdic"] = handle  # that asdic.process() knows it again
+    return made

@@ -1,0 +1,155 @@
+"""The settings that there are, out of the one description that the library has."""
+from __future__ import annotations
+
+import difflib
+import functools
+from dataclasses import dataclass
+
+from . import _core
+from ._core import InputError
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One key of a scenario file.
+
+    path       "pulse.duration", "target[].strength_db"
+    kind       "number", "whole", "flag", "text", "word", "numbers", "rows", "axis", "vector",
+               "vectors", "name"
+    unit       "m"; "" of none
+    lowest, highest, above_lowest   its range; above_lowest: the lowest itself is outside
+    words      that there are, of a number those in its place
+    standard   what holds without it, as TOML; "" of none
+    otherwise  the same in words, or the setting that is its default
+    help, condition, required
+    """
+
+    path: str
+    kind: str
+    unit: str
+    lowest: float
+    highest: float
+    above_lowest: bool
+    words: tuple
+    length: int
+    standard: str
+    otherwise: str
+    help: str
+    condition: str
+    required: bool
+
+    @property
+    def range(self) -> str:
+        """What it may be, in words."""
+        if self.words and self.kind == "word":
+            return "one of " + ", ".join(f'"{word}"' for word in self.words)
+        inf = float("inf")
+        low = f"{'above' if self.above_lowest else 'from'} {self.lowest:g}"
+        text = ""
+        if self.lowest > -inf:
+            text = low + (f" to {self.highest:g}" if self.highest < inf else "")
+        elif self.highest < inf:
+            text = f"up to {self.highest:g}"
+        others = " or ".join(f'"{word}"' for word in self.words)
+        return " or ".join(part for part in (text, others) if part)
+
+    @property
+    def doc(self) -> str:
+        """A few lines for people."""
+        lines = [f"{self.path}{f' [{self.unit}]' if self.unit else ''}: {self.help}"]
+        if self.range:
+            lines.append(f"  may be:   {self.range}")
+        if self.standard or self.otherwise:
+            lines.append(f"  default:  {self.standard or self.otherwise}")
+        if self.condition:
+            lines.append(f"  where:    {self.condition}")
+        return "\n".join(lines)
+
+
+@functools.lru_cache(maxsize=None)
+def settings() -> dict:
+    """Every setting of a scenario file. → {path: [Setting of each choice that has it]}"""
+    found: dict = {}
+    for told in _core.settings():
+        one = Setting(**{**told, "words": tuple(told["words"])})
+        found.setdefault(one.path, []).append(one)
+    return found
+
+
+@functools.lru_cache(maxsize=None)
+def tables() -> dict:
+    """Every table. → {path without [] at its end: {"help", "list", "one_or_more"}}"""
+    found: dict = {}
+    for told in _core.setting_tables():
+        path = told["path"]
+        found.setdefault(path[:-2] if told["list"] else path, told)
+    for path in list(found) + list(settings()):  # those that are told of through what is in them
+        while "." in path:
+            path = path.rsplit(".", 1)[0]
+            bare = path[:-2] if path.endswith("[]") else path
+            found.setdefault(bare, {"path": path, "help": "", "list": path.endswith("[]"),
+                                    "one_or_more": path.endswith("[]")})
+    return found
+
+
+@functools.lru_cache(maxsize=None)
+def keys_of(place: str) -> tuple:
+    """The keys of a table, settings first. \"\": of the file itself."""
+    before = place + "." if place else ""
+    names = []
+    for path in list(settings()) + list(tables()):
+        if path.startswith(before):
+            rest = path[len(before):].split(".")[0].removesuffix("[]")
+            if rest and rest not in names:
+                names.append(rest)
+    return tuple(names)
+
+
+def is_list(place: str) -> bool:
+    """Whether a table may stand several times."""
+    told = tables().get(place)
+    return bool(told) and (told["list"] or told["one_or_more"])
+
+
+def unknown(place: str, name: str) -> InputError:
+    """The error for a key that no table has."""
+    near = difflib.get_close_matches(name, keys_of(place), 3) or keys_of(place)
+    where = f"{place}.{name}" if place else name
+    return made(where, "no such setting", "one of " + ", ".join(near))
+
+
+def measured(choices: list, value):
+    """A number that was written with its unit, "25km", as a number in the setting's own; else as it is."""
+    if isinstance(value, str):
+        for one in choices:
+            if one.kind in ("number", "whole") and value not in one.words:
+                found = _core.measured(value, one.unit)
+                return value if found is None else found
+    return value
+
+
+def made(key: str, found: str, expected: str) -> InputError:
+    error = InputError(f"{key}: found {found}, expected {expected}")
+    error.where = error.key = key
+    error.file, error.line, error.found, error.expected = "", 0, found, expected
+    return error
+
+
+def check(key: str, choices: list, value) -> None:
+    """Refuses a number out of range and a word that there is not, before anything is computed."""
+    if not choices or value is None:
+        return
+    value = measured(choices, value)
+    if not isinstance(value, (str, bool)) and hasattr(value, "__float__"):
+        ranged = [one for one in choices if one.kind in ("number", "whole")]
+        asked = float(value)
+        fits = [one for one in ranged if one.lowest <= asked <= one.highest
+                and not (one.above_lowest and asked == one.lowest)]
+        if ranged and not fits:
+            unit = f" {ranged[0].unit}" if ranged[0].unit else ""
+            raise made(key, f"{asked:g}{unit}", ranged[0].range)
+    elif isinstance(value, str):
+        words = [word for one in choices for word in one.words]
+        if all(one.kind in ("word", "number", "whole") for one in choices) and words \
+                and value not in words:
+            raise made(key, f'"{value}"', "one of " + ", ".join(f'"{w}"' for w in words))

@@ -1,0 +1,93 @@
+"""A scenario as a notebook shows it: a drawing of who is where, and its settings."""
+from __future__ import annotations
+
+import html as _html
+import math
+
+WIDTH, HEIGHT = 420, 220
+
+
+def _escaped(text) -> str:
+    return _html.escape(str(text))
+
+
+def _number(value) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def _places(scenario) -> list:
+    """(name, kind, range from the first platform [m], depth [m]) of all that has a place."""
+    found, origin = [], (0.0, 0.0)
+    for kind in ("platforms", "targets"):
+        for i, one in enumerate(getattr(scenario, kind)):
+            told = one.to_dict()
+            position = told.get("position")
+            if position is None and isinstance(told.get("waypoints"), list) and told["waypoints"]:
+                position = told["waypoints"][0].get("position")
+            if position is None and "range" in told:
+                b = math.radians(told.get("bearing_deg", 0.0))
+                position = [origin[0] + told["range"] * math.sin(b),
+                            origin[1] + told["range"] * math.cos(b), told.get("depth", 0.0)]
+            if not position or len(position) != 3:
+                continue
+            if kind == "platforms" and i == 0:
+                origin = (position[0], position[1])
+            name = told.get("name") or (f"{kind[:-1]} {i + 1}")
+            found.append((name, kind, math.hypot(position[0] - origin[0], position[1] - origin[1]),
+                          float(position[2])))
+    return found
+
+
+def svg(scenario) -> str:
+    """A section of the sea: surface, floor, platforms, targets."""
+    places = _places(scenario)
+    bottom = scenario.environment.bottom
+    shape = bottom.shape.to_dict() if not isinstance(bottom.shape, (int, float, type(None))) else {}
+    floor = [(0.0, _number(bottom.depth))]
+    if isinstance(shape, dict) and shape.get("range") and shape.get("depth"):
+        floor = list(zip(shape["range"], shape["depth"]))
+    deepest = max([d for _, d in floor if d is not None] + [p[3] for p in places] + [1.0])
+    furthest = max([p[2] for p in places] + [r for r, _ in floor] + [1.0]) * 1.1
+    left, top, wide, high = 44, 16, WIDTH - 60, HEIGHT - 44
+
+    def x(distance: float) -> float:
+        return left + wide * max(0.0, distance) / furthest
+
+    def y(depth: float) -> float:
+        return top + high * depth / (1.05 * deepest)
+
+    line = [(x(r), y(d)) for r, d in floor if d is not None]
+    if len(line) == 1:
+        line.append((left + wide, line[0][1]))
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
+             f'viewBox="0 0 {WIDTH} {HEIGHT}" role="img" font-family="sans-serif" font-size="10" '
+             'fill="currentColor">',
+             f'<rect x="{left}" y="{top}" width="{wide}" height="{high}" fill="#4a90c2" '
+             'fill-opacity="0.18"/>']
+    if line:
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in
+                          [*line, (left + wide, line[-1][1]), (left + wide, top + high),
+                           (left, top + high), (left, line[0][1])])
+        parts.append(f'<polygon points="{points}" fill="#8a6d3b" fill-opacity="0.55"/>')
+    for name, kind, distance, depth in places:
+        colour = "#1b6ca8" if kind == "platforms" else "#c0392b"
+        a, b = x(distance), y(depth)
+        end = a > left + 0.75 * wide
+        parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{colour}"/>'
+                     f'<text x="{a + (-7 if end else 7):.1f}" y="{b + 3.5:.1f}" '
+                     f'text-anchor="{"end" if end else "start"}">{_escaped(name)}</text>')
+    parts.append(f'<text x="{left - 4}" y="{top + 4}" text-anchor="end">0 m</text>'
+                 f'<text x="{left - 4}" y="{top + high}" text-anchor="end">'
+                 f'{1.05 * deepest:.0f} m</text>'
+                 f'<text x="{left}" y="{HEIGHT - 14}">0 km</text>'
+                 f'<text x="{left + wide}" y="{HEIGHT - 14}" text-anchor="end">'
+                 f'{furthest / 1000:.3g} km</text></svg>')
+    return "".join(parts)
+
+
+def html(scenario) -> str:
+    """For notebooks: the drawing, and the scenario as a file beside it."""
+    title = _escaped(scenario.title or "a scenario")
+    return (f'<div><strong>{title}</strong><br>{svg(scenario)}'
+            f'<details><summary>as a file</summary><pre>{_escaped(scenario.to_toml())}</pre>'
+            '</details></div>')

@@ -1,0 +1,81 @@
+"""What a sonar makes of pings."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import _core, described
+
+OPTIONS = ("mvdr", "hann_shading", "max_speed", "split_window", "across_beams", "guard_cells",
+           "reference_cells", "false_alarm_probability", "start", "stop", "target_depth",
+           "range_speed")
+
+
+@dataclass
+class Processed:
+    """Detections, places and tracks.
+
+    detections : pandas.DataFrame
+        ping, array, time [s], doppler_factor, bearing_deg, elevation_deg, snr_db, excess_db,
+        level_db, target (-1 a false alarm, -2 the direct sound, -3 another ping).
+    places : pandas.DataFrame
+        Where a detection may be: detection, east, north, depth [m] when it was struck, range [m],
+        bearing_deg, range_rate [m/s]. Two rows where left and right look alike, none where no path
+        fits.
+    tracks : list of dict
+        array, ambiguous, target and ``points``, a pandas.DataFrame.
+    warnings : list of str
+    """
+
+    detections: object
+    places: object
+    tracks: list
+    warnings: list = field(default_factory=list)
+
+
+def process(source, progress=None, **options) -> Processed:
+    """Matched filters, beams, detections, places and tracks, as ``asdic process`` does.
+
+    Parameters
+    ----------
+    source : xarray.Dataset, sequence of them, or path
+        What :meth:`Scenario.ping` gave, several pings of one scenario in order, or a ping file.
+    **options
+        mvdr, hann_shading, max_speed [m/s], split_window, across_beams, guard_cells,
+        reference_cells, false_alarm_probability, start, stop [s], target_depth [m],
+        range_speed [m/s]; defaults are those of ``asdic process``.
+
+    Raises InputError.
+    """
+    import pandas as pd
+
+    for name in options:
+        if name not in OPTIONS:
+            raise described.made(name, "no such option", "one of " + ", ".join(OPTIONS))
+    given = {name: value for name, value in options.items() if value is not None}
+    if isinstance(source, (str, os.PathLike)):
+        found = _core.process_file(os.fspath(source), given, progress)
+    else:
+        pings = [source] if hasattr(source, "variables") else list(source)
+        found = _core.process_pings([_handle(one) for one in pings], given, progress)
+    places = [{"detection": i, "east": p["position"][0], "north": p["position"][1],
+               "depth": p["position"][2], "range": p["range"], "bearing_deg": p["bearing_deg"],
+               "range_rate": p["range_rate"]}
+              for i, several in enumerate(found["places"]) for p in several]
+    columns = ["detection", "east", "north", "depth", "range", "bearing_deg", "range_rate"]
+    tracks = [{**track, "points": pd.DataFrame(track["points"])} for track in found["tracks"]]
+    return Processed(pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns),
+                     tracks, found["warnings"])
+
+
+def _handle(dataset):
+    handle = getattr(dataset, "encoding", {}).get("asdic")
+    own = handle is not None and "pressure" in dataset \
+        and np.may_share_memory(dataset["pressure"].values, handle.pressure) \
+        and dataset["pressure"].shape == handle.pressure.shape
+    if not own:
+        raise described.made("source", "a dataset that was changed, or came from elsewhere",
+                             "one as Scenario.ping() gave it, or the path of a ping file")
+    return handle

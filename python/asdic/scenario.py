@@ -1,0 +1,533 @@
+"""The scenario as an object: its settings are its attributes, its methods compute."""
+from __future__ import annotations
+
+import json
+import os
+import queue
+import threading
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from . import _core, datasets, described, oceans
+from .channel import Channel
+from .described import settings  # noqa: F401  asdic.settings
+
+
+def _value_of_default(text: str):
+    """A default as the description tells it, TOML."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return tomllib.loads(f"x = {text}")["x"]
+
+
+class _Table:
+    """A table of a scenario: its settings are attributes.
+
+    What was not set is what holds without it; a setting without a default is None.
+    """
+
+    __slots__ = ("_core", "_path", "_place")
+
+    def __init__(self, core, path: str, place: str):
+        object.__setattr__(self, "_core", core)
+        object.__setattr__(self, "_path", path)    # as of --set: "target.0"
+        object.__setattr__(self, "_place", place)  # as described: "target[]"
+
+    # ------------------------------------------------------------ names
+
+    def _of(self, name: str) -> tuple[str, str]:
+        """(path, place) of a key. → also "targets" for the list "target" """
+        before, within = (f"{self._path}." if self._path else ""), \
+            (f"{self._place}." if self._place else "")
+        for key in (name, name[:-1] if name.endswith("s") else name):
+            if within + key in described.settings() or within + key in described.tables():
+                return before + key, within + key
+        raise described.unknown(self._place, name)
+
+    def _get(self, path):
+        return self._core.get(path) if path and self._core.has(path) else None
+
+    def __getattr__(self, name: str):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            path, place = self._of(name)
+        except described.InputError as error:
+            raise AttributeError(str(error)) from None
+        there = self._get(path)
+        if place in described.tables() and not (there is not None
+                                                and not isinstance(there, (dict, list))):
+            if described.is_list(place):
+                return _List(self._core, path, place)
+            return _Table(self._core, path, place)
+        choices = described.settings().get(place, [])
+        if there is not None:
+            return described.measured(choices, there)
+        if choices and choices[0].standard:
+            return _value_of_default(choices[0].standard)
+        return None
+
+    def __setattr__(self, name: str, value) -> None:
+        path, place = self._of(name)
+        if value is None:
+            self._core.erase(path)
+            return
+        value = oceans.setting(place, value)
+        described.check(path, described.settings().get(place, []), value)
+        self._core.set(path, value)
+
+    def __delattr__(self, name: str) -> None:
+        self._core.erase(self._of(name)[0])
+
+    def __dir__(self):
+        names = []
+        for key in described.keys_of(self._place):
+            place = f"{self._place}.{key}" if self._place else key
+            names.append(key + "s" if described.is_list(place) else key)
+        return names + ["help", "to_dict"]
+
+    # ------------------------------------------------------------ what it says
+
+    def help(self, name: str | None = None) -> str:
+        """What a setting means, its unit, range and default; without a name all of the table's."""
+        if name is None:
+            return "\n".join(self.help(key) for key in described.keys_of(self._place))
+        place = self._of(name)[1]
+        if place in described.settings():
+            return "\n".join(one.doc for one in described.settings()[place])
+        return f"{place}: {described.tables()[place]['help']}"
+
+    def to_dict(self) -> dict:
+        """What was set, without defaults."""
+        return self._get(self._path) or {}
+
+    def __repr__(self) -> str:
+        return f"<{self._path or 'scenario'} {self.to_dict()}>"
+
+
+class _List(Sequence):
+    """Tables of one kind: `s.targets[0].depth = 200`. [table] alone is a list of one."""
+
+    __slots__ = ("_core", "_path", "_place")
+
+    def __init__(self, core, path: str, place: str):
+        self._core, self._path, self._place = core, path, place
+
+    def _there(self):
+        return self._core.get(self._path) if self._core.has(self._path) else []
+
+    def __len__(self) -> int:
+        there = self._there()
+        return 1 if isinstance(there, dict) else len(there)
+
+    def __getitem__(self, index):
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        count = len(self)
+        number = index + count if index < 0 else index
+        if not 0 <= number < count:
+            raise IndexError(f"{self._path}[{index}]: there are {count}")
+        single = isinstance(self._there(), dict)
+        described_as = self._place + "[]"
+        known = any(path.startswith(described_as + ".") for path in described.settings())
+        return _Table(self._core, self._path if single else f"{self._path}.{number}",
+                      described_as if known else self._place)
+
+    def __getattr__(self, name: str):
+        """Of the only one: `s.transmitter.source_level_db`."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if len(self) > 1:
+            raise AttributeError(f"{self._path}: there are {len(self)}; write {self._path}[0].{name}")
+        return getattr(self[0] if len(self) else _Table(self._core, self._path, self._place), name)
+
+    def __setattr__(self, name: str, value) -> None:
+        if name in _List.__slots__:
+            object.__setattr__(self, name, value)
+            return
+        if len(self) > 1:
+            raise AttributeError(f"{self._path}: there are {len(self)}; write {self._path}[0].{name}")
+        setattr(self[0] if len(self) else _Table(self._core, self._path, self._place), name, value)
+
+    def __dir__(self):
+        return ["append", "clear", *dir(_Table(self._core, "", self._place + "[]"))]
+
+    def append(self, table: Mapping | None = None, **settings) -> None:
+        """One more, of a dictionary or of keywords."""
+        there = self._there()
+        if isinstance(there, dict):
+            self._core.set(self._path, [there])
+        self._core.add(self._path, {**(table or {}), **settings})
+
+    def clear(self) -> None:
+        self._core.erase(self._path)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} × {self._path}>"
+
+
+class _Pings(_Table):
+    """[pings], and the pings themselves: ``s.pings.count = 4``, ``for ping in s.pings(): …``"""
+
+    __slots__ = ("_scenario",)
+
+    def __call__(self, ahead: int = 2) -> Iterator:
+        """All pings in order, each as :meth:`Scenario.ping` gives it; the next ones are computed
+        meanwhile.
+
+        `ahead`: how many may wait. Who leaves the loop stops the work.
+        """
+        return _computed_ahead(self._scenario, ahead)
+
+
+class _Run(_Table):
+    """[run], and what it asks for: ``s.run.frequency = 50``, ``s.run()``"""
+
+    __slots__ = ("_scenario",)
+
+    def __call__(self, progress=None):
+        """A field, arrivals or rays. → xarray.Dataset as :func:`asdic.open` gives it"""
+        from .files import run
+        return run(self._scenario, progress)
+
+
+class Scenario(_Table):
+    """A scenario: everything that a simulation needs.
+
+    Parameters
+    ----------
+    file : path, optional
+        A scenario file (TOML, docs/formats/scenario.md).
+    set : mapping, optional
+        Settings to replace, by their path: ``{"target.0.depth": 200, "pulse.duration": "0.2s"}``.
+    sound_speed : optional
+        A number [m/s]; pairs (depth, speed), [n, 2]; a pandas Series over depth, or a DataFrame with
+        columns depth and speed, or depth, temperature and salinity; an xarray DataArray over depth,
+        or over range and depth; a dictionary of the file's own keys.
+    bathymetry : optional
+        A depth [m]; pairs (range, depth), [n, 2]; a Series, DataFrame or DataArray over range.
+    bottom : mapping, optional
+        What lies below, ``{"kind": "rigid"}``. A bathymetry without it lies on medium sand:
+        ``{"kind": "grain-size", "grain_size": 1.5}``.
+    **sections
+        Everything else by its name in the file: ``pulse={"kind": "cw", ...}``, ``targets=[{...}]``.
+
+    Raises
+    ------
+    InputError
+        With file, line, key, found, expected. Values are checked in full by :meth:`validate` and by
+        the first method that computes.
+
+    Attributes are the settings: ``s.pulse.duration``, ``s.targets[0].depth = 200``. ``dir(s.pulse)``
+    lists them, ``s.pulse.help("duration")`` explains one.
+    """
+
+    __slots__ = ()
+
+    def __init__(self, file=None, *, set: Mapping | None = None, sound_speed=None, bathymetry=None,
+                 bottom: Mapping | None = None, **sections):
+        if file is None:
+            core = _core.Scenario()
+        else:
+            core = _core.Scenario.read(os.fspath(file),
+                                       [f"{key}={_text(value)}" for key, value in (set or {}).items()])
+        super().__init__(core, "", "")
+        if sound_speed is not None:
+            core.set("environment.sound_speed", oceans.sound_speed(sound_speed))
+        if bathymetry is not None:
+            for key, value in oceans.bathymetry(bathymetry).items():
+                core.set(f"environment.bottom.{key}", value)
+        for key, value in (bottom or {}).items():
+            core.set(f"environment.bottom.{key}", value)
+        if bathymetry is not None and not core.has("environment.bottom.kind"):
+            for key, value in oceans.SAND.items():
+                core.set(f"environment.bottom.{key}", value)
+        for name, value in sections.items():
+            path, place = self._of(name)
+            if isinstance(value, Mapping) and isinstance(self._get(path), dict):
+                for key, inner in value.items():
+                    core.set(f"{path}.{key}", oceans.setting(f"{place}.{key}", inner))
+            else:
+                core.set(path, oceans.setting(place, value))
+        if file is None:
+            for key, value in (set or {}).items():
+                core.set(key, value)
+
+    @classmethod
+    def parse(cls, text: str, name="scenario.toml") -> Scenario:
+        """Of a text in TOML. Files that it names lie in the folder of `name`."""
+        return cls._of_core(_core.Scenario.parse(text, os.fspath(name)))
+
+    @classmethod
+    def _of_core(cls, core) -> Scenario:
+        made = cls.__new__(cls)
+        _Table.__init__(made, core, "", "")
+        return made
+
+    def copy(self) -> Scenario:
+        """Another one. The ocean and the paths that were found are shared until one is changed."""
+        return self._of_core(self._core.copy())
+
+    def __copy__(self):
+        return self.copy()
+
+    def __deepcopy__(self, memo):
+        return self.copy()
+
+    def __reduce__(self):
+        return Scenario.parse, (self.to_toml(),)
+
+    def set(self, path: str, value) -> Scenario:
+        """Sets what stands at a path, ``"target.0.depth"``. → self"""
+        if value is None:
+            self._core.erase(path)
+        else:
+            self._core.set(path, value)
+        return self
+
+    def get(self, path: str):
+        """What stands at a path: what was read or set, no defaults. Raises InputError for nothing."""
+        return self._core.get(path)
+
+    def to_toml(self) -> str:
+        """As a scenario file."""
+        return self._core.to_toml()
+
+    def save(self, file) -> None:
+        """Writes it as a new scenario file. Raises FileExistsError: nothing is written over."""
+        with open(file, "x", encoding="utf-8") as to:
+            to.write(self.to_toml())
+
+    def validate(self, progress=None) -> list[str]:
+        """Checks everything, as ``asdic validate``. → warnings: what to know before trusting a number.
+
+        Raises InputError at the first fault.
+        """
+        return self._core.validate(progress)
+
+    def _repr_html_(self) -> str:
+        from . import drawing
+        return drawing.html(self)
+
+    def __repr__(self) -> str:
+        return f"<asdic.Scenario {self.title!r}>" if self.title else "<asdic.Scenario>"
+
+    def __str__(self) -> str:
+        return self.to_toml()
+
+    def __getattr__(self, name: str):
+        made = super().__getattr__(name)
+        kind = {"pings": _Pings, "run": _Run}.get(name)
+        if kind is not None:
+            made = kind(self._core, name, name)
+            object.__setattr__(made, "_scenario", self)
+        return made
+
+    # ------------------------------------------------------------ paths
+
+    def arrivals(self, *, range=None, depth=None, source_depth=None, bearing_deg=None,
+                 frequency=None, ping=1, arrays=False):
+        """Eigenrays: of a ping to the targets and back, or to any receiver.
+
+        Parameters
+        ----------
+        range, depth : float, optional
+            A receiver: horizontal distance from the source and depth [m]. Without them, the legs of
+            ping number `ping`: to every target and from there to every array.
+        source_depth : float, optional
+            [m]; the transmitter's.
+        bearing_deg : float, optional
+            True; along the transect, or north.
+        frequency : float, optional
+            At which losses are told [Hz]; the pulse's centre.
+        arrays : bool
+            NumPy arrays, one a quantity, without pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row a path, sorted by delay [s]; ``amplitude`` is complex, re 1 m; ``bounce_range`` [m],
+            ``bounce_grazing_deg`` and ``bounce_bottom`` hold an array each. Of legs also leg (0 to
+            the target, 1 to the array), target, array, path, bearing_deg, range.
+        Arrivals
+            With `arrays`: the same as attributes.
+        """
+        if (range is None) != (depth is None):
+            raise described.made("depth" if depth is None else "range", "nothing",
+                                 "range and depth, which go together")
+        if range is None:
+            columns, legs = _core.legs(self._core, ping)
+            return (columns, legs) if arrays else datasets.arrivals(columns, legs)
+        core = self._core
+        if not core.has("platform") and not core.has("run"):
+            core = self._with_run(frequency=frequency, source_depth=source_depth, depths=[depth],
+                                  ranges=[range])._core
+        found = _core.arrivals(core, range, depth, source_depth, bearing_deg, frequency, ping)
+        return found if arrays else datasets.arrivals(found)
+
+    def rays(self, *, lowest_deg=-20.0, highest_deg=20.0, count=41, elevations_deg=(), range=50e3,
+             source_depth=None, bounces=100):
+        """Rays as lines, with a point at every bounce and turning point.
+
+        Parameters: launch elevations, positive up, evenly spaced or `elevations_deg` exactly [deg];
+        `range` how far [m]; `source_depth` [m], the platform's; a ray ends after `bounces`.
+
+        Returns a pandas.DataFrame, a row a ray: launch_elevation_deg, final_elevation_deg,
+        path_length [m], surface_bounces, bottom_bounces, turns, and the arrays range, depth [m] and
+        time [s].
+        """
+        core = self._core
+        if not core.has("platform") and not core.has("run"):
+            core = self._with_run(frequency=1000.0, source_depth=source_depth, depths=[0.0],
+                                  ranges=[range])._core
+        return datasets.rays(_core.rays(core, lowest_deg, highest_deg, count, list(elevations_deg),
+                                        range, source_depth, bounces))
+
+    def field(self, *, frequency=None, source_depth=None, depths=None, ranges=None):
+        """The pressure field of a source: what [run] asks for, or the arguments.
+
+        Parameters
+        ----------
+        frequency : float, optional
+            [Hz]
+        source_depth : float or sequence, optional
+            [m]
+        depths, ranges : sequence, optional
+            Of the receivers [m].
+
+        Returns
+        -------
+        xarray.DataArray
+            Complex pressure re 1 m, e^{+iωt}, (depth, range); with several sources
+            (source_depth, depth, range). Transmission loss is ``-20*np.log10(abs(p))``.
+            ``attrs["warnings"]`` tells what to know before trusting it.
+        """
+        scenario = self
+        if any(x is not None for x in (frequency, source_depth, depths, ranges)):
+            scenario = self._with_run(frequency=frequency, source_depth=source_depth, depths=depths,
+                                      ranges=ranges)
+        return datasets.field(_core.field(scenario._core))
+
+    def _with_run(self, *, frequency=None, source_depth=None, depths=None, ranges=None) -> Scenario:
+        """A copy with a [run] that says so."""
+        made = self.copy()
+        if frequency is None and not made._core.has("run.frequency") \
+                and not made._core.has("platform"):
+            raise described.made("frequency", "nothing", "one [Hz]")
+        for key, value in (("run.frequency", frequency), ("run.source.depth", source_depth),
+                           ("run.receivers.depth", depths), ("run.receivers.range", ranges)):
+            if value is not None:
+                made._core.set(key, np.asarray(value, float).tolist())
+        if not made._core.has("run.source.depth") and made._core.has("platform"):
+            made._core.set("run.source.depth", float(self.platforms[0].position[2]))
+        if not made._core.has("run.frequency"):
+            made._core.set("run.frequency", float(self._pulse_centre()))
+        return made
+
+    def _pulse_centre(self) -> float:
+        pulse = self.pulse
+        if pulse.frequency is not None:
+            return pulse.frequency
+        return 0.5 * (pulse.start_frequency + pulse.end_frequency)
+
+    # ------------------------------------------------------------ pings
+
+    def ping(self, number: int = 1, progress=None):
+        """One ping of the scenario: calibrated pressure at every phone.
+
+        Returns an xarray.Dataset with the names, dimensions and units of the ping file
+        (docs/formats/ping.md): ``pressure`` (channel, sample) [Pa], float32, or complex64 where the
+        scenario asks for complex baseband, not copied and not to be written to; ``time`` [s];
+        ``phone_position`` [m]; the truth as ``echoes/delay`` and so on.
+
+        Raises InputError; KeyboardInterrupt by Ctrl-C.
+        """
+        return datasets.ping(self, _core.Pinger(self._core, progress).ping(number))
+
+    def write(self, file, progress=None) -> None:
+        """All pings into a ping file, as ``asdic ping``. Nothing that asdic did not write is written over."""
+        _core.write_pings(os.fspath(file), self._core, progress)
+
+    def channel(self, transmitter=0, array=0, *, duration=None, step=0.1, frequency=None,
+                ping=None, held=False) -> Channel:
+        """The time-varying impulse response from a transmitter to every phone of an array.
+
+        Parameters
+        ----------
+        transmitter, array : int or str
+            Number or name.
+        duration : float, optional
+            Of what is sent [s]; the pulse's.
+        step : float
+            Between times at most [s]; it is finer where delays need it.
+        frequency : float, optional
+            Of the amplitudes [Hz]; the pulse's centre.
+        ping : int, optional
+            Time 0 is when this ping is sent, from 1; the transmitter's first.
+
+        held : bool
+            Each path keeps the amplitude that it begins with, as in :meth:`ping`; else amplitudes
+            change as things move.
+
+        Direct sound with what surface and bottom mirror; no target, no scatterer.
+        """
+        number, receiver = self._number("transmitter", transmitter), self._number("array", array)
+        first = number + 1 if ping is None else ping
+        return Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency, held))
+
+    def _number(self, kind: str, asked) -> int:
+        if not isinstance(asked, str):
+            return int(asked)
+        names = [one.name for one in getattr(self, kind)]
+        if asked in names:
+            return names.index(asked)
+        raise described.made(kind, f'"{asked}"', "one of " + ", ".join(f'"{n}"' for n in names))
+
+
+def _text(value) -> str:
+    """A value as --set takes it."""
+    return value if isinstance(value, str) else _core.toml(value)
+
+
+def _computed_ahead(scenario: Scenario, ahead: int) -> Iterator:
+    """The pings of a scenario, by a thread of their own."""
+    waiting: queue.Queue = queue.Queue(max(1, ahead))
+    left = threading.Event()
+
+    class Left(Exception):
+        pass
+
+    def put(item) -> None:
+        while not left.is_set():
+            try:
+                waiting.put(item, timeout=0.05)
+                return
+            except queue.Full:
+                continue
+        raise Left
+
+    def work() -> None:
+        try:
+            _core.Pinger(scenario._core.copy(), None).run(put, None)
+            put(None)
+        except Left:
+            pass
+        except BaseException as error:  # told of where the pings are taken
+            try:
+                put(error)
+            except Left:
+                pass
+
+    thread = threading.Thread(target=work, name="asdic pings", daemon=True)
+    thread.start()
+    try:
+        while (item := waiting.get()) is not None:
+            if isinstance(item, BaseException):
+                raise item
+            yield datasets.ping(scenario, item)
+    finally:
+        left.set()
+        thread.join()

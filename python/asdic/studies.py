@@ -1,0 +1,148 @@
+"""Monte Carlo studies, with measures of one's own."""
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from . import _core, datasets, described
+from .scenario import Scenario, _text
+
+
+@dataclass
+class Measure:
+    """A measure of one's own: one more column of the study's table.
+
+    of : callable
+        What is measured: called with the ping's dataset (as :meth:`Scenario.ping` gives it), from
+        several threads in turn; returns a number, NaN where there is none. What it raises ends the
+        study.
+    unit, meaning : str
+    version : str
+        Rows of another version are not taken over. By default the function's own code tells it;
+        what that code calls is not looked at.
+    samples : bool
+        False: levels and echoes are enough, which are had much faster.
+    """
+
+    of: object
+    unit: str = ""
+    meaning: str = ""
+    version: str = ""
+    samples: bool = True
+
+    def _version(self) -> str:
+        if self.version:
+            return self.version
+        code = getattr(self.of, "__code__", None)
+        if code is None:
+            return type(self.of).__name__
+        consts = [c for c in code.co_consts if not hasattr(c, "co_code")]
+        return hashlib.sha256(repr((code.co_code, consts, code.co_names)).encode()).hexdigest()[:16]
+
+
+@dataclass
+class StudyResult:
+    """The table of a study.
+
+    table : pandas.DataFrame
+        A row a realisation: what varied, then what was measured.
+    units : dict
+    question, value, low, high
+        What the study answers first ("pd"; "" for nothing), and its confidence interval.
+    complete : bool
+    warnings : list of str
+    """
+
+    table: object
+    units: dict
+    question: str
+    value: float
+    low: float
+    high: float
+    complete: bool
+    warnings: list = field(default_factory=list)
+
+
+def _shown(found: dict) -> StudyResult:
+    import pandas as pd
+
+    return StudyResult(pd.DataFrame(found["columns"]),
+                       dict(zip(found["columns"], found["units"])), found["question"],
+                       found["value"], found["low"], found["high"], found["complete"],
+                       found["warnings"])
+
+
+def study(source, output, *, measures: Mapping | None = None, set: Mapping | None = None,
+          realisations: int | None = None, vary: Mapping | None = None,
+          measure=None, summary: Mapping | None = None, fresh: bool = False,
+          progress=None) -> StudyResult:
+    """Runs a study into a file, in parallel. Rows that are there are not made again, so one that was
+    stopped (Ctrl-C) goes on.
+
+    Parameters
+    ----------
+    source : path or Scenario
+        A study file (docs/formats/study.md), or the scenario of a study that the next parameters
+        tell of.
+    output : path
+        The file of its rows (HDF5).
+    measures : mapping, optional
+        {name of the column: function of a ping's dataset, or Measure}.
+    set : mapping, optional
+        Settings to replace, by their path, ``{"study.realisations": 1000}``.
+    realisations, vary, measure, summary : optional
+        Of a Scenario: how many; [vary], ``
+        ``{"target.0.range": {"law": "uniform", "low": 5e3, "high": 20e3}}``; names of
+        measures, or [measure]; [summary].
+    fresh : bool
+        Begins anew, whatever rows are there.
+
+    Raises InputError; what a measure raised.
+    """
+    changes = [f"{key}={_text(value)}" for key, value in (set or {}).items()]
+    own = []
+    for name, one in (measures or {}).items():
+        one = one if isinstance(one, Measure) else Measure(one)
+        own.append({"name": name, "unit": one.unit, "meaning": one.meaning,
+                    "version": one._version(), "samples": one.samples, "of": _called(one.of)})
+
+    def run(file) -> StudyResult:
+        return _shown(_core.study(os.fspath(file), os.fspath(output), changes, own, fresh, progress))
+
+    if not isinstance(source, Scenario):
+        return run(source)
+    if realisations is None:
+        raise described.made("realisations", "nothing", "how many")
+    asked = measure if isinstance(measure, Mapping) else \
+        {name: True for name in ([measure] if isinstance(measure, str) else measure or ["paths"])}
+    with tempfile.TemporaryDirectory() as folder:
+        scenario, plan = os.path.join(folder, "scenario.toml"), os.path.join(folder, "study.toml")
+        source.save(scenario)
+        core = _core.Scenario()
+        core.set("study", {"scenario": "scenario.toml", "realisations": int(realisations)})
+        core.set("vary", {})
+        core.set("measure", asked)
+        if summary:
+            core.set("summary", dict(summary))
+        text = core.to_toml()
+        # keys of [vary] have dots
+        lines = "".join(f'"{key}" = {_core.toml(value)}\n' for key, value in (vary or {}).items())
+        with open(plan, "x", encoding="utf-8") as to:
+            to.write(text.replace("[vary]\n", "[vary]\n" + lines) if "[vary]\n" in text
+                     else text + "\n[vary]\n" + lines)
+        return run(plan)
+
+
+def _called(function):
+    def of(handle) -> float:
+        scenario = Scenario._of_core(handle.scenario)
+        return float(function(datasets.ping(scenario, handle)))
+    return of
+
+
+def read_study(file) -> StudyResult:
+    """The table of a study's file."""
+    return _shown(_core.read_study(os.fspath(file)))

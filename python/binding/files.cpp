@@ -1,0 +1,43 @@
+#include "watched.h"
+
+namespace asdic::python {
+
+void add_files(py::module_& module) {
+  module.def("write_ping",
+             [](const std::filesystem::path& path, const Scenario& scenario, const Ping& ping) {
+               watched([&](const Watch&) {
+                 write_ping(path, scenario, ping);
+                 return true;
+               });
+             });
+  module.def("write_pings", [](const std::filesystem::path& path, const Scenario& scenario,
+                               const py::object& progress) {
+    watched(
+        [&](const Watch& watch) {
+          write_pings(path, scenario, watch);
+          return true;
+        },
+        progress);
+  });
+  module.def("read_ping", [](const std::filesystem::path& path, std::optional<int> number) {
+    return watched([&](const Watch&) { return read_ping(path, number); });
+  });
+  module.def("pings_in", &pings_in);
+  module.def("read_bellhop", [](const std::filesystem::path& root) {
+    BellhopCase found = read_bellhop(root);
+    return py::make_tuple(found.scenario, found.notes);
+  });
+  module.def("write_run", [](const std::filesystem::path& path, const Scenario& scenario,
+                             const py::object& progress) {
+    return watched([&](const Watch& watch) { return write_run(path, scenario, watch); }, progress);
+  });
+  module.def("convert_result",
+             [](const std::filesystem::path& from, const std::filesystem::path& to) {
+               watched([&](const Watch&) {
+                 convert_result(from, to);
+                 return true;
+               });
+             });
+}
+
+}  // namespace asdic::python

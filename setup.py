@@ -1,0 +1,25 @@
+"""The Python package asdic for pip: CMake builds the library and the extension, and nothing else."""
+import re
+import sys
+from pathlib import Path
+
+from skbuild import setup
+
+text = (Path(__file__).parent / "CMakeLists.txt").read_text(encoding="utf-8")
+version = re.search(r"project\(asdic VERSION (\S+)", text)[1]
+
+setup(
+    name="asdic",
+    version=version,
+    description="Active sonar in a real ocean",
+    license="BSD-3-Clause",
+    packages=["asdic", "asdic_pictures"],
+    package_dir={"": "python"},
+    package_data={"asdic": ["py.typed", "*.pyi"]},
+    python_requires=">=3.11",
+    install_requires=["numpy", "pandas", "xarray", "h5py", "h5netcdf"],
+    extras_require={"pictures": ["matplotlib"]},
+    cmake_args=["-DCMAKE_BUILD_TYPE=Release", "-DASDIC_TESTS=OFF", "-DASDIC_MPI=OFF",
+                "-DASDIC_PYTHON_PACKAGE=ON", f"-DASDIC_PACKAGE_PYTHON={sys.executable}"],
+    cmake_install_target="install_wheel",
+)

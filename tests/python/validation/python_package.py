@@ -1,0 +1,442 @@
+#!/usr/bin/env python3
+"""The Python package: what it computes is what the program computes, and how it meets its users."""
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+BUILD, PROGRAM = Path(os.environ["ASDIC_BUILD"]), os.environ["ASDIC"]
+SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
+if not list((BUILD / "python/asdic").glob("_core*.so")):
+    print("the Python package was not built here")
+    sys.exit(77)
+sys.path.insert(0, str(BUILD / "python"))
+
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+import xarray as xr  # noqa: E402
+
+import asdic  # noqa: E402
+
+
+def run(*words) -> str:
+    return subprocess.run([PROGRAM, *map(str, words)], check=True, capture_output=True,
+                          text=True).stdout
+
+
+class Settings(unittest.TestCase):
+    def setUp(self):
+        self.s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+
+    def test_attributes_are_the_settings(self):
+        s = self.s
+        self.assertEqual(s.pulse.frequency, 4000.0)
+        self.assertEqual(s.targets[0].depth, 125.0)
+        s.targets[0].depth = 200
+        self.assertEqual(asdic.Scenario.parse(s.to_toml()).targets[0].depth, 200.0)
+        self.assertEqual(len(s.targets[0].waypoints), 0)
+        self.assertEqual(s.propagation.direct_blast, True)  # a default
+        s.pulse.window = None  # back to what holds without it
+        self.assertFalse(s._core.has("pulse.window"))
+
+    def test_names_and_help_are_those_of_the_description(self):
+        names = dir(self.s.pulse)
+        self.assertIn("duration", names)
+        self.assertIn("targets", dir(self.s))
+        text = self.s.pulse.help("duration")
+        self.assertIn("[s]", text)
+        self.assertIn("above 0", text)
+        for path in asdic.settings():
+            self.assertTrue(all(one.help for one in asdic.settings()[path]), path)
+
+    def test_faults_are_told_with_key_found_and_expected(self):
+        with self.assertRaises(asdic.InputError) as raised:
+            self.s.pulse.duration = -1
+        self.assertEqual(raised.exception.key, "pulse.duration")
+        self.assertIn("-1", raised.exception.found)
+        with self.assertRaises(asdic.InputError) as raised:
+            self.s.pulse.duratoin = 1
+        self.assertIn("duration", str(raised.exception))
+        with self.assertRaises(asdic.InputError) as raised:
+            self.s.pulse.window = "han"
+        self.assertIn("hann", raised.exception.expected)
+        with self.assertRaises(AttributeError):
+            self.s.pulse.wavelength
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "bad.toml"
+            file.write_text("[pulse]\nduration = \"long\"\n")
+            with self.assertRaises(asdic.InputError) as raised:
+                asdic.Scenario(file).validate()
+            self.assertTrue(raised.exception.file or raised.exception.key, str(raised.exception))
+            file.write_text("[pulse\n")
+            with self.assertRaises(asdic.InputError) as raised:
+                asdic.Scenario(file)
+            self.assertEqual(raised.exception.line, 1)
+            self.assertTrue(raised.exception.file.endswith("bad.toml"))
+        self.assertIsInstance(raised.exception, ValueError)
+
+    def test_lists_grow(self):
+        s = self.s
+        s.targets.append(name="second", range=9e3, depth=50.0, strength_db=10.0)
+        self.assertEqual(len(s.targets), 2)
+        self.assertEqual(s.targets[-1].name, "second")
+        self.assertEqual([t.name for t in s.targets][1], "second")
+        with self.assertRaises(IndexError):
+            s.targets[2]
+        with self.assertRaises(AttributeError):
+            s.targets.depth = 3.0
+        self.assertEqual(s.transmitter.source_level_db, s.transmitters[0].source_level_db)
+
+    def test_copies_are_their_own(self):
+        other = self.s.copy()
+        other.seed = 99
+        self.assertNotEqual(self.s.seed, 99)
+        self.assertEqual(pickle.loads(pickle.dumps(other)).seed, 99)
+
+    def test_it_draws_itself_and_escapes(self):
+        self.s.title = "<script>alert(1)</script>"
+        self.s.targets[0].name = "<b>x</b>"
+        html = self.s._repr_html_()
+        self.assertIn("<svg", html)
+        self.assertNotIn("<script>", html)
+        self.assertNotIn("<b>x", html)
+        asdic.Scenario()._repr_html_()
+
+    def test_set_as_on_the_command_line(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml",
+                           set={"target.0.range": "30km", "pulse.duration": 0.5})
+        self.assertEqual(s.pulse.duration, 0.5)
+        self.assertEqual(s.targets[0].range, 30e3)
+
+
+class Oceans(unittest.TestCase):
+    """One profile in every form that people have it in."""
+
+    DEPTH, SPEED = np.array([0.0, 50.0, 200.0]), np.array([1520.0, 1500.0, 1505.0])
+
+    def level(self, **ocean):
+        s = asdic.Scenario(**ocean)
+        found = s.arrivals(range=2000.0, depth=60.0, source_depth=30.0, frequency=1000.0,
+                           arrays=True)
+        return found.delay[0], found.amplitude[0], len(found)
+
+    def test_profiles(self):
+        pairs = np.column_stack([self.DEPTH, self.SPEED])
+        forms = [pairs, pairs.tolist(), pd.Series(self.SPEED, self.DEPTH),
+                 pd.DataFrame({"depth": self.DEPTH, "speed": self.SPEED}),
+                 pd.DataFrame({"speed": self.SPEED}, index=pd.Index(self.DEPTH, name="depth")),
+                 xr.DataArray(self.SPEED, dims="depth", coords={"depth": self.DEPTH}),
+                 {"kind": "table", "depth": self.DEPTH, "speed": self.SPEED}]
+        told = {self.level(sound_speed=form, bathymetry=200.0) for form in forms}
+        self.assertEqual(len(told), 1, told)
+        s = asdic.Scenario()
+        s.environment.sound_speed = pairs
+        self.assertEqual(s.environment.sound_speed.kind, "table")
+
+    def test_a_number_is_one_speed(self):
+        delay, amplitude, _ = self.level(sound_speed=1500.0, bathymetry=200.0)
+        self.assertAlmostEqual(delay, np.hypot(2000.0, 30.0) / 1500.0, 9)
+        self.assertAlmostEqual(abs(amplitude), 1.0 / np.hypot(2000.0, 30.0), 4)
+
+    def test_temperature_and_salinity(self):
+        table = pd.DataFrame({"depth": [0.0, 200.0], "temperature": [15.0, 8.0],
+                              "salinity": [35.0, 35.0]})
+        s = asdic.Scenario(sound_speed=table, bathymetry=200.0)
+        self.assertEqual(s.environment.sound_speed.kind, "temperature-salinity")
+
+    def test_sections_and_slopes(self):
+        section = xr.DataArray([[1520.0, 1500.0], [1510.0, 1500.0]], dims=("range", "depth"),
+                               coords={"range": [0.0, 5000.0], "depth": [0.0, 300.0]})
+        slope = np.array([[0.0, 250.0], [5000.0, 150.0]])
+        forms = [slope, pd.Series(slope[:, 1], slope[:, 0]),
+                 pd.DataFrame({"range": slope[:, 0], "depth": slope[:, 1]}),
+                 xr.DataArray(slope[:, 1], dims="range", coords={"range": slope[:, 0]})]
+        told = {self.level(sound_speed=section, bathymetry=form) for form in forms}
+        self.assertEqual(len(told), 1)
+
+    def test_what_is_no_profile_is_refused(self):
+        for wrong in (np.zeros((3, 3)), pd.DataFrame({"a": [1.0]}),
+                      xr.DataArray([1.0], dims="time")):
+            with self.assertRaises(asdic.InputError):
+                asdic.Scenario(sound_speed=wrong)
+
+
+class Paths(unittest.TestCase):
+    def setUp(self):
+        self.file = SCENARIOS / "deep_ocean.toml"
+        self.s = asdic.Scenario(self.file)
+
+    def test_arrivals_are_the_programs(self):
+        told = json.loads(run("arrivals", self.file, "--receiver-depth", 125, "--range", 25000,
+                              "--json"))["legs"][0]["arrivals"]
+        found = self.s.arrivals(range=25e3, depth=125.0)
+        self.assertEqual(len(found), len(told))
+        for name in ("delay", "level_db", "launch_elevation_deg", "path_length", "absorption_db",
+                     "upper_turns"):
+            np.testing.assert_allclose(found[name], [one[name] for one in told], rtol=1e-12)
+        self.assertEqual([len(r) for r in found.bounce_range], [len(o["bounces"]) for o in told])
+        arrays = self.s.arrivals(range=25e3, depth=125.0, arrays=True)
+        np.testing.assert_array_equal(arrays.delay, found.delay)
+
+    def test_legs(self):
+        told = json.loads(run("arrivals", self.file, "--json"))["legs"]
+        found = self.s.arrivals()
+        self.assertEqual(len(found), sum(len(leg["arrivals"]) for leg in told))
+        self.assertEqual(set(found.leg), {0, 1})
+
+    def test_calls_do_not_grow(self):
+        def held():
+            return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+        for i in range(2000):
+            self.s.arrivals(range=25e3 + i % 7, depth=125.0)
+        before = held()
+        for i in range(10000):
+            self.s.arrivals(range=25e3 + i % 7, depth=125.0, arrays=i % 2 == 0)
+        self.assertLess(held() - before, 2 << 20)
+
+    def test_rays(self):
+        found = self.s.rays(count=3, range=20e3)
+        self.assertEqual(list(found.launch_elevation_deg), [-20.0, 0.0, 20.0])
+        self.assertAlmostEqual(found.range[1][-1], 20e3, 3)
+
+    def test_field(self):
+        found = self.s.field(frequency=50.0, source_depth=1000.0, depths=[500.0, 1000.0],
+                             ranges=[1e3, 2e3, 4e3])
+        self.assertEqual(found.dims, ("depth", "range"))
+        self.assertTrue(np.iscomplexobj(found))
+        loss = -20 * np.log10(abs(found.sel(depth=1000.0, range=1e3)))
+        self.assertLess(abs(float(loss) - 60.0), 6.0)
+        with self.assertRaises(asdic.InputError):
+            asdic.Scenario(sound_speed=1500.0, bathymetry=100.0).field(depths=[1.0], ranges=[1e3])
+
+
+class Pings(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def test_the_same_bits_as_the_program(self):
+        run("ping", SCENARIOS / "modem.toml", "-o", self.path("a.h5"), "-q")
+        ping = asdic.Scenario(SCENARIOS / "modem.toml").ping()
+        file = asdic.open(self.path("a.h5"))
+        np.testing.assert_array_equal(ping.pressure, file.pressure[0])
+        self.assertEqual(ping.pressure.attrs["time_start"], file.pressure.attrs["time_start"])
+        np.testing.assert_allclose(ping.phone_position, file.phone_position[0])
+        self.assertEqual(ping.pressure.dims, ("channel", "sample"))
+        self.assertEqual(float(ping.asdic.times[0]), 0.4)
+
+    def test_no_copy(self):
+        ping = asdic.Scenario(SCENARIOS / "modem.toml").ping()
+        handle = ping.encoding["asdic"]
+        self.assertTrue(np.shares_memory(ping.pressure.values, handle.pressure))
+        with self.assertRaises(ValueError):
+            ping.pressure.values[0, 0] = 1.0
+        values = ping.pressure.values
+        expected = values[0, :10].copy()
+        del ping, handle
+        np.testing.assert_array_equal(values[0, :10], expected)  # it lives as long as the array
+
+    def test_baseband_is_complex(self):
+        s = asdic.Scenario(SCENARIOS / "modem.toml")
+        s.pings.samples = "baseband"
+        s.pings.sample_rate = None
+        ping = s.ping()
+        self.assertEqual(ping.pressure.dtype, np.complex64)
+        self.assertGreater(ping.pressure.attrs["carrier_hz"], 0.0)
+        s.write(self.path("b.h5"))
+        file = asdic.open(self.path("b.h5"))
+        np.testing.assert_array_equal(file.asdic.pressure[0], ping.pressure)
+        self.assertGreater(len(asdic.process(ping).detections.columns), 5)
+
+    def test_pings_come_in_order_and_may_be_left(self):
+        s = asdic.Scenario(SCENARIOS / "modem.toml")
+        s.pings.count = 6
+        s.pings.interval = 2.0
+        pings = list(s.pings())
+        self.assertEqual([int(p.ping) for p in pings], [1, 2, 3, 4, 5, 6])
+        np.testing.assert_array_equal(pings[3].pressure, s.ping(4).pressure)
+        before = threading.active_count()
+        for ping in s.pings():
+            break
+        self.assertEqual(threading.active_count(), before)
+        s.pulse.duration = 1e4
+        with self.assertRaises(asdic.InputError):
+            list(s.pings())
+
+    def test_processing_of_a_ping_is_that_of_its_file(self):
+        s = asdic.Scenario(SCENARIOS / "isovelocity.toml")
+        s.write(self.path("c.h5"))
+        a, b = asdic.process(s.ping()), asdic.process(self.path("c.h5"))
+        pd.testing.assert_frame_equal(a.detections, b.detections)
+        self.assertIn(0, set(a.detections.target))
+        pd.testing.assert_frame_equal(a.places, b.places)
+        with self.assertRaises(asdic.InputError):
+            asdic.process(s.ping().assign(pressure=0.0 * s.ping().pressure))
+        with self.assertRaises(asdic.InputError):
+            asdic.process(s.ping(), mwdr=True)
+
+    def test_the_interpreter_is_free_meanwhile(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+        counted, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        try:
+            began, before = time.monotonic(), counted[0]
+            s.ping()
+            took, ticks = time.monotonic() - began, counted[0] - before
+        finally:
+            stop.set()
+            thread.join()
+        self.assertGreater(ticks, 20 * took)
+
+
+class Channels(unittest.TestCase):
+    def test_the_pulse_through_it_is_the_ping(self):
+        s = asdic.Scenario(SCENARIOS / "modem.toml")
+        s.noise.kind = "white"
+        s.noise.spectral_level_db = -100.0
+        s.propagation.exact_per_phone = True
+        rate, duration, peak = 48000.0, 0.1, np.sqrt(2.0) * 10 ** (180 / 20) * 1e-6
+        t = np.arange(int(duration * rate) + 1) / rate
+        pulse = peak * np.sin(np.pi * t / duration) ** 2 \
+            * np.cos(2 * np.pi * (9000.0 * t + 0.5 * 4000.0 / duration * t ** 2))
+        ping = s.ping().pressure
+        for channel in (s.channel(held=True), s.channel("transmitter", 0, held=True)):
+            heard = channel(pulse, rate, start=0.4, samples=ping.sizes["sample"])
+            off = ((heard.values - ping.values) ** 2).sum() / (ping.values ** 2).sum()
+            self.assertLess(10 * np.log10(off), -60.0)
+        self.assertEqual(heard.dims, ("phone", "time"))
+        paths = s.channel(duration=1.0).paths
+        self.assertEqual(paths.delay.dims, ("phone", "path", "time"))
+        self.assertEqual(float(paths.time[-1]), 1.0)
+        with self.assertRaises(asdic.InputError):
+            s.channel(duration=0.1)(np.zeros(48000), rate)
+        with self.assertRaises(asdic.InputError):
+            s.channel("nobody")
+
+    def test_a_wide_band_is_warned_of(self):
+        s = asdic.Scenario(SCENARIOS / "modem.toml")
+        s.environment.absorption.kind = "thorp"
+        s.platforms[1].position = [9000.0, 0.0, 0.0]
+        noise = np.random.default_rng(1).standard_normal(4800)
+        with self.assertWarnsRegex(UserWarning, "absorption"):
+            s.channel()(noise, 96000.0)
+
+
+class Studies(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.output = os.path.join(self.folder.name, "study.h5")
+        self.s = asdic.Scenario(SCENARIOS / "isovelocity.toml")
+        self.vary = {"target.0.strength_db": {"law": "uniform", "low": 0.0, "high": 20.0}}
+
+    def test_own_measures_and_going_on(self):
+        calls = []
+
+        def strength(ping):
+            calls.append(1)
+            return ping.asdic.scenario.targets[0].strength_db
+
+        def loudest(ping):
+            return 20 * np.log10(float(abs(ping.pressure).max()) / 1e-6)
+
+        def make(count):
+            return asdic.study(self.s, self.output, realisations=count, vary=self.vary,
+                               measures={"strength": asdic.Measure(strength, unit="dB",
+                                                                   samples=False),
+                                         "loudest_db": loudest})
+
+        first = make(8)
+        np.testing.assert_array_equal(first.table.strength, first.table.strength_db)
+        self.assertTrue(np.isfinite(first.table.loudest_db).all())
+        self.assertEqual(len(calls), 8)
+        second = make(20)
+        self.assertEqual(len(calls), 20)
+        np.testing.assert_array_equal(second.table.strength[:8], first.table.strength)
+        self.assertEqual(asdic.read_study(self.output).units["strength"], "dB")
+
+    def test_what_a_measure_raises_ends_it(self):
+        def bad(ping):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            asdic.study(self.s, self.output, realisations=4, vary=self.vary, measures={"x": bad})
+
+    def test_a_file_of_a_study(self):
+        found = asdic.study(SCENARIOS / "studies/known_answer.toml", self.output,
+                            set={"study.realisations": 50})
+        self.assertEqual(len(found.table), 50)
+        self.assertEqual(found.question, "pd")
+        self.assertTrue(found.low <= found.value <= found.high)
+        self.assertEqual(asdic.open(self.output).attrs["filetype"], "asdic study")
+
+
+class Bellhop(unittest.TestCase):
+    def test_cases_and_results(self):
+        case = asdic.bellhop.read(SCENARIOS / "bellhop/munk.env")
+        self.assertTrue(any("beams" in note for note in case.notes))
+        case.set("run.receivers.range", [1e4, 2e4]).set("run.receivers.depth", [1000.0])
+        field = case.run()
+        direct = case.field()
+        np.testing.assert_allclose(np.squeeze(field.pressure.values), np.squeeze(direct.values),
+                                   rtol=1e-6)
+        with tempfile.TemporaryDirectory() as folder:
+            run("bellhop", SCENARIOS / "bellhop/munk", "-o", os.path.join(folder, "munk"), "-q")
+            shade = asdic.open(os.path.join(folder, "munk.shd"))
+            self.assertEqual(shade.pressure.shape[-2:], (101, 200))
+            with self.assertRaises(asdic.InputError):
+                asdic.open(os.path.join(folder, "nothing.shd"))
+
+
+class Interrupts(unittest.TestCase):
+    def test_control_c(self):
+        text = ("import sys, asdic\n"
+                f"s = asdic.Scenario({str(SCENARIOS / 'deep_ocean.toml')!r})\n"
+                "s.pings.count = 100000\n"
+                "print('begun', flush=True)\n"
+                "try:\n"
+                "    asdic._core.Pinger(s._core, None).run(lambda p: None, None)\n"
+                "except KeyboardInterrupt:\n"
+                "    print('interrupted', flush=True)\n"
+                "print(len(s.arrivals()), 'after', flush=True)\n")
+        process = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True,
+                                   env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
+        self.assertEqual(process.stdout.readline(), "begun\n")
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        self.assertIn("interrupted", out)
+        self.assertIn("after", out)
+        self.assertEqual(process.returncode, 0)
+
+    def test_a_progress_that_raises_ends_the_work(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+
+        def no(done, total):
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            s.validate(no)
+        self.assertEqual(s.validate(lambda done, total: None), s.validate())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
