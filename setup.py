@@ -3,6 +3,7 @@ import re
 import sys
 from pathlib import Path
 
+from setuptools import find_packages
 from skbuild import setup
 
 text = (Path(__file__).parent / "CMakeLists.txt").read_text(encoding="utf-8")
@@ -13,11 +14,11 @@ setup(
     version=version,
     description="Active sonar in a real ocean",
     license="BSD-3-Clause",
-    packages=["asdic", "asdic_pictures"],
+    packages=find_packages("python"),
     package_dir={"": "python"},
-    package_data={"asdic": ["py.typed", "*.pyi"]},
+    package_data={"asdic": ["py.typed", "*.pyi"], "asdic_page": ["*.js", "*.css", "*/*.js", "*/*.css"]},
     python_requires=">=3.11",
-    install_requires=["numpy", "pandas", "xarray", "h5py", "h5netcdf"],
+    install_requires=["numpy", "pandas", "xarray"],  # files: h5py and h5netcdf, without metadata in Debian
     extras_require={"pictures": ["matplotlib"]},
     cmake_args=["-DCMAKE_BUILD_TYPE=Release", "-DASDIC_TESTS=OFF", "-DASDIC_MPI=OFF",
                 "-DASDIC_PYTHON_PACKAGE=ON", f"-DASDIC_PACKAGE_PYTHON={sys.executable}"],

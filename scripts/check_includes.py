@@ -18,7 +18,7 @@ ROOMS = {  # in the folders named here every file lies in a room, and a room inc
     "study": ["sampling", "plan", "measures", "summary", "reader", "journal", "runs", "mpi"],
     "raytrace": ["math", "parallel", "ocean", "cases", "layered", "tracing", "paths", "beams", "waves", "places", "bellhop_emulation", "runs", "warnings", ""],
     "reverb": ["scattering", "pairs", "fields", "power"],
-    "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping"],
+    "sonar": ["signal", "noise_spectra", "scenario", "paths", "noise", "reverberation", "synthesis", "echoes", "warnings", "ping", "channel"],
 }
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
