@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "asdic/error.h"
 #include "asdic/scenario.h"
@@ -29,7 +30,8 @@ struct Scenario::Data {
   std::filesystem::path path{};       ///< files it names are relative to its folder
   std::optional<std::string> text{};  ///< of the file, as long as nothing was changed
   mutable std::mutex mutex{};
-  mutable std::shared_ptr<Physics> physics{};  ///< made of it when it is first needed
+  mutable std::shared_ptr<Physics> physics{};               ///< made of it when it is first needed
+  mutable std::optional<std::vector<std::string>> notes{};  ///< of a run's, once it was read
 };
 
 struct Access {

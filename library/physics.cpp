@@ -34,6 +34,11 @@ const detail::PingSimulator& Physics::ready_to_ping(const Watch& watch) {
   return simulator_;
 }
 
+std::vector<std::string> Physics::warnings() {
+  const std::scoped_lock lock(mutex_);
+  return simulator_.scenario().notes;
+}
+
 Physics& Access::physics(const Scenario& scenario) {
   const Scenario::Data& data = *scenario.data_;
   const std::scoped_lock lock(data.mutex);

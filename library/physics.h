@@ -1,5 +1,7 @@
 #pragma once
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "asdic/watch.h"
 #include "library/access.h"
@@ -16,6 +18,8 @@ class Physics {
   /// The same, its memory asked for and its warnings complete: before pings.
   /// \param watch  its first step, reading, is done
   [[nodiscard]] const detail::PingSimulator& ready_to_ping(const Watch& watch = {});
+  /// What is known by now of what to know before trusting a number.
+  [[nodiscard]] std::vector<std::string> warnings();
 
  private:
   detail::PingSimulator simulator_;

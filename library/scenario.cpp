@@ -136,9 +136,20 @@ std::vector<std::string> Scenario::validate(const Watch& watch) const {
   return translated([&] {
     if (detail::has_sonar(data_->document))
       return Access::physics(*this).ready_to_ping(watch).scenario().notes;
-    std::vector<std::string> notes;
-    static_cast<void>(detail::propagation_case_of(data_->document, data_->path, notes));
-    return notes;
+    return warnings();
+  });
+}
+
+std::vector<std::string> Scenario::warnings() const {
+  return translated([&] {
+    if (detail::has_sonar(data_->document)) return Access::physics(*this).warnings();
+    const std::scoped_lock lock(data_->mutex);
+    if (!data_->notes) {
+      std::vector<std::string> notes;
+      static_cast<void>(detail::propagation_case_of(data_->document, data_->path, notes));
+      data_->notes = std::move(notes);
+    }
+    return *data_->notes;
   });
 }
 

@@ -77,6 +77,10 @@ class ASDIC_API Scenario {
   /// ocean varies with range these may take minutes.
   std::vector<std::string> validate(const Watch& watch = {}) const;
 
+  /// Of these warnings those that are known by now: what reading it says, and after validate() or a
+  /// ping all. \throws InputError at a fault that reading finds
+  [[nodiscard]] std::vector<std::string> warnings() const;
+
   struct Data;  ///< of the library alone
 
  private:

@@ -10,6 +10,7 @@
 namespace {
 
 namespace support = asdic::detail::support;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -264,6 +265,16 @@ TEST(PublicUnits, AreSi) {
   EXPECT_DOUBLE_EQ(asdic::db_from_amplitude(10.0), 20.0);
   EXPECT_DOUBLE_EQ(asdic::db_from_power(10.0), 10.0);
   EXPECT_THAT(asdic::build(), HasSubstr(asdic::version()));
+}
+
+TEST(PublicScenario, SaysWhatIsKnownByNow) {
+  asdic::Scenario scenario = built();
+  scenario.set("propagation.max_surface_bounces", 0).set("propagation.max_bottom_bounces", 0);
+  EXPECT_THAT(scenario.warnings(), testing::IsEmpty());  // that takes a search for paths
+  const std::vector<std::string> all = scenario.validate();
+  EXPECT_THAT(all, Contains(HasSubstr("lacks the paths")));
+  EXPECT_EQ(scenario.warnings(), all);
+  EXPECT_EQ(asdic::Scenario(scenario).warnings(), all);  // a copy shares them
 }
 
 }  // namespace
