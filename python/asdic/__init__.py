@@ -9,7 +9,7 @@ All numbers are SI. Names that end in ``_deg`` are in degrees, in ``_db`` in dec
 (east, north, depth), depth positive down; elevations are positive up; bearings are true.
 docs/guide/python.md
 """
-from ._core import InputError, RunError, Stopped, build, version
+from ._core import Arrivals, InputError, RunError, Stopped, build, version
 from . import bellhop
 from .channel import Channel
 from .datasets import group
@@ -17,8 +17,9 @@ from .files import open  # noqa: A004  asdic.open
 from .processing import Processed, process
 from .scenario import Scenario, settings
 from .studies import Measure, StudyResult, read_study, study
+from .told import AsdicWarning
 
 __version__ = version()
-__all__ = ["Channel", "InputError", "Measure", "Processed", "RunError", "Scenario", "Stopped",
+__all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Processed", "RunError", "Scenario", "Stopped",
            "StudyResult", "bellhop", "build", "group", "open", "process", "read_study", "settings",
            "study", "version"]

@@ -1,11 +1,15 @@
 """The time-varying impulse response from a transmitter to the phones of an array."""
 from __future__ import annotations
 
-import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _core, datasets
+from .told import tell
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class Channel:
@@ -42,7 +46,7 @@ class Channel:
                                        "warnings": self.warnings})
 
     def __call__(self, signal, sample_rate: float, start: float | None = None,
-                 samples: int | None = None):
+                 samples: int | None = None) -> xr.DataArray:
         """What the phones receive of a signal.
 
         Parameters
@@ -65,8 +69,7 @@ class Channel:
         """
         pressure, first, told = _core.through(self._scenario._core, self._core,
                                               np.asarray(signal, float), float(sample_rate))
-        for line in told:
-            warnings.warn(line, stacklevel=2)
+        tell(told)
         begin = int(round(first * sample_rate))
         if start is not None or samples is not None:
             wanted = begin if start is None else int(round(start * sample_rate))

@@ -1,7 +1,13 @@
 """What the library computes as pandas and xarray hold it, with the units of asdic's files."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 _xarray = None
 
@@ -40,11 +46,11 @@ class Accessor:
                                   attrs=pressure.attrs,
                                   coords={n: c for n, c in pressure.coords.items() if n not in ("iq", "re_im")})
 
-    def group(self, name: str):
+    def group(self, name: str) -> xr.Dataset:
         """The arrays of a group of the file under their own names: ``ds.asdic.group("echoes")``."""
         return group(self._dataset, name)
 
-    def table(self, name: str):
+    def table(self, name: str) -> pd.DataFrame:
         """A group that is a table, as a pandas.DataFrame."""
         return group(self._dataset, name).to_dataframe()
 
@@ -55,7 +61,7 @@ class Accessor:
         return Scenario.parse(str(self._dataset["scenario"].values))
 
 
-def group(dataset, name: str):
+def group(dataset, name: str) -> xr.Dataset:
     """The arrays of a group of a file (``"echoes"``) under their own names. → xarray.Dataset"""
     before = name.rstrip("/") + "/"
     found = {key[len(before):]: value for key, value in dataset.variables.items()
@@ -70,7 +76,7 @@ def group(dataset, name: str):
 UNITS = {"delay": "s", "struck": "s", "path_length": "m", "range": "m", "depth": "m"}
 
 
-def arrivals(columns, legs=None):
+def arrivals(columns, legs=None, warnings=()) -> pd.DataFrame:
     """Eigenrays as a table. → pandas.DataFrame"""
     import pandas as pd
 
@@ -79,7 +85,14 @@ def arrivals(columns, legs=None):
         data[name] = getattr(columns, name)
     for name in ("bounce_range", "bounce_grazing_deg", "bounce_bottom"):
         data[name] = _objects(getattr(columns, name))
-    return pd.DataFrame(data, copy=False)
+    return _with_warnings(pd.DataFrame(data, copy=False), warnings)
+
+
+def _with_warnings(made, warnings):
+    """The same, its `attrs` saying what to know; without any, nothing."""
+    if warnings:
+        made.attrs["warnings"] = list(warnings)
+    return made
 
 
 def _objects(arrays: list):
@@ -90,25 +103,18 @@ def _objects(arrays: list):
     return made
 
 
-def rays(found: list):
+def rays(found: list, warnings=()) -> pd.DataFrame:
     """Rays as a table. → pandas.DataFrame"""
     import pandas as pd
 
-    names = list(found[0]) if found else []
     data = {}
-    for name in names:
+    for name in found[0] if found else ():
         values = [ray[name] for ray in found]
-        if isinstance(values[0], np.ndarray):
-            column = np.empty(len(values), object)
-            for i, value in enumerate(values):
-                column[i] = value
-            data[name] = column
-        else:
-            data[name] = values
-    return pd.DataFrame(data)
+        data[name] = _objects(values) if isinstance(values[0], np.ndarray) else values
+    return _with_warnings(pd.DataFrame(data), warnings)
 
 
-def field(found: dict):
+def field(found: dict) -> xr.DataArray:
     """A pressure field. → xarray.DataArray, complex"""
     xr = xarray()
     units = {"units": "m"}
@@ -128,7 +134,7 @@ def field(found: dict):
     return made.isel(source_depth=0) if len(found["source_depth"]) == 1 else made
 
 
-def ping(scenario, handle):
+def ping(scenario, handle, warnings=()) -> xr.Dataset:
     """A ping's record. → xarray.Dataset with the names of docs/formats/ping.md"""
     xr = xarray()
     pressure = handle.pressure
@@ -150,4 +156,4 @@ def ping(scenario, handle):
     made = xr.Dataset(variables, coords={"channel": np.arange(pressure.shape[0])},
                       attrs={"filetype": "asdic ping", "title": scenario.title or ""})
     made.encoding["asdic"] = handle  # that asdic.process() knows it again
-    return made
+    return _with_warnings(made, warnings)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import difflib
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 from . import _core
 from ._core import InputError
@@ -67,19 +68,20 @@ class Setting:
 
 
 @functools.lru_cache(maxsize=None)
-def settings() -> dict:
+def settings() -> dict[str, list[Setting]]:
     """Every setting of a scenario file. → {path: [Setting of each choice that has it]}"""
-    found: dict = {}
+    found: dict[str, list[Setting]] = {}
     for told in _core.settings():
-        one = Setting(**{**told, "words": tuple(told["words"])})
+        of: dict[str, Any] = {**told, "words": tuple(told["words"])}
+        one = Setting(**of)
         found.setdefault(one.path, []).append(one)
     return found
 
 
 @functools.lru_cache(maxsize=None)
-def tables() -> dict:
+def tables() -> dict[str, dict[str, Any]]:
     """Every table. → {path without [] at its end: {"help", "list", "one_or_more"}}"""
-    found: dict = {}
+    found: dict[str, dict[str, Any]] = {}
     for told in _core.setting_tables():
         path = told["path"]
         found.setdefault(path[:-2] if told["list"] else path, told)
@@ -108,7 +110,7 @@ def keys_of(place: str) -> tuple:
 def is_list(place: str) -> bool:
     """Whether a table may stand several times."""
     told = tables().get(place)
-    return bool(told) and (told["list"] or told["one_or_more"])
+    return told is not None and (told["list"] or told["one_or_more"])
 
 
 def unknown(place: str, name: str) -> InputError:

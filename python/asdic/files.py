@@ -4,16 +4,21 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _core, datasets, described
+from .told import tell
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 BELLHOP = (".shd", ".arr", ".ray")
 PAIRS = ("iq", "re_im")  # dimensions of a real and an imaginary part
 
 
-def open(path, load: bool | None = None):  # noqa: A001
+def open(path, load: bool | None = None) -> xr.Dataset:  # noqa: A001
     """A file of asdic's (ping, field, arrivals, rays, study) or of BELLHOP's (.shd, .arr, .ray).
 
     Returns an xarray.Dataset with the file's names, dimensions and units (docs/formats): arrays of
@@ -46,13 +51,15 @@ def _complex(variable):
     return datasets.xarray().Variable(variable.dims[:-1], values, variable.attrs)
 
 
-def run(scenario, progress=None):
+def run(scenario, progress=None) -> xr.Dataset:
     """What [run] of a scenario asks for. → xarray.Dataset"""
     with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, "result.h5")
         notes = _core.write_run(made, scenario._core, progress)
         found = _read(made, True)
-    found.attrs["warnings"] = notes
+    if notes:
+        found.attrs["warnings"] = notes
+    tell(notes)
     return found
 
 

@@ -3,10 +3,15 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _core, described
+from .told import tell
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 OPTIONS = ("mvdr", "hann_shading", "max_speed", "split_window", "across_beams", "guard_cells",
            "reference_cells", "false_alarm_probability", "start", "stop", "target_depth",
@@ -29,10 +34,10 @@ class Processed:
     warnings : list of str
     """
 
-    detections: object
-    places: object
-    tracks: list
-    warnings: list = field(default_factory=list)
+    detections: pd.DataFrame
+    places: pd.DataFrame
+    tracks: list[dict]
+    warnings: list[str] = field(default_factory=list)
 
 
 def process(source, progress=None, **options) -> Processed:
@@ -66,6 +71,7 @@ def process(source, progress=None, **options) -> Processed:
               for i, several in enumerate(found["places"]) for p in several]
     columns = ["detection", "east", "north", "depth", "range", "bearing_deg", "range_rate"]
     tracks = [{**track, "points": pd.DataFrame(track["points"])} for track in found["tracks"]]
+    tell(found["warnings"])
     return Processed(pd.DataFrame(found["detections"]), pd.DataFrame(places, columns=columns),
                      tracks, found["warnings"])
 

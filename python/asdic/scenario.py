@@ -7,12 +7,18 @@ import queue
 import threading
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, Self, overload
 
 import numpy as np
 
 from . import _core, datasets, described, oceans
 from .channel import Channel
 from .described import settings  # noqa: F401  asdic.settings
+from .told import tell
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 
 def _value_of_default(text: str):
@@ -50,7 +56,7 @@ class _Table:
     def _get(self, path):
         return self._core.get(path) if path and self._core.has(path) else None
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         try:
@@ -83,11 +89,12 @@ class _Table:
         self._core.erase(self._of(name)[0])
 
     def __dir__(self):
-        names = []
+        names = {name for name in dir(type(self)) if not name.startswith("_")}
         for key in described.keys_of(self._place):
             place = f"{self._place}.{key}" if self._place else key
-            names.append(key + "s" if described.is_list(place) else key)
-        return names + ["help", "to_dict"]
+            several = described.is_list(place) and not key.endswith("s")
+            names.add(key + "s" if several else key)
+        return sorted(names)
 
     # ------------------------------------------------------------ what it says
 
@@ -123,7 +130,7 @@ class _List(Sequence):
         there = self._there()
         return 1 if isinstance(there, dict) else len(there)
 
-    def __getitem__(self, index):
+    def __getitem__(self, index) -> Any:
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         count = len(self)
@@ -136,7 +143,7 @@ class _List(Sequence):
         return _Table(self._core, self._path if single else f"{self._path}.{number}",
                       described_as if known else self._place)
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         """Of the only one: `s.transmitter.source_level_db`."""
         if name.startswith("_"):
             raise AttributeError(name)
@@ -153,7 +160,8 @@ class _List(Sequence):
         setattr(self[0] if len(self) else _Table(self._core, self._path, self._place), name, value)
 
     def __dir__(self):
-        return ["append", "clear", *dir(_Table(self._core, "", self._place + "[]"))]
+        own = [name for name in dir(type(self)) if not name.startswith("_")]
+        return sorted({*own, *dir(_Table(self._core, "", self._place + "[]"))})
 
     def append(self, table: Mapping | None = None, **settings) -> None:
         """One more, of a dictionary or of keywords."""
@@ -174,7 +182,7 @@ class _Pings(_Table):
 
     __slots__ = ("_scenario",)
 
-    def __call__(self, ahead: int = 2) -> Iterator:
+    def __call__(self, ahead: int = 2) -> Iterator[xr.Dataset]:
         """All pings in order, each as :meth:`Scenario.ping` gives it; the next ones are computed
         meanwhile.
 
@@ -188,7 +196,7 @@ class _Run(_Table):
 
     __slots__ = ("_scenario",)
 
-    def __call__(self, progress=None):
+    def __call__(self, progress=None) -> xr.Dataset:
         """A field, arrivals or rays. → xarray.Dataset as :func:`asdic.open` gives it"""
         from .files import run
         return run(self._scenario, progress)
@@ -262,12 +270,12 @@ class Scenario(_Table):
         return cls._of_core(_core.Scenario.parse(text, os.fspath(name)))
 
     @classmethod
-    def _of_core(cls, core) -> Scenario:
+    def _of_core(cls, core) -> Self:
         made = cls.__new__(cls)
         _Table.__init__(made, core, "", "")
         return made
 
-    def copy(self) -> Scenario:
+    def copy(self) -> Self:
         """Another one. The ocean and the paths that were found are shared until one is changed."""
         return self._of_core(self._core.copy())
 
@@ -308,6 +316,11 @@ class Scenario(_Table):
         """
         return self._core.validate(progress)
 
+    @property
+    def warnings(self) -> list[str]:
+        """Of these warnings those that are known by now: of reading it, and after a ping all."""
+        return self._core.warnings()
+
     def _repr_html_(self) -> str:
         from . import drawing
         return drawing.html(self)
@@ -318,7 +331,7 @@ class Scenario(_Table):
     def __str__(self) -> str:
         return self.to_toml()
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         made = super().__getattr__(name)
         kind = {"pings": _Pings, "run": _Run}.get(name)
         if kind is not None:
@@ -327,6 +340,19 @@ class Scenario(_Table):
         return made
 
     # ------------------------------------------------------------ paths
+
+    @overload
+    def arrivals(self, *, range: float | None = None, depth: float | None = None,
+                 source_depth: float | None = None, bearing_deg: float | None = None,
+                 frequency: float | None = None, ping: int = 1,
+                 arrays: Literal[False] = False) -> pd.DataFrame: ...
+    @overload
+    def arrivals(self, *, range: float, depth: float, source_depth: float | None = None,
+                 bearing_deg: float | None = None, frequency: float | None = None, ping: int = 1,
+                 arrays: Literal[True]) -> _core.Arrivals: ...
+    @overload
+    def arrivals(self, *, ping: int = 1,
+                 arrays: Literal[True]) -> tuple[_core.Arrivals, dict[str, np.ndarray]]: ...
 
     def arrivals(self, *, range=None, depth=None, source_depth=None, bearing_deg=None,
                  frequency=None, ping=1, arrays=False):
@@ -353,23 +379,27 @@ class Scenario(_Table):
             ``bounce_grazing_deg`` and ``bounce_bottom`` hold an array each. Of legs also leg (0 to
             the target, 1 to the array), target, array, path, bearing_deg, range.
         Arrivals
-            With `arrays`: the same as attributes.
+            With `arrays`: the same as attributes. Of legs also a dictionary of what is of them.
         """
         if (range is None) != (depth is None):
             raise described.made("depth" if depth is None else "range", "nothing",
                                  "range and depth, which go together")
         if range is None:
             columns, legs = _core.legs(self._core, ping)
-            return (columns, legs) if arrays else datasets.arrivals(columns, legs)
+            tell(self._core.warnings())
+            return (columns, legs) if arrays else \
+                datasets.arrivals(columns, legs, warnings=self.warnings)
         core = self._core
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=frequency, source_depth=source_depth, depths=[depth],
                                   ranges=[range])._core
         found = _core.arrivals(core, range, depth, source_depth, bearing_deg, frequency, ping)
-        return found if arrays else datasets.arrivals(found)
+        told = core.warnings()
+        tell(told)
+        return found if arrays else datasets.arrivals(found, warnings=told)
 
     def rays(self, *, lowest_deg=-20.0, highest_deg=20.0, count=41, elevations_deg=(), range=50e3,
-             source_depth=None, bounces=100):
+             source_depth=None, bounces=100) -> pd.DataFrame:
         """Rays as lines, with a point at every bounce and turning point.
 
         Parameters: launch elevations, positive up, evenly spaced or `elevations_deg` exactly [deg];
@@ -383,10 +413,14 @@ class Scenario(_Table):
         if not core.has("platform") and not core.has("run"):
             core = self._with_run(frequency=1000.0, source_depth=source_depth, depths=[0.0],
                                   ranges=[range])._core
-        return datasets.rays(_core.rays(core, lowest_deg, highest_deg, count, list(elevations_deg),
-                                        range, source_depth, bounces))
+        found = _core.rays(core, lowest_deg, highest_deg, count, list(elevations_deg), range,
+                           source_depth, bounces)
+        told = core.warnings()
+        tell(told)
+        return datasets.rays(found, warnings=told)
 
-    def field(self, *, frequency=None, source_depth=None, depths=None, ranges=None):
+    def field(self, *, frequency=None, source_depth=None, depths=None,
+              ranges=None) -> xr.DataArray:
         """The pressure field of a source: what [run] asks for, or the arguments.
 
         Parameters
@@ -409,7 +443,9 @@ class Scenario(_Table):
         if any(x is not None for x in (frequency, source_depth, depths, ranges)):
             scenario = self._with_run(frequency=frequency, source_depth=source_depth, depths=depths,
                                       ranges=ranges)
-        return datasets.field(_core.field(scenario._core))
+        found = _core.field(scenario._core)
+        tell(found["warnings"])
+        return datasets.field(found)
 
     def _with_run(self, *, frequency=None, source_depth=None, depths=None, ranges=None) -> Scenario:
         """A copy with a [run] that says so."""
@@ -435,7 +471,7 @@ class Scenario(_Table):
 
     # ------------------------------------------------------------ pings
 
-    def ping(self, number: int = 1, progress=None):
+    def ping(self, number: int = 1, progress=None) -> xr.Dataset:
         """One ping of the scenario: calibrated pressure at every phone.
 
         Returns an xarray.Dataset with the names, dimensions and units of the ping file
@@ -443,13 +479,19 @@ class Scenario(_Table):
         scenario asks for complex baseband, not copied and not to be written to; ``time`` [s];
         ``phone_position`` [m]; the truth as ``echoes/delay`` and so on.
 
+        What to know before trusting a number is warned of (AsdicWarning), and in
+        ``attrs["warnings"]``.
+
         Raises InputError; KeyboardInterrupt by Ctrl-C.
         """
-        return datasets.ping(self, _core.Pinger(self._core, progress).ping(number))
+        pinger = _core.Pinger(self._core, progress)
+        tell(pinger.warnings)
+        return datasets.ping(self, pinger.ping(number), pinger.warnings)
 
     def write(self, file, progress=None) -> None:
         """All pings into a ping file, as ``asdic ping``. Nothing that asdic did not write is written over."""
         _core.write_pings(os.fspath(file), self._core, progress)
+        tell(self.warnings)
 
     def channel(self, transmitter=0, array=0, *, duration=None, step=0.1, frequency=None,
                 ping=None, held=False) -> Channel:
@@ -476,7 +518,11 @@ class Scenario(_Table):
         """
         number, receiver = self._number("transmitter", transmitter), self._number("array", array)
         first = number + 1 if ping is None else ping
-        return Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency, held))
+        found = Channel(self, _core.channel(self._core, first, receiver, duration, step, frequency,
+                                            held))
+        tell(self.warnings)
+        tell(found.warnings)
+        return found
 
     def _number(self, kind: str, asked) -> int:
         if not isinstance(asked, str):
@@ -492,7 +538,7 @@ def _text(value) -> str:
     return value if isinstance(value, str) else _core.toml(value)
 
 
-def _computed_ahead(scenario: Scenario, ahead: int) -> Iterator:
+def _computed_ahead(scenario: Scenario, ahead: int) -> Iterator[xr.Dataset]:
     """The pings of a scenario, by a thread of their own."""
     waiting: queue.Queue = queue.Queue(max(1, ahead))
     left = threading.Event()
@@ -511,7 +557,9 @@ def _computed_ahead(scenario: Scenario, ahead: int) -> Iterator:
 
     def work() -> None:
         try:
-            _core.Pinger(scenario._core.copy(), None).run(put, None)
+            pinger = _core.Pinger(scenario._core.copy(), None)
+            put(pinger.warnings)
+            pinger.run(put, None)
             put(None)
         except Left:
             pass
@@ -523,11 +571,16 @@ def _computed_ahead(scenario: Scenario, ahead: int) -> Iterator:
 
     thread = threading.Thread(target=work, name="asdic pings", daemon=True)
     thread.start()
+    told: list = []
     try:
         while (item := waiting.get()) is not None:
             if isinstance(item, BaseException):
                 raise item
-            yield datasets.ping(scenario, item)
+            if isinstance(item, list):
+                told = item
+                tell(told)
+                continue
+            yield datasets.ping(scenario, item, told)
     finally:
         left.set()
         thread.join()

@@ -6,9 +6,14 @@ import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Callable
 
 from . import _core, datasets, described
 from .scenario import Scenario, _text
+from .told import tell
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass
@@ -27,7 +32,7 @@ class Measure:
         False: levels and echoes are enough, which are had much faster.
     """
 
-    of: object
+    of: Callable[..., float]
     unit: str = ""
     meaning: str = ""
     version: str = ""
@@ -56,14 +61,14 @@ class StudyResult:
     warnings : list of str
     """
 
-    table: object
-    units: dict
+    table: pd.DataFrame
+    units: dict[str, str]
     question: str
     value: float
     low: float
     high: float
     complete: bool
-    warnings: list = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
 
 
 def _shown(found: dict) -> StudyResult:
@@ -110,7 +115,10 @@ def study(source, output, *, measures: Mapping | None = None, set: Mapping | Non
                     "version": one._version(), "samples": one.samples, "of": _called(one.of)})
 
     def run(file) -> StudyResult:
-        return _shown(_core.study(os.fspath(file), os.fspath(output), changes, own, fresh, progress))
+        found = _shown(_core.study(os.fspath(file), os.fspath(output), changes, own, fresh,
+                                   progress))
+        tell(found.warnings)
+        return found
 
     if not isinstance(source, Scenario):
         return run(source)

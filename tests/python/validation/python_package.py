@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The Python package: what it computes is what the program computes, and how it meets its users."""
+import ast
 import json
 import os
 import pickle
@@ -10,6 +11,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 BUILD, PROGRAM = Path(os.environ["ASDIC_BUILD"]), os.environ["ASDIC"]
@@ -166,6 +168,74 @@ class Oceans(unittest.TestCase):
                       xr.DataArray([1.0], dims="time")):
             with self.assertRaises(asdic.InputError):
                 asdic.Scenario(sound_speed=wrong)
+
+
+class Warnings(unittest.TestCase):
+    """What to know before trusting a number is told wherever a number is had."""
+
+    def test_a_ping_says_what_it_lacks(self):
+        s = asdic.Scenario(SCENARIOS / "isovelocity.toml")
+        self.assertEqual(s.warnings, [])
+        with self.assertWarnsRegex(asdic.AsdicWarning, "lacks the paths") as told:
+            ping = s.ping()
+        self.assertEqual(os.path.basename(told.filename), "python_package.py")
+        self.assertIn("lacks the paths", ping.attrs["warnings"][0])
+        self.assertEqual(s.warnings, ping.attrs["warnings"])
+        with self.assertWarnsRegex(asdic.AsdicWarning, "lacks the paths"):
+            self.assertEqual([p.attrs["warnings"] for p in s.pings()], [s.warnings])
+        s.propagation.max_surface_bounces = s.propagation.max_bottom_bounces = "auto"
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", asdic.AsdicWarning)
+            self.assertNotIn("warnings", s.ping().attrs)
+
+    def test_paths_say_what_their_ocean_lacks(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+        calls = [lambda: s.arrivals(), lambda: s.arrivals(range=25e3, depth=125.0),
+                 lambda: s.arrivals(range=25e3, depth=125.0, arrays=True),
+                 lambda: s.rays(count=2, range=1e3),
+                 lambda: s.field(frequency=50.0, source_depth=1000.0, depths=[500.0],
+                                 ranges=[1e3])]
+        for call in calls:
+            with self.assertWarnsRegex(asdic.AsdicWarning, "5000 m"):
+                found = call()
+            if not isinstance(found, asdic.Arrivals):
+                self.assertIn("5000 m", found.attrs["warnings"][0])
+
+    def test_once_a_line_of_code(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+        text = ("import asdic\n"
+                f"s = asdic.Scenario({str(SCENARIOS / 'deep_ocean.toml')!r})\n"
+                "for i in range(3):\n"
+                "    s.arrivals(range=25e3, depth=125.0)\n")
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(BUILD / "python")})
+        self.assertEqual(done.stderr.count("AsdicWarning"), 1, done.stderr)
+
+
+class Names(unittest.TestCase):
+    def test_what_completes(self):
+        s = asdic.Scenario(SCENARIOS / "deep_ocean.toml")
+        self.assertLessEqual({"ping", "arrivals", "pulse", "targets", "to_toml"}, set(dir(s)))
+        for table in (s, s.platforms[0], s.targets[0], s.targets, s.environment.bottom):
+            for name in dir(table):
+                self.assertFalse(name.endswith("ss") and name != "roughness", name)
+                getattr(table, name)
+        self.assertIn("waypoints", dir(s.targets[0]))
+
+    def test_the_stub_is_the_extension(self):
+        stub = Path(asdic.__file__).with_name("_core.pyi")
+        told = {}
+        for node in ast.parse(stub.read_text(encoding="utf-8")).body:
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+                told[node.name] = {n.name for n in getattr(node, "body", [])
+                                   if isinstance(n, ast.FunctionDef)} if isinstance(node, ast.ClassDef) else None
+        there = {name for name in dir(asdic._core) if not name.startswith("_")}
+        self.assertEqual(set(told), there)
+        for name, members in told.items():
+            if members is None or issubclass(getattr(asdic._core, name), Exception):
+                continue
+            public = {n for n in vars(getattr(asdic._core, name)) if not n.startswith("_")}
+            self.assertEqual({m for m in members if not m.startswith("_")}, public - {"names"}, name)
 
 
 class Paths(unittest.TestCase):
