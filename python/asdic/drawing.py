@@ -4,6 +4,8 @@ from __future__ import annotations
 import html as _html
 import math
 
+import numpy as np
+
 WIDTH, HEIGHT = 420, 220
 
 
@@ -35,6 +37,9 @@ def _places(scenario) -> list:
             name = told.get("name") or (f"{kind[:-1]} {i + 1}")
             found.append((name, kind, math.hypot(position[0] - origin[0], position[1] - origin[1]),
                           float(position[2])))
+    source = scenario.run.source.to_dict().get("depth") if not found else None
+    for depth in np.atleast_1d([] if source is None or isinstance(source, dict) else source):
+        found.append(("source", "platforms", 0.0, float(depth)))
     return found
 
 
@@ -47,7 +52,8 @@ def svg(scenario) -> str:
     if isinstance(shape, dict) and shape.get("range") and shape.get("depth"):
         floor = list(zip(shape["range"], shape["depth"]))
     deepest = max([d for _, d in floor if d is not None] + [p[3] for p in places] + [1.0])
-    furthest = max([p[2] for p in places] + [r for r, _ in floor] + [1.0]) * 1.1
+    reach = max([p[2] for p in places] + [r for r, _ in floor])
+    furthest = 1.1 * reach if reach > 0.0 else 1.0
     left, top, wide, high = 44, 16, WIDTH - 60, HEIGHT - 44
 
     def x(distance: float) -> float:
@@ -77,12 +83,13 @@ def svg(scenario) -> str:
                      f'<text x="{a + (-7 if end else 7):.1f}" y="{b + 3.5:.1f}" '
                      f'text-anchor="{"end" if end else "start"}">{_escaped(name)}</text>')
     parts.append(f'<text x="{left - 4}" y="{top + 4}" text-anchor="end">0 m</text>'
-                 f'<text x="{left - 4}" y="{top + high}" text-anchor="end">'
-                 f'{1.05 * deepest:.0f} m</text>'
-                 f'<text x="{left}" y="{HEIGHT - 14}">0 km</text>'
-                 f'<text x="{left + wide}" y="{HEIGHT - 14}" text-anchor="end">'
-                 f'{furthest / 1000:.3g} km</text></svg>')
-    return "".join(parts)
+                 f'<text x="{left - 4}" y="{y(deepest) + 4:.1f}" text-anchor="end">'
+                 f'{deepest:.0f} m</text>'
+                 f'<text x="{left}" y="{HEIGHT - 14}">0 km</text>')
+    if reach > 0.0:
+        parts.append(f'<text x="{x(reach):.1f}" y="{HEIGHT - 14}" text-anchor="middle">'
+                     f'{reach / 1000:.3g} km</text>')
+    return "".join(parts) + "</svg>"
 
 
 def html(scenario) -> str:
