@@ -15,7 +15,7 @@ endif()
 file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/python/binding/*.cpp")
 pybind11_add_module(asdic_python MODULE ${sources})
 set_target_properties(asdic_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python/asdic
-                      UNITY_BUILD OFF)
+                      UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
 target_link_libraries(asdic_python PRIVATE asdic::asdic asdic_warnings asdic_build_options)
 target_compile_options(asdic_python PRIVATE -Wno-shadow)  # pybind11 2.10's own headers
 set(ASDIC_PYTHON_HERE ${PROJECT_BINARY_DIR}/python)
