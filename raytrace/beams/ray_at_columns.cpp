@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/simd.h"
 #include "raytrace/beams/geometric.h"
 #include "raytrace/beams/larger.h"
 
