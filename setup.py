@@ -20,7 +20,8 @@ setup(
     python_requires=">=3.11",
     install_requires=["numpy", "pandas", "xarray"],  # files: h5py and h5netcdf, without metadata in Debian
     extras_require={"pictures": ["matplotlib"]},
-    cmake_args=["-DCMAKE_BUILD_TYPE=Release", "-DASDIC_TESTS=OFF", "-DASDIC_MPI=OFF",
+    cmake_args=["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
+                "-DASDIC_PRECOMPILED_HEADERS=ON", "-DASDIC_TESTS=OFF", "-DASDIC_MPI=OFF",
                 "-DASDIC_PYTHON_PACKAGE=ON", f"-DASDIC_PACKAGE_PYTHON={sys.executable}"],
     cmake_install_target="install_wheel",
 )

@@ -34,6 +34,11 @@ foreach(package asdic_pictures asdic_page)
   endif()
 endforeach()
 
+# pip needs the library alone.
+if(SKBUILD)
+  set_target_properties(asdic_app asdic_commands asdic_serve PROPERTIES EXCLUDE_FROM_ALL ON)
+endif()
+
 # A system's package (component `python`): beside libasdic.so of the system.
 set(ASDIC_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the system's Python looks for packages, below the prefix")
 install(TARGETS asdic_python LIBRARY DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python EXCLUDE_FROM_ALL)

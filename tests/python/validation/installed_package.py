@@ -81,9 +81,13 @@ class Installed(unittest.TestCase):
         if not shutil.which("mypy"):
             self.skipTest("no mypy (Debian: mypy)")
         (self.at / "mypy.ini").write_text(CONFIG)
+        # classes of pybind11's: of their own metaclass, and without a constructor that Python sees
+        made = [f"asdic._core.{name}" for name in ("Arrivals", "Channel", "Ping", "Pinger", "Scenario")]
+        (self.at / "allowed").write_text("".join(f"{name}\n{name}.__init__\n" for name in made))
         here = {"PYTHONPATH": str(BUILD / "python"), "MYPYPATH": str(BUILD / "python")}
         for words in (["mypy.stubtest", "asdic._core", "--mypy-config-file", "mypy.ini",
-                       "--ignore-positional-only"],
+                       "--ignore-positional-only", "--allowlist", "allowed",
+                       "--ignore-unused-allowlist"],
                       ["mypy", "--config-file", "mypy.ini", "-p", "asdic"]):
             code, said = self.run_it("/usr/bin/python3", "-m", *words, env=here)
             self.assertEqual(code, 0, said)
