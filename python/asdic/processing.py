@@ -22,6 +22,8 @@ OPTIONS = ("mvdr", "hann_shading", "max_speed", "split_window", "across_beams", 
 class Processed:
     """Detections, places and tracks.
 
+    Attributes
+    ----------
     detections : pandas.DataFrame
         ping, array, time [s], doppler_factor, bearing_deg, elevation_deg, snr_db, excess_db,
         level_db, target (-1 a false alarm, -2 the direct sound, -3 another ping).

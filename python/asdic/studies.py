@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 class Measure:
     """A measure of one's own: one more column of the study's table.
 
+    Attributes
+    ----------
     of : callable
         What is measured: called with the ping's dataset (as :meth:`Scenario.ping` gives it), from
         several threads in turn; returns a number, NaN where there is none. What it raises ends the
@@ -52,6 +54,8 @@ class Measure:
 class StudyResult:
     """The table of a study.
 
+    Attributes
+    ----------
     table : pandas.DataFrame
         A row a realisation: what varied, then what was measured.
     units : dict
