@@ -11,10 +11,14 @@
 namespace asdic::detail::app {
 
 void WavExport::check(const PingFile& file, const ExportChoice& choice) {
-  if (file.is_complex())
-    throw InputError({.where = choice.file.string(),
-                      .got = "complex baseband",
-                      .expected = "pressure: pings.samples = \"pressure\" in the scenario"});
+  const std::size_t channels = file.channels() * (file.is_complex() ? 2 : 1);
+  if (channels > most_wav_channels)
+    throw InputError(
+        {.where = choice.file.string(),
+         .got = fmt::format("{}, {} channels", count_of(file.channels(), "phone"), channels),
+         .expected = fmt::format("at most {} channels, two a phone of complex "
+                                 "baseband; --mat takes them all",
+                                 most_wav_channels)});
 }
 
 void WavExport::write(const PingFile& file, const ExportChoice& choice) {
@@ -29,10 +33,13 @@ void WavExport::write(const PingFile& file, const ExportChoice& choice) {
     const std::filesystem::path path =
         choice.folder / fmt::format("{}_ping{:03}.wav", stem, numbers[i]);
     const WavScale scale =
-        write_wav(path, pressure, file.channels(), file.sample_rate(), {.force = choice.force});
-    print(fmt::format("{}: {}, {} Hz, full scale {:.6g} Pa\n", path.string(),
-                      count_of(file.channels(), "channel"), scale.sample_rate,
-                      scale.pascal_per_unit));
+        write_wav(path, pressure, {.phones = file.channels(), .carrier = file.carrier()},
+                  file.sample_rate(), {.force = choice.force});
+    const std::size_t channels = file.channels() * (file.is_complex() ? 2 : 1);
+    print(fmt::format(
+        "{}: {}{}, {} Hz, full scale {:.6g} Pa\n", path.string(), count_of(channels, "channel"),
+        file.is_complex() ? fmt::format(" (I and Q about {:g} Hz)", file.carrier()) : "",
+        scale.sample_rate, scale.pascal_per_unit));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 
+#include "app/export_mat.h"
 #include "app/export_wav.h"
 #include "app/file_export.h"
 
@@ -10,6 +11,6 @@ template <FileExport... E>
 inline constexpr std::array<AnyFileExport, sizeof...(E)> export_list{any_export<E>()...};
 
 /// Every format. A new one is one file and one name here.
-inline constexpr auto file_exports = export_list<WavExport>;
+inline constexpr auto file_exports = export_list<WavExport, MatExport>;
 
 }  // namespace asdic::detail::app

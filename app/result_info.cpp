@@ -164,8 +164,10 @@ int wav_info(const std::string& path) {
   const double rate = wav.scale.sample_rate;
   print(emphasised(path) + '\n' + file_line(path, "sound"));
   print(fmt::format("holds      {}, {} samples at {:g} Hz: {:g} s\n",
-                    count_of(wav.channels, "phone"), wav.samples, rate,
-                    rate > 0.0 ? static_cast<double>(wav.samples) / rate : 0.0));
+                    wav.carrier > 0.0 ? count_of(wav.channels / 2, "phone") +
+                                            fmt::format(" as I and Q about {:g} Hz", wav.carrier)
+                                      : count_of(wav.channels, "phone"),
+                    wav.samples, rate, rate > 0.0 ? static_cast<double>(wav.samples) / rate : 0.0));
   print(wav.has_scale ? fmt::format("full scale {:.6g} Pa\n", wav.scale.pascal_per_unit)
                       : "full scale unknown: no " + path + ".json\n");
   return 0;

@@ -44,7 +44,9 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
+myst_update_mathjax = False
 mathjax2_config = {"showMathMenu": False, "messageStyle": "none",
+                   "tex2jax": {"processClass": "math"},  # the pages themselves are left alone
                    "SVG": {"linebreaks": {"automatic": True, "width": "container"}}}
 
 XML = Path(os.environ.get("ASDIC_SITE_XML", ROOT / "build/site/xml"))

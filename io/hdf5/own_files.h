@@ -11,6 +11,8 @@ namespace asdic::detail::own {
 [[nodiscard]] bool sound(const std::filesystem::path& path);
 /// The scale of a sound file (NAME.wav.json): it names pascal_per_unit.
 [[nodiscard]] bool sound_scale(const std::filesystem::path& path);
+/// A MAT-file whose first words say so.
+[[nodiscard]] bool mat(const std::filesystem::path& path);
 /// TOML that says in its first comment that asdic has written it.
 [[nodiscard]] bool scenario(const std::filesystem::path& path);
 /// A table of `asdic process`: its first line names the columns of detections or tracks.

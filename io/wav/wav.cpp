@@ -111,6 +111,7 @@ WavContent read_wav_content(const std::filesystem::path& path) {
     const auto beside = nlohmann::json::parse(json);
     content.scale = {.pascal_per_unit = beside.at("pascal_per_unit"),
                      .sample_rate = beside.at("sample_rate_hz")};
+    content.carrier = beside.value("carrier_hz", 0.0);
     content.has_scale = true;
   } catch (const nlohmann::json::exception& error) {
     throw InputError({.where = json_beside(path),
@@ -148,8 +149,10 @@ SampledPulse read_pulse_file(const std::filesystem::path& path) {
 }
 
 WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
-                   std::size_t channels, double sample_rate, const OutputRules& rules) {
-  if (channels == 0 || channels > 1024 || pressure.size() % channels != 0)
+                   WavChannels content, double sample_rate, const OutputRules& rules) {
+  const std::size_t parts = content.carrier > 0.0 ? 2 : 1;  // channels of a phone
+  const std::size_t channels = content.phones * parts;
+  if (channels == 0 || channels > most_wav_channels || pressure.size() % channels != 0)
     throw InputError({.where = path.string(),
                       .got = std::to_string(pressure.size()) + " samples on " +
                              std::to_string(channels) + " channels",
@@ -183,7 +186,9 @@ WavScale write_wav(const std::filesystem::path& path, std::span<const float> pre
     for (std::size_t channel = 0; channel < channels; ++channel)
       for (std::size_t i = 0; i < n; ++i)
         frames[i * channels + channel] = static_cast<float>(
-            static_cast<double>(pressure[channel * samples + start + i]) / scale);
+            static_cast<double>(
+                pressure[(channel / parts * samples + start + i) * parts + channel % parts]) /
+            scale);
     if (sf_writef_float(file.get(), frames.data(), static_cast<sf_count_t>(n)) !=
         static_cast<sf_count_t>(n))
       throw RunError(path.string() + ": cannot be written: " + sf_strerror(file.get()));
@@ -191,12 +196,12 @@ WavScale write_wav(const std::filesystem::path& path, std::span<const float> pre
 
   if (sf_close(file.release()) != 0) throw RunError(path.string() + ": cannot be written");
 
-  json.write(nlohmann::json{{"pascal_per_unit", scale},
-                            {"sample_rate_hz", sample_rate},
-                            {"channels", channels},
-                            {"samples", samples}}
-                 .dump(2) +
-             '\n');
+  nlohmann::json about{{"pascal_per_unit", scale},
+                       {"sample_rate_hz", sample_rate},
+                       {"channels", channels},
+                       {"samples", samples}};
+  if (content.carrier > 0.0) about["carrier_hz"] = content.carrier;
+  json.write(about.dump(2) + '\n');
   sound.finish();
   return {.pascal_per_unit = scale, .sample_rate = sample_rate};
 }

@@ -23,6 +23,7 @@ struct WavScale {
 /// What a file of write_wav() holds.
 struct WavContent {
   std::size_t channels = 0, samples = 0;
+  double carrier = 0.0;  ///< of complex baseband, two channels a phone [Hz]; 0: pressure
   WavScale scale{};
   bool has_scale = false;  ///< NAME.wav.json is there; else the scale is not known
 };
@@ -30,13 +31,22 @@ struct WavContent {
 /// \throws InputError if the sound or what is beside it cannot be read
 [[nodiscard]] WavContent read_wav_content(const std::filesystem::path& path);
 
+/// What the channels are: phones, or of complex baseband two channels a phone, real part (I) and
+/// imaginary part (Q), so that one phone is a stereo file with I on the left.
+struct WavChannels {
+  std::size_t phones = 1;
+  double carrier = 0.0;  ///< of complex baseband [Hz]; 0: pressure
+};
+
 /// Writes phones as 32-bit float WAV, full scale the largest |sample|, and NAME.wav.json with
-/// pascal_per_unit, sample_rate_hz, channels and samples.
-/// \param pressure  [channels × samples] row per phone [Pa]
+/// pascal_per_unit, sample_rate_hz, channels and samples; of complex baseband carrier_hz, too.
+/// \param pressure  [phones × samples] row per phone, of complex baseband [phones × samples × 2],
+/// I and Q in turn [Pa]
 /// \return the scale that was used
 /// \throws RunError if the file cannot be written; InputError for a shape that does not fit, or for
 /// files that are there and not ours (`rules` may force it)
 WavScale write_wav(const std::filesystem::path& path, std::span<const float> pressure,
-                   std::size_t channels, double sample_rate, const OutputRules& rules = {});
+                   WavChannels content, double sample_rate, const OutputRules& rules = {});
+inline constexpr std::size_t most_wav_channels = 1024;  ///< of libsndfile
 
 }  // namespace asdic::detail

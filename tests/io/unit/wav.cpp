@@ -35,7 +35,7 @@ TEST(Wav, PhonesComeBackThroughTheScale) {
   std::vector<float> pressure(2 * samples);
   for (std::size_t i = 0; i < pressure.size(); ++i)
     pressure[i] = 3.0e-4F * static_cast<float>(std::sin(0.01 * static_cast<double>(i)));
-  const WavScale scale = write_wav(folder / "p.wav", pressure, 2, 16000.0);
+  const WavScale scale = write_wav(folder / "p.wav", pressure, {.phones = 2}, 16000.0);
   const auto json = nlohmann::json::parse(read_text_file(folder / "p.wav.json"));
   EXPECT_EQ(json["pascal_per_unit"], scale.pascal_per_unit);
   EXPECT_EQ(json["channels"], 2);
@@ -61,7 +61,7 @@ TEST(Wav, PhonesComeBackThroughTheScale) {
 TEST(Wav, TheContentOfAFileIsReadWithAndWithoutItsScale) {
   const TemporaryDirectory folder;
   const std::vector<float> pressure{0.25F, -2.0F, 1.0F, 0.5F, 0.0F, 0.125F};
-  write_wav(folder / "p.wav", pressure, 2, 3999.6);
+  write_wav(folder / "p.wav", pressure, {.phones = 2}, 3999.6);
   const WavContent whole = read_wav_content(folder / "p.wav");
   EXPECT_EQ(whole.channels, 2U);
   EXPECT_EQ(whole.samples, 3U);
@@ -80,9 +80,9 @@ TEST(Wav, TheContentOfAFileIsReadWithAndWithoutItsScale) {
 TEST(Wav, ShapesAndFoldersThatDoNotFit) {
   const TemporaryDirectory folder;
   const std::vector<float> pressure(9, 1.0F);
-  EXPECT_THROW(write_wav(folder / "p.wav", pressure, 2, 16000.0), InputError);
-  EXPECT_THROW(write_wav(folder / "p.wav", pressure, 0, 16000.0), InputError);
-  EXPECT_THROW(write_wav(folder / "none/p.wav", pressure, 3, 16000.0), InputError);
+  EXPECT_THROW(write_wav(folder / "p.wav", pressure, {.phones = 2}, 16000.0), InputError);
+  EXPECT_THROW(write_wav(folder / "p.wav", pressure, {.phones = 0}, 16000.0), InputError);
+  EXPECT_THROW(write_wav(folder / "none/p.wav", pressure, {.phones = 3}, 16000.0), InputError);
 }
 
 TEST(PulseFile, CsvAndWavGiveTheSamePulse) {
@@ -94,7 +94,7 @@ TEST(PulseFile, CsvAndWavGiveTheSamePulse) {
     csv += std::to_string(i / 8000.0) + "," + std::to_string(x) + "\n";
     wav.push_back(static_cast<float>(x));
   }
-  write_wav(folder / "p.wav", wav, 1, 8000.0);
+  write_wav(folder / "p.wav", wav, {.phones = 1}, 8000.0);
   const SampledPulse a = read_pulse_file(folder.write("p.csv", csv));
   const SampledPulse b = read_pulse_file(folder / "p.wav");
   EXPECT_NEAR(a.sample_rate, 8000.0, 0.1);  // times are printed to a microsecond
@@ -116,7 +116,7 @@ TEST(PulseFile, FaultsAreNamed) {
   EXPECT_THAT(message(folder.write("short.csv", "time,pressure\n0,1\n")),
               HasSubstr("found one sample, expected at least two"));
   const std::vector<float> stereo(20, 1.0F);
-  write_wav(folder / "stereo.wav", stereo, 2, 8000.0);
+  write_wav(folder / "stereo.wav", stereo, {.phones = 2}, 8000.0);
   EXPECT_THAT(message(folder / "stereo.wav"), HasSubstr("found 2 channels, expected one channel"));
 }
 
@@ -154,7 +154,7 @@ TEST(PulseFile, StandsInAScenario) {
   for (int i = 0; i < 1600; ++i)
     wav.push_back(static_cast<float>(std::sin(2.0 * pi * 1000.0 * i / 16000.0) *
                                      std::pow(std::sin(pi * i / 1600.0), 2)));
-  write_wav(folder / "p.wav", wav, 1, 16000.0);
+  write_wav(folder / "p.wav", wav, {.phones = 1}, 16000.0);
   const std::string path = std::string(ASDIC_SCENARIOS) + "/isovelocity.toml";
   const std::vector<std::string> overrides{"pulse={kind=\"file\", file=\"" +
                                            (folder / "p.wav").string() + "\"}"};
