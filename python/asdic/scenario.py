@@ -205,6 +205,9 @@ class _Run(_Table):
 class Scenario(_Table):
     """A scenario: everything that a simulation needs.
 
+    Attributes are the settings: ``s.pulse.duration``, ``s.targets[0].depth = 200``. ``dir(s.pulse)``
+    lists them, ``s.pulse.help("duration")`` explains one.
+
     Parameters
     ----------
     file : path, optional
@@ -228,9 +231,6 @@ class Scenario(_Table):
     InputError
         With file, line, key, found, expected. Values are checked in full by :meth:`validate` and by
         the first method that computes.
-
-    Attributes are the settings: ``s.pulse.duration``, ``s.targets[0].depth = 200``. ``dir(s.pulse)``
-    lists them, ``s.pulse.help("duration")`` explains one.
     """
 
     __slots__ = ()

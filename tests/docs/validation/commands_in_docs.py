@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""The commands in the documentation run: every ```sh block under a line `<!-- test -->` in
-README.md and docs/guide/*.md.
+"""The commands in the documentation run: every ```sh and ```python block under a line
+`<!-- test -->` in README.md and docs/guide/*.md.
 
 The blocks of one page run in order, in one working directory: a fresh copy of scenarios/ (and tests/data/bellhop), with
 `asdic` on PATH. A block may end in a line `# exit 2`: then that is the exit code it must have.
-Lines of output are not compared.
+Lines of output are not compared. The ```python blocks of a page are one program. It runs in the
+same directory after the commands, with the built package asdic, where there is one.
 
     ASDIC=build/ci/bin/asdic commands_in_docs.py [PAGE.md ...]
 """
@@ -18,10 +19,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 TIME_LIMIT = 600  # of a block [s]
+PYTHON = "/usr/bin/python3"  # that the package is built for
 
 
 def blocks(page):
-    """→ [(line number, commands)] of the marked blocks. \\throws ValueError for a mark without a
+    """→ [(line number, language, commands)] of the marked blocks. \\throws ValueError for a mark without a
     block, or a block without an end
     """
     lines = page.splitlines()
@@ -29,13 +31,29 @@ def blocks(page):
     for number, line in enumerate(lines):
         if line.strip() != "<!-- test -->":
             continue
-        if number + 1 >= len(lines) or lines[number + 1].strip() != "```sh":
-            raise ValueError(f"line {number + 1}: <!-- test --> without a ```sh block just below")
+        language = lines[number + 1].strip() if number + 1 < len(lines) else ""
+        if language not in ("```sh", "```python"):
+            raise ValueError(f"line {number + 1}: <!-- test --> without a ```sh or ```python block "
+                             "just below")
         end = next((k for k in range(number + 2, len(lines)) if lines[k].strip() == "```"), None)
         if end is None:
             raise ValueError(f"line {number + 2}: a block without an end")
-        found.append((number + 3, "\n".join(lines[number + 2 : end]) + "\n"))
+        found.append((number + 3, language[3:], "\n".join(lines[number + 2 : end]) + "\n"))
     return found
+
+
+def program_of(todo):
+    """The ```python blocks as one program with the page's line numbers; "" if there are none."""
+    program = ""
+    for line, language, commands in todo:
+        if language == "python":
+            program += "\n" * (line - 1 - program.count("\n")) + commands
+    return program
+
+
+def has_package(environment):
+    return subprocess.run([PYTHON, "-c", "import asdic"], env=environment,
+                          capture_output=True).returncode == 0
 
 
 def expected_exit(commands):
@@ -55,17 +73,23 @@ def run_page(page, environment):
         if (ROOT / "scenarios").is_dir():
             shutil.copytree(ROOT / "scenarios", Path(folder) / "scenarios")
             shutil.copytree(ROOT / "tests/data/bellhop", Path(folder) / "tests/data/bellhop")
-        for line, commands in todo:
+        runs = [(line, commands, ["bash", "-euo", "pipefail", "-c", commands])
+                for line, language, commands in todo if language == "sh"]
+        program = program_of(todo)
+        if program and ("asdic" not in program or has_package(environment)):
+            runs.append((1, program, [PYTHON, "-W", "error::DeprecationWarning:__main__",
+                                      "-c", program]))
+        for line, commands, words in runs:
             try:
-                done = subprocess.run(["bash", "-euo", "pipefail", "-c", commands], cwd=folder,
-                                      env=environment, capture_output=True,
+                done = subprocess.run(words, cwd=folder, env=environment, capture_output=True,
                                       text=True, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
                 code, said = done.returncode, done.stderr
             except subprocess.TimeoutExpired:
                 code, said = None, f"not done after {TIME_LIMIT} s"
             if code != expected_exit(commands):  # the next blocks build on this one
                 wanted = expected_exit(commands)
-                fault = f"{page.name}:{line}: exit {code}, expected {wanted}\n{commands}{said}"
+                fault = (f"{page.name}:{line}: exit {code}, expected {wanted}\n"
+                         f"{commands.lstrip()}{said}")
                 return len(todo), [fault]
     return len(todo), []
 
@@ -81,11 +105,15 @@ def proves_itself(environment):
             return run_page(page, environment)
 
     sh = lambda commands: f"<!-- test -->\n```sh\n{commands}\n```\n"
+    python = lambda code: f"<!-- test -->\n```python\n{code}\n```\n"
     cases = [
         (sh("true"), 1, 0), (sh("false"), 1, 1), (sh("false\ntrue"), 1, 1),
         (sh("false | cat"), 1, 1), (sh("exit 2\n# exit 2"), 1, 0),
         (sh("true\n# exit 2"), 1, 1), (sh("touch a") + sh("test -e a"), 2, 0),
         ("```sh\nfalse\n```\n", 0, 0),
+        (python("assert True"), 1, 0), (python("assert False"), 1, 1),
+        (python("a = 1") + python("assert a == 1"), 2, 0),
+        (python("open('a')") + sh("touch a"), 2, 0), (python("open('a')"), 1, 1),
         ("<!-- test -->\ntext\n", 0, 1), ("<!-- test -->\n```sh\ntrue\n", 0, 1),
     ]
     for text, count, bad in cases:
@@ -102,6 +130,8 @@ def main():
     if program:
         folder = Path(program).resolve().parent
         environment["PATH"] = f"{folder}{os.pathsep}{environment.get('PATH', '')}"
+    built = Path(environment.get("ASDIC_BUILD", ROOT / "build/release")) / "python"
+    environment |= {"PYTHONPATH": str(built), "MPLBACKEND": "Agg"}
     if not proves_itself(environment):
         return 1
     known = [ROOT / "README.md", *sorted((ROOT / "docs" / "guide").glob("*.md"))]

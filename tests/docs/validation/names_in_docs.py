@@ -28,6 +28,10 @@ ENDINGS = (".h", ".cpp", ".py", ".sh", ".cmake")
 NOT_OURS = {"build", "__pycache__"}
 # Words of other programs: cmake, GNU parallel, mpirun, BELLHOP's manual.
 ELSEWHERE = {"--workflow", "--sshlogin", "--allow-run-as-root", "alphaP", "alphaS"}
+# arlpy's own, on the page for those who come from it.
+ELSEWHERE |= {"bottom_soundspeed", "tx_depth", "rx_depth", "rx_range", "min_angle", "max_angle",
+              "tx_directionality", "time_of_arrival", "arrival_amplitude", "angle_of_departure",
+              "angle_of_arrival", "arrival_number", "tx_depth_ndx", "rx_depth_ndx", "rx_range_ndx"}
 # What the program puts together: units of angles, numbers of transmitters, parameters of a law,
 # sides of a section, programs of the tests.
 PUT_TOGETHER = re.compile(r"_(deg|rad|\d+)$|^(scattering|surface|bottom|unit|property)_")
