@@ -23,7 +23,7 @@ def words_at_top(text):
             shown += ["", ".. code-block:: cpp", ""] if code else [""]
         else:
             shown.append("   " + line if code else re.sub(r"`([^`]+)`", r"``\1``", line))
-    return "\n".join(shown)
+    return re.sub(r"docs/(\w+/[\w-]+)\.md", r":doc:`/docs/\1`", "\n".join(shown))
 
 
 def declared(xml_folder, header):
