@@ -253,6 +253,10 @@ Action Program::parse(int argc, char** argv) {
 
 void add_scenario_options(const Command& command, ScenarioChoice& choice) {
   command.add_option("SCENARIO", choice.path, "scenario file (TOML)").required();
+  add_set_option(command, choice);
+}
+
+void add_set_option(const Command& command, ScenarioChoice& choice) {
   command
       .add_option(
           "--set", choice.overrides,

@@ -171,6 +171,8 @@ struct ScenarioChoice {
 
 /// SCENARIO and --set, as every command that reads a scenario has them.
 void add_scenario_options(const Command& command, ScenarioChoice& choice);
+/// --set alone, of a command whose file may be a scenario or something else.
+void add_set_option(const Command& command, ScenarioChoice& choice);
 
 /// --threads, as every command that computes has it.
 void add_threads_option(const Command& command, std::optional<int>& threads);

@@ -10,15 +10,36 @@
 #include "io/hdf5/readable.h"
 #include "io/ping/ping_file.h"
 #include "io/result/result_file.h"
+#include "io/result/scene_file.h"
+#include "io/scenario/propagation.h"
+#include "io/scenario/scenario_reader.h"
 #include "study/runs/study_file.h"
 
 namespace asdic::detail::app {
 namespace {
 
+/// An option that is the script's own: it goes there as it is typed, and is checked there.
+struct Passed {
+  std::string option, type, help;
+  std::string word{};
+};
+
 struct PlotOptions {
-  std::string file, folder, array;
+  ScenarioChoice scenario;  ///< its path may be that of any file to draw
+  std::string folder;
   std::optional<int> ping;
   bool force = false;
+  std::vector<Passed> passed{
+      {"--array", "NAME",
+       "array of a ping file to draw; default: the first (range over bearing: the first that tells "
+       "bearings)"},
+      {"--only", "NAME,...", "these pictures alone: --only levels,rays"},
+      {"--format", "KIND,...", "png, pdf or svg, or several: --format png,pdf; default: png"},
+      {"--dpi", "N", "pixels an inch of a PNG, and of images in the others; default: 150"},
+      {"--theme", "NAME", "light or dark; default: light"},
+      {"--limits", "LOW:HIGH",
+       "ends of colours and levels in dB; NAME=LOW:HIGH,... of one picture each"},
+  };
 };
 
 /// Whether it is a file of `asdic ping`; what is neither that nor a result of the propagation model
@@ -41,7 +62,7 @@ void check_drawable(const std::filesystem::path& file) {
     return InputError({.where = file.string(),
                        .got = got,
                        .expected = "a file to draw: HDF5 of asdic ping, study, merge, field, "
-                                   "arrivals or rays, or .shd, .arr, .ray"});
+                                   "arrivals or rays, or .shd, .arr, .ray, or a scenario, .toml"});
   };
   std::error_code error;
   if (!std::filesystem::exists(file, error)) throw wrong("no such file");
@@ -51,28 +72,52 @@ void check_drawable(const std::filesystem::path& file) {
   if (type != ".shd" && type != ".arr" && type != ".ray") throw wrong("a file that is not HDF5");
 }
 
+bool is_scenario(const std::filesystem::path& file) { return file.extension() == ".toml"; }
+
+/// What a scenario says, before anything is computed.
+std::filesystem::path scene_of(const ScenarioChoice& choice, const TemporaryFolder& folder) {
+  std::filesystem::path scene = folder.path() / "scene.h5";
+  if (has_sonar(choice.path, choice.overrides)) {
+    write_scene(scene, read_scenario(choice.path, choice.overrides));
+    return scene;
+  }
+  std::vector<std::string> notes;
+  write_scene(scene, read_propagation_case(choice.path, choice.overrides, notes));
+  return scene;
+}
+
 int plot(const PlotOptions& options) {
-  check_drawable(options.file);
+  const std::string& given = options.scenario.path;
+  if (!is_scenario(given)) {
+    check_drawable(given);
+    if (!options.scenario.overrides.empty())
+      throw InputError({.where = "--set", .got = given, .expected = "a scenario, .toml"});
+  }
   const TemporaryFolder folder;
-  std::filesystem::path file = options.file;
+  std::filesystem::path file = given;
   std::string pictures = options.folder;
   std::vector<std::string> names;
-  if (is_study_file(options.file)) {
-    study::StudyFile(options.file).check_parts();
-  } else if (is_ping_file(options.file)) {
-    static_cast<void>(PingFile(options.file));
+  if (is_scenario(given)) {
+    file = scene_of(options.scenario, folder);
+    names = {"--names", given};
+    if (pictures.empty()) pictures = folder_beside(given);
+  } else if (is_study_file(given)) {
+    study::StudyFile(given).check_parts();
+  } else if (is_ping_file(given)) {
+    static_cast<void>(PingFile(given));
   } else {
-    file = picture_source(options.file, folder, "result");
+    file = picture_source(given, folder, "result");
     static_cast<void>(read_result(file));
-    names = {"--names", options.file};
-    if (pictures.empty()) pictures = folder_beside(options.file);
+    names = {"--names", given};
+    if (pictures.empty()) pictures = folder_beside(given);
   }
   check_readable(Hdf5File::open(file));
   std::vector<std::string> words{file.string()};
   words.insert(words.end(), names.begin(), names.end());
   if (!pictures.empty()) words.insert(words.end(), {"--output", pictures});
   if (options.ping) words.insert(words.end(), {"--ping", std::to_string(*options.ping)});
-  if (!options.array.empty()) words.insert(words.end(), {"--array", options.array});
+  for (const Passed& one : options.passed)
+    if (!one.word.empty()) words.push_back(one.option + "=" + one.word);
   if (options.force) words.push_back("--force");
   return draw_pictures(words);
 }
@@ -81,13 +126,15 @@ int plot(const PlotOptions& options) {
 
 void add_plot_command(Program& program) {
   program.add_command(
-      "plot", "Draw the pictures of a ping file, a study, a field, arrivals or rays (PNG).",
+      "plot",
+      "Draw the pictures of a ping file, a study, a field, arrivals or rays, or of a scenario "
+      "before it runs.",
       [](const Command& command) {
         auto options = std::make_shared<PlotOptions>();
         command
-            .add_option(
-                "FILE", options->file,
-                "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or .ray")
+            .add_option("FILE", options->scenario.path,
+                        "HDF5 file of asdic ping, study, field, arrivals or rays; .shd, .arr or "
+                        ".ray; or a scenario, .toml")
             .required();
         command
             .add_option("-o,--output", options->folder,
@@ -96,16 +143,13 @@ void add_plot_command(Program& program) {
         command.add_option("--ping", options->ping, "ping to draw; default: the first")
             .type_name("N")
             .check(above_zero());
-        command
-            .add_option(
-                "--array", options->array,
-                "array of a ping file to draw; default: the first (range over bearing: the first "
-                "that tells bearings)")
-            .type_name("NAME");
+        for (Passed& one : options->passed)
+          command.add_option(one.option, one.word, one.help).type_name(one.type);
+        add_set_option(command, options->scenario);
         add_force_option(command, options->force);
         command.footer(
             "Needs Debian's python3-h5py and python3-matplotlib.\n"
-            "Example:  asdic plot deep_ocean.h5 -o pictures");
+            "Example:  asdic plot deep_ocean.h5 -o pictures --format pdf --only levels,rays");
         command.runs([options] { return plot(*options); });
       });
 }

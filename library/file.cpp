@@ -7,6 +7,9 @@
 #include "io/ping/ping_file.h"
 #include "io/ping/provenance.h"
 #include "io/processing/recordings.h"
+#include "io/result/scene_file.h"
+#include "io/scenario/propagation.h"
+#include "io/scenario/scenario_reader.h"
 #include "library/physics.h"
 #include "library/ping_access.h"
 
@@ -101,6 +104,16 @@ void write_pings(const std::filesystem::path& path, const Scenario& scenario, co
   PingWriter writer(path, scenario, {.stop = watch.stop});
   Pinger(scenario).run([&](const Ping& ping) { writer.append(ping); }, watch);
   writer.finish();
+}
+
+void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
+  const Scenario::Data& data = Access::data(scenario);
+  translated([&] {
+    if (detail::has_sonar(data.document))
+      return detail::write_scene(path, detail::scenario_of(data.document, data.path));
+    std::vector<std::string> notes;
+    detail::write_scene(path, detail::propagation_case_of(data.document, data.path, notes));
+  });
 }
 
 Ping read_ping(const std::filesystem::path& path, std::optional<int> number) {

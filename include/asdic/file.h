@@ -57,6 +57,10 @@ ASDIC_API void write_ping(const std::filesystem::path& path, const Scenario& sce
 ASDIC_API void write_pings(const std::filesystem::path& path, const Scenario& scenario,
                            const Watch& watch = {});
 
+/// What a scenario says of the sea and of who is where in it, for `asdic plot` to draw before
+/// anything is computed. A file that is there is replaced. \throws InputError, RunError
+ASDIC_API void write_scene(const std::filesystem::path& path, const Scenario& scenario);
+
 /// A ping of a file. Of a continuous record: all that is received of it, over the pings that
 /// follow. \throws InputError, RunError
 ///

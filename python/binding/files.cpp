@@ -10,6 +10,12 @@ void add_files(py::module_& module) {
                  return true;
                });
              });
+  module.def("write_scene", [](const std::filesystem::path& path, const Scenario& scenario) {
+    watched([&](const Watch&) {
+      write_scene(path, scenario);
+      return true;
+    });
+  });
   module.def("write_pings", [](const std::filesystem::path& path, const Scenario& scenario,
                                const py::object& progress) {
     watched(

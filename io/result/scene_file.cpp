@@ -1,0 +1,154 @@
+#include "io/result/scene_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "core/geometry.h"
+#include "io/files/digest.h"
+#include "io/hdf5/environment_group.h"
+#include "io/hdf5/scale.h"
+#include "raytrace/ocean/slice.h"
+
+namespace asdic::detail {
+namespace {
+
+constexpr int instants = 121;   // of a track
+constexpr double margin = 1.1;  // past the furthest thing of interest
+
+/// When the last record ends [s].
+double end_of(const PingSchedule& pings) {
+  return (pings.count - 1) * pings.interval + pings.recording_start + pings.recording_duration;
+}
+
+/// Tables of points: names, and [things, instants, 3] where they are.
+class Tracks {
+ public:
+  Tracks(Hdf5File& file, double end) : file_(file), end_(end) {}
+
+  template <class PlaceAt>
+  void write(const std::string& group, const std::vector<std::string>& names,
+             const PlaceAt& place_at) {
+    std::vector<double> places;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      for (int k = 0; k < instants; ++k) {
+        const Vec3 place = place_at(i, end_ * k / (instants - 1));
+        places.insert(places.end(), {place.x(), place.y(), place.z()});
+      }
+    const std::string name = group + "/track";
+    file_.make_group(group);
+    file_.set_attribute(group, "names", names);
+    if (names.empty()) return;
+    file_.write<double>(name, places, {names.size(), std::size_t{instants}, 3});
+    describe(file_, name, "east, north, depth from the start to the last record's end", "m");
+  }
+
+ private:
+  Hdf5File& file_;
+  double end_;
+};
+
+template <class Things>
+std::vector<std::string> names_of(const Things& things) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+void write_beams(Hdf5File& file, const Scenario& scenario) {
+  std::vector<double> elevation, width;
+  for (const Transmitter& transmitter : scenario.transmitters) {
+    const auto* const line = std::get_if<LineBeam>(&transmitter.beam);
+    const bool narrow = line != nullptr && line->taper != Taper::omnidirectional;
+    elevation.push_back(degrees(transmitter.elevation));
+    width.push_back(narrow ? degrees(line->beamwidth) : std::numeric_limits<double>::quiet_NaN());
+  }
+  file.write<double>("transmitters/elevation_deg", elevation, {elevation.size()});
+  describe(file, "transmitters/elevation_deg", "of the beam's axis, positive up", "degree");
+  file.write<double>("transmitters/beamwidth_deg", width, {width.size()});
+  describe(file, "transmitters/beamwidth_deg", "NaN of no line's beam", "degree");
+}
+
+void write_phones(Hdf5File& file, const Scenario& scenario) {
+  std::vector<double> places;
+  std::vector<std::int32_t> owners;
+  for (int a = 0; a < static_cast<int>(scenario.arrays.size()); ++a)
+    for (const Vec3& phone : phones_at(scenario, a, 1, 0.0)) {
+      places.insert(places.end(), {phone.x(), phone.y(), phone.z()});
+      owners.push_back(a);
+    }
+  file.write<double>("arrays/phone", places, {owners.size(), 3});
+  describe(file, "arrays/phone", "east, north, down of the array's middle, at the start", "m");
+  file.write<std::int32_t>("arrays/phone_array", owners, {owners.size()});
+  describe(file, "arrays/phone_array", "number of the phone's array, from 0");
+}
+
+}  // namespace
+
+void write_scene(const std::filesystem::path& path, const Scenario& scenario) {
+  Hdf5File file = Hdf5File::create(path);
+  write_filetype(file, "asdic scene", "1.0");
+  file.set_attribute("", "title", scenario.title);
+  file.set_attribute("", "scenario_sha256", sha256(scenario.text));
+  Tracks tracks(file, end_of(scenario.pings));
+  tracks.write("platforms", names_of(scenario.platforms), [&](std::size_t i, double time) -> Vec3 {
+    return scenario.platforms[i].track.at(time).position;
+  });
+  tracks.write("transmitters", names_of(scenario.transmitters),
+               [&](std::size_t i, double time) -> Vec3 {
+                 return transmitter_at(scenario, static_cast<int>(i), time).position;
+               });
+  tracks.write("arrays", names_of(scenario.arrays), [&](std::size_t i, double time) -> Vec3 {
+    return array_at(scenario, static_cast<int>(i), time).position;
+  });
+  tracks.write("targets", names_of(scenario.targets), [&](std::size_t i, double time) -> Vec3 {
+    return scenario.targets[i].track.at(time).position;
+  });
+  write_beams(file, scenario);
+  write_phones(file, scenario);
+
+  const Pulse pulse(pulse_of(scenario, 0));
+  file.set_attribute("", "frequency_hz", pulse.centre_frequency());
+  file.set_attribute("", "pulse_duration_s", pulse.duration());
+  file.set_attribute("", "pings", std::int64_t{scenario.pings.count});
+  file.set_attribute("", "end_s", end_of(scenario.pings));
+
+  const Vec3 source = transmitter_at(scenario, 0, 0.0).position;
+  double bearing = scenario.transect.bearing;
+  if (!scenario.targets.empty())
+    bearing = separation(source, scenario.targets.front().track.at(0.0).position).bearing;
+  double extent = 0.0;
+  for (const Target& target : scenario.targets)
+    extent = std::max(extent, separation(source, target.track.at(0.0).position).range);
+  for (int a = 0; a < static_cast<int>(scenario.arrays.size()); ++a)
+    extent = std::max(extent, separation(source, array_at(scenario, a, 0.0).position).range);
+  if (extent < 100.0) extent = 0.5 * 1500.0 * scenario.pings.recording_duration;
+  file.set_attribute("", "bearing_deg", compass_degrees(bearing));
+  const Environment plane =
+      slice(scenario.environment, scenario.transect.range_of(source.x(), source.y()),
+            std::cos(bearing - scenario.transect.bearing));
+  write_environment_group(file, plane, 0.0, margin * extent);
+  file.close();
+}
+
+void write_scene(const std::filesystem::path& path, const PropagationCase& run) {
+  Hdf5File file = Hdf5File::create(path);
+  write_filetype(file, "asdic scene", "1.0");
+  file.set_attribute("", "title", run.title);
+  file.set_attribute("", "frequency_hz", run.frequency);
+  file.write<double>("source_depth", run.source_depths, {run.source_depths.size()});
+  describe(file, "source_depth", "of the sources, at range 0", "m");
+  double last = run.box_range;
+  if (run.receivers.size() > 0) {
+    file.write<double>("receiver_depth", run.receivers.depths, {run.receivers.depths.size()});
+    describe(file, "receiver_depth", "of the receivers", "m");
+    file.write<double>("receiver_range", run.receivers.ranges, {run.receivers.ranges.size()});
+    describe(file, "receiver_range", "of the receivers", "m");
+    file.set_attribute("", "irregular", std::int64_t{run.receivers.irregular});
+    last = *std::max_element(run.receivers.ranges.begin(), run.receivers.ranges.end());
+  }
+  write_environment_group(file, run.environment, 0.0, last > 0.0 ? last : 50e3);
+  file.close();
+}
+
+}  // namespace asdic::detail

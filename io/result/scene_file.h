@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+
+#include "raytrace/cases/propagation_case.h"
+#include "sonar/scenario/scenario.h"
+
+namespace asdic::detail {
+
+/// Writes what a scenario says of the sea and of who is where in it, for a drawing of it before
+/// anything is computed: `filetype` "asdic scene", read by the pictures' script alone. The section
+/// leaves the first transmitter towards the first target, else along the transect. Tracks go on
+/// until the last record ends.
+void write_scene(const std::filesystem::path& path, const Scenario& scenario);
+/// The same of a run without a sonar: its sea, sources and receivers.
+void write_scene(const std::filesystem::path& path, const PropagationCase& run);
+
+}  // namespace asdic::detail
