@@ -43,6 +43,8 @@ endif()
 set(ASDIC_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the system's Python looks for packages, below the prefix")
 install(TARGETS asdic_python LIBRARY DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python EXCLUDE_FROM_ALL)
 install(FILES ${modules} DESTINATION ${ASDIC_PYTHON_DIR}/asdic COMPONENT python EXCLUDE_FROM_ALL)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/asdic_pictures DESTINATION ${ASDIC_PYTHON_DIR} COMPONENT python EXCLUDE_FROM_ALL
+        FILES_MATCHING PATTERN "*.py")  # asdic.pictures
 
 # pip's: with the library beside the extension. (In the build tree it lies in lib/.)
 set_target_properties(asdic_python PROPERTIES INSTALL_RPATH "$ORIGIN;$ORIGIN/../../lib")

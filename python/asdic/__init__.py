@@ -20,6 +20,15 @@ from .studies import Measure, StudyResult, read_study, study
 from .told import AsdicWarning
 
 __version__ = version()
-__all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Processed", "RunError", "Scenario", "Stopped",
-           "StudyResult", "bellhop", "build", "group", "open", "process", "read_study", "settings",
-           "study", "version"]
+
+
+def __getattr__(name: str):
+    if name == "pictures":      # needs matplotlib, which takes a while: only who draws waits
+        import importlib
+        return importlib.import_module(".pictures", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+__all__ = ["Arrivals", "AsdicWarning", "Channel", "InputError", "Measure", "Processed",
+           "RunError", "Scenario", "Stopped", "StudyResult", "bellhop", "build", "group", "open",
+           "process", "read_study", "settings", "study", "version"]

@@ -16,14 +16,16 @@ def nothing_to_show(data, ping):
     return None
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     delay = data.read("processed/ambiguity/delay")
     doppler = data.read("processed/ambiguity/doppler_factor")
     power = data.read("processed/ambiguity/power").astype(float)
     db = 10.0 * np.log10(np.maximum(power, 1e-12))
-    fig, axes = style.figure(TITLE, 5.6)
+    fig, axes = style.figure(TITLE, 5.6, axes)
     shift = data.centre_frequency * (doppler - 1.0)
-    mesh = style.image(axes, style.cell_edges(delay), style.cell_edges(shift), db, (-50.0, 0.0))
+    mesh = style.image(axes, style.cell_edges(delay), style.cell_edges(shift), db,
+                       limits or (-50.0, 0.0))
     if (db > -3.0).any():
         lines = axes.contour(delay, shift, db, levels=[-20.0, -3.0], colors="white",
                              linewidths=[0.7, 1.2], linestyles="solid")

@@ -30,7 +30,8 @@ def stems(axes, receiver, floor: float, sign: float = 1.0) -> None:
     """A line from the floor to each arrival's level, in the colour of what it met."""
     keep = strong(receiver)
     met = np.array([sea.history(s, b) for s, b in zip(receiver.surface, receiver.bottom)], int)
-    for k, (_, _, _, colour) in enumerate(sea.HISTORIES):
+    for k in range(len(sea.HISTORIES)):
+        colour = sea.shade(k)
         mine = keep & (met == k)
         height = sign * (receiver.level[mine] - floor)
         axes.vlines(receiver.delay[mine], 0.0, height, color=colour, lw=1.2, zorder=3)
@@ -61,25 +62,27 @@ def bounds(*receivers):
 
 def history_handles(*receivers):
     met = {sea.history(s, b) for r in receivers for s, b in zip(r.surface, r.bottom)}
-    return [Line2D([], [], color=colour, lw=1.8, label=f"met {name}")
-            for k, (name, _, _, colour) in enumerate(sea.HISTORIES) if k in met]
+    return [Line2D([], [], color=sea.shade(k), lw=1.8, label=sea.met(k))
+            for k in range(len(sea.HISTORIES)) if k in met]
 
 
-def draw(arrivals):
+@style.picture
+def draw(arrivals, axes=None, limits=None):
     panels = chosen(arrivals.receivers)
-    fig, rows = style.figure(TITLE, 1.6 + 2.2 * len(panels), nrows=len(panels), squeeze=False)
+    fig, rows = style.figure(TITLE, 1.6 + 2.2 * len(panels), axes, nrows=len(panels), squeeze=False)
     for axes, i in zip(rows[:, 0], panels):
         receiver = arrivals.receivers[i]
         floor, top, first, last = bounds(receiver)
+        floor, top = limits or (floor, top)
         stems(axes, receiver, floor)
         level_axis(axes, floor, top)
         axes.set_xlim(first, last)
         style.subtitle(axes, f"{receiver.label}: {receiver.delay.size} arrivals")
     rows[-1, 0].set_xlabel("delay / s")
     more = len(arrivals.receivers) - len(panels)
-    fig.suptitle(f"{TITLE}: {style.shorten(arrivals.title, 60)}, {arrivals.frequency:g} Hz"
-                 + (f"; {more} more receivers" if more > 0 else ""),
-                 x=0.012, ha="left", fontsize=13, fontweight="bold")
-    style.legend_below(rows[-1, 0], history_handles(*[arrivals.receivers[i] for i in panels]),
-                       below=0.26)
+    told = [style.plain(arrivals.title)] if arrivals.title else []
+    told += [f"{arrivals.frequency:g} Hz"] if np.isfinite(arrivals.frequency) else []
+    told += [f"{more} more receivers"] if more > 0 else []
+    style.title(fig, TITLE + (": " if told else "") + ", ".join(told))
+    style.legend_below(rows[-1, 0], history_handles(*[arrivals.receivers[i] for i in panels]))
     return fig

@@ -2,17 +2,13 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.lines import Line2D
 
-from . import signal, style
+from . import bearings, signal, style
 
 TITLE = "Bearing–time record, conventional beams"
 TITLES = {"horizontal": "Bearing–time record of the horizontal array",
           "vertical": "Elevation–time record of the vertical array",
           "azimuth": "Bearing–time record of the array"}
-LABELS = {"horizontal": "apparent bearing relative to\nbroadside ({}° true)",
-          "vertical": "look elevation, up positive",
-          "azimuth": "look bearing, true, horizontal"}
 COLUMNS = 900
 
 
@@ -37,40 +33,56 @@ def record(data, ping):
 
 
 def angle_axis(axes, where):
-    """Degrees on an axis that is even in the sine for a line array."""
+    """Directions on an axis that is even in the sine for a line array."""
     if where.kind == "azimuth":
-        axes.set_yticks(np.arange(0, 361, 45))
-        ticks = np.arange(0, 361, 45)
+        bearings.of_circle(axes)
+    elif where.kind == "vertical":
+        bearings.of_upright(axes)
     else:
-        ticks = np.array([-90, -60, -45, -30, -15, 0, 15, 30, 45, 60, 90])
-        axes.set_yticks(np.sin(np.radians(ticks)))
-    signed = where.kind != "azimuth"
-    axes.set_yticklabels([f"{t:+d}°".replace("-", "−") if signed and t else f"{t}°" for t in ticks])
-    axes.set_ylabel(LABELS[where.kind].format(signal.broadside(where)))
+        bearings.of_line(axes, where.axis)
 
 
-def draw(data, ping):
+def mark_height(data, ping, where) -> float:
+    """Of a box around an echo: a beam, and never too low to be seen."""
+    phones = data.phones(ping)
+    speed = data.sound_speed(float(phones[:, 2].mean()))
+    width = bearings.beam_width(phones, data.centre_frequency, speed)
+    if where.kind == "azimuth":
+        return max(np.degrees(width), 18.0)
+    return max(width, 0.1)
+
+
+def mark_echoes(axes, data, ping, where, first: float, last: float) -> list:
+    """A box around each true echo: its whole pulse, one beam high. → handles for a legend"""
+    handles = []
+    height = mark_height(data, ping, where)
+    for echo in data.echoes(ping):
+        strong = echo.strong(first, last)
+        if not strong.any():
+            continue
+        shade = style.colour(echo.target)
+        starts = echo.delay[strong]
+        for begin, end, place in style.together(starts, starts + data.pulse_duration,
+                                                signal.apparent(where, echo.direction[strong]),
+                                                0.5 * height):
+            style.box(axes, begin, end, place - 0.5 * height, place + 0.5 * height, shade)
+        handles.append(style.box_key(shade, f"{style.name(echo.name)}: true echo, one pulse long"))
+    return handles
+
+
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     where, edges, db = record(data, ping)
-    fig, axes = style.figure(TITLES[where.kind], 5.0)
-    limits = style.colour_limits(db, data.loudest_echo(ping))
+    fig, axes = style.figure(TITLES[where.kind], 5.0, axes)
+    limits = limits or style.colour_limits(db, data.loudest_echo(ping))
     mesh = style.image(axes, edges, style.cell_edges(where.coordinate), db, limits)
-    axes.set_ylim(where.coordinate[0], where.coordinate[-1])
     angle_axis(axes, where)
+    axes.set_ylim(where.coordinate[0], where.coordinate[-1])
     style.image_frame(axes)
     style.time_axis(axes, edges[0], edges[-1])
     style.colour_bar(fig, mesh, axes,
                      f"beam level in {data.envelope(ping).width:.0f} Hz / dB re 1 µPa")
     style.subtitle(axes,
                    f"{data.heading(ping)}  ·  {data.channels} phones, {data.centre_frequency:g} Hz")
-    handles = []
-    for echo in data.echoes(ping):
-        strong = echo.strong(edges[0], edges[-1])
-        if strong.any():
-            axes.plot(echo.delay[strong], signal.apparent(where, echo.direction[strong]), ls="none",
-                      marker="o", ms=9, mfc="none", mec=style.colour(echo.target), mew=1.4,
-                      path_effects=style.OVER_MAP, zorder=4)
-            handles.append(Line2D([], [], ls="none", marker="o", ms=9, mfc="none",
-                                  mec=style.colour(echo.target), mew=1.6,
-                                  label=f"{style.name(echo.name)}: true arrivals"))
-    style.legend_below(axes, handles[:4], ncol=2)
+    style.legend_below(axes, mark_echoes(axes, data, ping, where, edges[0], edges[-1])[:4], ncol=2)
     return fig

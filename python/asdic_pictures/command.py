@@ -5,15 +5,28 @@ import argparse
 import os
 import sys
 import warnings
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from . import output
+from . import api, output
 from .data import InputError, PingFile
 from .results import KINDS, filetype
 
+# Options of `asdic plot` that are checked here: app/plot_command.cpp hands them over as typed.
+OPTIONS = [
+    ("--array", "NAME", "array to draw (default: the first; range_bearing the first that tells "
+                        "bearings)"),
+    ("--only", "NAME,...", "these pictures alone"),
+    ("--format", "KIND,...", "png, pdf, svg"),
+    ("--dpi", "N", "pixels an inch"),
+    ("--theme", "NAME", "light or dark"),
+    ("--limits", "LOW:HIGH", "ends of colours and levels [dB]; NAME=LOW:HIGH,... of one each"),
+]
+LEAST_DPI, MOST_DPI = 30.0, 1200.0
+
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="asdic plot",
+    parser = argparse.ArgumentParser(prog="asdic plot", allow_abbrev=False,
                                      description="Draws the pictures of a file of asdic's.")
     parser.add_argument("file", metavar="FILE.h5",
                         help="written by `asdic ping`, `field`, `arrivals`, `rays` or `study`")
@@ -21,17 +34,113 @@ def arguments(argv):
                         help="folder for the pictures (default: FILE without .h5); with --against "
                              "the picture")
     parser.add_argument("--ping", metavar="N", type=int, help="ping to draw (default: the first)")
-    parser.add_argument("--array", metavar="NAME",
-                        help="array to draw (default: the first; range_bearing the first that "
-                             "tells bearings)")
+    for name, kind, told in OPTIONS:
+        parser.add_argument(name, metavar=kind, help=told)
     parser.add_argument("--against", metavar="B.h5", help="draw FILE against this reference")
     parser.add_argument("--names", metavar="NAME", nargs="+", default=[],
                         help="what the files are called in the pictures")
     parser.add_argument("--floor", metavar="DB", type=float, default=120.0,
                         help="differences of fields where both losses are below this")
+    parser.add_argument("--program", metavar="VERSION", default="", help="of the program that asks")
     parser.add_argument("--force", action="store_true",
                         help="write over files even if asdic did not write them")
     return parser.parse_args(argv)
+
+
+@dataclass
+class Wishes:
+    """How pictures are to be written, and which."""
+
+    folder: Path
+    formats: list = field(default_factory=lambda: ["png"])
+    dpi: float | None = None
+    theme: str | None = None
+    only: list | None = None
+    limits: tuple | None = None             # of every picture [dB]
+    limits_of: dict = field(default_factory=dict)
+    force: bool = False
+    program: str = ""
+
+    def wants(self, name: str) -> bool:
+        return self.only is None or name in self.only
+
+    def limits_for(self, name: str):
+        return self.limits_of.get(name, self.limits)
+
+    def check_names(self, known) -> None:
+        """That what was asked for by name can be had of this kind of file. \\throws InputError"""
+        known = list(dict.fromkeys(known))
+        for option, names in (("--only", self.only or []), ("--limits", self.limits_of)):
+            for name in names:
+                if name not in known:
+                    raise InputError(option, f'"{name}"', "one of " + ", ".join(known))
+
+    def write(self, fig, name: str, told: str) -> None:
+        """A picture in every format, and a line for each."""
+        from . import style
+
+        tags = getattr(fig, "tags", output.Tags())
+        tags.version = self.program or tags.version
+        for kind in self.formats:
+            path = self.folder / f"{name}.{kind}"
+            style.write(fig, path, self.force, dpi=self.dpi, tags=tags)
+            say(f"{path}: {told}")
+
+    def leave_out(self, name: str, reason: str | None) -> None:
+        """A picture of an earlier run that is left out now is removed, if it is ours, so a folder
+        never shows two files' pictures.
+        """
+        for kind in output.FORMATS:
+            output.remove(self.folder / f"{name}.{kind}")
+        if reason:
+            say(f"{self.folder / name}.{self.formats[0]}: left out, {reason}")
+
+
+def pair(option: str, word: str) -> tuple:
+    """LOW:HIGH"""
+    parts = word.split(":")
+    try:
+        low, high = (float(p) for p in parts)
+    except ValueError:
+        low = high = float("nan")
+    if not low < high or abs(low) == float("inf") or abs(high) == float("inf"):
+        raise InputError(option, f'"{word}"', "LOW:HIGH in dB, LOW below HIGH: --limits 40:90")
+    return low, high
+
+
+def wishes(options, folder: Path) -> Wishes:
+    """\\throws InputError"""
+    made = Wishes(folder, theme=options.theme, force=options.force, program=options.program)
+    if options.format:
+        made.formats = list(dict.fromkeys(w.strip().lower().lstrip(".")
+                                          for w in options.format.split(",")))
+        for word in made.formats:
+            if word not in output.FORMATS:
+                raise InputError("--format", f'"{word}"', "one of " + ", ".join(output.FORMATS))
+    if options.dpi:
+        try:
+            made.dpi = float(options.dpi)
+        except ValueError:
+            made.dpi = float("nan")
+        if not LEAST_DPI <= made.dpi <= MOST_DPI:
+            raise InputError("--dpi", f'"{options.dpi}"',
+                             f"a number from {LEAST_DPI:g} to {MOST_DPI:g}")
+    if options.theme and options.theme not in ("light", "dark"):
+        raise InputError("--theme", f'"{options.theme}"', "light or dark")
+    if options.only:
+        endings = tuple("." + kind for kind in output.FORMATS)
+        words = [w.strip() for w in options.only.split(",") if w.strip()]
+        made.only = [w.rsplit(".", 1)[0] if w.endswith(endings) else w for w in words]
+    for word in (options.limits or "").split(","):
+        name, is_one, rest = word.partition("=")
+        if is_one:
+            made.limits_of[name.strip()] = pair("--limits", rest)
+            if name.strip() not in api.WITH_LIMITS:
+                raise InputError("--limits", f'"{name.strip()}"',
+                                 "one of " + ", ".join(api.WITH_LIMITS))
+        elif word:
+            made.limits = pair("--limits", word)
+    return made
 
 
 def default_folder(file: str) -> Path:
@@ -51,92 +160,98 @@ def complain(line: str) -> None:
     say(f"asdic plot: {line}", sys.stderr)
 
 
-def draw_all(data: PingFile, ping: int, folder: Path, array: str | None = None,
-             force: bool = False) -> None:
+def draw_all(data: PingFile, ping: int, wish: Wishes, array: str | None = None) -> None:
     """Draws each picture, or says why it is left out: there is nothing to show.
 
-    A picture of an earlier run that is left out now is removed, if it is ours, so a folder never
-    shows two files' pictures. Those of `asdic process` are spoken of only where it has run.
-    Without `array`, what the first receives; range over bearing of the first that tells bearings.
+    Those of `asdic process` are spoken of only where it has run. Without `array`, what the first
+    receives; range over bearing of the first that tells bearings.
     """
-    from . import (ambiguity, bearing_time, detections, levels, matched_filter, pressure, processed,
-                   range_bearing, rays, spectrogram, style, sweep, tracks)
+    from . import processed
 
-    chosen = data.choose_array(array) if array else 0
-    of_all = (rays, levels, ambiguity)
-    received = (detections, range_bearing, ambiguity, tracks)
-    for module in (rays, pressure, bearing_time, levels, spectrogram, matched_filter, sweep,
-                   *received):
-        name = module.__name__.rsplit(".", 1)[1] + ".png"
-        data.select_array(chosen)
-        if module is range_bearing and not array:
-            select_first(data, lambda: module.nothing_to_show(data, ping))
-        reason = module.nothing_to_show(data, ping)
-        if reason:
-            output.remove(folder / name)
-            if module not in received or processed.there(data):
-                say(f"{folder / name}: left out, {reason}")
+    wish.check_names(api.OF_PINGS)
+    number = data.numbers[ping]
+    if array:
+        data.choose_array(array)
+    for name in api.OF_PINGS:
+        if not wish.wants(name):
             continue
-        style.write(module.draw(data, ping), folder / name, force)
-        say(f"{folder / name}: {module.TITLE}{'' if module in of_all else data.of_array}")
+        reason = api.select(data, name, ping, array)
+        if reason:
+            silent = name in api.PROCESSED and not processed.there(data) and wish.only is None
+            wish.leave_out(name, None if silent else reason)
+            continue
+        fig = api.of_ping(name, data, ping=int(number), array=data.array,
+                          limits=wish.limits_for(name), theme=wish.theme)
+        of_array = "" if name in api.OF_ALL_ARRAYS else data.of_array
+        wish.write(fig, name, api.module(name).TITLE + of_array)
     if len(data.array_names) > 1 and not array:
         names = ", ".join(f'"{n}"' for n in data.array_names)
         say(f"the file holds {len(data.array_names)} arrays, {names}: --array NAME draws another")
 
 
-def select_first(data: PingFile, missing) -> None:
-    """The first array of which a picture can be drawn; the first of all if there is none."""
-    for number in range(len(data.array_names)):
-        data.select_array(number)
-        if not missing():
-            return
-    data.select_array(0)
-
-
-def draw_result(options) -> None:
+def draw_result(options, wish: Wishes) -> None:
     """Each picture of a field, arrivals or rays, as draw_all does for pings."""
-    from . import arrival_stems, ray_paths, results, style, transmission_loss
+    from . import results
 
     result = results.read(options.file)
     result.title = result.title or short_name((options.names or [options.file])[0])
-    folder = Path(options.output) if options.output else default_folder(options.file)
-    folder.mkdir(parents=True, exist_ok=True)
-    name, module = {results.Field: ("transmission_loss", transmission_loss),
-                    results.Arrivals: ("arrivals", arrival_stems),
-                    results.Rays: ("rays", ray_paths)}[type(result)]
+    wish.folder.mkdir(parents=True, exist_ok=True)
+    name, module = api.result_module(result)
+    wish.check_names([name])
     if reason := module.nothing_to_show(result):
-        output.remove(folder / f"{name}.png")
-        say(f"{folder / name}.png: left out, {reason}")
+        wish.leave_out(name, reason)
         return
     sources = result.source_depths.size if isinstance(result, results.Field) else 1
     for source in range(sources):
-        path = folder / (f"{name}_{source + 1}.png" if sources > 1 else f"{name}.png")
-        style.write(module.draw(result, source) if sources > 1 else module.draw(result), path,
-                    options.force)
-        say(f"{path}: {module.TITLE}")
+        own = dict(source=source) if sources > 1 else {}
+        fig = api.of_result(result, name, limits=wish.limits_for(name), theme=wish.theme, **own)
+        wish.write(fig, f"{name}_{source + 1}" if sources > 1 else name, module.TITLE)
 
 
-def draw_study(options) -> None:
+def draw_scene(options, wish: Wishes) -> None:
+    """A scenario before it runs."""
+    from . import scene, scene_pictures
+
+    found = scene.read(options.file)
+    found.title = found.title or short_name((options.names or [options.file])[0])
+    wish.folder.mkdir(parents=True, exist_ok=True)
+    wish.check_names(api.OF_SCENES)
+    for name, (_, nothing, told) in scene_pictures.PICTURES.items():
+        if not wish.wants(name):
+            continue
+        if reason := nothing(found):
+            wish.leave_out(name, reason)
+            continue
+        wish.write(api.of_scene(name, found, theme=wish.theme), name, told)
+
+
+def draw_study(options, wish: Wishes) -> None:
     """Every picture that the summary and the table of a study can feed."""
     from . import study_data, study_pictures, style
 
     study = study_data.read(options.file)
-    folder = Path(options.output) if options.output else default_folder(options.file)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, figure in study_pictures.draw(study):
-        path = folder / f"{name}.png"
-        style.write(figure, path, options.force)
-        say(f"{path}: {figure._suptitle.get_text()}")
+    wish.folder.mkdir(parents=True, exist_ok=True)
+    wish.check_names(name for one in study_pictures.ALL
+                     for name in study_pictures.names_of(study, one))
+    with style.look(wish.theme):
+        for name, figure in study_pictures.draw(study, wish.only):
+            wish.write(api.tagged(figure, **study.tags), name, figure.name)
+    for name, reason in study_pictures.left_out(study).items():
+        if wish.wants(name):
+            wish.leave_out(name, reason)
 
 
 def draw_comparison(options) -> None:
-    from . import comparison, results, style
+    from . import results, style
 
-    a, b = results.read(options.file), results.read(options.against)
     names = options.names if len(options.names) == 2 else [options.file, options.against]
     path = Path(options.output or "comparison.png")
-    figure = comparison.draw(a, b, [short_name(name) for name in names], options.floor)
-    style.write(figure, path, options.force)
+    wish = wishes(options, path.parent)
+    fig = api.of_two(results.read(options.file), results.read(options.against),
+                     [short_name(name) for name in names], floor=options.floor,
+                     limits=wish.limits, theme=wish.theme)
+    fig.tags.version = wish.program or fig.tags.version
+    style.write(fig, path, options.force, dpi=wish.dpi, tags=fig.tags)
     say(f"{path}: A against B", sys.stderr)
 
 
@@ -151,17 +266,21 @@ def run(argv=None) -> int:
     if options.against:
         draw_comparison(options)
         return 0
-    if filetype(options.file) == "asdic study":
-        draw_study(options)
+    wish = wishes(options, Path(options.output) if options.output else default_folder(options.file))
+    kind = filetype(options.file)
+    if kind == "asdic scene":
+        draw_scene(options, wish)
         return 0
-    if filetype(options.file) in KINDS:
-        draw_result(options)
+    if kind == "asdic study":
+        draw_study(options, wish)
+        return 0
+    if kind in KINDS:
+        draw_result(options, wish)
         return 0
     with PingFile(options.file) as data:
         ping = data.choose_ping(options.ping)
-        folder = Path(options.output) if options.output else default_folder(options.file)
-        folder.mkdir(parents=True, exist_ok=True)
-        draw_all(data, ping, folder, options.array, options.force)
+        wish.folder.mkdir(parents=True, exist_ok=True)
+        draw_all(data, ping, wish, options.array)
         for warning in data.warnings():
             complain(f"{options.file}: {warning}")
     return 0

@@ -8,7 +8,7 @@ from functools import cached_property
 import h5py
 import numpy as np
 
-from . import signal
+from . import signal, source
 
 
 ENVELOPE_SAMPLES = 2000  # at least: two for every column of a picture
@@ -18,6 +18,7 @@ class InputError(Exception):
     """The file is not what it should be: where, what was found, what was expected."""
 
     def __init__(self, where, found, expected):
+        self.words = str(where), str(found), str(expected)
         super().__init__(f"{where}: found {found}, expected {expected}")
 
 
@@ -48,29 +49,39 @@ def travel_direction(elevation_deg, bearing_deg):
     return np.stack([np.cos(e) * np.sin(b), np.cos(e) * np.cos(b), -np.sin(e)], axis=-1)
 
 
+def opened(path):
+    """\\throws InputError"""
+    expected = "a ping file written by `asdic ping`"
+    if not os.path.exists(path):
+        raise InputError(path, "no such file", expected)
+    if os.path.isdir(path):
+        raise InputError(path, "a directory", expected)
+    if not os.access(path, os.R_OK):
+        raise InputError(path, "a file that may not be read", "one with read permission")
+    try:
+        return h5py.File(path, "r")
+    except Exception as error:
+        whole = "truncated" not in str(error)
+        raise InputError(path, "a file that is not HDF5" if whole else "a truncated HDF5 file",
+                         expected) from error
+
+
 class PingFile:
-    """A ping file open for reading; every ping is given by its row, from 0.
+    """A ping file open for reading, or a dataset like one (source.py); every ping is given by its
+    row, from 0.
 
     Raises InputError if it is missing, damaged, or something else
     """
 
     def __init__(self, path):
-        self.path = str(path)
+        self.path = source.name_of(path) if source.is_dataset(path) else str(path)
         self._bad_samples: dict[tuple[int, int], int] = {}
         self._envelopes: dict[int, signal.Baseband] = {}
         self._columns: dict[str, np.ndarray] = {}
-        if not os.path.exists(path):
-            raise InputError(path, "no such file", "a ping file written by `asdic ping`")
-        if os.path.isdir(path):
-            raise InputError(path, "a directory", "a ping file written by `asdic ping`")
-        if not os.access(path, os.R_OK):
-            raise InputError(path, "a file that may not be read", "one with read permission")
-        try:
-            self.file = h5py.File(path, "r")
-        except Exception as error:
-            whole = "truncated" not in str(error)
-            raise InputError(path, "a file that is not HDF5" if whole else "a truncated HDF5 file",
-                             "a ping file written by `asdic ping`") from error
+        if isinstance(path, source.Group):
+            self.file = path
+        else:
+            self.file = source.of_dataset(path) if source.is_dataset(path) else opened(path)
         kind = self._text(self.file.attrs, "filetype")
         if kind != "asdic ping":
             self.file.close()
@@ -114,7 +125,7 @@ class PingFile:
         except Exception as error:
             raise InputError(self.path, f"no dataset {name}",
                              "one (docs/formats/ping.md)") from error
-        if not isinstance(item, h5py.Dataset):
+        if not hasattr(item, "shape"):
             raise InputError(self.path, f"a group where the dataset {name} should be", "a dataset")
         return item
 
@@ -208,6 +219,12 @@ class PingFile:
     @cached_property
     def title(self) -> str:
         return self._text(self.file.attrs, "title") or ""
+
+    def tags(self, row: int) -> dict:
+        """What a picture of a ping says of itself (output.Tags)."""
+        return dict(title=self.title, version=self._text(self.file.attrs, "program_version") or "",
+                    digest=self._text(self.file.attrs, "scenario_sha256") or "",
+                    ping=int(self.numbers[row]))
 
     @cached_property
     def numbers(self) -> np.ndarray:

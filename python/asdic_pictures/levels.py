@@ -28,17 +28,18 @@ def measured(data, ping, step: float):
     return time, total / counts / data.channels
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     """The levels in the file are means over all phones: so is what is measured here."""
     chosen = data.array
     data.select_array(None)
     try:
-        return draw_all_phones(data, ping)
+        return draw_all_phones(data, ping, axes, limits)
     finally:
         data.select_array(chosen)
 
 
-def draw_all_phones(data, ping):
+def draw_all_phones(data, ping, axes, limits):
     time, parts = data.levels(ping)
     step = float(np.median(np.diff(time))) if time.size > 1 else data.samples / data.sample_rate
     t_total, total = measured(data, ping, step)
@@ -49,7 +50,7 @@ def draw_all_phones(data, ping):
 
     echoes = all_echoes(data, ping)
     targets = len({e.target for e in echoes})
-    fig, axes = style.figure(TITLE, 4.8)
+    fig, axes = style.figure(TITLE, 4.8, axes)
     # level_time tells where a step starts
     starts = time.size and time[0] - data.start < 0.25 * step
     middle = time + 0.5 * step if starts else time
@@ -67,14 +68,16 @@ def draw_all_phones(data, ping):
             drawn.append(axes.plot(middle, db, color=colour, lw=1.9, label=label, zorder=4,
                                    alpha=0.9)[0])
             shown.append(db)
-    limits(axes, shown)
+    fit(axes, shown)
+    if limits:
+        axes.set_ylim(*limits)
     say_what_is_hidden(axes, drawn)
     style.time_axis(axes, data.start, max(t_total[-1] + 0.5 * step, data.start + step))
     axes.set_ylabel("level / dB re 1 µPa")
     axes.grid(True)
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
-    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, steps of {1e3 * step:.0f} ms")
-    marks = mark_echoes(axes, echoes)
+    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, steps of {1e3 * step:.0f} ms", marks=True)
+    marks = mark_echoes(axes, echoes, data.pulse_duration)
     style.legend_below(axes, axes.get_legend_handles_labels()[0] + marks)
     return fig
 
@@ -97,7 +100,7 @@ def say_what_is_hidden(axes, lines):
             line.set_label(f"{line.get_label()} (below the axis, at most {highest:.0f} dB)")
 
 
-def limits(axes, curves):
+def fit(axes, curves):
     """From 10 dB below what is measured, at most 100 dB below the peak: tails unheard are cut."""
     good = [c[np.isfinite(c)] for c in curves]
     values = np.concatenate(good) if good else np.zeros(0)

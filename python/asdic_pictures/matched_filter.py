@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from . import signal, style
-from .pressure import extremes, mark_echoes
+from .pressure import extremes
 
 TITLE = "Matched filter"
 COLUMNS = 1400
@@ -76,13 +76,14 @@ def peaks(time, db):
     return time[starts], most
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     last = data.start + data.valid_samples[ping] / data.sample_rate
     echoes = [e for e in data.echoes(ping) if data.start <= e.delay[e.strongest] <= last]
     best = max(echoes, key=lambda e: e.level_db[e.strongest], default=None)
     time, mean, beam = filtered(data, ping, best)
     name = style.name(best.name) if best else ""
-    fig, axes = style.figure(TITLE, 6.4 if best else 4.4, nrows=2 if best else 1, squeeze=False)
+    fig, axes = style.figure(TITLE, 6.4 if best else 4.4, axes, nrows=2 if best else 1, squeeze=False)
 
     whole = axes[0, 0]
     lines = [(mean, style.GREY, "1 phone" if data.channels == 1 else "mean over the phones")]
@@ -94,11 +95,11 @@ def draw(data, ping):
     received = everything[everything > -300.0]
     top = received.max(initial=0.0) + 5.0
     low = np.percentile(peaks(time, lines[-1][0])[1], 5) - 10.0 if received.size else top - 60.0
-    whole.set_ylim(max(low, top - 80.0), top)
+    whole.set_ylim(*(limits or (max(low, top - 80.0), top)))
     style.time_axis(whole, data.start, last)
     style.subtitle(whole, f"{data.heading(ping)}  ·  {data.pulse_kind} pulse of "
-                   f"{data.pulse_duration:g} s, {data.bandwidth:.0f} Hz")
-    handles = whole.get_legend_handles_labels()[0] + mark_echoes(whole, echoes)
+                   f"{data.pulse_duration:g} s, {data.bandwidth:.0f} Hz", marks=True)
+    handles = whole.get_legend_handles_labels()[0] + mark_edges(whole, echoes)
     if best:
         near = axes[1, 0]
         span = zoom(data, best, last)
@@ -110,7 +111,7 @@ def draw(data, ping):
             mine = (echo.delay >= span[0]) & (echo.delay <= span[1])
             near.plot(echo.delay[mine], echo.level_db[mine], ls="none", marker="o", ms=8, mew=1.5,
                       mfc="none", mec=style.colour(echo.target), zorder=5,
-                      path_effects=style.OVER_MAP)
+                      path_effects=list(style.OVER_MAP))
         handles.append(Line2D([], [], ls="none", marker="o", ms=8, mew=1.5, mfc="none",
                               mec=style.colour(best.target), label="true time and level"))
         style.time_axis(near, *span)
@@ -119,8 +120,24 @@ def draw(data, ping):
     for panel in axes[:, 0]:
         panel.set_ylabel("level / dB re 1 µPa")
         panel.grid(True)
-    style.legend_below(axes[-1, 0], handles, ncol=4, below=0.22 if best else 0.13)
+    style.legend_below(axes[-1, 0], handles, ncol=4)
     return fig
+
+
+def mark_edges(axes, echoes) -> list:
+    """A mark over the axes at the leading edge of every strong path pair: there the filter has its
+    peak. → handles for a legend
+    """
+    handles = []
+    for echo in echoes:
+        shown = echo.delay[echo.strong(*axes.get_xlim())]
+        if shown.size:
+            axes.plot(shown, np.full(shown.size, 1.02), transform=axes.get_xaxis_transform(),
+                      clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))
+            label = f"{style.name(echo.name)}: true leading edge"
+            if label not in [h.get_label() for h in handles]:
+                handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
+    return handles[:6]
 
 
 def zoom(data, echo, last):

@@ -1,13 +1,16 @@
-"""Pressures of all phones over each other: the record, and the pulse's band near the best echo."""
+"""Pressures of all phones as a gather, a row each: the record, and the pulse's band near the best
+echo."""
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
-from . import style
+from . import signal, style
 
 TITLE = "Pressure at the hydrophones"
 COLUMNS = 1400
+MOST_TRACES = 16    # of more phones, levels in colours
 
 
 def nothing_to_show(data, ping):
@@ -24,10 +27,6 @@ def extremes(p, columns: int = COLUMNS):
     return np.minimum.reduceat(p, starts), np.maximum.reduceat(p, starts), starts
 
 
-def phone_colours(count: int):
-    return style.plt.get_cmap("cividis")(np.linspace(0.1, 0.8, count))
-
-
 def prefix(peak: float):
     """Factor and unit that make `peak` [Pa] easy to read"""
     for factor, unit in ((1.0, "Pa"), (1e3, "mPa"), (1e6, "µPa")):
@@ -36,72 +35,144 @@ def prefix(peak: float):
     return 1e6, "µPa"
 
 
-def draw_phones(axes, pressures, first: int, last: int, data):
-    """Envelopes of the samples [first, last) of each phone, later phones over earlier ones."""
-    peak = max(float(np.abs(p[first:last]).max(initial=0.0)) for p in pressures)
-    factor, unit = prefix(peak)
-    for colour, p in zip(phone_colours(len(pressures)), pressures):
-        low, high, starts = extremes(p[first:last])
-        t = data.start + (first + starts) / data.sample_rate
-        if last - first <= COLUMNS:      # every sample is drawn: a line
-            axes.plot(t, factor * p[first:last], color=colour, lw=0.8, alpha=0.8)
-        else:
-            axes.fill_between(t, factor * low, factor * high, color=colour, alpha=0.5, lw=0.35)
-    axes.set_ylim(-1.08 * max(factor * peak, 1e-3), 1.08 * max(factor * peak, 1e-3))
-    axes.set_ylabel(f"pressure / {unit}")
-    style.time_axis(axes, data.start + first / data.sample_rate,
-                    data.start + last / data.sample_rate)
+def phone_axis(axes, count: int) -> None:
+    """Phones from 0 as in the file, the first on top."""
+    axes.set_ylim(count - 0.4, -0.6)
+    axes.set_ylabel("phone")
+    axes.yaxis.set_major_locator(style.ticker.MaxNLocator(9, integer=True, steps=[1, 2, 4, 5, 8, 10]))
+
+
+def one_trace(axes, t, low, high, factor: float, unit: str, peak: float, what: str) -> None:
+    """Of a single phone: on an axis of pressure."""
+    if len(t) < COLUMNS // 2:
+        axes.plot(t, factor * high, color=style.BLUE, lw=0.8)
+        axes.plot(t, factor * low, color=style.BLUE, lw=0.8)
+    else:
+        axes.fill_between(t, factor * low, factor * high, color=style.BLUE, lw=0.35)
+    span = 1.08 * max(factor * peak, 1e-3)
+    axes.set_ylim(-span, span)
+    axes.set_ylabel(f"{what} / {unit}")
     axes.grid(True)
 
 
-def mark_echoes(axes, echoes):
-    """A mark on the upper edge for every strong path pair. → handles for a legend"""
+def traces(axes, t, lows, highs, factor: float, unit: str, peak: float) -> str:
+    """A row a phone, all at one scale. → which that is"""
+    scale = 0.47 / max(peak, 1e-30)
+    lows, highs = (np.clip(rows, -peak, peak) for rows in (lows, highs))
+    for k, (low, high) in enumerate(zip(lows, highs)):
+        shade = (style.BLUE, style.SLATE)[k % 2]
+        axes.fill_between(t, k - scale * high, k - scale * low, color=shade, lw=0.35)
+    phone_axis(axes, len(lows))
+    return f"  ·  a row is ±{factor * peak:.3g}\u00a0{unit}\u00a0high"
+
+
+def levels(axes, edges, db, limits):
+    """Rows in colours. → what a colour bar needs"""
+    mesh = style.image(axes, edges, np.arange(len(db) + 1) - 0.5, db, limits)
+    phone_axis(axes, len(db))
+    axes.set_ylim(len(db) - 0.5, -0.5)
+    style.image_frame(axes)
+    return mesh
+
+
+def mark_echoes(axes, echoes, duration: float):
+    """A bar over the axes while each strong path pair's pulse is received, a stroke where it begins.
+    → handles for a legend
+    """
     handles = []
+    first, last = axes.get_xlim()
+    above = axes.get_xaxis_transform()
     for echo in echoes:
-        shown = echo.delay[echo.strong(*axes.get_xlim())]
-        if shown.size:
-            axes.plot(shown, np.full(shown.size, 0.985), transform=axes.get_xaxis_transform(),
-                      clip_on=False, zorder=5, **style.truth(echo.target, "v", 7))
-            label = f"{style.name(echo.name)}: true echo times"
-            if label not in [h.get_label() for h in handles]:  # received by several arrays
-                handles.append(Line2D([], [], **style.truth(echo.target, "v", 7, label)))
+        starts = echo.delay[echo.strong(first - duration, last)]
+        if not starts.size:
+            continue
+        shade = style.colour(echo.target)
+        bars = [[(max(a, first), 1.02), (min(b, last), 1.02)]
+                for a, b, _ in style.together(starts, starts + duration, np.zeros(starts.size), 1.0)
+                if b > first]
+        axes.add_collection(LineCollection(bars, colors=shade, linewidths=5.0, capstyle="butt",
+                                           transform=above, clip_on=False, zorder=5),
+                            autolim=False)
+        seen = starts[starts >= first]
+        axes.plot(seen, np.full(seen.size, 1.02), ls="none", marker="|", ms=8, mew=1.1, color=style.INK,
+                  transform=above, clip_on=False, zorder=6)
+        label = f"{style.name(echo.name)}: true echo, one pulse long"
+        if label not in [h.get_label() for h in handles]:  # received by several arrays
+            handles.append(Line2D([], [], color=shade, lw=5.0, solid_capstyle="butt", label=label))
     return handles[:6]
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     pressures = [data.pressure(ping, channel) for channel in range(data.channels)]
     n = len(pressures[0])
     first_time, last_time = data.start, data.start + n / data.sample_rate
     echoes = [e for e in data.echoes(ping) if first_time <= e.delay[e.strongest] <= last_time]
-    fig, axes = style.figure(TITLE, 6.4 if echoes else 4.4, nrows=2 if echoes else 1, squeeze=False)
-    whole = axes[0, 0]
-    draw_phones(whole, pressures, 0, n, data)
-    phones = "1 phone" if data.channels == 1 else f"{data.channels} phones over each other"
-    style.subtitle(whole, f"{data.heading(ping)}  ·  {phones}")
-    handles = mark_echoes(whole, echoes)
+    tall = 1.0 if data.channels > 4 else 0.0
+    fig, panels = style.figure(TITLE, 6.4 + 1.6 * tall if echoes else 4.4 + tall, axes,
+                               nrows=2 if echoes else 1, squeeze=False)
+    whole = panels[0, 0]
+    scale = draw_record(fig, whole, pressures, data, limits)
+    phones = "1 phone" if data.channels == 1 else f"{data.channels} phones"
+    style.subtitle(whole, f"{data.heading(ping)}  ·  {phones}, all frequencies{scale}", marks=True)
+    style.time_axis(whole, first_time, last_time)
+    handles = mark_echoes(whole, echoes, data.pulse_duration)
     if echoes:
-        draw_strongest(axes[1, 0], data, ping, max(echoes, key=lambda e: e.level_db[e.strongest]))
-        mark_echoes(axes[1, 0], echoes)
-        style.legend_below(axes[1, 0], handles, ncol=3, below=0.22)
+        near = panels[1, 0]
+        draw_strongest(fig, near, data, ping, max(echoes, key=lambda e: e.level_db[e.strongest]),
+                       limits)
+        mark_echoes(near, echoes, data.pulse_duration)
+        style.legend_below(near, handles, ncol=3)
     return fig
 
 
-def draw_strongest(axes, data, ping, echo):
+def draw_record(fig, axes, pressures, data, limits) -> str:
+    """All that was received. → what its rows are"""
+    peak = max(float(np.abs(p).max(initial=0.0)) for p in pressures)
+    factor, unit = prefix(peak)
+    n = len(pressures[0])
+    if len(pressures) <= MOST_TRACES:
+        spans = [extremes(p) for p in pressures]
+        t = data.start + spans[0][2] / data.sample_rate
+        if len(pressures) == 1:
+            one_trace(axes, t, *spans[0][:2], factor, unit, peak, "pressure")
+        else:
+            return traces(axes, t, [s[0] for s in spans], [s[1] for s in spans], factor, unit, peak)
+        return ""
+    starts = np.linspace(0, n, min(COLUMNS, n) + 1).astype(int)
+    power = [np.add.reduceat(p * p, starts[:-1]) / np.diff(starts) for p in pressures]
+    db = signal.decibels(power)
+    mesh = levels(axes, data.start + starts / data.sample_rate, db,
+                  limits or style.colour_limits(db))
+    style.colour_bar(fig, mesh, axes, "level / dB re 1 µPa")
+    return ""
+
+
+def draw_strongest(fig, axes, data, ping, echo, limits) -> None:
     """The pulse's band alone, around the strongest path pair: ± the envelope of each phone."""
     time = echo.delay[echo.strongest]
     b = data.envelope(ping)
     first, last = time - 2.0 * data.pulse_duration, time + 4.0 * data.pulse_duration
     shown = (b.times >= first) & (b.times <= last)
-    peak = float(np.abs(b.values[:, shown]).max(initial=0.0))
+    envelopes = np.abs(b.values[:, shown])
+    peak = float(envelopes.max(initial=0.0))
+    during = (b.times[shown] >= time) & (b.times[shown] <= time + data.pulse_duration)
+    own = float(envelopes[:, during].max(initial=0.0))
+    peak = min(peak, 3.0 * own) if own > 0.0 else peak      # what is louder beside it is clipped
     factor, unit = prefix(peak)
-    for colour, values in zip(phone_colours(data.channels), b.values):
-        envelope = factor * np.abs(values[shown])
-        axes.plot(b.times[shown], envelope, color=colour, lw=1.0, alpha=0.8)
-        axes.plot(b.times[shown], -envelope, color=colour, lw=1.0, alpha=0.8)
-    axes.set_ylim(-1.08 * max(factor * peak, 1e-3), 1.08 * max(factor * peak, 1e-3))
-    axes.set_ylabel(f"± envelope / {unit}")
+    scale = ""
+    if data.channels > MOST_TRACES and shown.sum() > 1:
+        db = signal.decibels(0.5 * envelopes**2)
+        level = float(echo.level_db[echo.strongest])
+        mesh = levels(axes, style.cell_edges(b.times[shown]), db,
+                      limits or style.colour_limits(db, level))
+        style.colour_bar(fig, mesh, axes, "level / dB re 1 µPa")
+    elif data.channels == 1:
+        one_trace(axes, b.times[shown], -envelopes[0], envelopes[0], factor, unit, peak,
+                  "± envelope")
+    else:
+        scale = traces(axes, b.times[shown], -envelopes, envelopes, factor, unit, peak)
     style.time_axis(axes, max(first, b.times[0]), min(last, b.times[-1]))
-    axes.grid(True)
     level = echo.level_db[echo.strongest]
     style.subtitle(axes, f"{b.width:.0f} Hz around {data.centre_frequency:g} Hz, near the "
-                   f"strongest path: {style.name(echo.name)}, {time:.2f} s, {level:.0f} dB re 1 µPa")
+                   f"strongest path: {style.name(echo.name)}, {time:.2f} s, {level:.0f} dB re 1 µPa{scale}", marks=True)

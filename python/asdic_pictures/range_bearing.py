@@ -3,8 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import processed, style
-from .detections import LIMITS, dark
+from . import bearings, processed, style
 
 TITLE = "Range and bearing"
 
@@ -41,37 +40,41 @@ def on_ranges(span, values, ranges):
     return np.where(inside, held[nearest], np.nan)
 
 
-def draw(data, ping):
-    """One map; of a line whose sender is elsewhere one for each of its sides, which differ then."""
+@style.picture
+def draw(data, ping, axes=None, limits=None):
+    """One map; of a line whose sender is elsewhere one for each of its sides, which differ then:
+    beside one another they are all bearings, rising from left to right.
+    """
     m, t = processed.maps(data, ping), processed.detections(data, ping)
+    limits = limits or processed.limits(data, ping, m)
     sides = m.beam_range or [None]
-    fig, panels = style.figure(TITLE, 6.4, ncols=len(sides), sharey=True, squeeze=False)
+    fig, panels = style.figure(TITLE, 6.4, axes, ncols=len(sides), sharey=True, squeeze=False)
     handles, farthest = [], max((np.nanmax(s) for s in m.beam_range), default=0.0)
-    for k, (axes, span) in enumerate(zip(panels[0], sides)):
+    drawn = []
+    for k, (panel, span) in enumerate(zip(panels[0], sides)):
         if span is None:
             good = rising(m.range)
             ranges, power = m.range[good], m.beam_db[:, good].T
         else:
             ranges = np.linspace(0.0, farthest, 400)
             power = np.array([on_ranges(s, p, ranges) for s, p in zip(span, m.beam_db)]).T
-        mesh = axes.pcolormesh(m.angle, ranges / 1000.0, power, cmap=style.MAP, vmin=LIMITS[0],
-                               vmax=LIMITS[1], shading="nearest", rasterized=True)
-        processed.angle_axis(axes, m, vertical=False)
+        drawn.append(power.ravel())
+        mesh = panel.pcolormesh(style.cell_edges(m.angle), style.cell_edges(ranges / 1000.0), power,
+                                cmap=style.MAP, vmin=limits[0], vmax=limits[1], rasterized=True)
+        # right of the line's sense, the first of the file's sides, is the picture's second
+        processed.angle_axis(panel, m, vertical=False, only=None if span is None else k == 0)
         found = t["range"] if len(sides) == 1 else ranges_on(t, m, k)
-        marks = processed.mark(axes, m.angle_of(t), found / 1000.0, t, data.target_names)
-        marks += true_places(axes, data, ping, m, None if len(sides) == 1 else k)
+        marks = processed.mark(panel, m.angle_of(t), found / 1000.0, t, data.target_names)
+        marks += true_places(panel, data, ping, m, None if len(sides) == 1 else k)
         handles += [h for h in marks if h.get_label() not in [g.get_label() for g in handles]]
-        style.image_frame(axes)
-        axes.set_ylim(max(ranges[0] / 1000.0, 0.0), ranges[-1] / 1000.0)
-        if len(sides) > 1:
-            axes.set_xlabel(axes.get_xlabel() + (", to its right", ", to its left")[k])
+        style.image_frame(panel)
+        panel.set_ylim(max(ranges[0] / 1000.0, 0.0), ranges[-1] / 1000.0)
     first = panels[0, 0]
     first.set_ylabel("horizontal range / km")
-    style.colour_bar(fig, mesh, panels[0, :] if len(sides) > 1 else first,
-                     "power over the background / dB")
-    style.subtitle(first, f"{data.heading(ping)}  ·  ranges by the sound paths" if len(sides) == 1
-                   else data.heading(ping))
-    style.legend_below(first, dark(handles), ncol=3, below=0.16)
+    style.colour_bar(fig, mesh, list(panels[0]) if len(sides) > 1 else first,
+                     "power over the background / dB", style.beyond(np.concatenate(drawn), limits))
+    style.subtitle(first, f"{data.heading(ping)}  ·  ranges by the sound paths")
+    style.legend_below(first, processed.legend(handles), ncol=4)
     return fig
 
 
@@ -92,7 +95,8 @@ def true_places(axes, data, ping, m, side):
         if not present or (side is not None and
                            (off @ np.array([m.axis[1], -m.axis[0], 0.0]) > 0.0) != (side == 0)):
             continue
-        look = off / np.linalg.norm(off)
+        flat = off * [1.0, 1.0, 0.0]
+        look = (off if m.kind == "line" else flat) / np.linalg.norm(off)
         handles += axes.plot(m.angle_of_travel(-look), [np.hypot(off[0], off[1]) / 1000.0],
                              **style.truth(index, "*", 13, f"{style.name(name)}: true place at the ping"),
                              zorder=6)

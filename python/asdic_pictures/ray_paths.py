@@ -31,19 +31,21 @@ def histories(rays) -> np.ndarray:
     return np.array([sea.history(s, b) for s, b in zip(rays.surface, rays.bottom)], int)
 
 
-def draw(rays):
-    fig, axes = sea.figure(TITLE, rays.sea)
+@style.picture
+def draw(rays, axes=None, limits=None):
+    fig, axes = sea.figure(TITLE, rays.sea, axes=axes)
     met = histories(rays)
     width = 1.1 if rays.launch.size <= 60 else 0.6
     for k in np.argsort(-met, kind="stable"):       # those that met nothing on top
-        axes.plot(rays.range[k] / 1e3, rays.depth[k], color=sea.HISTORIES[met[k]][3], lw=width,
+        axes.plot(rays.range[k] / 1e3, rays.depth[k], color=sea.shade(met[k]), lw=width,
                   alpha=0.8, zorder=2.5)
     frame(axes, rays)
     sea.label_depth(fig, axes)
-    style.subtitle(axes, f"{style.shorten(rays.title, 70)}  ·  {rays.launch.size} rays, launched at "
+    style.subtitle(axes, f"{rays.title}{'  ·  ' if rays.title else ''}{rays.launch.size} rays, launched at "
                          f"{style.degrees(rays.launch.min())} to "
                          f"{style.degrees(rays.launch.max())}, up positive")
-    handles = [Line2D([], [], color=colour, lw=1.8, label=f"met {name}: {np.sum(met == k)}")
-               for k, (name, _, _, colour) in enumerate(sea.HISTORIES) if np.any(met == k)]
+    handles = [Line2D([], [], color=sea.shade(k), lw=1.8,
+                      label=f"{sea.met(k)}: {np.sum(met == k)}")
+               for k, _ in enumerate(sea.HISTORIES) if np.any(met == k)]
     style.legend_below(axes, handles)
     return fig

@@ -9,7 +9,6 @@ from . import style
 TITLE = "Rays of the transmitted beam and eigenrays to the targets"
 
 HALF_THE_EARTH = 2e7    # round its girth [m]
-SEA_FLOOR = "#cdbfa9"
 
 
 def nothing_to_show(data, ping):
@@ -42,7 +41,7 @@ def largest_range(data, row, r, targets):
 def disc(target, there):
     """A target: full, or hollow where it is not there in this ping."""
     colour = style.colour(target)
-    return dict(marker="o", ms=9, mfc=colour if there else "white", mec="white" if there else colour,
+    return dict(marker="o", ms=9, mfc=colour if there else style.PAPER, mec=style.PAPER if there else colour,
                 mew=1.2 if there else 1.8)
 
 
@@ -66,10 +65,11 @@ def draw_profile(axes, data):
     axes.grid(True)
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     row = int(data.simulated[0])          # the file holds the rays of the first ping alone
     launch, r, z, kind, hits = data.rays()
-    fig, (left, right) = style.figure(TITLE, 5.2, ncols=2, sharey=True,
+    fig, (left, right) = style.figure(TITLE, 5.2, axes, ncols=2, sharey=True,
                                       gridspec_kw={"width_ratios": [1, 6.2]})
     draw_profile(left, data)
 
@@ -94,7 +94,7 @@ def draw(data, ping):
     for i, distance, depth in everywhere:
         if distance <= 1.1 * reach:
             right.plot(distance / 1e3, depth, zorder=6, clip_on=False, **disc(i, there[i]))
-    right.plot(0.0, platform[2], marker="D", ms=8, mfc=style.INK, mec="white", mew=1.2, zorder=6,
+    right.plot(0.0, platform[2], marker="D", ms=8, mfc=style.INK, mec=style.PAPER, mew=1.2, zorder=6,
                clip_on=False)
 
     drawn = max([np.max(r, initial=0.0, where=np.isfinite(r)), hits.max(initial=0.0)]
@@ -103,9 +103,9 @@ def draw(data, ping):
     right.set_xlabel("range from the source / km")
     draw_boundaries(data, (left, right))
     style.subtitle(right,
-                   f"{style.shorten(data.title or data.path, 70)}  ·  beam "
-                   f"{data.elevation_deg[row]:+g}°, first ping{in_one_plane(platform, targets)}")
-    handles = [Line2D([], [], marker="D", ls="none", ms=7, mfc=style.INK, mec="white",
+                   f"{data.title or data.path}  ·  beam "
+                   f"{style.degrees(data.elevation_deg[row])}, first ping{in_one_plane(platform, targets)}")
+    handles = [Line2D([], [], marker="D", ls="none", ms=7, mfc=style.INK, mec=style.PAPER,
                       label="source")]
     if fan.size:
         handles.append(Line2D([], [], color=style.GREY, lw=1.0, label="fan of the beam"))
@@ -120,7 +120,7 @@ def draw(data, ping):
         handles.append(Line2D([], [], label=f"{style.name(names[i])}, {what}",
                               color=style.colour(i), lw=1.4 if there[i] else 0.0,
                               **disc(i, there[i])))
-    style.legend_below(right, handles, ncol=min(len(handles), 5))
+    style.legend_below(left if isinstance(fig, style.Picture) else right, handles, ncol=5, points=54)
     return fig
 
 
@@ -134,9 +134,9 @@ def draw_boundaries(data, panels):
     panels[0].set_ylim(deepest * 1.045, -deepest * 0.03)
     flat = panels if floor is None else panels[:1]
     for axes in flat:
-        axes.axhspan(bottom, deepest * 1.045, color=SEA_FLOOR, lw=0, zorder=1)
+        axes.axhspan(bottom, deepest * 1.045, color=style.GROUND, lw=0, zorder=1)
     if floor is not None:
-        panels[1].fill_between(floor[0] / 1e3, floor[1], deepest * 1.045, color=SEA_FLOOR, lw=0,
+        panels[1].fill_between(floor[0] / 1e3, floor[1], deepest * 1.045, color=style.GROUND, lw=0,
                                zorder=1)
     for axes in panels if surface is None else panels[:1]:
         axes.axhline(0.0, color=style.BLUE, lw=1.2, zorder=1)
@@ -144,6 +144,6 @@ def draw_boundaries(data, panels):
         panels[1].plot(surface[0] / 1e3, surface[1], color=style.BLUE, lw=1.2, zorder=1)
     panels[1].text(0.995, deepest * 1.0225, "sea floor",
                    transform=panels[1].get_yaxis_transform(), ha="right", va="center_baseline",
-                   fontsize=8, color="#5d4f38")
+                   fontsize=8, color=style.GROUND_INK)
     panels[1].tick_params(labelleft=False)
     panels[1].grid(True)

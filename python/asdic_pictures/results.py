@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import h5py
 import numpy as np
 
+from . import source
 from .data import InputError
 
 KINDS = ("asdic field", "asdic arrivals", "asdic rays")
@@ -24,6 +25,9 @@ class Sea:
     bottom: np.ndarray | None = None            # [n] depth [m]
     depth: np.ndarray | None = None             # [k] [m]
     sound_speed: np.ndarray | None = None       # [k] at range 0 [m/s]
+    section_range: np.ndarray | None = None     # [m] of water that varies with range: [m],
+    section_depth: np.ndarray | None = None     # [n] [m],
+    section_speed: np.ndarray | None = None     # [m, n] [m/s]
 
 
 @dataclass
@@ -39,6 +43,7 @@ class Field:
     sea: Sea = field(default_factory=Sea)
     errors: np.ndarray | None = None    # [sources, …] of the number of beams [dB], NaN: not known
     sure_db: float = 0.5                # a receiver with no more error than this is sure
+    tags: dict = field(default_factory=dict)
 
     def unsure(self, source: int) -> np.ndarray | None:
         """Which receivers are not sure of their number of beams; None where that is not told. A
@@ -81,6 +86,7 @@ class Arrivals:
     title: str
     frequency: float
     receivers: list[Receiver]
+    tags: dict = field(default_factory=dict)
 
 
 @dataclass
@@ -93,6 +99,7 @@ class Rays:
     depth: np.ndarray
     bottom_depth: float
     sea: Sea = field(default_factory=Sea)
+    tags: dict = field(default_factory=dict)
 
 
 def text(attributes, name: str) -> str:
@@ -104,7 +111,13 @@ def text(attributes, name: str) -> str:
 
 
 def filetype(path) -> str:
-    """What kind of file it is; "" where that cannot be told (then it is nothing of ours)."""
+    """What kind of file or dataset it is; "" where that cannot be told (then it is nothing of
+    ours).
+    """
+    if source.is_dataset(path):
+        return text(path.attrs, "filetype")
+    if isinstance(path, source.Group):
+        return text(path.attrs, "filetype")
     try:
         with h5py.File(path, "r") as f:
             return text(f.attrs, "filetype")
@@ -116,6 +129,9 @@ class Reader:
     """An open file that says what is missing."""
 
     def __init__(self, path):
+        if source.is_dataset(path):
+            self.file, self.path = source.of_dataset(path), source.name_of(path)
+            return
         if not os.path.exists(path):
             raise InputError(path, "no such file", "a result of asdic field, arrivals or rays")
         try:
@@ -144,24 +160,104 @@ class Reader:
     def title(self) -> str:
         return text(self.file.attrs, "title")
 
+    def tags(self) -> dict:
+        """What a picture says of itself (output.Tags)."""
+        return dict(title=self.title(), version=text(self.file.attrs, "program_version"),
+                    digest=text(self.file.attrs, "scenario_sha256"))
+
     def sea(self) -> Sea:
         """An older file, or one of another program, tells nothing of its sea."""
         names = {"boundary_range": "boundary_range", "surface": "surface_depth",
-                 "bottom": "bottom_depth", "depth": "depth", "sound_speed": "sound_speed"}
+                 "bottom": "bottom_depth", "depth": "depth", "sound_speed": "sound_speed",
+                 "section_range": "section_range", "section_depth": "section_depth",
+                 "section_speed": "section_speed"}
         found = {key: self.array("environment/" + name) for key, name in names.items()
                  if self.has("environment/" + name)}
         return Sea(**found)
 
 
 def read(path):
-    """→ Field, Arrivals or Rays"""
+    """Of a file, a dataset of one, or what `Scenario.field`, `.arrivals` and `.rays` give.
+    → Field, Arrivals or Rays
+    """
+    if isinstance(path, (Field, Arrivals, Rays)):
+        return path
+    if in_memory := of_memory(path):
+        return in_memory
     reader = Reader(path)
     with reader.file:
         kind = text(reader.file.attrs, "filetype")
         if kind not in KINDS:
-            raise InputError(path, f'filetype "{kind}"', "one of " + ", ".join(KINDS))
-        return {"asdic field": read_field, "asdic arrivals": read_arrivals,
+            raise InputError(reader.path, f'filetype "{kind}"', "one of " + ", ".join(KINDS))
+        made = {"asdic field": read_field, "asdic arrivals": read_arrivals,
                 "asdic rays": read_rays}[kind](reader)
+        made.tags = reader.tags()
+        return made
+
+
+def of_memory(found):
+    """A field's DataArray, or a table of arrivals or rays; None of anything else."""
+    if hasattr(found, "dims") and np.issubdtype(getattr(found, "dtype", float),
+                                                np.complexfloating):
+        return field_of(found)
+    columns = [str(c) for c in getattr(found, "columns", ())]
+    if "amplitude" in columns and "delay" in columns:
+        return arrivals_of(found)
+    if "launch_elevation_deg" in columns and "depth" in columns:
+        return rays_of(found)
+    return None
+
+
+def field_of(pressure) -> Field:
+    """Of a complex DataArray (depth, range), or with source_depth before them."""
+    values = np.asarray(pressure.values)
+    irregular = "receiver" in pressure.dims
+    if "source_depth" not in pressure.dims:
+        values = values[None]
+    sources = np.atleast_1d(np.asarray(pressure.coords["source_depth"].values, float))
+    return Field(str(pressure.attrs.get("title", "")), float(pressure.attrs.get("frequency_hz", np.nan)),
+                 sources, np.atleast_1d(pressure.coords["depth"].values),
+                 np.atleast_1d(pressure.coords["range"].values), irregular, values, "coherent")
+
+
+def arrivals_of(table) -> Arrivals:
+    """Of a table with a row an eigenray; legs of a ping are told apart."""
+    amplitude = np.abs(np.asarray(table["amplitude"], complex))
+    with np.errstate(divide="ignore"):
+        level = 20.0 * np.log10(amplitude)
+    keys = [c for c in ("leg", "target", "array") if c in table.columns]
+    rows = np.stack([np.asarray(table[c]) for c in keys], axis=1) if keys \
+        else np.zeros((len(level), 1), int)
+    receivers = []
+    for key in np.unique(rows, axis=0):
+        mine = np.flatnonzero(np.all(rows == key, axis=1) & np.isfinite(level))
+        if not mine.size:
+            continue
+        distance = float(table["range"].iloc[mine[0]]) if "range" in table.columns else np.nan
+        words = [LEGS.get(int(key[0]), "")] if "leg" in keys else ["receiver"]
+        words += [f"target {int(k) + 1}" for n, k in zip(keys, key) if n == "target" and k >= 0]
+        words += [f"range {distance / 1e3:.3f} km"] if np.isfinite(distance) else []
+        receivers.append(Receiver(", ".join(words), distance,
+                                  np.asarray(table["delay"], float)[mine], level[mine],
+                                  np.asarray(table["launch_elevation_deg"], float)[mine],
+                                  np.asarray(table["surface_bounces"])[mine],
+                                  np.asarray(table["bottom_bounces"])[mine]))
+    return Arrivals("", np.nan, receivers)
+
+
+def rays_of(table) -> Rays:
+    """Of a table with a row a ray, whose `range` and `depth` are arrays."""
+    points = max((len(r) for r in table["range"]), default=0)
+    lines = []
+    for column in ("range", "depth"):
+        padded = np.full((len(table), points), np.nan)
+        for row, values in zip(padded, table[column]):
+            row[: len(values)] = values
+        lines.append(padded)
+    deepest = float(np.nanmax(lines[1], initial=0.0, where=np.isfinite(lines[1])))
+    return Rays("", np.asarray(table["launch_elevation_deg"], float),
+                np.asarray(table["surface_bounces"]), np.asarray(table["bottom_bounces"]),
+                *lines, deepest)
 
 
 def read_field(reader: Reader) -> Field:

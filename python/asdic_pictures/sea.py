@@ -1,20 +1,29 @@
 """The sea around a result: water column, boundaries, the ground below; and the colours of paths."""
 from __future__ import annotations
 
+import matplotlib
 import numpy as np
 
 from . import style
 
-GROUND, GROUND_INK = "#cdbfa9", "#5d4f38"
-
-# what a path met: surface and bottom, in the order of the legend
-HISTORIES = [("neither", False, False, style.GREEN), ("surface", True, False, style.BLUE),
-             ("bottom", False, True, style.BROWN), ("surface and bottom", True, True, style.GREY)]
+# what a path met: surface and bottom, in the order of the legend; the name of its colour
+HISTORIES = [("neither", False, False, "GREEN"), ("surface", True, False, "BLUE"),
+             ("bottom", False, True, "BROWN"), ("surface and bottom", True, True, "GREY")]
 
 
 def history(surface, bottom) -> int:
     """Index into HISTORIES"""
     return int(surface > 0) + 2 * int(bottom > 0)
+
+
+def shade(which: int) -> str:
+    return getattr(style, HISTORIES[which][3])
+
+
+def met(which: int) -> str:
+    """For a legend: "met the surface"."""
+    words = HISTORIES[which][0]
+    return "met neither boundary" if which == 0 else f"met {words}" if which == 3 else f"met the {words}"
 
 
 def extent(sea, depths, fallback: float = 1.0):
@@ -36,36 +45,72 @@ def depth_axis(axes, top: float, bottom: float) -> None:
 
 
 def draw_boundaries(axes, sea) -> None:
-    """The ground as a brown area, the air as a white one, where the file tells of them."""
+    """The ground as a brown area, the air as the page, where the file tells of them."""
     if sea.boundary_range is None:
         return
     r = sea.boundary_range / 1e3
     low, high = sorted(axes.get_ylim())
     if sea.bottom is not None:
-        axes.fill_between(r, sea.bottom, np.maximum(sea.bottom, high), color=GROUND, lw=0, zorder=3)
-        axes.plot(r, sea.bottom, color=GROUND_INK, lw=0.9, zorder=3.1)
+        axes.fill_between(r, sea.bottom, np.maximum(sea.bottom, high), color=style.GROUND, lw=0,
+                          zorder=3)
+        axes.plot(r, sea.bottom, color=style.GROUND_INK, lw=0.9, zorder=3.1)
     if sea.surface is not None:
-        axes.fill_between(r, np.minimum(sea.surface, low), sea.surface, color="white", lw=0,
+        axes.fill_between(r, np.minimum(sea.surface, low), sea.surface, color=style.PAPER, lw=0,
                           zorder=3)
         axes.plot(r, sea.surface, color=style.BLUE, lw=1.0, zorder=3.1)
 
 
+def profiles(sea):
+    """Range [m], depth [m] and speed [m/s] of each profile: those of a section, or the one."""
+    if sea.section_speed is None:
+        return [(0.0, sea.depth, sea.sound_speed)]
+    return [(float(r), sea.section_depth, c)
+            for r, c in zip(sea.section_range, sea.section_speed)]
+
+
+MOST_PROFILES = 6
+
+
 def draw_profile(axes, sea) -> None:
-    axes.plot(sea.sound_speed, sea.depth, color=style.BLUE, lw=1.8)
+    """The sound speed over depth; of water that varies with range each profile, the key says of
+    which range.
+    """
+    several = profiles(sea)
+    many = len(several)
+    if many > MOST_PROFILES:
+        several = [several[round(k)] for k in np.linspace(0, many - 1, MOST_PROFILES)]
+    shades = matplotlib.colormaps["plasma"](np.linspace(0.05, 0.8, len(several)))
+    speeds = []
+    for shade_of_range, (r, z, c) in zip(shades, several):
+        alone = len(several) == 1
+        label = None if alone else f"{r / 1e3:g} km"
+        axes.plot(c, z, color=style.BLUE if alone else shade_of_range, lw=1.8 if alone else 1.3,
+                  label=label)
+        speeds.append(c)
     axes.set_xlabel("sound speed\nm/s")
-    low, high = np.nanmin(sea.sound_speed), np.nanmax(sea.sound_speed)
+    low, high = np.nanmin(speeds), np.nanmax(speeds)
     room = max(0.12 * (high - low), 5.0)
     axes.set_xlim(low - room, high + room)
     axes.xaxis.set_major_locator(style.ticker.MaxNLocator(2, integer=True))
     axes.grid(True)
+    if len(several) > 1:
+        some = f"{len(several)} of {many} profiles" if many > len(several) else "profiles"
+        axes.legend(loc="lower right", fontsize=7, handlelength=1.0, title=f"{some}\nat range",
+                    title_fontsize=7, labelspacing=0.25, borderaxespad=0.2, frameon=True,
+                    framealpha=0.85, facecolor=style.PAPER, edgecolor="none")
 
 
-def figure(title: str, sea, height: float = 5.2):
-    """A panel for the water column, where that is known, and one for the rest. → figure, main axes"""
+def figure(title: str, sea, height: float = 5.2, axes=None):
+    """A panel for the water column, where that is known, and one for the rest. → figure, main axes
+
+    Of the caller's axes one is the main one, two have the water column on the left.
+    """
+    if axes is not None and np.size(np.array(axes, dtype=object)) == 1:
+        return style.figure(title, height, axes)
     if sea.sound_speed is None:
-        return style.figure(title, height)
-    fig, (left, right) = style.figure(title, height, ncols=2, sharey=True,
-                                      gridspec_kw={"width_ratios": [1, 7]})
+        return style.figure(title, height, axes)
+    fig, (left, right) = style.figure(title, height, axes, ncols=2, sharey=True,
+                                      gridspec_kw={"width_ratios": [1.15, 7]})
     draw_profile(left, sea)
     right.tick_params(labelleft=False)
     return fig, right
@@ -73,6 +118,6 @@ def figure(title: str, sea, height: float = 5.2):
 
 def label_depth(fig, main) -> None:
     """The depth axis belongs to the leftmost panel."""
-    if fig.axes[0] is not main:
+    if isinstance(fig, style.Picture) and fig.axes[0] is not main:
         fig.axes[0].set_ylabel(main.get_ylabel())
         main.set_ylabel("")

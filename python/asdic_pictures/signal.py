@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import bearings
+
 REFERENCE = 1e-12  # (1 µPa)² [Pa²]
 FILTER_LENGTH = 60.0  # times 1/width: the band filter's answer has died by about 130 dB
 
@@ -173,8 +175,8 @@ def line_axis(phones):
 def scan(phones, beams: int = 181) -> Scan:
     """The directions that suit an array.
 
-    Horizontal line: apparent bearing, sin(app) = sin(bearing)·cos(elevation), clockwise from the
-    broadside at heading + 90°. Vertical line: look elevation. Others: azimuth, horizontally.
+    Horizontal line: the cosine to it, in the sense of bearings.along(). Vertical line: look
+    elevation. Others: azimuth, horizontally.
     """
     axis = line_axis(phones)
     if axis is None:
@@ -186,22 +188,11 @@ def scan(phones, beams: int = 181) -> Scan:
     if vertical:
         axis = axis if axis[2] < 0 else -axis    # grows upwards: depth is positive down
     else:
-        # clockwise from broadside is towards the line's tail
-        axis = -axis
+        axis = bearings.along(axis)
     across = np.cross(axis, [0.0, 0.0, 1.0] if not vertical else [1.0, 0.0, 0.0])
     across /= np.linalg.norm(across)
     looks = sine[:, None] * axis + np.sqrt(np.maximum(1 - sine[:, None] ** 2, 0.0)) * across
     return Scan("vertical" if vertical else "horizontal", looks, sine, axis)
-
-
-def true_bearing(direction) -> float:
-    """Of a direction (east, north, depth), clockwise from north, in whole degrees."""
-    return round(float(np.degrees(np.arctan2(direction[0], direction[1])))) % 360
-
-
-def broadside(where: Scan) -> float:
-    """True bearing of 0° of a horizontal line's scan [deg]; 0 of the others."""
-    return (true_bearing(where.axis) - 90) % 360 if where.kind == "horizontal" else 0
 
 
 def apparent(where: Scan, travel):

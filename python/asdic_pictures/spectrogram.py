@@ -13,7 +13,8 @@ def nothing_to_show(data, ping):
     return None
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     b = data.envelope(ping)
     # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which
     # resolves time and frequency alike.
@@ -25,10 +26,10 @@ def draw(data, ping):
     inside = np.abs(frequency - b.carrier) <= 0.5 * b.width
     frequency, db = frequency[inside], db[inside]
 
-    fig, axes = style.figure(TITLE, 4.8)
+    fig, axes = style.figure(TITLE, 4.8, axes)
     # an echo's energy lies in 1/T or, for a sweep, in its band: its density is that much lower
     spread = 10.0 * np.log10(max(data.bandwidth, b.rate / window, 1e-3))
-    limits = style.colour_limits(db, data.loudest_echo(ping) - spread)
+    limits = limits or style.colour_limits(db, data.loudest_echo(ping) - spread)
     mesh = style.image(axes, style.cell_edges(time),
                        style.cell_edges(frequency - data.centre_frequency), db, limits)
     style.image_frame(axes)
@@ -44,6 +45,7 @@ def draw(data, ping):
         right.tick_params(length=3)
     style.colour_bar(fig, mesh, axes, "spectral level / dB re 1 µPa²/Hz")
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
-    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, windows of {window / b.rate:.3g} s")
-    style.legend_below(axes, mark_echoes(axes, data.echoes(ping)))
+    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, windows of {window / b.rate:.3g} s",
+                   marks=True)
+    style.legend_below(axes, mark_echoes(axes, data.echoes(ping), data.pulse_duration))
     return fig

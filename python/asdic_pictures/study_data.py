@@ -4,11 +4,13 @@ InputError.
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass, field
 
 import h5py
 import numpy as np
 
+from . import source
 from .data import InputError
 
 KIND = "asdic study"
@@ -25,8 +27,10 @@ def spoken(name: str) -> str:
     if word in PROPORTIONS:
         return f"{PROPORTIONS[word]}, {rest}" if rest else PROPORTIONS[word]
     words = name.replace(DECIBELS + "_", "_", 1)  # a target's name may follow
-    words = words.removesuffix(DECIBELS).removesuffix(DEGREES)
-    return " ".join(SHORT.get(w, w) for w in words.split("_"))
+    words = words.removesuffix(DECIBELS).removesuffix(DEGREES).split("_")
+    # a group's name and its key's may be one: "bottom_bottom"
+    once = [w for k, w in enumerate(words) if k == 0 or w != words[k - 1]]
+    return " ".join(SHORT.get(w, w) for w in once)
 
 
 @dataclass
@@ -42,8 +46,23 @@ class Column:
 
     def label(self) -> str:
         """For an axis: "range / km", "echo level / dB re 1 µPa"."""
-        words, unit = spoken(self.name), "km" if self.scale() != 1.0 else self.unit
+        words, unit = self.words(), "km" if self.scale() != 1.0 else self.unit
         return f"{words} / {unit}" if unit and unit != "1" else words
+
+    def words(self) -> str:
+        """Its name as words; of a setting of a thing, with the thing: "target depth"."""
+        words = spoken(self.name)
+        told = re.match(r"(target|transmitter|array|platform)\.(?:\d+\.)?(\w+):", self.meaning)
+        return f"{told[1]} {words}" if told and told[2] == self.name else words
+
+    def is_depth(self) -> bool:
+        """Whether it grows downwards."""
+        return self.unit == "m" and "depth" in self.name.split("_")
+
+    def is_constant(self) -> bool:
+        """Whether there is nothing to see in it."""
+        good = self.values[np.isfinite(self.values)]
+        return good.size == 0 or bool(np.all(good == good[0]))
 
     def scale(self) -> float:
         """Of the values in a picture: metres that are many are drawn as kilometres."""
@@ -73,6 +92,16 @@ class Study:
     columns: list          # of the table: inputs and measures, valid rows alone
     summary: list          # of SummaryTable
     skipped: int = 0       # realisations that made no scenario
+    confidence: float = np.nan          # of every interval
+    false_alarms: float | None = None   # probability that the threshold is made for
+    tags: dict = field(default_factory=dict)
+
+    @property
+    def interval(self) -> str:
+        """What a band is: "95 % confidence"."""
+        if not np.isfinite(self.confidence):
+            return "confidence interval"
+        return f"{100.0 * self.confidence:.6g} % confidence"
 
     def heading(self) -> str:
         notes = [f"{self.skipped} skipped"] if self.skipped else []
@@ -83,6 +112,22 @@ class Study:
 
     def tables(self, test) -> list:
         return [t for t in self.summary if test(t)]
+
+
+def _words(dataset) -> str:
+    """A dataset that is a text."""
+    value = dataset[()]
+    return _text(value.item() if isinstance(value, np.ndarray) and value.size == 1 else value)
+
+
+def _false_alarms(f) -> float | None:
+    """That measure.detection of the study asks for, if it says so."""
+    words = _words(f["study"]) if "study" in f else ""
+    found = re.search(r"false_alarm_probability\s*=\s*([0-9.eE+_-]+)", words)
+    try:
+        return float(found[1].replace("_", "")) if found else None
+    except ValueError:
+        return None
 
 
 def _text(value) -> str:
@@ -106,15 +151,17 @@ def _summary(name, group) -> SummaryTable:
 def _order(f) -> list:
     """Names of the table's columns as the study has them: HDF5 lists them by the alphabet."""
     there = list(f["table"])
-    told = json.loads(f["manifest"].asstr()[()]) if "manifest" in f else {}
+    told = json.loads(_words(f["manifest"])) if "manifest" in f else {}
     order = [c["name"] for c in told.get("columns", []) if c["name"] in there]
     return order + [name for name in there if name not in order]
 
 
-def read(path: str) -> Study:
-    """\\throws InputError"""
+def read(path) -> Study:
+    """Of a file, or a dataset of one. \\throws InputError"""
+    opened, path = path, source.name_of(path)
     try:
-        with h5py.File(path, "r") as f:
+        with (source.of_dataset(opened) if source.is_dataset(opened)
+              else h5py.File(path, "r")) as f:
             version = _text(f.attrs.get("version", "none"))
             if version.split(".")[0] != "1":
                 raise InputError(path, f"version {version} of the format", "version 1")
@@ -129,7 +176,12 @@ def read(path: str) -> Study:
             summary = [_summary(n, g) for n, g in f["summary"].items()]
             return Study(path, _text(f.attrs.get("title", "")), int(valid.size),
                          bool(f.attrs.get("complete", 1)), columns, summary,
-                         int(np.sum(~valid)))
+                         int(np.sum(~valid)),
+                         float(np.ravel(f["summary"].attrs.get("confidence", np.nan))[0]),
+                         _false_alarms(f),
+                         dict(title=_text(f.attrs.get("title", "")),
+                              version=_text(f.attrs.get("program_version", "")),
+                              digest=_text(f.attrs.get("identity", ""))))
     except (KeyError, OSError, ValueError) as error:
         raise InputError(path, f"what cannot be read ({error})",
                          "a whole file of `asdic study` or `asdic merge`") from error

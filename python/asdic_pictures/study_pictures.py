@@ -11,6 +11,7 @@ from .study_data import Study, SummaryTable, spoken
 MOST_PANELS = 12
 MOST_BESIDE = 6  # inputs of two maps side by side
 YES_OR_NO = ("detected", "false_alarm")
+TAIL = 0.1  # share of the values without an echo that the tail of an ROC is drawn after
 DETAILS = ("path", "echo_time", "noise_level", "series_")  # measures that are left out first
 
 
@@ -23,16 +24,23 @@ def panels(study: Study, what: str, count: int, height: float = 2.6):
     flat = axes.ravel()
     for unused in flat[count:]:
         unused.remove()
-    heading(flat[0], study)
     return fig, flat[:count]
 
 
-def heading(axes, study: Study) -> None:
+def heading(axes, study: Study, more: str = "") -> None:
     """style.subtitle over several axes: its length moves none of them, nor their colour bars."""
-    axes.set_title(" ", fontsize=9.5)  # keeps its height free
-    line = axes.annotate(style.shorten(study.heading()), (0.0, 1.0), (0.0, 8.0), "axes fraction",
-                         "offset points", color="#555555", fontsize=9.5, annotation_clip=False)
+    words = study.heading() + (f" · {more}" if more else "")
+    lines = style.wrapped(style.plain(words), style.room_of(axes), 9.5)
+    axes.set_title("\n".join(" " for _ in lines), fontsize=9.5)  # keeps its height free
+    line = axes.annotate("\n".join(lines), (0.0, 1.0), (0.0, 8.0), "axes fraction",
+                         "offset points", color=style.NOTE, fontsize=9.5, annotation_clip=False)
     line.set_in_layout(False)
+
+
+def orient(axis, column) -> None:
+    """Depth grows downwards."""
+    if column.is_depth():
+        axis.axes.set_ylim(*sorted(axis.axes.get_ylim(), reverse=True))
 
 
 def banded(table: SummaryTable) -> list:
@@ -73,14 +81,26 @@ def axes_of(table: SummaryTable) -> list:
     return [n for n in before if not n.endswith(("_low", "_high")) or n.rsplit("_", 1)[0] not in before]
 
 
+def varying(table: SummaryTable) -> list:
+    """Of banded(): those that are not the same everywhere."""
+    return [n for n in banded(table) if not table[n].is_constant() or table[n].values.size == 1]
+
+
 def drawn(table: SummaryTable) -> list:
-    """Of banded(): as many as there are panels for, what was detected and where before details."""
-    return sorted(banded(table), key=lambda n: n.startswith(DETAILS))[:MOST_PANELS]
+    """Of varying(): as many as there are panels for, what was detected and where before details."""
+    return sorted(varying(table), key=lambda n: n.startswith(DETAILS))[:MOST_PANELS]
+
+
+def constants(table: SummaryTable) -> str:
+    """Of what there is no panel: "false alarm is 0 everywhere"."""
+    said = [f"{spoken(n)} is {table[n].values[np.isfinite(table[n].values)][0]:.3g} everywhere"
+            for n in banded(table) if n not in varying(table)]
+    return ", ".join(said[:3])
 
 
 def title(table: SummaryTable, names: list) -> str:
     """What a table along inputs shows: "Probability of detection against range"."""
-    every = len(banded(table))
+    every = len(varying(table))
     some = f", {len(names)} of {every} measures" if len(names) < every else ""
     what = spoken(names[0]) if len(names) == 1 and names[0].startswith(("pd", "pfa")) else "means"
     along = " and ".join(spoken(n) for n in axes_of(table))
@@ -101,8 +121,11 @@ def draw_by(study: Study) -> dict:
         if not names:
             continue
         fig, axes = panels(study, title(table, names), len(names), 3.0)
+        heading(axes[0], study, f"bands: {study.interval}" if not table[axes_of(table)[0]].labels
+                else f"bars: {study.interval}")
         for k, (name, a) in enumerate(zip(names, axes)):
             band(a, table, axes_of(table)[0], name, style.colour(k + 1))
+            orient(a.yaxis, table[name])
             a.set_ylabel(table[name].label())
             if table[name].values.size and not table.name.startswith("means"):
                 limit = top(table[f"{name}_high"].values)
@@ -128,7 +151,7 @@ def name_ticks(column):
     return there, [style.shorten(n, 18) for n in names]
 
 
-def numbers(axes, across, down, value) -> None:
+def numbers(axes, across, down, value, image) -> None:
     """Writes the value of each cell into it, if there is room."""
     if value.shape[0] > 12 or value.shape[1] > 10:
         return
@@ -136,7 +159,7 @@ def numbers(axes, across, down, value) -> None:
         if np.isfinite(v):
             middle = across[column:column + 2].mean(), down[row:row + 2].mean()
             axes.text(*middle, f"{v:.2g}" if v < 0.1 else f"{v:.2f}", ha="center", va="center",
-                      fontsize=8, path_effects=style.OVER_MAP)
+                      fontsize=8, color=style.readable_on(image.to_rgba(v)))
 
 
 def draw_map(study: Study) -> dict:
@@ -150,6 +173,10 @@ def draw_map(study: Study) -> dict:
         if not names or cells[0] * cells[1] != x.values.size:
             continue
         fig, axes = panels(study, title(table, names), len(names), 3.4)
+        widest = max(float(np.nanmax(table[f"{n}_high"].values - table[f"{n}_low"].values))
+                     for n in names) / 2.0
+        heading(axes[0], study, f"each within {widest:.2g} or less ({study.interval})"
+                if len(names) == 1 else "")
         for name, a in zip(names, axes):
             value = table[name].values.reshape(cells)
             probability = not table.name.startswith("means")
@@ -160,52 +187,114 @@ def draw_map(study: Study) -> dict:
             for axis, column in ((a.xaxis, x), (a.yaxis, y)):
                 if column.labels:
                     axis.set_ticks(*name_ticks(column))
+            orient(a.yaxis, y)
             style.image_frame(a)
             a.set_xlabel(x.label())
             a.set_ylabel(y.label())
             fig.colorbar(image, ax=a, label=table[name].label())
             if probability and len(names) == 1:
-                numbers(a, across, down, value)
+                numbers(a, across, down, value, image)
         figures[table.name] = fig
     return figures
 
 
+def tail_of(study: Study, suffix: str, least: float):
+    """The ROC beyond the smallest probability that the realisations can tell, one in as many as
+    there are: the largest tenth of the values without an echo, as powers, go on as the exponential
+    law that noise has after a filter. → pfa, pd, or None where the table does not tell them
+    """
+    columns = {c.name: c.values for c in study.columns}
+    absent, present = (columns.get(f"snr_{what}_db{suffix}") for what in ("absent", "matched"))
+    if absent is None or present is None:
+        return None
+    absent = 10.0 ** (absent[np.isfinite(absent)] / 10.0)
+    if absent.size < 100 or np.isnan(present).all():
+        return None
+    start = np.quantile(absent, 1.0 - TAIL)
+    mean = np.mean(absent[absent > start] - start)
+    pfa = np.geomspace(least, 1.5 / absent.size, 40)
+    threshold = 10.0 * np.log10(start + mean * np.log(TAIL / pfa))
+    present = np.nan_to_num(present[~np.isnan(present)], neginf=-300.0)
+    return pfa, np.mean(present[None, :] > threshold[:, None], axis=1)
+
+
+def operating_point(study: Study, suffix: str):
+    """Where the study's own threshold is: its false alarms, as asked for or, without that, as
+    counted, and its detections with their interval. → pfa, pd, half the interval; None: not told
+    """
+    columns = {c.name: c.values for c in study.columns}
+    hits = columns.get(f"detected{suffix}")
+    false = columns.get(f"false_alarm{suffix}")
+    pfa = study.false_alarms or (float(np.nanmean(false)) if false is not None else 0.0)
+    if hits is None or not np.isfinite(hits).any() or not pfa > 0.0:
+        return None
+    hits = hits[np.isfinite(hits)]
+    pd = float(hits.mean())
+    from statistics import NormalDist
+    level = study.confidence if np.isfinite(study.confidence) else 0.95
+    z = NormalDist().inv_cdf(0.5 + 0.5 * level)
+    return pfa, pd, z * np.sqrt(max(pd * (1.0 - pd), 1e-12) / hits.size)
+
+
 def draw_roc(study: Study) -> dict:
+    """From the operating point's neighbourhood to 1: solid where false alarms were counted, dashed
+    where their law goes on.
+    """
     tables = study.tables(lambda t: t.name.startswith("roc") and "pfa" in t and "pd" in t)
     if not tables:
         return {}
-    fig, axes = style.figure("Receiver operating characteristic")
+    fig, axes = style.figure("Receiver operating characteristic", 4.9)
     least = 1.0
+    guessed = False
     for k, table in enumerate(tables):
+        suffix = table.name[3:]
+        shade = style.colour(k)
         pfa, pd = table["pfa"].values, table["pd"].values
         seen = pfa > 0
-        least = min(least, pfa[seen].min(initial=1.0))
-        name = table.name[4:].replace("_", " ") or None
+        counted = pfa[seen].min(initial=1.0)
+        name = table.name[4:].replace("_", " ")
         axes.fill_between(pfa[seen], table["pd_low"].values[seen], table["pd_high"].values[seen],
-                          color=style.colour(k), alpha=0.2, lw=0)
-        axes.plot(pfa[seen], pd[seen], color=style.colour(k), label=name)
+                          color=shade, alpha=0.2, lw=0)
+        axes.plot(pfa[seen], pd[seen], color=shade,
+                  label=name or f"as counted, with {study.interval}")
+        point = operating_point(study, suffix)
+        wanted = min(counted, point[0] / 3.0) if point else counted
+        least = min(least, wanted)
+        further = tail_of(study, suffix, wanted) if wanted < counted else None
+        if further:
+            guessed = True
+            axes.plot(*further, color=shade, ls=(0, (4, 2)),
+                      label=None if name else "fewer false alarms than one in all realisations: "
+                                              "exponential law")
+        if point:
+            axes.errorbar(point[0], point[1], point[2], fmt="D", ms=6, color=shade, capsize=3,
+                          mec=style.PAPER, mew=0.8, zorder=5,
+                          label=f"{name + ': ' if name else ''}operating point, "
+                                f"P_fa {point[0]:.2g}, P_d {point[1]:.3f}".replace("_", ""))
     chance = np.geomspace(max(least, 1e-9), 1.0, 50)
-    axes.plot(chance, chance, color=style.GREY, lw=0.8, ls="--", label="by chance")
+    axes.plot(chance, chance, color=style.GREY, lw=0.8, ls=":", label="by chance")
     axes.set_xscale("log")
     axes.set_xlim(chance[0], 1.0)
     axes.set_ylim(0.0, 1.02)
     axes.set_xlabel("probability of false alarm")
     axes.set_ylabel("probability of detection")
     axes.grid(True)
-    style.subtitle(axes, study.heading())
-    if len(tables) > 1:
-        axes.legend(loc="lower right")
+    style.subtitle(axes, f"{study.heading()} · bands and bars: {study.interval}"
+                   + (" · dashed: exponential law" if guessed and len(tables) > 1 else ""))
+    style.legend_below(axes, ncol=2)
     return {"roc": fig}
 
 
 def draw_histograms(study: Study) -> dict:
-    columns = [c for c in study.columns if np.isfinite(c.values).any()]
+    columns = [c for c in study.columns if not c.is_constant()]
     all_of_them = len(columns)
     columns = sorted(columns, key=lambda c: c.role != "measure")[:MOST_PANELS]
     if not columns:
         return {}
     some = f", {len(columns)} of {all_of_them} columns" if len(columns) < all_of_them else ""
-    fig, axes = panels(study, "What was drawn (grey) and what came out" + some, len(columns))
+    fig, axes = panels(study, "Inputs as they were drawn (grey) and measures (blue)" + some,
+                       len(columns))
+    heading(axes[0], study)
     for column, a in zip(columns, axes):
         values = column.values[np.isfinite(column.values)] * column.scale()
         colour = style.BLUE if column.role == "measure" else style.GREY
@@ -240,7 +329,10 @@ def draw_sensitivity(study: Study) -> dict:
         return {}
     constant = [k for k, name in enumerate(measures.labels) for c in study.columns
                 if c.name == name and np.unique(c.values[np.isfinite(c.values)]).size < 2]
-    height = max(3.9, 1.8 + 0.45 * len(measures.labels))
+    shown = [k for k in range(len(measures.labels)) if k not in constant]
+    if not shown:
+        return {}
+    height = max(3.9, 1.8 + 0.45 * len(shown))
     if len(inputs.labels) > MOST_BESIDE:  # one above the other: there would be no room for numbers
         fig, axes = style.figure("Which input matters", 1.8 * height, nrows=2, sharex=True)
     else:
@@ -249,22 +341,25 @@ def draw_sensitivity(study: Study) -> dict:
                                 (axes[1], "rank_correlation", "rank correlation", -1.0)):
         grid = np.full((len(measures.labels), len(inputs.labels)), np.nan)
         grid[measures.values.astype(int), inputs.values.astype(int)] = table[name].values
-        grid[constant] = np.nan  # nothing depends on anything
-        grid = np.maximum(grid, low)  # an estimate of no share falls below 0 by chance
-        image = a.imshow(grid, cmap="RdBu_r" if low < 0 else style.MAP, vmin=low, vmax=1.0,
+        grid = np.maximum(grid[shown], low)  # an estimate of no share falls below 0 by chance
+        image = a.imshow(grid, cmap=style.DIVERGING if low < 0 else style.MAP, vmin=low, vmax=1.0,
                          aspect="auto")
+        for side in a.spines.values():
+            side.set_visible(True)
         for (row, column), value in np.ndenumerate(grid):
             if not np.isfinite(value):  # of names without an order
                 a.text(column, row, "–", ha="center", va="center", fontsize=8, color=style.GREY)
             else:
                 words = f"{round(value, 2) + 0.0:.2f}".replace("-", "−")  # never −0.00
                 a.text(column, row, words, ha="center", va="center", fontsize=8,
-                       path_effects=style.OVER_MAP)
+                       color=style.readable_on(image.to_rgba(value)))
         a.set_xticks(np.arange(len(inputs.labels)), [spoken(n) for n in inputs.labels],
                      rotation=25, ha="right")
-        a.set_yticks(np.arange(len(measures.labels)), [spoken(n) for n in measures.labels])
-        fig.colorbar(image, ax=a, label=title)
-    heading(axes[0], study)
+        a.set_yticks(np.arange(len(shown)), [spoken(measures.labels[k]) for k in shown])
+        a.set_xlabel(title)
+        fig.colorbar(image, ax=a, pad=0.02, aspect=30)
+    told = [spoken(measures.labels[k]) for k in constant]
+    heading(axes[0], study, f"constant, and left out: {', '.join(told)}" if told else "")
     return {"sensitivity": fig}
 
 
@@ -276,18 +371,38 @@ def draw_convergence(study: Study) -> dict:
     name = banded(table)[0]
     fig, axes = style.figure("How the estimate settles")
     band(axes, table, "count", name, style.BLUE)
-    axes.axhline(table[name].values[-1], color=style.GREY, lw=0.8, ls="--")
+    axes.axhline(table[name].values[-1], color=style.GREY, lw=0.8, ls="--", label="all of them")
     axes.set_xscale("log")
     axes.set_xlabel("realisations")
     axes.set_ylabel(table[name].label())
-    style.subtitle(axes, study.heading())
+    style.subtitle(axes, f"{study.heading()} · band: {study.interval}")
     return {"convergence": fig}
 
 
 ALL = (draw_by, draw_map, draw_roc, draw_histograms, draw_sensitivity, draw_convergence)
 
 
-def draw(study: Study):
-    """→ (name, figure) of every picture, one at a time"""
+def draw(study: Study, only=None):
+    """→ (name, figure) of every picture, one at a time. \\param only  names, if not all"""
     for one in ALL:
-        yield from one(study).items()
+        if only is not None and not any(n in only for n in names_of(study, one)):
+            continue
+        with style.look():
+            made = one(study)
+        for name, figure in made.items():
+            if only is None or name in only:
+                yield name, figure
+
+
+def names_of(study: Study, one) -> list:
+    """What a function of ALL may draw."""
+    if one in (draw_by, draw_map):
+        return [t.name for t in study.summary if "_by_" in t.name]
+    return [{draw_roc: "roc", draw_histograms: "histograms", draw_sensitivity: "sensitivity",
+             draw_convergence: "convergence"}[one]]
+
+
+def left_out(study: Study) -> dict:
+    """Name and reason of what would be drawn if it changed."""
+    return {t.name: constants(t) for t in study.summary
+            if "_by_" in t.name and banded(t) and not varying(t)}

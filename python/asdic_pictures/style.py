@@ -1,61 +1,221 @@
-"""The common look: sizes, axes, colours (Okabe & Ito's, safe for the colour-blind), and writing."""
+"""The common look: sizes, axes, colours (Okabe & Ito's, safe for the colour-blind), light and dark.
+
+Colours are names of this module, and those of the theme that is drawn in: `with look("dark"):`.
+A notebook's own settings of matplotlib are left alone.
+"""
 from __future__ import annotations
 
+import functools
+import io
+import textwrap
+from contextlib import contextmanager
+
 import matplotlib
+import numpy as np
+from matplotlib import patheffects, ticker
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.patches import Rectangle
+from matplotlib.textpath import text_to_path
+from matplotlib.transforms import ScaledTranslation
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib import patheffects, ticker  # noqa: E402
+from . import output
 
-from . import output  # noqa: E402
+WIDTH = 10.0    # of a figure [inch]
 
-INK, GREY = "#222222", "#8a8a8a"
-BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
-SLATE, BROWN = "#6f7fa6", "#6b4423"     # of no target
-ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
-TARGETS = [VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY]
-MAP = "viridis"
-# keeps a mark readable on any colour of the map, and a cluster of marks apart
-OVER_MAP = [patheffects.withStroke(linewidth=2.4, foreground="white")]
+LIGHT = dict(
+    INK="#222222", GREY="#8a8a8a", NOTE="#555555", PAPER="white", GRID="#e8e8e8",
+    NOTHING="#ececec", BLUE="#0072B2", VERMILION="#D55E00", GREEN="#009E73", SLATE="#6f7fa6",
+    BROWN="#6b4423", ORANGE="#E69F00", PURPLE="#CC79A7", SKY="#56B4E9", GROUND="#cdbfa9",
+    GROUND_INK="#5d4f38", WATER="#eaf3f9", MAP="viridis", LOSS_MAP="viridis_r", DIVERGING="RdBu_r")
+DARK = dict(
+    INK="#e8e8e8", GREY="#9a9a9a", NOTE="#b8b8b8", PAPER="#14171c", GRID="#2c313a",
+    NOTHING="#2a2e35", BLUE="#4fa8e0", VERMILION="#ff8840", GREEN="#2fc99b", SLATE="#93a4d0",
+    BROWN="#c99a6b", ORANGE="#f2b632", PURPLE="#e39fc6", SKY="#8fd0f7", GROUND="#5b4d38",
+    GROUND_INK="#d8c8ab", WATER="#182430", MAP="viridis", LOSS_MAP="viridis_r",
+    DIVERGING="RdBu_r")
+THEMES = {"light": LIGHT, "dark": DARK}
+globals().update(LIGHT)
+TARGETS: list[str] = []
+OVER_MAP: list = []     # keeps a mark readable on any colour of a map
+TESTING: dict = {}      # settings of matplotlib that tests put on top
+_theme = "light"
+_inside = False
+_given = None           # the caller's axes, of pictures that take none
 
-plt.rcParams.update({
-    "figure.dpi": 150, "savefig.dpi": 150, "figure.constrained_layout.use": True,
-    "figure.facecolor": "white",
-    "font.family": "DejaVu Sans", "font.size": 10, "text.color": INK,
-    "axes.titlesize": 11, "axes.titlelocation": "left", "axes.titlepad": 8, "axes.labelsize": 10,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": GREY, "axes.linewidth": 0.8, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.axisbelow": True,
-    "xtick.labelsize": 9, "ytick.labelsize": 9, "xtick.color": GREY, "ytick.color": GREY,
-    "xtick.labelcolor": INK, "ytick.labelcolor": INK,
-    "grid.color": "#e8e8e8", "grid.linewidth": 0.7, "lines.linewidth": 1.4,
-    "lines.solid_capstyle": "round",
-    "legend.frameon": False, "legend.fontsize": 9, "legend.handlelength": 1.6,
-    "legend.columnspacing": 1.6,
-    "agg.path.chunksize": 20000,
-})
+
+def settings(theme: dict) -> dict:
+    """Of matplotlib."""
+    ink, grey = theme["INK"], theme["GREY"]
+    return {
+        "figure.dpi": 150, "savefig.dpi": "figure", "figure.constrained_layout.use": True,
+        "figure.facecolor": theme["PAPER"], "savefig.facecolor": "auto",
+        "axes.facecolor": theme["PAPER"], "font.family": "DejaVu Sans", "font.size": 10,
+        "text.color": ink, "axes.titlesize": 11, "axes.titlelocation": "left", "axes.titlepad": 9,
+        "axes.labelsize": 10, "axes.labelcolor": ink, "axes.edgecolor": grey,
+        "axes.linewidth": 0.8, "axes.spines.top": False, "axes.spines.right": False,
+        "axes.axisbelow": True, "axes.unicode_minus": True,
+        "xtick.labelsize": 9, "ytick.labelsize": 9, "xtick.color": grey, "ytick.color": grey,
+        "xtick.labelcolor": ink, "ytick.labelcolor": ink, "grid.color": theme["GRID"],
+        "grid.linewidth": 0.7, "lines.linewidth": 1.4, "lines.solid_capstyle": "round",
+        "legend.frameon": False, "legend.fontsize": 9, "legend.handlelength": 1.6,
+        "legend.columnspacing": 1.6, "legend.labelcolor": ink, "hatch.linewidth": 0.7,
+        "text.usetex": False, "agg.path.chunksize": 20000, "pdf.fonttype": 42,
+        "svg.hashsalt": "asdic", "svg.fonttype": "path", **TESTING}
+
+
+def _put_on(name: str) -> None:
+    global _theme
+    _theme = name
+    theme = THEMES[name]
+    globals().update(theme)
+    TARGETS[:] = [theme[c] for c in ("VERMILION", "BLUE", "GREEN", "PURPLE", "ORANGE", "SKY")]
+    OVER_MAP[:] = [patheffects.withStroke(linewidth=2.4, foreground="white" if name == "light"
+                                          else "black")]
+
+
+_put_on("light")
+
+
+@contextmanager
+def look(name: str | None = None):
+    """What is drawn inside has this theme; inside another `look`, without a name, that one's."""
+    global _inside
+    before, nested = _theme, _inside
+    wanted = name or (before if nested else "light")
+    if wanted not in THEMES:
+        raise ValueError(f'theme: found "{wanted}", expected one of {", ".join(THEMES)}')
+    _put_on(wanted)
+    _inside = True
+    try:
+        with matplotlib.rc_context(settings(THEMES[wanted])):
+            yield
+    finally:
+        _put_on(before)
+        _inside = nested
+
+
+@contextmanager
+def onto(axes):
+    """Pictures inside are drawn on the caller's axes."""
+    global _given
+    before, _given = _given, axes
+    try:
+        yield
+    finally:
+        _given = before
+
+
+def picture(draw):
+    """A function that draws, in the common look whatever is around it."""
+    @functools.wraps(draw)
+    def in_common_look(*arguments, **options):
+        with look():
+            return draw(*arguments, **options)
+    return in_common_look
+
+
+class Picture(Figure):
+    """A figure that a notebook shows by itself, and that knows what it is called."""
+
+    name = ""
+
+    def _repr_png_(self):
+        if self.canvas is None:
+            FigureCanvasAgg(self)
+        made = io.BytesIO()
+        self.savefig(made, format="png", dpi=100)
+        return made.getvalue()
 
 
 def colour(target: int) -> str:
     return TARGETS[target % len(TARGETS)]
 
 
-def figure(what: str, height: float = 4.6, **grid):
-    """A figure under a title that says what it is. → figure, axes (as plt.subplots)"""
-    fig, axes = plt.subplots(figsize=(10.0, height), **grid)
-    fig.suptitle(what, x=0.012, ha="left", fontsize=13, fontweight="bold")
-    fig.set_constrained_layout_pads(w_pad=0.1, h_pad=0.07, wspace=0.02, hspace=0.03)
-    return fig, axes
+# ------------------------------------------------------------------------------------- figures
 
 
-def subtitle(axes, text: str) -> None:
-    """One grey line above the axes: what it is of."""
-    axes.set_title(shorten(text), color="#555555", fontsize=9.5, fontweight="normal")
+def figure(what: str, height: float = 4.6, axes=None, nrows: int = 1, ncols: int = 1,
+           squeeze: bool = True, **grid):
+    """A figure under a title that says what it is, or the caller's own axes. → figure, axes (as
+    plt.subplots)
+    """
+    axes = _given if axes is None else axes
+    if axes is not None:
+        flat = np.ravel(np.array(axes, dtype=object))
+        if flat.size != nrows * ncols:
+            raise ValueError(f"axes: found {flat.size}, expected {nrows * ncols} "
+                             f"({what[0].lower()}{what[1:]})")
+        own = flat.reshape(nrows, ncols)
+        return flat[0].figure, (np.squeeze(own)[()] if squeeze else own)
+    fig = Picture(figsize=(WIDTH, height))
+    FigureCanvasAgg(fig)
+    made = fig.subplots(nrows, ncols, squeeze=squeeze, **grid)
+    title(fig, what)
+    if engine := fig.get_layout_engine():
+        engine.set(w_pad=0.1, h_pad=0.07, wspace=0.02, hspace=0.03)
+    return fig, made
+
+
+def title(fig, text: str) -> None:
+    """Of a picture of ours; a caller's figure keeps its own."""
+    if isinstance(fig, Picture):
+        fig.name = text
+        fig.suptitle("\n".join(wrapped(text, 72.0 * WIDTH - 20.0, 13, "bold")), x=0.012, ha="left",
+                     fontsize=13, fontweight="bold")
+
+
+def plain(text) -> str:
+    """Never read as mathematics, in one line."""
+    return " ".join(str(text).replace("$", r"\$").split())
+
+
+def width_of(text: str, size: float, weight: str = "normal") -> float:
+    """Of a line of text [points]"""
+    font = FontProperties(family="DejaVu Sans", size=size, weight=weight)
+    return text_to_path.get_text_width_height_descent(text.replace(r"\$", "$"), font, False)[0]
+
+
+def wrapped(text: str, room: float, size: float, weight: str = "normal", most: int = 4):
+    """Lines that are no wider than `room` [points]. More than `most` of them end in …"""
+    letters = max(int(room / (width_of("abcdefghijklmnopqrstuvwxyz ", size, weight) / 27)), 12)
+    while True:
+        lines = textwrap.wrap(text, letters, break_on_hyphens=False) or [""]
+        widest = max(width_of(line, size, weight) for line in lines)
+        if widest <= room or letters <= 12:
+            break
+        letters = max(12, min(letters - 1, int(letters * room / widest)))
+    if len(lines) > most:
+        lines = lines[:most]
+        lines[-1] = lines[-1][:-1] + "…"
+    return lines
+
+
+def room_of(axes) -> float:
+    """From the left end of an axes to the right edge of its figure [points]"""
+    fig = axes.figure
+    width = fig.get_figwidth()
+    place = axes.get_subplotspec()
+    if place is None or not isinstance(fig, Picture):
+        return 72.0 * width * axes.get_position().width
+    grid = place.get_gridspec()
+    ratios = np.array(grid.get_width_ratios(), float)
+    left = 1.05 + (width - 1.25) * ratios[: place.colspan.start].sum() / ratios.sum()
+    return 72.0 * (width - left - 0.1)
+
+
+def subtitle(axes, text: str, marks: bool = False) -> None:
+    """Grey lines above the axes: what it is of. As many as it takes. \\param marks  leaves room for
+    marks over the axes
+    """
+    lines = wrapped(plain(text), room_of(axes), 9.5)
+    axes.set_title("\n".join(lines), color=NOTE, fontsize=9.5, fontweight="normal", loc="left",
+                   pad=17.0 if marks else None)
 
 
 def shorten(text: str, limit: int = 125) -> str:
-    text = " ".join(str(text).replace("$", r"\$").split())
+    text = plain(text)
     return text if len(text) <= limit else text[: limit - 1] + "…"
 
 
@@ -76,15 +236,27 @@ def time_axis(axes, first: float, last: float, label: str = "time after the ping
     axes.set_xlabel(label)
 
 
-def legend_below(axes, handles=None, below: float = 0.13, **options) -> None:
-    """A legend in a row under the axes, where it can hide nothing."""
-    handles = handles if handles is not None else axes.get_legend_handles_labels()[0]
-    if handles:
-        # in characters; about 115 fit in a row
-        widest = sum(len(h.get_label()) + 6 for h in handles)
-        columns = min(options.pop("ncol", 6), -(-len(handles) // -(-widest // 115)))
-        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, -below), ncol=columns,
-                    borderaxespad=0.3, **options)
+def legend_below(axes, handles=None, points: float = 40.0, ncol: int = 6, **options) -> None:
+    """A legend in rows under the axes and its label, where it can hide nothing."""
+    handles = list(handles if handles is not None else axes.get_legend_handles_labels()[0])
+    if not handles:
+        return
+    widths = [width_of(plain(h.get_label()), 9) + 44.0 for h in handles]
+    room = room_of(axes)
+    columns = min(ncol, len(handles))
+    while columns > 1:
+        rows = -(-len(widths) // columns)
+        if sum(max(widths[k: k + rows]) for k in range(0, len(widths), rows)) <= room:
+            break
+        columns -= 1
+    below = axes.transAxes + ScaledTranslation(0.0, -points / 72.0, axes.figure.dpi_scale_trans)
+    legend = axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, 0.0), ncol=columns,
+                         bbox_transform=below, borderaxespad=0.0, borderpad=0.0, **options)
+    # wider than its axes it would squeeze them: a strut keeps its height free instead
+    legend.set_in_layout(False)
+    height = 14.0 * -(-len(handles) // columns) + 2.0
+    axes.annotate(" ", (0.0, 0.0), (0.0, -points - height), "axes fraction", "offset points",
+                  fontsize=2, annotation_clip=False)
 
 
 def truth(target: int, marker: str, size: float, label: str = "_"):
@@ -93,9 +265,35 @@ def truth(target: int, marker: str, size: float, label: str = "_"):
                 label=label)
 
 
+def box(axes, first: float, last: float, low: float, high: float, shade: str, **options):
+    """An outline around what is between two times, and between two places of the other axis."""
+    return axes.add_patch(Rectangle((first, low), last - first, high - low, fill=False, ec=shade,
+                                    lw=1.4, zorder=6, path_effects=list(OVER_MAP), **options))
+
+
+def box_key(shade: str, label: str):
+    """Of `box`, for a legend."""
+    return Rectangle((0, 0), 1, 1, fill=False, ec=shade, lw=1.6, label=label)
+
+
+def together(first, last, place, near: float):
+    """Boxes of one height that lie over one another as one each. → rows of first, last, place"""
+    order = np.argsort(first, kind="stable")
+    made: list[list[float]] = []
+    for f, g, y in zip(np.asarray(first)[order], np.asarray(last)[order],
+                       np.asarray(place)[order]):
+        for one in made:
+            if f <= one[1] and abs(y - one[2]) <= near:
+                one[1] = max(one[1], g)
+                break
+        else:
+            made.append([float(f), float(g), float(y)])
+    return made
+
+
 def image_frame(axes) -> None:
     """Axes around an image: all four sides, ticks outwards; grey where there are no data."""
-    axes.set_facecolor("#ececec")
+    axes.set_facecolor(NOTHING)
     for side in axes.spines.values():
         side.set_visible(True)
     axes.tick_params(direction="out", length=3)
@@ -108,9 +306,22 @@ def silence(axes, db) -> None:
                   color=GREY)
 
 
-def colour_bar(fig, mesh, axes, label: str, extend: str = "both"):
-    silence(axes, mesh.get_array())
-    bar = fig.colorbar(mesh, ax=axes, pad=0.015, fraction=0.05, aspect=28, extend=extend)
+def beyond(values, limits) -> str:
+    """Which ends of a colour bar are arrows: those that some of the values lie beyond."""
+    good = np.asarray(values, float)
+    good = good[np.isfinite(good)]
+    low = good.size and good.min() < limits[0] - 1e-9
+    high = good.size and good.max() > limits[1] + 1e-9
+    return {(False, False): "neither", (True, False): "min", (False, True): "max",
+            (True, True): "both"}[bool(low), bool(high)]
+
+
+def colour_bar(fig, mesh, axes, label: str, extend: str | None = None):
+    first = axes if not np.ndim(axes) else np.ravel(axes)[0]
+    values = np.ma.filled(np.ma.asarray(mesh.get_array(), float), np.nan)
+    silence(first, values)
+    bar = fig.colorbar(mesh, ax=axes, pad=0.015, fraction=0.05, aspect=28,
+                       extend=extend or beyond(values, mesh.get_clim()))
     bar.set_label(label)
     bar.outline.set_linewidth(0.6)
     bar.outline.set_edgecolor(GREY)
@@ -153,9 +364,13 @@ def cell_edges(centres):
     return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
 
 
-def write(fig, path, force: bool = False) -> None:
+def readable_on(shade) -> str:
+    """Black or white: what can be read on a colour."""
+    red, green, blue = matplotlib.colors.to_rgb(shade)
+    return "black" if 0.299 * red + 0.587 * green + 0.114 * blue > 0.5 else "white"
+
+
+def write(fig, path, force: bool = False, **options) -> None:
     """\\throws InputError where the name is somebody's, OSError with the path when it cannot be written"""
-    try:
-        output.write(fig, path, force)
-    finally:
-        plt.close(fig)
+    with look():
+        output.write(fig, path, force, **options)

@@ -2,8 +2,6 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.lines import Line2D
-
 from . import signal, style
 
 TITLE = "History of the pings"
@@ -36,25 +34,26 @@ def row_edges(numbers):
                            [numbers[-1] + 0.5]])
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     edges, db, width = history(data)
     rows = data.simulated
     numbers = data.numbers[rows]
     height = float(np.clip(2.8 + 0.28 * rows.size, 4.4, 9.0))
     elevation = data.elevation_deg[rows]
     if np.ptp(elevation) > 0:
-        fig, (left, right) = style.figure(TITLE, height, ncols=2, sharey=True,
+        fig, (left, right) = style.figure(TITLE, height, axes, ncols=2, sharey=True,
                                           gridspec_kw={"width_ratios": [1, 6.2]})
         draw_elevations(left, elevation, numbers)
         right.tick_params(labelleft=False)
         beam = ""
     else:
-        fig, right = style.figure(TITLE, height)
+        fig, right = style.figure(TITLE, height, axes)
         ping_axis(right)
-        beam = f"  ·  beam {elevation[0]:+g}°" if np.isfinite(elevation[0]) else ""
+        beam = f"  ·  beam {style.degrees(elevation[0])}" if np.isfinite(elevation[0]) else ""
 
     loudest = max(data.loudest_echo(int(row)) for row in rows)
-    limits = style.colour_limits(db, loudest)
+    limits = limits or style.colour_limits(db, loudest)
     mesh = style.image(right, edges, row_edges(numbers), db, limits)
     right.set_ylim(numbers[-1] + 0.5, numbers[0] - 0.5)  # the first ping on top
     style.image_frame(right)
@@ -62,10 +61,9 @@ def draw(data, ping):
     style.colour_bar(fig, mesh, right, f"level in {width:.0f} Hz / dB re 1 µPa")
     ending = "  ·  stopped early" if data.stopped else ""
     style.subtitle(right, f"{data.title or data.path}  ·  {rows.size} pings{beam}{ending}")
-    handles = [Line2D([], [], marker="|", ls="none", ms=11, mew=1.8, color=style.colour(target),
-                      label=f"{style.name(name)}: true time of its strongest echo")
+    handles = [style.box_key(style.colour(target), f"{style.name(name)}: its strongest true echo, one pulse long")
                for target, name in mark_true_echoes(right, data, edges).items()]
-    style.legend_below(right, handles[:6], ncol=2, below=min(0.13, 0.6 / height))
+    style.legend_below(right, handles[:6], ncol=2)
     return fig
 
 
@@ -83,14 +81,14 @@ def draw_elevations(axes, elevation_deg, numbers):
 
 
 def mark_true_echoes(axes, data, edges):
-    """A stroke through each ping's row at the strongest echo of every target. → names of targets"""
+    """A box in each ping's row around the strongest echo of every target. → names of targets"""
     marked = {}
     for row in data.simulated:
         for echo in data.echoes(int(row)):
             time = echo.delay[echo.strongest]
             if edges[0] <= time <= edges[-1]:
                 number = data.numbers[row]
-                axes.plot([time, time], [number - 0.38, number + 0.38], lw=1.6, zorder=4,
-                          color=style.colour(echo.target), path_effects=style.OVER_MAP)
+                style.box(axes, time, time + data.pulse_duration, number - 0.42, number + 0.42,
+                          style.colour(echo.target))
                 marked[echo.target] = echo.name
     return marked

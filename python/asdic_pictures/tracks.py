@@ -17,16 +17,17 @@ def nothing_to_show(data, ping):
     return None
 
 
-def draw(data, ping):
+@style.picture
+def draw(data, ping, axes=None, limits=None):
     tracks = processed.tracks(data)
     on_map = any(np.isfinite(t["x"]).any() for t in tracks)
-    fig, axes = style.figure(TITLE, 7.4 if on_map else 5.6)
+    fig, axes = style.figure(TITLE, 7.4 if on_map else 5.6, axes)
     (draw_map if on_map else draw_ranges)(axes, data, tracks)
     axes.grid(True)
     hits = sum(int(np.sum(t["detection"] >= 0)) for t in tracks)
     style.subtitle(axes, f"{data.title or data.path}  ·  {len(tracks)} tracks, {hits} detections "
                          f"in them{data.of_array}")
-    style.legend_below(axes, legend(data, tracks), ncol=4, below=0.12)
+    style.legend_below(axes, legend(data, tracks), ncol=4)
     return fig
 
 

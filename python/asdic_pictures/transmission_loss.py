@@ -1,6 +1,7 @@
 """Transmission loss over range and depth, over the sea floor where that is known."""
 from __future__ import annotations
 
+import matplotlib
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
@@ -8,21 +9,26 @@ from matplotlib.patches import Patch, Rectangle
 from . import sea, style
 
 TITLE = "Transmission loss"
-MAP = "viridis_r"       # loud is light
-HATCH = (0.15, 0.15, 0.15, 0.55)
+
+
+def hatching():
+    """Its colour."""
+    return matplotlib.colors.to_rgba(style.INK, 0.55)
 
 
 def nothing_to_show(field) -> str | None:
     return None if np.isfinite(field.tl(0)).any() else "no sound arrives anywhere"
 
 
-def limits(*maps, span: float = 60.0):
-    """Colour limits in dB, multiples of 5: all but a hundredth of the loud cells, at most `span`."""
+def colour_limits(*maps, span: float = 100.0):
+    """Colour limits in dB, multiples of 5: nearly all cells lie between them. Where they span more
+    than `span`, the quiet ones are clipped.
+    """
     good = np.concatenate([m[np.isfinite(m)].ravel() for m in maps])
     if good.size == 0:
-        return 40.0, 40.0 + span
-    low = 5.0 * np.floor(np.percentile(good, 1.0) / 5.0)
-    high = 5.0 * np.ceil(np.percentile(good, 97.0) / 5.0)
+        return 40.0, 100.0
+    low = 5.0 * np.floor(np.percentile(good, 0.5) / 5.0)
+    high = 5.0 * np.ceil(np.percentile(good, 99.5) / 5.0)
     return float(low), float(np.clip(high, low + 20.0, low + span))
 
 
@@ -48,15 +54,15 @@ def draw_unsure(axes, field, source: int) -> bool:
         return False
     if field.irregular:
         axes.scatter(field.range[unsure] / 1e3, field.depth[unsure], marker="x", s=30, lw=0.8,
-                     color=HATCH)
+                     color=hatching())
         return True
     # Cells are doubled, so that a contour of what is in and what is out follows their edges.
     across, down = edges(field.range) / 1e3, edges(field.depth)
     beside = np.repeat(across, 2)[1:-1], np.repeat(down, 2)[1:-1]
-    hatching = axes.contourf(*beside, np.kron(unsure, np.ones((2, 2))), levels=[0.5, 1.5],
+    drawn = axes.contourf(*beside, np.kron(unsure, np.ones((2, 2))), levels=[0.5, 1.5],
                              colors="none", hatches=["////"])
-    for part in getattr(hatching, "collections", [hatching]):   # before matplotlib 3.8, and since
-        part.set(edgecolor=HATCH, linewidth=0.0)
+    for part in getattr(drawn, "collections", [drawn]):   # before matplotlib 3.8, and since
+        part.set(edgecolor=hatching(), linewidth=0.0)
     return True
 
 
@@ -75,19 +81,22 @@ def frame(axes, field, source: int) -> None:
         across, down = edges(field.range) / 1e3, edges(field.depth)
         axes.add_patch(Rectangle((across[0], down[0]), across[-1] - across[0], down[-1] - down[0],
                                  fc=axes.get_facecolor(), lw=0, zorder=-1))
-        axes.set_facecolor("white")
+        axes.set_facecolor(style.PAPER)
     depths = np.concatenate([field.depth, field.source_depths])
     sea.depth_axis(axes, *sea.extent(field.sea, depths))
     first, last = field.range.min() / 1e3, field.range.max() / 1e3
     axes.set_xlim(min(first, 0.0), last if last > first else first + 1.0)
     sea.draw_boundaries(axes, field.sea)
-    axes.plot(0.0, field.source_depths[source], marker="D", ms=7, mfc=style.INK, mec="white",
+    axes.plot(0.0, field.source_depths[source], marker="D", ms=7, mfc=style.INK, mec=style.PAPER,
               mew=1.2, zorder=6, clip_on=False)
 
 
 def describe(field, source: int) -> str:
-    return (f"{style.shorten(field.title, 60)}  ·  {field.frequency:g} Hz, source at "
-            f"{field.source_depths[source]:g} m, {field.how}")
+    several = len(sea.profiles(field.sea)) if field.sea.sound_speed is not None else 1
+    water = "" if several == 1 else f"  ·  the water varies with range: {several} profiles"
+    title = f"{field.title}  ·  " if field.title else ""
+    return (f"{title}{field.frequency:g} Hz, source at {field.source_depths[source]:g} m, "
+            f"{field.how}{water}")
 
 
 def unsure_key(field, source: int, curves: bool = False):
@@ -102,16 +111,16 @@ def unsure_key(field, source: int, curves: bool = False):
     if curves:
         return Line2D([], [], color=style.INK, lw=0.9, ls=":", label=label)
     if field.irregular:
-        return Line2D([], [], color=HATCH, marker="x", ms=5, ls="none", label=label)
-    return Patch(fc="none", ec=HATCH, hatch="////", lw=0, label=label)
+        return Line2D([], [], color=hatching(), marker="x", ms=5, ls="none", label=label)
+    return Patch(fc="none", ec=hatching(), hatch="////", lw=0, label=label)
 
 
 MOST_CURVES = 4
 
 
-def draw_curves(field, source: int):
+def draw_curves(field, source: int, axes=None, given=None):
     """Receivers at a few depths: a curve over range for each."""
-    fig, axes = style.figure(TITLE, 4.2)
+    fig, axes = style.figure(TITLE, 4.2, axes)
     unsure = field.unsure(source)
     dotted = unsure is not None and unsure.any()
     for k, loss in enumerate(field.tl(source)):
@@ -120,7 +129,7 @@ def draw_curves(field, source: int):
         axes.plot(field.range / 1e3, sure, lw=1.1, label=f"{field.depth[k]:g} m", color=colour)
         if dotted:
             axes.plot(field.range / 1e3, loss, lw=0.9, ls=":", color=colour)
-    low, high = limits(field.tl(source), span=100.0)
+    low, high = given or colour_limits(field.tl(source))
     axes.set_ylim(high + 2, low - 2)
     axes.set_xlim(min(field.range.min(), 0.0) / 1e3, field.range.max() / 1e3)
     axes.set_ylabel("transmission loss / dB")
@@ -133,12 +142,13 @@ def draw_curves(field, source: int):
     return fig
 
 
-def draw(field, source: int = 0):
+@style.picture
+def draw(field, source: int = 0, axes=None, limits=None):
     if not field.irregular and field.depth.size <= MOST_CURVES:
-        return draw_curves(field, source)
-    fig, axes = sea.figure(TITLE, field.sea)
+        return draw_curves(field, source, axes, limits)
+    fig, axes = sea.figure(TITLE, field.sea, axes=axes)
     values = field.tl(source)
-    mesh = draw_map(axes, field, values, limits(values), MAP)
+    mesh = draw_map(axes, field, values, limits or colour_limits(values), style.LOSS_MAP)
     unsure = draw_unsure(axes, field, source)
     frame(axes, field, source)
     sea.label_depth(fig, axes)

@@ -35,7 +35,6 @@ class Case(unittest.TestCase):
                 change(f)
         data = PingFile(path)
         self.addCleanup(data.file.close)
-        self.addCleanup(style.plt.close, "all")
         return data
 
 
@@ -99,12 +98,11 @@ class Colours(Case):
         low, high = style.colour_limits(db, 130.0)
         self.assertEqual((low, high), (75.0, 130.0))
 
-    def test_rings_have_their_targets_colours(self):
+    def test_boxes_have_their_targets_colours(self):
         data = self.look(targets=[(2500.0, 40.0, 60.0), (3200.0, 100.0, 200.0)])
         fig = bearing_time.draw(data, 0)
-        rings = {to_hex(line.get_markeredgecolor()).upper()
-                 for line in fig.axes[0].get_lines() if line.get_marker() == "o"}
-        self.assertEqual(rings, {style.colour(0).upper(), style.colour(1).upper()})
+        boxes = {to_hex(box.get_edgecolor()).upper() for box in fig.axes[0].patches}
+        self.assertEqual(boxes, {style.colour(0).upper(), style.colour(1).upper()})
 
 
 class Legends(Case):

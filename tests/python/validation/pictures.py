@@ -29,9 +29,9 @@ matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
 from asdic_pictures import command, output, style  # noqa: E402
 
-style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 if not DEEP:    # where words stand is no matter of these tests, and takes half of the time
-    style.plt.rcParams["figure.constrained_layout.use"] = False
+    style.TESTING["figure.constrained_layout.use"] = False
 
 ALWAYS = ["rays", "pressure", "bearing_time", "levels", "spectrogram"]
 # A small sea: 6 s of 8 phones at a low rate, so that a case costs little more than its drawing.

@@ -24,9 +24,9 @@ from asdic_pictures import bearing_time, command, processed, range_bearing, styl
 from asdic_pictures.data import PingFile  # noqa: E402
 from deep import DEEP  # noqa: E402
 
-style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 if not DEEP:    # where words stand is no matter of these tests, and takes half of the time
-    style.plt.rcParams["figure.constrained_layout.use"] = False
+    style.TESTING["figure.constrained_layout.use"] = False
 FOUND = ["ambiguity", "detections", "range_bearing", "tracks"]
 
 SCENARIO = """

@@ -22,7 +22,7 @@ import matplotlib.image  # noqa: E402
 from asdic_pictures import (arrival_stems, command, comparison, ray_paths, results,  # noqa: E402
                             style, transmission_loss)
 
-style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 
 
 def plot(*arguments):
@@ -164,7 +164,6 @@ class EveryPictureIsDrawn(Case):
                 words = [t.get_text() for legend in fig.findobj(matplotlib.legend.Legend)
                          for t in legend.get_texts()]
                 self.assertIn("more beams may change it by over 0.5 dB: 50 % of the receivers", words)
-                style.plt.close(fig)
         pictures = []
         for unsure in (half, None):
             write_field(self.file, sea=False, unsure=unsure)
@@ -178,7 +177,6 @@ class EveryPictureIsDrawn(Case):
             columns = np.linspace(box.x0, box.x1, 11).astype(int)
             middle = image[int(box.y0) + 8:int(box.y1) - 8]
             pictures.append([middle[:, a + 4:b - 4].mean() for a, b in zip(columns, columns[1:])])
-            style.plt.close(fig)
         change = np.subtract(*pictures)
         self.assertTrue(np.all(np.abs(change[1:4]) < 1e-9), change)
         self.assertTrue(np.all(change[6:9] < -2.0), change)
@@ -265,9 +263,8 @@ class WhatThePicturesShow(Case):
         fig = transmission_loss.draw(results.read(self.file))
         axes = fig.axes[1]
         self.assertGreater(axes.get_ylim()[0], axes.get_ylim()[1])
-        colours = matplotlib.colormaps[transmission_loss.MAP]
+        colours = matplotlib.colormaps[style.LOSS_MAP]
         self.assertGreater(sum(colours(0.0)[:3]), sum(colours(1.0)[:3]))
-        style.plt.close(fig)
 
     def test_difference_is_a_minus_b(self):
         write_field(self.file, level_db=-2.0)
@@ -276,7 +273,6 @@ class WhatThePicturesShow(Case):
         fig = comparison.draw(a, b, ["a", "b"], 120.0)
         values = fig.axes[2].collections[0].get_array()
         self.assertAlmostEqual(float(np.nanmedian(np.ma.filled(values, np.nan))), 2.0, 4)
-        style.plt.close(fig)
 
     def test_stems_stand_at_delay_and_level(self):
         write_arrivals(self.file)

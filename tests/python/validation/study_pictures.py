@@ -22,7 +22,7 @@ matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
 from asdic_pictures import command, study_data, study_pictures, style  # noqa: E402
 
-style.plt.rcParams.update({"figure.dpi": 100, "savefig.dpi": 100})    # quicker to draw
+style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 
 INPUTS = {"range": "m", "wind_speed": "m/s", "kind": "1"}
 MEASURES = {"echo_level_db": "dB re 1 µPa", "detected": "1", "bearing_error_deg": "degrees"}
@@ -99,17 +99,15 @@ class Case(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.addCleanup(style.plt.close, "all")
         self.folder = Path(folder.name)
         self.file = self.folder / "study.h5"
 
     def figure(self, wanted, **options):
         """That one picture; the others are drawn by EveryPictureIsDrawn."""
         write(self.file, **options)
-        for name, fig in study_pictures.draw(study_data.read(str(self.file))):
+        for name, fig in study_pictures.draw(study_data.read(str(self.file)), [wanted]):
             if name == wanted:
                 return fig
-            style.plt.close(fig)
         self.fail(f"no picture {wanted}")
 
     def texts_apart(self, axes):
@@ -223,7 +221,6 @@ class WhatThePicturesShow(Case):
                 fig = self.figure("sensitivity", inputs={f"input_{i}": "m" for i in range(count)})
                 for axes in fig.axes[:2]:
                     self.texts_apart(axes)
-                style.plt.close(fig)
 
 
 class BadInput(Case):

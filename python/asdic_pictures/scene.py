@@ -1,0 +1,76 @@
+"""A scenario before anything is computed: who is where, the water, the arrays. The program writes it
+(io/result/scene_file.h)."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import results, source
+from .data import InputError
+
+KIND = "asdic scene"
+
+
+@dataclass
+class Things:
+    """Platforms, transmitters, arrays or targets."""
+
+    names: list
+    track: np.ndarray       # [things, instants, 3] east, north, depth [m]
+
+
+@dataclass
+class Scene:
+    title: str
+    sea: results.Sea
+    frequency: float
+    bearing: float                      # of the section, true [deg]
+    end: float                          # of the last record [s]
+    pings: int
+    things: dict                        # "platforms", … → Things
+    elevation: np.ndarray               # [transmitter] of the beam, positive up [deg]
+    beamwidth: np.ndarray               # [deg], NaN: not a narrow one
+    phones: list                        # [array] → [n, 3] from its middle [m]
+    source_depth: np.ndarray            # of a run without a sonar [m]
+    receivers: tuple                    # depths, ranges [m], whether they are one by one
+    tags: dict = field(default_factory=dict)
+
+    @property
+    def sonar(self) -> bool:
+        return bool(self.things.get("platforms"))
+
+    def start(self, kind: str) -> np.ndarray:
+        """[things, 3] where they are at the start [m]"""
+        return self.things[kind].track[:, 0]
+
+
+def read(path) -> Scene:
+    """\\throws InputError"""
+    if results.filetype(path) != KIND:
+        raise InputError(source.name_of(path), f'filetype "{results.filetype(path)}"', f'"{KIND}"')
+    reader = results.Reader(path)
+    with reader.file:
+        things, phones = {}, []
+        for kind in ("platforms", "transmitters", "arrays", "targets"):
+            if not reader.has(kind):
+                continue
+            names = [results.text({"n": n}, "n")
+                     for n in np.ravel(reader.file[kind].attrs.get("names", []))]
+            if reader.has(f"{kind}/track"):
+                things[kind] = Things(names, reader.array(f"{kind}/track"))
+        if reader.has("arrays/phone"):
+            owner = reader.array("arrays/phone_array")
+            places = reader.array("arrays/phone")
+            phones = [places[owner == k] for k in range(int(owner.max(initial=-1)) + 1)]
+
+        def numbers(name):
+            return reader.array(name) if reader.has(name) else np.zeros(0)
+
+        return Scene(reader.title(), reader.sea(), reader.number("frequency_hz"),
+                     reader.number("bearing_deg", 0.0), reader.number("end_s", 0.0),
+                     int(reader.number("pings", 0.0)), things,
+                     numbers("transmitters/elevation_deg"), numbers("transmitters/beamwidth_deg"),
+                     phones, numbers("source_depth"),
+                     (numbers("receiver_depth"), numbers("receiver_range"),
+                      bool(reader.number("irregular", 0.0))), reader.tags())
