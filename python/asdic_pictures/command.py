@@ -81,6 +81,7 @@ class Wishes:
 
         tags = getattr(fig, "tags", output.Tags())
         tags.version = self.program or tags.version
+        self.folder.mkdir(parents=True, exist_ok=True)
         for kind in self.formats:
             path = self.folder / f"{name}.{kind}"
             style.write(fig, path, self.force, dpi=self.dpi, tags=tags)
@@ -195,7 +196,6 @@ def draw_result(options, wish: Wishes) -> None:
 
     result = results.read(options.file)
     result.title = result.title or short_name((options.names or [options.file])[0])
-    wish.folder.mkdir(parents=True, exist_ok=True)
     name, module = api.result_module(result)
     wish.check_names([name])
     if reason := module.nothing_to_show(result):
@@ -214,7 +214,6 @@ def draw_scene(options, wish: Wishes) -> None:
 
     found = scene.read(options.file)
     found.title = found.title or short_name((options.names or [options.file])[0])
-    wish.folder.mkdir(parents=True, exist_ok=True)
     wish.check_names(api.OF_SCENES)
     for name, (_, nothing, told) in scene_pictures.PICTURES.items():
         if not wish.wants(name):
@@ -230,7 +229,6 @@ def draw_study(options, wish: Wishes) -> None:
     from . import study_data, study_pictures, style
 
     study = study_data.read(options.file)
-    wish.folder.mkdir(parents=True, exist_ok=True)
     wish.check_names(name for one in study_pictures.ALL
                      for name in study_pictures.names_of(study, one))
     with style.look(wish.theme):
@@ -279,7 +277,6 @@ def run(argv=None) -> int:
         return 0
     with PingFile(options.file) as data:
         ping = data.choose_ping(options.ping)
-        wish.folder.mkdir(parents=True, exist_ok=True)
         draw_all(data, ping, wish, options.array)
         for warning in data.warnings():
             complain(f"{options.file}: {warning}")

@@ -115,7 +115,7 @@ def is_our_svg(file) -> bool:
         word = element.tag.rsplit("}", 1)[-1]
         if event == "start":
             inside.append(word)
-            if len(inside) == 2 and word != "metadata":
+            if len(inside) == 2 and word not in ("title", "metadata"):
                 return False
         else:
             if word == "title" and "creator" in inside:

@@ -245,8 +245,9 @@ def legend_below(axes, handles=None, points: float = 40.0, ncol: int = 6, **opti
     room = room_of(axes)
     columns = min(ncol, len(handles))
     while columns > 1:
-        rows = -(-len(widths) // columns)
-        if sum(max(widths[k: k + rows]) for k in range(0, len(widths), rows)) <= room:
+        rows, longer = divmod(len(widths), columns)     # the first columns are a row longer
+        cuts = np.cumsum([0] + [rows + (k < longer) for k in range(columns)])
+        if sum(max(widths[a:b]) for a, b in zip(cuts, cuts[1:])) <= room:
             break
         columns -= 1
     below = axes.transAxes + ScaledTranslation(0.0, -points / 72.0, axes.figure.dpi_scale_trans)

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import h5py
 import numpy as np
@@ -20,9 +21,11 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
 
-from asdic_pictures import bearing_time, command, processed, range_bearing, style  # noqa: E402
+from asdic_pictures import (api, bearing_time, bearings, command, processed,  # noqa: E402
+                            range_bearing, style)
 from asdic_pictures.data import PingFile  # noqa: E402
 from deep import DEEP  # noqa: E402
+from text_layout import faults  # noqa: E402
 
 style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 if not DEEP:    # where words stand is no matter of these tests, and takes half of the time
@@ -161,8 +164,8 @@ heading_deg = 90.0
         return self.made(SCENARIO.format(array="@").replace("[array]\n@\n", self.ARRAYS), 1)
 
     def test_each_is_steered_alone(self):
-        """A line's axis is its sine from broadside, clockwise: minus the cosine of the angle
-        between the line and the target. By a quarter of a beam, 1/8 of the sine."""
+        """On a line's axis a target is at the cosine of the angle between them. By a quarter of a
+        beam, 1/8 of the cosine."""
         with PingFile(self.make_several()) as data:
             for name, along in (("north line", [0, 1, 0]), ("east line", [1, 0, 0])):
                 data.select_array(data.choose_array(name))
@@ -171,7 +174,8 @@ heading_deg = 90.0
                 self.assertEqual(where.kind, "horizontal")
                 off = data.targets(0)[0][2] - data.phones(0).mean(axis=0)
                 loud = np.unravel_index(np.nanargmax(db), db.shape)[0]
-                self.assertAlmostEqual(where.coordinate[loud], -off @ along / np.linalg.norm(off),
+                axis = bearings.along(along)
+                self.assertAlmostEqual(where.coordinate[loud], off @ axis / np.linalg.norm(off),
                                        delta=0.03)
             data.select_array(0)
             self.assertEqual((data.channels, bearing_time.record(data, 0)[0].kind), (4, "vertical"))
@@ -222,7 +226,90 @@ heading_deg = 90.0
                     self.assertLess(np.abs(way / 1500.0 - m.time[known]).max(), 0.01)
 
 
+def mapped(fig):
+    """What the colour bars of a picture stand for."""
+    return [m for a in fig.axes for m in (*a.images, *a.collections) if getattr(m, "colorbar", None)]
+
+
+class OneConvention(Case):
+    """A target at 53° true: there in every picture, whatever the array's heading."""
+
+    def bearing_at(self, axis, place):
+        """By the tick labels alone: places of a line are a·sin b + c·cos b."""
+        ticks = [(p, np.radians(float(t.get_text().rstrip("°"))))
+                 for p, t in zip(axis.get_ticklocs(), axis.get_ticklabels())]
+        weights, *_ = np.linalg.lstsq(np.array([[np.sin(b), np.cos(b)] for _, b in ticks]),
+                                      np.array([p for p, _ in ticks]), rcond=None)
+        tried = np.radians(np.arange(0.0, 360.0, 0.1))
+        middle = np.mean([np.exp(1j * b) for _, b in ticks])
+        tried = tried[np.cos(tried - np.angle(middle)) >= -1e-9]      # of this side
+        there = weights[0] * np.sin(tried) + weights[1] * np.cos(tried)
+        return float(np.degrees(tried[np.argmin(np.abs(there - place))]))
+
+    def test_in_all_pictures(self):
+        """Sound comes from 5° below: 0.996 of the cosine. A beam of 8 phones is 13° wide."""
+        true = np.degrees(np.arctan2(2000.0, 1500.0))
+        for heading, second in ((0.0, False), (200.0, False), (90.0, True)):
+            scenario = SCENARIO.format(array=ARRAYS["horizontal"] + f"\nheading_deg = {heading}")
+            with self.subTest(heading=heading), PingFile(self.made(scenario, 1)) as data:
+                found = {}
+                for name in ("bearing_time", "detections", "range_bearing"):
+                    fig = api.of_ping(name, data)
+                    axes = fig.axes[0]
+                    other = axes.child_axes[0]
+                    if name == "range_bearing":
+                        axis = other.xaxis if second else axes.xaxis
+                        star = next(x for x in axes.lines if x.get_marker() == "*")
+                        ring = next(x for x in axes.lines if x.get_markersize() == 10)
+                        found[name] = self.bearing_at(axis, star.get_xdata()[0])
+                        found["ring"] = self.bearing_at(axis, ring.get_xdata()[0])
+                    else:
+                        axis = other.yaxis if second else axes.yaxis
+                        box = axes.patches[0]
+                        found[name] = self.bearing_at(axis, box.get_y() + 0.5 * box.get_height())
+                    self.assertRegex(axis.get_label_text(), "^look bearing, true ")
+                ring = found.pop("ring")
+                for name, bearing in found.items():
+                    self.assertAlmostEqual(bearing, true, delta=0.7, msg=name)
+                self.assertAlmostEqual(ring, true, delta=8.0)
+
+
 class WhatTheyShow(Case):
+    def test_colours_reach_the_echo(self):
+        """The target's echo is 45 dB over the background: nothing of it is clipped."""
+        loud = SCENARIO.replace("strength_db = 15.0", "strength_db = 40.0")
+        with PingFile(self.made(loud.format(array=ARRAYS["horizontal"]), 1)) as data:
+            t = processed.detections(data, 0)
+            snr = t["snr_db"][t["target"] == 0].max()
+            self.assertGreater(snr, 40.0)
+            for name in ("detections", "range_bearing"):
+                fig = api.of_ping(name, data)
+                self.assertTrue(mapped(fig))
+                for one in mapped(fig):
+                    self.assertGreaterEqual(one.get_clim()[1], snr, name)
+                fig = api.of_ping(name, data, limits=(-5.0, 20.0))
+                self.assertEqual({m.get_clim() for m in mapped(fig)}, {(-5.0, 20.0)})
+
+    def test_every_kind_of_mark_has_a_look_of_its_own(self):
+        """Sender and array apart: found, of no target, the transmitter's own sound."""
+        t = {"target": np.array([-2.0, -1.0, 0.0])}
+        _, axes = style.figure("marks")
+        handles = processed.mark(axes, np.arange(3.0), np.arange(3.0), t, ["rock"])
+        looks = {(h.get_marker(), h.get_markeredgecolor(), h.get_markersize()) for h in handles}
+        self.assertEqual(len(looks), 3)
+        self.assertNotIn("white", [h.get_markeredgecolor() for h in processed.legend(handles)])
+
+    def test_words_can_be_read(self):
+        """One array, and two sides of one that is apart from the sender."""
+        apart = SCENARIO.format(array="offset = [900.0, 0.0, 0.0]\n" + ARRAYS["horizontal"])
+        with patch.dict(style.TESTING, {"figure.constrained_layout.use": True}):
+            for scenario in (SCENARIO.format(array=ARRAYS["horizontal"]), apart):
+                with PingFile(self.made(scenario, 1)) as data:
+                    for name in ("detections", "range_bearing"):
+                        self.assertEqual(faults(api.of_ping(name, data)), [], name)
+                    sides = len(processed.maps(data, 0).beam_range) or 1
+                    self.assertEqual(len(api.of_ping("range_bearing", data).axes), sides + 1)
+
     def test_detections_lie_where_the_map_is_loud(self):
         """The target's detection, in its beam and column of the map: within one of either."""
         with PingFile(self.make("horizontal")) as data:

@@ -171,6 +171,8 @@ class EveryPictureIsDrawn(Case):
             axes = fig.axes[0]
             for legend in fig.findobj(matplotlib.legend.Legend):
                 legend.set(in_layout=False, visible=False)
+            for strut in axes.texts:
+                strut.set(in_layout=False)
             fig.canvas.draw()
             box = axes.get_window_extent()
             image = np.asarray(fig.canvas.buffer_rgba())[::-1, :, :3].astype(float).mean(axis=2)

@@ -5,6 +5,7 @@ plainly. The file is made here, in the form of docs/formats/study-results.md.
 import contextlib
 import io
 import json
+import re
 import sys
 import tempfile
 import unittest
@@ -14,13 +15,14 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "python")]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests" / "support")]
 
 import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
 from asdic_pictures import command, study_data, study_pictures, style  # noqa: E402
+from text_layout import faults  # noqa: E402
 
 style.TESTING.update({"figure.dpi": 100})    # quicker to draw
 
@@ -117,6 +119,107 @@ class Case(unittest.TestCase):
         for i, one in enumerate(boxes):
             for other in boxes[:i]:
                 self.assertFalse(one.overlaps(other))
+
+
+class Honest(Case):
+    """Intervals are named, depth is down, what is constant is left out, the ROC goes on to where the
+    threshold is.
+    """
+
+    def test_the_confidence_level_is_told(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            f["summary"].attrs["confidence"] = 0.9
+        study = study_data.read(str(self.file))
+        for name, fig in study_pictures.draw(study):
+            words = " ".join(t.get_text() for t in fig.findobj(matplotlib.text.Text))
+            if name not in ("histograms", "sensitivity"):   # without intervals
+                self.assertIn("90 % confidence", words.replace("\n", " "), name)
+
+    def test_depth_grows_downwards(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            del f["summary/pd_by_range_and_wind_speed"]
+            r = np.array([15e3, 25e3])
+            table(f, "pd_by_range_and_depth", "", range=(np.repeat(r, 2), "m"),
+                  depth=(np.tile([50.0, 150.0], 2), "m"), count=np.full(4, 100.0),
+                  **estimate("pd", [0.9, 0.8, 0.4, 0.3]))
+            table(f, "means_by_kind", "", kind=([0, 1], "1", ["cw", "lfm"]), count=np.full(2, 9.0),
+                  **{k: (v, "m") for k, v in estimate("depth", [90.0, 120.0], 9.0).items()})
+        figures = dict(study_pictures.draw(study_data.read(str(self.file)),
+                                           ["pd_by_range_and_depth", "means_by_kind"]))
+        for fig in figures.values():
+            bottom, top = fig.axes[0].get_ylim()
+            self.assertGreater(bottom, top)
+        self.assertEqual(len(figures), 2)
+
+    def test_what_is_constant_is_left_out_and_told(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            table(f, "pfa_by_range", "", range=([15e3, 25e3], "m"), count=np.full(2, 9.0),
+                  **estimate("pfa", [0.0, 0.0]))
+            f["table/detected"][...] = 1.0
+        study = study_data.read(str(self.file))
+        figures = dict(study_pictures.draw(study))
+        self.assertNotIn("pfa_by_range", figures)
+        self.assertEqual(study_pictures.left_out(study),
+                         {"pfa_by_range": "probability of false alarm is 0 everywhere"})
+        self.assertNotIn("detected", [a.get_xlabel() for a in figures["histograms"].axes])
+        rows = [t.get_text() for t in figures["sensitivity"].axes[0].get_yticklabels()]
+        self.assertEqual(rows, ["echo level", "bearing error"])
+        code, out, _ = plot(self.file, "-o", self.folder / "pictures")
+        self.assertEqual(code, 0)
+        self.assertRegex(out, "pfa_by_range.png: left out, probability of false alarm is 0 everywhere")
+
+    def test_the_roc_reaches_the_threshold(self):
+        """Swerling 1 at 10 dB in exponential noise: P_d = P_fa^(1/(1 + SNR)), to a factor of 10 below
+        what 2000 rows can count, within three deviations of the tail's fit (a twentieth of its 200
+        values' mean, in the exponent) and of P_d.
+        """
+        random = np.random.default_rng(3)
+        n, asked = 2000, 5e-5
+        write(self.file, rows=n)
+        absent, present = random.exponential(1.0, n), random.exponential(11.0, n)
+        threshold = -np.log(asked)
+        with h5py.File(self.file, "r+") as f:
+            for name, values in (("snr_absent_db", 10 * np.log10(absent)),
+                                 ("snr_matched_db", 10 * np.log10(present))):
+                f[f"table/{name}"] = values
+                f[f"table/{name}"].attrs.update(units="dB", long_name=name, role="measure")
+            f["table/detected"][...] = present > threshold
+            f["study"] = f"[measure]\ndetection = {{ false_alarm_probability = {asked} }}\n"
+            del f["summary/roc"]
+            pfa = np.arange(1, n, 10) / n
+            at = np.quantile(absent, 1.0 - pfa)
+            table(f, "roc", "", threshold_db=at, pfa=pfa,
+                  **estimate("pd", (present[None] > at[:, None]).mean(axis=1), 0.02))
+        fig = dict(study_pictures.draw(study_data.read(str(self.file)), ["roc"]))["roc"]
+        axes = fig.axes[0]
+        self.assertLess(axes.get_xlim()[0], asked)
+        dashed = next(x for x in axes.lines if "exponential law" in str(x.get_label()))
+        pfa, pd = dashed.get_data()
+        self.assertLess(pfa.min(), asked)
+        exact = pfa ** (1.0 / 11.0)
+        self.assertLess(np.abs(pd - exact).max(), 3 * (0.5 / np.sqrt(n) + 0.05 * 7 / 11 * exact.max()))
+        words = " ".join(t.get_text() for t in axes.get_legend().get_texts())
+        self.assertRegex(words, r"operating point, Pfa 5e-05, Pd 0\.\d+")
+
+    def test_words_are_said_once(self):
+        self.assertEqual(study_data.spoken("bottom_bottom_depth"), "bottom depth")
+        self.assertEqual(study_data.spoken("bottom_bottom"), "bottom")
+        column = study_data.Column("depth", "m", "target.0.depth: depth below the mean surface",
+                                   np.array([1.0, 2.0]))
+        self.assertEqual(column.label(), "target depth / m")
+
+    def test_words_can_be_read(self):
+        write(self.file)
+        with h5py.File(self.file, "r+") as f:
+            f.attrs["title"] = "a search of everything that there is in a sea of which little is known, " \
+                               "by a sonar of which nobody knows much either"
+        for name, fig in study_pictures.draw(study_data.read(str(self.file))):
+            self.assertEqual(faults(fig), [], name)
+            words = " ".join(t.get_text() for t in fig.findobj(matplotlib.text.Text))
+            self.assertIn("much either", re.sub(r"\s+", " ", words), name)   # not cut off
 
 
 class MoreMeasuresThanPanels(Case):
