@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "io/hdf5/readable.h"
 #include "io/ping/ping_file.h"
+#include "io/ping/provenance.h"
 #include "io/result/result_file.h"
 #include "io/result/scene_file.h"
 #include "io/scenario/propagation.h"
@@ -118,6 +119,7 @@ int plot(const PlotOptions& options) {
   if (options.ping) words.insert(words.end(), {"--ping", std::to_string(*options.ping)});
   for (const Passed& one : options.passed)
     if (!one.word.empty()) words.push_back(one.option + "=" + one.word);
+  words.push_back("--program=" + program_version());
   if (options.force) words.push_back("--force");
   return draw_pictures(words);
 }

@@ -63,7 +63,7 @@ def draw_map(axes, scene: Scene) -> None:
               color=style.GREY, lw=0.9, ls=(0, (4, 3)), zorder=2)
     axes.set_xlim(middle[0] - far, middle[0] + far)
     axes.set_ylim(middle[1] - far, middle[1] + far)
-    axes.set_aspect("equal", adjustable="box")
+    axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("east / km")
     axes.set_ylabel("north / km")
     axes.grid(True)
@@ -139,7 +139,7 @@ def geometry(scene: Scene, axes=None, limits=None):
     moving = "the ways are those until" if scene.end else "until"
     style.subtitle(left, f"{scene.title}  ·  {scene.pings} "
                          f"{'ping' if scene.pings == 1 else 'pings'} at {scene.frequency:g} Hz, {moving} "
-                         f"the last record ends, {scene.end:g} s")
+                         f"the last record ends, {scene.end:g} s", marks=True)
     right.annotate(f"section along {scene.bearing:.0f}° true (dashed in the map); all things by "
                    "their range", (0.0, 1.0), (0.0, 4.0), "axes fraction", "offset points",
                    fontsize=8.5, color=style.NOTE, annotation_clip=False).set_in_layout(False)
@@ -190,7 +190,10 @@ def sound_speed(scene: Scene, axes=None, limits=None):
     several = len(seas.profiles(known))
     style.subtitle(axes, scene.title + ("  ·  speeds of the marks are those at range 0"
                                         if several > 1 else ""))
+    of_profiles = axes.get_legend()
     style.legend_below(axes, made, ncol=3)
+    if of_profiles:
+        axes.add_artist(of_profiles)
     return fig
 
 
@@ -226,7 +229,7 @@ def array(scene: Scene, axes=None, limits=None):
                 panel.annotate(str(which), (x[which], y[which]), (4.0, 5.0),
                                textcoords="offset points", fontsize=8, color=style.NOTE)
             panel.grid(True)
-            span = max(np.ptp(x), np.ptp(y), 1e-3)
+            span = max(np.ptp(phones, axis=0).max(), np.ptp(flat @ axis), 1e-3)
             for middle, put in ((0.5 * (x.min() + x.max()), panel.set_xlim),
                                 (0.5 * (y.min() + y.max()), panel.set_ylim)):
                 put(middle - 0.6 * span, middle + 0.6 * span)

@@ -79,7 +79,8 @@ def draw_profile(axes, sea) -> None:
     many = len(several)
     if many > MOST_PROFILES:
         several = [several[round(k)] for k in np.linspace(0, many - 1, MOST_PROFILES)]
-    shades = matplotlib.colormaps["plasma"](np.linspace(0.05, 0.8, len(several)))
+    shades = matplotlib.colormaps["plasma"](
+        np.linspace(0.05, 0.8, len(several)) + (0.2 if style.PAPER != "white" else 0.0))
     speeds = []
     for shade_of_range, (r, z, c) in zip(shades, several):
         alone = len(several) == 1

@@ -86,7 +86,7 @@ def mark_true_echoes(axes, data, edges):
     for row in data.simulated:
         for echo in data.echoes(int(row)):
             time = echo.delay[echo.strongest]
-            if edges[0] <= time <= edges[-1]:
+            if edges[0] <= time <= data.start + data.valid_samples[row] / data.sample_rate:
                 number = data.numbers[row]
                 style.box(axes, time, time + data.pulse_duration, number - 0.42, number + 0.42,
                           style.colour(echo.target))
