@@ -28,6 +28,31 @@ def measured(data, ping, step: float):
     return time, total / counts / data.channels
 
 
+def curves(data, ping) -> dict:
+    """What the picture shows of the phones that are selected: "measured", "in band", "noise",
+    "reverberation", "echo" → middles of steps [s], level [dB re 1 µPa]
+    """
+    time, parts = data.levels(ping)
+    step = interval(data, time)
+    t_total, total = measured(data, ping, step)
+    per = max(int(round(step * data.sample_rate)), 1)
+    b = data.envelope(ping)
+    edges = data.start + np.append(np.arange(len(t_total)) * per / data.sample_rate, b.duration)
+    in_band = b.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), edges)
+    # level_time tells where a step starts
+    starts = time.size and time[0] - data.start < 0.25 * step
+    middle = time + 0.5 * step if starts else time
+    found = {"measured": (t_total, signal.decibels(total)),
+             "in band": (t_total, signal.decibels(in_band))}
+    return found | {key: (middle, signal.decibels(parts[key]))
+                    for key in ("noise", "reverberation", "echo")}
+
+
+def interval(data, time) -> float:
+    """Length of a step of the levels [s]"""
+    return float(np.median(np.diff(time))) if time.size > 1 else data.samples / data.sample_rate
+
+
 @style.picture
 def draw(data, ping, axes=None, limits=None):
     """The levels in the file are means over all phones: so is what is measured here."""
@@ -40,29 +65,22 @@ def draw(data, ping, axes=None, limits=None):
 
 
 def draw_all_phones(data, ping, axes, limits):
-    time, parts = data.levels(ping)
-    step = float(np.median(np.diff(time))) if time.size > 1 else data.samples / data.sample_rate
-    t_total, total = measured(data, ping, step)
-    b = data.envelope(ping)
-    edges = data.start + np.append(np.arange(len(t_total)) * max(int(round(step * data.sample_rate)),
-                                                                 1) / data.sample_rate, b.duration)
-    in_band = b.average(0.5 * np.mean(np.abs(b.values) ** 2, axis=0), edges)
-
+    lines = curves(data, ping)
+    step = interval(data, data.levels(ping)[0])
+    width = data.envelope(ping).width
+    t_total, total = lines["measured"]
+    in_band = lines["in band"][1]
     echoes = all_echoes(data, ping)
     targets = len({e.target for e in echoes})
     fig, axes = style.figure(TITLE, 4.8, axes)
-    # level_time tells where a step starts
-    starts = time.size and time[0] - data.start < 0.25 * step
-    middle = time + 0.5 * step if starts else time
-    axes.plot(t_total, signal.decibels(total), color=style.INK, lw=0.9,
-              label="measured, all frequencies", zorder=3)
-    axes.plot(t_total, signal.decibels(in_band), color=style.INK, lw=0.9, ls=(0, (4, 1.5)),
-              label=f"measured, in {b.width:.0f} Hz", zorder=3)
-    shown = [signal.decibels(total), signal.decibels(in_band)]
+    axes.plot(t_total, total, color=style.INK, lw=0.9, label="measured, all frequencies", zorder=3)
+    axes.plot(t_total, in_band, color=style.INK, lw=0.9, ls=(0, (4, 1.5)),
+              label=f"measured, in {width:.0f} Hz", zorder=3)
+    shown = [total, in_band]
     drawn = []
     for key, colour in (("noise", style.GREY), ("reverberation", style.SLATE),
                         ("echo", echo_colour(echoes))):
-        db = signal.decibels(parts[key])
+        middle, db = lines[key]
         if np.isfinite(db).any():
             label = f"echo, all {targets} targets" if key == "echo" and targets > 1 else key
             drawn.append(axes.plot(middle, db, color=colour, lw=1.9, label=label, zorder=4,

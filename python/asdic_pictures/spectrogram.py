@@ -13,8 +13,10 @@ def nothing_to_show(data, ping):
     return None
 
 
-@style.picture
-def draw(data, ping, axes=None, limits=None):
+def record(data, ping):
+    """What the picture shows. → times [s], frequencies [Hz], density [bin, column]
+    [dB re 1 µPa²/Hz], length of a window [s]
+    """
     b = data.envelope(ping)
     # As long as a tone lasts, for its line and its Doppler; for a sweep, 1/√(sweep rate), which
     # resolves time and frequency alike.
@@ -22,14 +24,22 @@ def draw(data, ping, axes=None, limits=None):
     length = np.sqrt(data.pulse_duration / data.bandwidth) if sweep else data.pulse_duration
     window = int(np.clip(round(length * b.rate), 16, max(b.values.shape[1] // 4, 16)))
     time, frequency, density = signal.spectrogram(b, window, 900)
-    db = signal.decibels(density)
     inside = np.abs(frequency - b.carrier) <= 0.5 * b.width
-    frequency, db = frequency[inside], db[inside]
+    return time, frequency[inside], signal.decibels(density)[inside], window / b.rate
 
+
+def colour_limits(data, ping, db, window: float):
+    """An echo's energy lies in 1/T or, for a sweep, in its band: its density is that much lower."""
+    spread = 10.0 * np.log10(max(data.bandwidth, 1.0 / window, 1e-3))
+    return style.colour_limits(db, data.loudest_echo(ping) - spread)
+
+
+@style.picture
+def draw(data, ping, axes=None, limits=None):
+    b = data.envelope(ping)
+    time, frequency, db, window = record(data, ping)
     fig, axes = style.figure(TITLE, 4.8, axes)
-    # an echo's energy lies in 1/T or, for a sweep, in its band: its density is that much lower
-    spread = 10.0 * np.log10(max(data.bandwidth, b.rate / window, 1e-3))
-    limits = limits or style.colour_limits(db, data.loudest_echo(ping) - spread)
+    limits = limits or colour_limits(data, ping, db, window)
     mesh = style.image(axes, style.cell_edges(time),
                        style.cell_edges(frequency - data.centre_frequency), db, limits)
     style.image_frame(axes)
@@ -45,7 +55,7 @@ def draw(data, ping, axes=None, limits=None):
         right.tick_params(length=3)
     style.colour_bar(fig, mesh, axes, "spectral level / dB re 1 µPa²/Hz")
     phones = "1 phone" if data.channels == 1 else f"mean over {data.channels} phones"
-    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, windows of {window / b.rate:.3g} s",
+    style.subtitle(axes, f"{data.heading(ping)}  ·  {phones}, windows of {window:.3g} s",
                    marks=True)
     style.legend_below(axes, mark_echoes(axes, data.echoes(ping), data.pulse_duration))
     return fig
