@@ -29,7 +29,7 @@ struct PlotOptions {
   ScenarioChoice scenario;  ///< its path may be that of any file to draw
   std::string folder;
   std::optional<int> ping;
-  bool force = false;
+  bool force = false, html = false;
   std::vector<Passed> passed{
       {"--array", "NAME",
        "array of a ping file to draw; default: the first (range over bearing: the first that tells "
@@ -94,6 +94,11 @@ int plot(const PlotOptions& options) {
     if (!options.scenario.overrides.empty())
       throw InputError({.where = "--set", .got = given, .expected = "a scenario, .toml"});
   }
+  if (options.html && (is_scenario(given) || !is_ping_file(given)))
+    throw InputError(
+        {.where = given,
+         .got = "--html for a file that holds no pings",
+         .expected = "a file of asdic ping; the others have pictures, without --html"});
   const TemporaryFolder folder;
   std::filesystem::path file = given;
   std::string pictures = options.folder;
@@ -120,6 +125,7 @@ int plot(const PlotOptions& options) {
   for (const Passed& one : options.passed)
     if (!one.word.empty()) words.push_back(one.option + "=" + one.word);
   words.push_back("--program=" + program_version());
+  if (options.html) words.push_back("--html");
   if (options.force) words.push_back("--force");
   return draw_pictures(words);
 }
@@ -147,6 +153,10 @@ void add_plot_command(Program& program) {
             .check(above_zero());
         for (Passed& one : options->passed)
           command.add_option(one.option, one.word, one.help).type_name(one.type);
+        command.add_flag("--html", options->html,
+                         "of a ping file one page for a browser, which zooms and tells values, in "
+                         "place of pictures; -o names it (default: FILE.html); it holds all pings "
+                         "and arrays, or those of --ping and --array");
         add_set_option(command, options->scenario);
         add_force_option(command, options->force);
         command.footer(

@@ -7,7 +7,7 @@ install(TARGETS asdic_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET asdic_mpi)
   install(TARGETS asdic_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python FILES_MATCHING PATTERN "*.py")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/python FILES_MATCHING PATTERN "*.py" PATTERN "*.js" PATTERN "*.css")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asdic/scenarios)
 install(EXPORT asdicTargets NAMESPACE asdic:: DESTINATION ${config_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/asdicConfig.cmake.in ${PROJECT_BINARY_DIR}/asdicConfig.cmake

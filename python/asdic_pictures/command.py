@@ -42,6 +42,8 @@ def arguments(argv):
     parser.add_argument("--floor", metavar="DB", type=float, default=120.0,
                         help="differences of fields where both losses are below this")
     parser.add_argument("--program", metavar="VERSION", default="", help="of the program that asks")
+    parser.add_argument("--html", action="store_true",
+                        help="one page for a browser in place of pictures; -o names it")
     parser.add_argument("--force", action="store_true",
                         help="write over files even if asdic did not write them")
     return parser.parse_args(argv)
@@ -224,6 +226,15 @@ def draw_scene(options, wish: Wishes) -> None:
         wish.write(api.of_scene(name, found, theme=wish.theme), name, told)
 
 
+def write_page(options) -> None:
+    from asdic_page import page
+
+    with PingFile(options.file) as data:
+        path = page.write(data, page.place(options.file, options.output), options.ping,
+                          options.array, options.force)
+        say(f"{path}: a page for a browser")
+
+
 def draw_study(options, wish: Wishes) -> None:
     """Every picture that the summary and the table of a study can feed."""
     from . import study_data, study_pictures, style
@@ -265,6 +276,9 @@ def run(argv=None) -> int:
         draw_comparison(options)
         return 0
     wish = wishes(options, Path(options.output) if options.output else default_folder(options.file))
+    if options.html:
+        write_page(options)
+        return 0
     kind = filetype(options.file)
     if kind == "asdic scene":
         draw_scene(options, wish)

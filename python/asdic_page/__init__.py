@@ -1,0 +1,6 @@
+"""A ping file as one page for a browser (`asdic plot --html`): panels that zoom, tell values and
+point at each other, with nothing fetched from anywhere.
+
+content.py collects what the page shows, by the functions of asdic_pictures; page.py puts it, page.css
+and page.js into one file.
+"""
